@@ -59,6 +59,8 @@ export interface ArcheryPlay {
   steer(time: number, ray: Ray, wish: { readonly pressed: boolean; readonly cancelled: boolean }): Performance;
   /** Another round, for a person with these measures whose eyes are this high now [m], standing or seated. */
   restart(calibration: Calibration, eyeHeight?: number): void;
+  /** The floor lies elsewhere from the next frame on. */
+  jumped(): void;
   /** The start signal: the clock of a round that waits runs from the next frame on, not from the first arrow. */
   signal(): void;
 }
@@ -170,6 +172,7 @@ export function createArcheryPlay(
       return steered.follow(time, { target, ...wish });
     },
     restart,
+    jumped: () => gestures.jumped(),
     signal() {
       signalled = true;
     },

@@ -57,7 +57,7 @@ export interface BallPlay {
   follow(time: number, frame: TrackingFrame | null, buttons: Buttons): BallFrame | null;
   /** The solved body of this frame, for the others. */
   send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void;
-  /** The space was re-anchored: others see a jump and no streak. */
+  /** The floor lies elsewhere from the next frame on: others see a jump and no streak, and hands throw nothing by it. */
   jumped(): void;
   ready(on: boolean): void;
   rotate(on: boolean): void;
@@ -246,6 +246,7 @@ class MatchPlay implements BallPlay {
 
   jumped(): void {
     this.jump = true;
+    this.gestures?.jumped();
   }
 
   ready(on: boolean): void {

@@ -203,8 +203,9 @@ export class Activities {
     this.#placeCamera();
   }
 
-  /** The floor lies elsewhere from one frame to the next: others see no way between. */
+  /** The floor lies elsewhere from one frame to the next: there is no way between, for hands and for others. */
   jumped(): void {
+    this.#archery?.play.jumped();
     this.#ball?.play.jumped();
   }
 

@@ -90,6 +90,8 @@ export interface GestureFrame {
 export interface ArcheryGestures {
   /** Frames in the order of their time; irregular ones are fine. */
   follow(frame: TrackingFrame, buttons: Buttons): GestureFrame;
+  /** The floor lies elsewhere from the next frame on. */
+  jumped(): void;
 }
 
 /** A press nocks when the fist is this near to the nocking point [m]; it stays near until it is a little further away. */
@@ -163,6 +165,11 @@ class BowGestures implements ArcheryGestures {
     if (frame.suspended) this.#wait();
     else this.#told.bow = this.#play(frame);
     return this.#told;
+  }
+
+  jumped(): void {
+    this.#bow.jumped();
+    this.#nocked?.jumped();
   }
 
   #begin({ time, head }: TrackingFrame, buttons: Buttons): void {

@@ -71,6 +71,11 @@ export class HeldBow {
     this.#settling = direction;
   }
 
+  /** The floor lies elsewhere from the next frame on: the bow is there as the hand holds it. */
+  jumped(): void {
+    this.#settling = null;
+  }
+
   /** Turns back to how the hand holds it. */
   settle(delta: number): void {
     if (!this.#settling) return;

@@ -58,6 +58,8 @@ export class NockedArrow {
   lostAt: number | null = null;
   /** An opened pinch counts with the next frame that sees the hand: fingers also seem to open when a camera loses them. */
   opened = false;
+  /** `direction` is one of a floor that lay elsewhere. */
+  #jumped = false;
   #drawSpeed = 0;
   /** Seconds for which the draw has been steady, and the draw at which it anchored. */
   #steady = 0;
@@ -77,7 +79,7 @@ export class NockedArrow {
   /** The string goes where the fist of the string hand is. true: with this frame the draw is anchored. */
   drawWithHand(inHand: Pose<'floor'>, fist: Vec3, delta: number): boolean {
     const { direction } = this;
-    forwardOf(inHand, held);
+    this.#leap(forwardOf(inHand, held));
     const reference = this.draw < drawingFrom ? held : direction;
     // The arrow rest lies above the fist at right angles to the arrow, whichever way the knuckles point.
     normalise(subtract(arrowRestOf(inHand, rest), fist, line), reference, line);
@@ -87,7 +89,7 @@ export class NockedArrow {
     const share = smoothstep(handAims, lineAims, draw);
     if (behind) turnTowards(held, normalise(line, undefined, line), share, goal);
     else copyVec3(held, goal);
-    turnTowards(direction, goal, smoothingFactor(aimHalfLife * share, delta), direction);
+    turnTowards(direction, goal, this.#smoothing(aimHalfLife * share, delta), direction);
     if (delta > 0) this.#drawSpeed = damp(this.#drawSpeed, (draw - this.draw) / delta, drawSpeedHalfLife, delta);
     this.draw = draw;
     return this.#settle(delta);
@@ -95,11 +97,17 @@ export class NockedArrow {
 
   /** The draw grows while the button is held, and the bow's hand aims. true: with this frame the draw is anchored. */
   drawWithButton(inHand: Pose<'floor'>, delta: number): boolean {
-    turnTowards(this.direction, forwardOf(inHand, held), smoothingFactor(oneHandedAimHalfLife, delta), this.direction);
+    this.#leap(forwardOf(inHand, held));
+    turnTowards(this.direction, held, this.#smoothing(oneHandedAimHalfLife, delta), this.direction);
     this.draw = Math.min(oneHandedDraw, this.draw + oneHandedDrawSpeed * delta);
     if (this.draw < oneHandedDraw) this.stage = this.#stageOfDraw();
     else if (this.stage !== 'anchored') return this.#anchor();
     return false;
+  }
+
+  /** The floor lies elsewhere from the next frame on: the arrow is there at once where the hands point. */
+  jumped(): void {
+    this.#jumped = true;
   }
 
   /** The hand that was lost is back. */
@@ -126,6 +134,18 @@ export class NockedArrow {
     const further = this.draw - this.#heardDraw >= creakNotch;
     if (further || this.draw < this.#heardDraw) this.#heardDraw = this.draw;
     return further;
+  }
+
+  /** After a jump of the floor the arrow points as the bow's hand does. */
+  #leap(held: Vec3): void {
+    if (this.#jumped) copyVec3(held, this.direction);
+  }
+
+  /** The share of the way to where the hands point that this frame goes. */
+  #smoothing(halfLife: number, delta: number): number {
+    const share = this.#jumped ? 1 : smoothingFactor(halfLife, delta);
+    this.#jumped = false;
+    return share;
   }
 
   #settle(delta: number): boolean {

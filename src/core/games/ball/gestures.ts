@@ -71,6 +71,8 @@ export interface BallGestures {
   follow(frame: TrackingFrame, buttons: Buttons): BallGestureFrame;
   /** What the match said: a ball that was refused is in no hand. */
   hear(events: readonly BallEvent[]): void;
+  /** The floor lies elsewhere from the next frame on: hands have no way behind them. */
+  jumped(): void;
   /** The match is known afresh, perhaps without deeds of these hands: from the next frame on they hold no ball that it has elsewhere, and put back what only it has in them. */
   resume(): void;
 }
@@ -183,6 +185,10 @@ class PlayerGestures implements BallGestures {
     if (events.length === 0) return;
     const { player } = this.settings();
     for (const event of events) for (const side of sides) this.hearOf(side, event, player);
+  }
+
+  jumped(): void {
+    for (const side of sides) this.hands[side].speed.reset();
   }
 
   resume(): void {

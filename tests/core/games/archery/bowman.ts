@@ -101,6 +101,11 @@ export function bowman(changes: Partial<ArcheryGestureSettings> = {}, rateHz = 9
       self.move((share) => ({ ...pose, draw: draw * share }), 0.8, 1, button);
       return self.hold({ ...pose, draw }, 0.5, 1, button);
     },
+    /** The floor lies elsewhere from the next frame on. */
+    jump() {
+      gestures.jumped();
+      return self;
+    },
     get bow(): BowView | null {
       return frames.at(-1)?.bow ?? null;
     },

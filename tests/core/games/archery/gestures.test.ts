@@ -333,6 +333,18 @@ describe('the aim', () => {
     expect(distance(ways.at(-1)!, knuckles)).toBeLessThan(1e-9);
   });
 
+  test.each([false, true])('turns with a floor that turns at once, as by the stick (one hand: %s)', (oneHanded) => {
+    const archer = bowman({ oneHanded });
+    archer.drawTo(0.5);
+    const turn = fromAxisAngle(up, Math.PI / 6);
+    const turned = { direction: rotate(turn, vec3(0, 0, -1)), bowAt: rotate(turn, bowAt), draw: 0.5 };
+    archer
+      .jump()
+      .hold(turned, 1 / 90, 1)
+      .hold(turned, 1 / 90, 0);
+    expect(distance(archer.releases[0]!.direction, turned.direction)).toBeLessThan(1e-3);
+  });
+
   test('is told in the arena wherever the floor lies in it', () => {
     const arenaFromFloor: Transform<'arena', 'floor'> = {
       position: vec3(3, 0.2, -2),

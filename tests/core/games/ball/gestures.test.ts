@@ -249,6 +249,16 @@ describe('the speed of a hand', () => {
     expect(follow((time) => vec3(time, 1, 1), [1, 1.5])).toEqual(vec3(0, 0, 0));
   });
 
+  test('is none of a floor that turns at once, as by the stick', () => {
+    const { frame, deeds, gestures } = carrying();
+    for (let i = 0; i < 12; i++) frame(ahead, 1);
+    gestures.jumped();
+    const aside = add(ahead, vec3(0.3, 0, 0));
+    frame(aside, 1);
+    frame(aside, 1);
+    expect(deeds(frame(aside, 0)).map(({ type }) => type)).toEqual(['drop']);
+  });
+
   test('turns with the person', () => {
     fc.assert(
       fc.property(vector(5), evenly(-Math.PI, Math.PI), (velocity, yaw) => {
