@@ -31,7 +31,7 @@ export interface ArcherySettings {
 /** What one frame of play brought: to be seen, heard and felt. */
 export interface ArcheryFrame {
   readonly state: ArcheryState;
-  /** Seconds of the match at this frame. */
+  /** Seconds of the match at this frame; they go on when it is over, for what its last arrow left to be seen. */
   readonly time: number;
   readonly bow: BowView | null;
   readonly events: readonly ArcheryEvent[];
@@ -120,6 +120,8 @@ export function createArcheryPlay(
   let archer: Archer;
   let steered: SteeredArcher;
   let newest: ArcheryFrame | null = null;
+  /** Of the frame that was followed last, by the page's clock [s]. */
+  let followedAt = Number.NaN;
   let signalled = false;
   const gestures = createArcheryGestures(() => ({
     ...defaultArcheryGestureSettings,
@@ -163,7 +165,10 @@ export function createArcheryPlay(
       signalled = false;
       const events = match.advance(frame.time, [...signals, ...actions]);
       const { state } = match;
-      newest = { state, time: Math.max(0, matchTime(state) + match.lead), bow, events, cues, haptics };
+      const before = state.phase === 'over' ? newest : null;
+      const time = before ? before.time + Math.max(0, frame.time - followedAt) : matchTime(state) + match.lead;
+      followedAt = frame.time;
+      newest = { state, time: Math.max(0, time), bow, events, cues, haptics };
       return newest;
     },
     act: (time) => archer.follow(time, match.state),

@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import { createArcheryPlay } from '../../../src/app/archery/archery-play';
+import { createArcheryPlay, probeOf } from '../../../src/app/archery/archery-play';
 import { defaultCalibration } from '../../../src/core/body/calibration';
 import { allReleased } from '../../../src/core/games/button-presses';
 import { vec3 } from '../../../src/core/math/vec3';
@@ -66,4 +66,18 @@ test('no arrow is nocked after the bell, even while the last one flies', () => {
   hold(upward, 0, 0.1);
   hold(upward, 1, 0.1);
   expect(said.filter((type) => type === 'nocked')).toHaveLength(2);
+});
+
+test('what the last arrow of a round left to be seen goes on after it', () => {
+  const { play, hold } = range({ seconds: 1 });
+  hold({}, 0, 0.1);
+  hold({}, 1, 0.1);
+  hold({ draw: 0.5 }, 1, 0.5);
+  hold({}, 0, 0.9);
+  const before = play.newest;
+  expect(before?.state.phase).toBe('running');
+  hold({}, 0, 3);
+  expect(play.newest?.state.phase).toBe('over');
+  expect(play.newest?.time).toBeCloseTo(before!.time + 3, 6);
+  expect(probeOf(play.newest!).secondsLeft).toBe(0);
 });

@@ -1,0 +1,42 @@
+import { Scene } from 'three';
+import { expect, test } from 'vitest';
+import { createArcheryActivity } from '../../../src/app/archery/archery-activity';
+import { defaultCalibration } from '../../../src/core/body/calibration';
+import { nothingPressed } from '../../../src/core/games/button-presses';
+import { normalise, vec3 } from '../../../src/core/math/vec3';
+import { settlingSeconds } from '../../../src/scene/boards/sheet';
+import { posed } from '../../core/games/archery/bowman';
+import { drawNowhere } from '../shell/drawing-in-node';
+
+drawNowhere();
+
+test('the button of a result takes a press as soon as the sheet has been there for a moment', () => {
+  const archery = createArcheryActivity({
+    quality: 'low',
+    surroundings: { scene: new Scene(), setSurroundings: () => undefined },
+    calibration: defaultCalibration,
+    settings: () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false, startSignal: true, seconds: 1 }),
+    seed: () => 7,
+    onCaption: () => undefined,
+  });
+  const eyes = vec3(0, defaultCalibration.eyeHeight, 0);
+  // Straight ahead the button lies 0.36 m below the middle of the sheet, that 0.18 m below the eyes.
+  const ray = { origin: eyes, direction: normalise(vec3(0, -0.54, -2.1)) };
+  let time = 20;
+  const pass = (seconds: number) => {
+    for (let i = 0; i < Math.round(72 * seconds); i++) {
+      time += 1 / 72;
+      const frame = posed(time);
+      archery.follow(frame, nothingPressed);
+      archery.show(frame.head, true);
+    }
+  };
+  archery.play.signal();
+  pass(0.9);
+  expect(archery.restartAt(ray)).toBeNull();
+  pass(0.2);
+  expect(archery.round()?.over).toBe(true);
+  expect(archery.restartAt(ray), 'a press that was meant for the bow').toBeNull();
+  pass(settlingSeconds);
+  expect(archery.restartAt(ray)).toBeCloseTo(Math.hypot(0.54, 2.1), 1);
+});
