@@ -49,7 +49,7 @@ export interface ArcheryActivity {
   readonly sound: ReturnType<typeof createArcheryView>['sound'];
   /** The tracked frame as play: what it means is heard at once, what it feels like comes back. */
   follow(frame: TrackingFrame, buttons: Buttons): ArcheryMoment;
-  /** Draws the newest frame of play; bow: whether the hands hold it or it hangs on its stand. */
+  /** Draws the newest frame of play; bow: whether it is to be seen. */
   show(head: TrackingFrame['head'], bow: boolean): void;
   /** What a ray meets of the result's button: the distance [m]; null: nothing. */
   restartAt(ray: Ray): number | null;

@@ -1,16 +1,15 @@
-import { Group } from 'three';
+import type { Group } from 'three';
 import type { ArcheryEvent, ArcheryState, BowView } from '../../core/games/archery/archery-state';
 import { arrowLength, braceHeight } from '../../core/games/archery/bow';
 import type { BowCue } from '../../core/games/archery/gestures';
 import { invertTransform, type Pose, type Transform, transformPoint } from '../../core/math/pose';
 import { rotate } from '../../core/math/quat';
-import { addScaled, type Vec3, vec3 } from '../../core/math/vec3';
+import { addScaled, vec3 } from '../../core/math/vec3';
 import type { Quality } from '../../scene/renderer';
 import type { AudibleStage } from '../../scene/sound/sound-stage';
 import { makeArrowPose } from './arrow-pose';
 import { createArrows } from './arrows';
 import { createBow } from './bow';
-import { createBowStand, hangingBow } from './bow-stand';
 import { createRange, type Range } from './range';
 import { createResultPanel, type ResultPanel } from './result-panel';
 import { ScorePops } from './score-pops';
@@ -23,14 +22,11 @@ import { createTrails } from './trails';
 export interface ArcheryView {
   /** The place to give to the arena; holds all of the view but the bow and what is nocked on it. */
   readonly range: Range;
-  /** The bow, in a hand or on its stand; in the floor frame, to be added to the scene beside the avatar. */
+  /** The bow in its hand; in the floor frame, to be added to the scene beside the avatar. */
   readonly bow: Group;
   readonly result: Pick<ResultPanel, 'restartAt' | 'setHovered'>;
-  /**
-   * Draws a state at a time of the match [s]; the bow and head as tracked now, floor frame. rest: where the grip hangs while no
-   * hand holds the bow; null: then no bow is seen.
-   */
-  show(state: ArcheryState, bow: BowView | null, matchTime: number, head: Pose<'floor'>, rest?: Vec3 | null): void;
+  /** Draws a state at a time of the match [s]; the bow and head as tracked now, floor frame. No bow is seen where it is null. */
+  show(state: ArcheryState, bow: BowView | null, matchTime: number, head: Pose<'floor'>): void;
   /** Plays and captions what happened since the last frame; cues of the bow are in the floor frame. */
   hear(events: readonly ArcheryEvent[], cues: readonly BowCue[]): void;
   readonly sound: AudibleStage;
@@ -61,16 +57,13 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
   const onString = makeArrowPose();
   const eyes = vec3(0, 0, 0);
   const bow = createBow(quality, braceHeight);
-  const stand = createBowStand(floorFromArena.orientation);
-  const handheld = new Group();
-  handheld.add(bow.object, stand.object);
   range.object.add(stands.object, arrows.object, trails.object, scoreboard.object, pops.object, result.object);
   return {
     range,
-    bow: handheld,
+    bow: bow.object,
     result,
     sound: sounds.stage,
-    show(state, bowView, matchTime, head, rest = null) {
+    show(state, bowView, matchTime, head) {
       shown = state;
       sounds.listen(head);
       const nocked = bowView?.arrow;
@@ -86,8 +79,7 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
       pops.show(state, matchTime, eyes);
       scoreboard.show(state, matchTime);
       result.show(state, matchTime);
-      bow.show(bowView ?? (rest && hangingBow(rest, floorFromArena.orientation)));
-      stand.show(bowView ? null : rest);
+      bow.show(bowView);
       range.setZoneWarning(!state.inZone);
       range.animate(matchTime);
     },
@@ -95,7 +87,7 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
       if (shown) sounds.hear(shown, events, cues);
     },
     dispose() {
-      for (const part of [sounds, stands, arrows, trails, scoreboard, pops, result, bow, stand, range]) part.dispose();
+      for (const part of [sounds, stands, arrows, trails, scoreboard, pops, result, bow, range]) part.dispose();
     },
   };
 }
