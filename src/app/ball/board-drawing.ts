@@ -77,12 +77,14 @@ const listed = (names: readonly string[]): string =>
 
 /** What a match waits for, to be read beside the player; null: for nothing, it runs. */
 export function waitingFor(standing: Standing): string | null {
-  const { state, people, me, acting } = standing;
+  const { state, people, me, rotate, acting } = standing;
   if (state.phase === 'running') return null;
   const there = people.flatMap((person, player) => (person ? [player] : []));
   const roles = new Set(there.map((player) => state.players[player]?.role));
-  if (!roles.has('thrower') || !roles.has('holder'))
-    return `${waitingLine({ ...standing, state: { ...state, phase: 'ready' } })}.`;
+  // Roles that move on after a match give any two players a round.
+  const canPlay =
+    (roles.has('thrower') && roles.has('holder')) || (rotate && state.phase === 'over' && there.length > 1);
+  if (!canPlay) return `${waitingLine({ ...standing, state: { ...state, phase: 'ready' } })}.`;
   const idle = there.filter((player) => !state.players[player]?.ready);
   const names = idle.flatMap((player) => (player !== me && people[player] ? [nameOf(people[player])] : []));
   const press = state.phase === 'over' ? 'Play again' : 'Ready';

@@ -65,6 +65,9 @@ describe('the board', () => {
     expect(waitingFor(standing(all, over))).toBe('Waiting for you: press Play again.');
     expect(waitingFor({ ...standing(all, over), acting: true })).toBe('The match begins in a moment.');
     expect(waitingFor(standing(all, { ...over, phase: 'running' }))).toBeNull();
+    const throwers = standing([all[0]!, all[1]!, null], over);
+    expect(waitingFor(throwers)).toBe('Waiting for a basket holder.');
+    expect(waitingFor({ ...throwers, rotate: true })).toBe('Waiting for you: press Play again.');
   });
 
   it('speaks to the player of their own throws', () => {
