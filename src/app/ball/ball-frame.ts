@@ -6,10 +6,12 @@ import { basketInHands, type Opening } from '../../core/games/ball/basket';
 import { ballRadius } from '../../core/games/ball/flight';
 import type { BallCue, BallPulse } from '../../core/games/ball/gestures';
 import { ballSecondsLeft, ballsLeft } from '../../core/games/ball/state-readings';
+import { isInZone } from '../../core/games/ball/stations';
 import type { Launch } from '../../core/games/ballistics';
 import { ballInPalm } from '../../core/games/fist';
 import {
   composeTransforms,
+  type MutablePose,
   type MutableTransform,
   makePose,
   makeTransform,
@@ -171,11 +173,14 @@ interface Place {
 export class CourtPeople {
   readonly players: (PlayerFrame | null)[] = [];
   readonly bodies: BodyFrame[] = [];
-  /** The opening of the basket in its holder's hands, arena frame; null: no hand of theirs is seen. */
+  /** The opening of the basket where its holder's hands had it last, arena frame; null: not since the room told of it. */
   opening: Opening | null = null;
+  /** As the room told of it last. */
+  private basket: BallState['basket'] | null = null;
   private readonly views: SeatView[] = [];
   private readonly left = makePose<'arena'>();
   private readonly right = makePose<'arena'>();
+  private readonly head = vec3(0, 0, 0);
 
   /**
    * Looks at everyone; `frame`: the own hands, null where nothing is tracked. floorFromArena: where the arena lies in this room.
@@ -191,7 +196,8 @@ export class CourtPeople {
     const shown = seen.match;
     this.players.length = seats.length;
     this.bodies.length = 0;
-    this.opening = null;
+    if (shown?.basket !== this.basket) this.opening = null;
+    this.basket = shown?.basket ?? null;
     if (!shown) return;
     for (let seat = 0; seat < seats.length; seat++) {
       const row = seats[seat];
@@ -199,7 +205,9 @@ export class CourtPeople {
       const there = seat === mySeat ? null : remoteOn(seat, others);
       const arenaFromFloor = line.arenaFromFloor(seat);
       const place = seat === mySeat ? frame : (there?.pose ?? null);
-      if (player?.role === 'holder') this.opening = place && this.openingOf(place, arenaFromFloor);
+      if (player?.role === 'holder' && place) {
+        this.opening = this.openingOf(place, arenaFromFloor, player.station) ?? this.opening;
+      }
       this.players[seat] = null;
       if (!row) continue;
       const view = this.viewOf(seat);
@@ -232,11 +240,14 @@ export class CourtPeople {
     }
   }
 
-  private openingOf({ leftHand, rightHand }: Place, arenaFromFloor: Transform<'arena', 'floor'>): Opening | null {
-    return basketInHands(
-      leftHand && transformPose(arenaFromFloor, leftHand, this.left),
-      rightHand && transformPose(arenaFromFloor, rightHand, this.right),
-    );
+  /** By the rules: in hands that are seen, of a holder at their mark; null: the basket stays where it was. */
+  private openingOf(
+    { head, leftHand, rightHand }: Place,
+    arenaFromFloor: Transform<'arena', 'floor'>,
+    station: number,
+  ): Opening | null {
+    if (!isInZone(transformPoint(arenaFromFloor, head.position, this.head), station)) return null;
+    return basketInHands(seenIn(arenaFromFloor, leftHand, this.left), seenIn(arenaFromFloor, rightHand, this.right));
   }
 
   private viewOf(seat: number): SeatView {
@@ -280,6 +291,13 @@ function remoteOn(seat: number, others: readonly RemotePlayer[]): RemotePlayer |
   for (const other of others) if (other.seat === seat) return other;
   return null;
 }
+
+/** A hand that is tracked, arena frame; null: it is not. */
+const seenIn = (
+  arenaFromFloor: Transform<'arena', 'floor'>,
+  hand: TrackedPose | null,
+  target: MutablePose<'arena'>,
+): MutablePose<'arena'> | null => (hand?.tracking === 'tracked' ? transformPose(arenaFromFloor, hand, target) : null);
 
 /** Where a ball lies in a hand, arena frame; null: the hand is not seen. */
 function palmIn(

@@ -41,7 +41,7 @@ export interface BallScene {
   readonly attendants: readonly (Attendant | null)[];
   readonly me: number | null;
   readonly rotate: boolean;
-  /** The basket where its holder's hands are drawn; null: where it was last. Arena frame. */
+  /** The basket where its holder's hands had it last; null: where the state has it. Arena frame. */
   readonly opening: Opening | null;
   /** How a ball would fly that is let go now, arena frame; null: no player here aims with a mouse. */
   readonly aim: Launch | null;

@@ -1,0 +1,72 @@
+import { expect, test } from 'vitest';
+import { createBallPlay } from '../../../src/app/ball/ball-play';
+import { nothingPressed } from '../../../src/core/games/button-presses';
+import type { Pose, TrackedPose } from '../../../src/core/math/pose';
+import type { Side } from '../../../src/core/math/side';
+import { add, distance, vec3 } from '../../../src/core/math/vec3';
+import { createLoopbackHost } from '../../../src/net/loopback-connection';
+import { holding, opening, shownAt, visitor } from '../../net/people';
+
+type Wrists = Readonly<Record<Side, Pose<'arena'> | null>>;
+
+/** The holder's own page; how far the basket that it draws is from that of the rules [m]. */
+function holder() {
+  const host = createLoopbackHost();
+  const play = createBallPlay({
+    connect: host.connect,
+    visitor: visitor('Cal', { seat: 2 }),
+    bots: () => false,
+    acting: () => false,
+    seed: 1,
+  });
+  const connection = host.connect(visitor('Ann', { seat: 0 }), 10);
+  let time = 10;
+  return {
+    /** Half a second with the wrists there, tracked or told by the device's guess alone, the head so far aside of the mark [m]. */
+    show(wrists: Wrists, tracking: TrackedPose['tracking'] = 'tracked', aside = 0) {
+      for (let i = 0; i < 36; i++) {
+        time += 1 / 72;
+        connection.update(time);
+        play.begin(time);
+        const shown = shownAt(connection, 2, wrists);
+        const told = (hand: TrackedPose | null) => hand && { ...hand, tracking };
+        const { leftHand, rightHand } = shown.pose;
+        const head = { ...shown.pose.head, position: add(shown.pose.head.position, vec3(aside, 0, 0)) };
+        const frame = { time, head, leftHand: told(leftHand), rightHand: told(rightHand) };
+        play.follow(time, frame, nothingPressed);
+        const pose = { ...shown.pose, head, leftHand: frame.leftHand, rightHand: frame.rightHand };
+        play.send(frame, pose, shown.fingers);
+      }
+    },
+    apart() {
+      const seen = play.newest!;
+      return distance((seen.opening ?? seen.state.basket).position, host.room.match.basket.position);
+    },
+  };
+}
+
+const aside = add(opening, vec3(0.5, 0.3, 0));
+
+test('the basket is drawn where the rules have it, also while no hand of its holder is seen', () => {
+  const { show, apart } = holder();
+  show(holding(aside));
+  expect(apart()).toBeLessThan(0.01);
+  show({ left: null, right: null });
+  expect(apart()).toBeLessThan(0.01);
+});
+
+test('nor does it follow hands of which the device only guesses where they are', () => {
+  const { show, apart } = holder();
+  show(holding(aside));
+  show(holding(opening), 'emulated');
+  expect(apart()).toBeLessThan(0.01);
+  show(holding(opening));
+  expect(apart()).toBeLessThan(0.01);
+});
+
+test('nor a holder who has left their mark', () => {
+  const { show, apart } = holder();
+  show(holding(aside));
+  show(holding(opening), 'tracked', 1.3);
+  expect(apart()).toBeLessThan(0.01);
+});
