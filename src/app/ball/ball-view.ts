@@ -114,7 +114,7 @@ class CourtView implements BallView {
   readonly #arc = createAimArc();
   #floorFromArena = origin;
   #shown: BallScene | null = null;
-  /** What happened last, in a sentence, and until when in the match it is on the board. */
+  /** What happened last, in a sentence, and until when by the page's time it is on the board. */
   #line = { text: '', until: Number.NEGATIVE_INFINITY };
 
   constructor({ quality, balls, onCaption }: BallViewOptions) {
@@ -138,15 +138,15 @@ class CourtView implements BallView {
 
   show(scene: BallScene): void {
     this.#shown = scene;
-    const { state, time, attendants, me, rotate, head, acting } = scene;
+    const { state, attendants, me, rotate, head, acting, pageTime } = scene;
     const eyes = transformPoint(invertTransform(this.#floorFromArena), head.position);
     this.#sounds.listen(head, this.#floorFromArena);
     this.#showBalls(scene);
-    this.#pops.show(time, eyes);
+    this.#pops.show(pageTime, eyes);
     const people = attendants.map(writtenOf);
     const standing: Standing = { state, seconds: Math.ceil(scene.secondsLeft), people, me, rotate, acting };
-    this.#boards.show(standing, scene.paused ? 'Paused' : this.#said(standing, time));
-    this.lobby.show(standing, head.position.y, scene.pageTime, scene.inRoom);
+    this.#boards.show(standing, scene.paused ? 'Paused' : this.#said(standing, pageTime));
+    this.lobby.show(standing, head.position.y, pageTime, scene.inRoom);
     this.#showNames(scene, people);
     const station = stationOf(state, me);
     this.#ring.show(station === null ? null : (stations[station]?.position ?? null), eyes);
@@ -154,11 +154,11 @@ class CourtView implements BallView {
 
   hear(events: readonly BallEvent[], cues: readonly BallCue[]): void {
     if (!this.#shown) return;
-    const { state, time, attendants: people, me, opening } = this.#shown;
+    const { state, time, pageTime, attendants: people, me, opening } = this.#shown;
     for (const event of events) {
       const text = lineOfEvent(event, people);
-      if (text) this.#line = { text, until: time + lineSeconds };
-      if (event.type === 'caught') this.#pops.add((opening ?? state.basket).position, time);
+      if (text) this.#line = { text, until: pageTime + lineSeconds };
+      if (event.type === 'caught') this.#pops.add((opening ?? state.basket).position, pageTime);
     }
     const mine = me === null ? null : people[me];
     this.#sounds.hear({ state, time, events, cues, me, people, palms: mine?.palms ?? unseenPalms });
@@ -178,9 +178,9 @@ class CourtView implements BallView {
   }
 
   /** What the board says while the clock goes on: what happened a moment ago, or what the match waits for. */
-  #said(standing: Standing, time: number): string {
+  #said(standing: Standing, pageTime: number): string {
     const { text, until } = this.#line;
-    return time < until && standing.state.phase === 'running' ? text : waitingLine(standing);
+    return pageTime < until && standing.state.phase === 'running' ? text : waitingLine(standing);
   }
 
   #showNames({ state, attendants, voices }: BallScene, people: readonly (Person | null)[]): void {

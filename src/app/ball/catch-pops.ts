@@ -26,7 +26,7 @@ export class CatchPops {
     }
   }
 
-  /** A catch at a place, at a time of the match [s]. */
+  /** A catch at a place, at a time of the page [s]: that of a match begins anew with the next. */
   add(at: Vec3, time: number): void {
     const caught = this.#catches[this.#next % this.#catches.length]!;
     this.#next += 1;
@@ -34,7 +34,7 @@ export class CatchPops {
     caught.from = time;
   }
 
-  /** At a time of the match [s]. */
+  /** At a time of the page [s]. */
   show(time: number, eyes: Vec3): void {
     for (const { word, at, from } of this.#catches) word.show(at, time - from, eyes);
   }

@@ -1,0 +1,41 @@
+import { Group } from 'three';
+import { expect, test } from 'vitest';
+import { type BallScene, createBallView } from '../../../src/app/ball/ball-view';
+import { ballRules } from '../../../src/core/games/ball/rules';
+import { identity } from '../../../src/core/math/quat';
+import { vec3, zero } from '../../../src/core/math/vec3';
+import { drawNowhere } from '../shell/drawing-in-node';
+
+drawNowhere();
+
+test('a catch is told for a moment, and not once more at the same second of the next match', () => {
+  const view = createBallView({ quality: 'low', balls: 20, onCaption: () => undefined });
+  const court = view.placed({ position: zero, orientation: identity }).object;
+  const state = { ...ballRules.start(['a', 'b', 'c'], 1), phase: 'running' as const, startedAt: 0 };
+  const scene = (time: number, pageTime: number): BallScene => ({
+    state,
+    time,
+    attendants: [null, null, null],
+    me: null,
+    rotate: false,
+    opening: null,
+    aim: null,
+    paused: false,
+    secondsLeft: 50,
+    pageTime,
+    inRoom: true,
+    acting: false,
+    voices: { hidden: new Set(), markOf: () => 'none', levelOf: () => 0 },
+    head: { position: vec3(0, 1.6, 0), orientation: identity },
+  });
+  /** Words over the basket at this second of a match and of the page. */
+  const words = (time: number, pageTime: number): number => {
+    view.show(scene(time, pageTime));
+    const catches = court.getObjectByName('catches') ?? new Group();
+    return catches.children.filter(({ visible }) => visible).length;
+  };
+  words(40, 140);
+  view.hear([{ type: 'caught', ball: 0, player: 0, at: 40, score: 1 }], []);
+  expect([words(40.5, 140.5), words(60, 160)]).toEqual([1, 0]);
+  expect([words(0, 200), words(40.5, 240.5)]).toEqual([0, 0]);
+});
