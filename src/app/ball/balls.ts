@@ -16,7 +16,18 @@ import type { Opening } from '../../core/games/ball/basket';
 import { ballRadius, basketDepth, basketRadius } from '../../core/games/ball/flight';
 import { ballPosition } from '../../core/games/ball/state-readings';
 import { ballsPerRack } from '../../core/games/ball/stations';
-import { addScaled, dot, length, reject, subtract, type Vec3 } from '../../core/math/vec3';
+import {
+  addScaled,
+  copyVec3,
+  dot,
+  length,
+  lerp,
+  type MutableVec3,
+  reject,
+  subtract,
+  type Vec3,
+  vec3,
+} from '../../core/math/vec3';
 import { disposeTree } from '../../scene/dispose-tree';
 import { painted } from '../../scene/painted-geometry';
 import type { Quality } from '../../scene/renderer';
@@ -56,14 +67,35 @@ function placeInBasket(index: number): readonly [number, number, number] {
   return [Math.cos(angle) * out, -basketDepth + ballRadius + 0.01 + layer * 0.085, Math.sin(angle) * out];
 }
 
+/** How a ball in the air has come to the basket, as it was drawn. */
+interface Approach {
+  /** Of its flight [s of the match]. */
+  launchedAt: number;
+  /** Where it was last, from the middle of the opening, and how high over it [m]; NaN: not drawn in this flight yet. */
+  readonly from: MutableVec3;
+  height: number;
+  /** It has gone down through the opening. */
+  isIn: boolean;
+}
+
+const makeApproach = (): Approach => ({ launchedAt: Number.NaN, from: vec3(0, 0, 0), height: Number.NaN, isIn: false });
+
 /** What has gone down through the opening goes no further than the basket's bottom. */
-function stoppedBy(opening: Opening | null, position: Vec3): Vec3 {
-  if (!opening) return position;
-  const from = subtract(position, opening.position);
-  const height = dot(from, opening.normal);
+function stoppedBy({ position: middle, normal }: Opening, position: Vec3, launchedAt: number, way: Approach): Vec3 {
+  if (way.launchedAt !== launchedAt) way.height = Number.NaN;
+  way.launchedAt = launchedAt;
+  const from = subtract(position, middle);
+  const height = dot(from, normal);
+  if (height > 0 || Number.isNaN(way.height)) way.isIn = false;
+  else if (way.height > 0) {
+    const through = lerp(way.from, from, way.height / (way.height - height));
+    way.isIn = length(reject(through, normal)) <= basketRadius;
+  }
+  way.height = height;
+  copyVec3(from, way.from);
   const deepest = ballRadius - basketDepth;
-  if (height > deepest || height < -1.2 || length(reject(from, opening.normal)) > basketRadius) return position;
-  return addScaled(position, opening.normal, deepest - height);
+  if (!way.isIn || height > deepest || length(reject(from, normal)) > basketRadius) return position;
+  return addScaled(position, normal, deepest - height);
 }
 
 const createMaterial = (quality: Quality) =>
@@ -107,6 +139,8 @@ class MatchBalls implements Balls {
   /** The balls of the first rack and those of the second. */
   readonly #meshes: readonly [InstancedMesh, InstancedMesh];
   readonly #shadows: ShadowDiscs;
+  /** By ball. */
+  readonly #approaches: Approach[] = [];
   readonly #matrix = new Matrix4();
   readonly #at = new Vector3();
   readonly #turn = new Quaternion();
@@ -139,7 +173,8 @@ class MatchBalls implements Balls {
         caught += 1;
       } else position = ballPosition(state, ball, time);
       // A catch is told a moment later: until then the ball lies where it fell.
-      if (place.on === 'air' && !place.missed && position) position = stoppedBy(opening, position);
+      if (place.on === 'air' && !place.missed && position && opening)
+        position = stoppedBy(opening, position, place.launch.time, this.#approachOf(ball));
       if (position) this.#put(ball, place, position, time);
       else this.#hide(ball);
     }
@@ -151,6 +186,14 @@ class MatchBalls implements Balls {
     this.object.removeFromParent();
     for (const mesh of this.#meshes) mesh.dispose();
     disposeTree(this.object);
+  }
+
+  #approachOf(ball: number): Approach {
+    const known = this.#approaches[ball];
+    if (known) return known;
+    const approach = makeApproach();
+    this.#approaches[ball] = approach;
+    return approach;
   }
 
   /** Where the ball lies that was caught after this many others. */

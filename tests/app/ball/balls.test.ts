@@ -1,7 +1,10 @@
 import { InstancedMesh, Matrix4, Vector3 } from 'three';
-import { expect, test } from 'vitest';
+import { describe, expect, test } from 'vitest';
 import { createBalls } from '../../../src/app/ball/balls';
+import { ballInAir, touchesFloor } from '../../../src/core/games/ball/flight';
 import { ballRules, defaultBallOptions } from '../../../src/core/games/ball/rules';
+import { distance, vec3 } from '../../../src/core/math/vec3';
+import { velocityTo } from '../../net/people';
 
 /** The look of each ball that is drawn, and the side of the court it lies on: −1 left, 1 right. */
 function drawn(count: number): { readonly look: number; readonly side: number }[] {
@@ -28,3 +31,37 @@ test.each([1, 4, 7, 10, 20])(
     for (const { look, side } of balls) expect(look).toBe(side < 0 ? 0 : 1);
   },
 );
+
+describe('a ball that has not been told to be caught', () => {
+  const opening = { position: vec3(0, 1.1, -4.5), normal: vec3(0, 1, 0) };
+  const fresh = ballRules.start(['a', 'b', 'c'], 1);
+
+  /** How far above its flight it is drawn at most [m], thrown so that it comes to this height over or under the middle of the opening. */
+  function lifted(height: number): number {
+    const at = vec3(0, opening.position.y + height, opening.position.z);
+    const from = vec3(0, 1.5, -0.5);
+    const launch = { time: 1, position: from, velocity: velocityTo(from, at, 1.2) };
+    const balls = fresh.balls.map((place, ball) =>
+      ball === 0 ? ({ on: 'air', launch, thrower: 0, missed: false } as const) : place,
+    );
+    const view = createBalls(20, 'low');
+    const mesh = view.object.children[0] as InstancedMesh;
+    const matrix = new Matrix4();
+    let most = 0;
+    for (let time = 1; time < touchesFloor(launch); time += 1 / 72) {
+      view.show({ ...fresh, balls }, time, () => null, opening);
+      mesh.getMatrixAt(0, matrix);
+      const drawnAt = new Vector3().setFromMatrixPosition(matrix);
+      most = Math.max(most, distance(drawnAt, ballInAir(launch, time)));
+    }
+    return most;
+  }
+
+  test('stays on the bottom of the basket that it fell into', () => {
+    expect(lifted(0)).toBeGreaterThan(0.1);
+  });
+
+  test('passes under a basket that it did not come into', () => {
+    for (const below of [-0.45, -0.6, -0.9]) expect(lifted(below)).toBeLessThan(1e-5);
+  });
+});
