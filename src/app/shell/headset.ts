@@ -43,7 +43,7 @@ export interface HeadsetListener {
   /** The floor lies elsewhere from one frame to the next. */
   jumped(): void;
   /** The session went behind a menu of the device, or came back. */
-  visibilityChanged(state: XRVisibilityState): void;
+  visibilityChanged(): void;
   /** The emulator is there now, or could not be loaded. */
   emulatorChanged(): void;
 }
@@ -211,7 +211,7 @@ export class Headset {
       this.#session = null;
       this.#listener?.left();
     });
-    xr.addEventListener('visibilitychange', () => this.#listener?.visibilityChanged(xr.visibilityState));
+    xr.addEventListener('visibilitychange', () => this.#listener?.visibilityChanged());
     if (!settings.actor) this.#emulator?.release();
   }
 

@@ -8,7 +8,7 @@ import type { Headset, HeadsetListener } from './headset';
 import type { PageStudy } from './page-study';
 
 export interface SessionChangesOptions {
-  readonly headset: Pick<Headset, 'pictureRateHz'>;
+  readonly headset: Pick<Headset, 'pictureRateHz' | 'visibility'>;
   readonly recorder: Pick<Recorder, 'stop'>;
   readonly timing: FrameTiming;
   readonly view: DesktopView;
@@ -50,8 +50,8 @@ export class SessionChanges implements HeadsetListener {
     this.#options.body.jumped();
   }
 
-  visibilityChanged(state: XRVisibilityState): void {
-    this.#hidden(state === 'hidden');
+  visibilityChanged(): void {
+    this.#sightChanged();
   }
 
   emulatorChanged(): void {
@@ -60,19 +60,21 @@ export class SessionChanges implements HeadsetListener {
 
   /** The window of the page goes behind others, or comes back. */
   followWindow(): void {
-    document.addEventListener('visibilitychange', () => this.#hidden(document.hidden));
+    document.addEventListener('visibilitychange', () => this.#sightChanged());
   }
 
-  /** No one sees the page: the others in a match are told, and frame times of before and after do not compare. */
-  #hidden(hidden: boolean): void {
-    this.#options.timing.reset();
-    this.#options.activities.ball?.play.away(hidden);
+  /** Frame times of before and after do not compare; others are told whether this player sees the match, in the session or else the window. */
+  #sightChanged(): void {
+    const { headset, timing, activities } = this.#options;
+    timing.reset();
+    const hidden = headset.visibility === 'none' ? document.hidden : headset.visibility === 'hidden';
+    activities.ball?.play.away(hidden);
   }
 
   #changed(): void {
     const { timing, headset, body, controls, study } = this.#options;
     timing.setRate(headset.pictureRateHz);
-    timing.reset();
+    this.#sightChanged();
     body.jumped();
     controls.show();
     study.run?.sessionChanged();
