@@ -57,6 +57,11 @@ interface Session {
   readonly bodyReader: DeviceBodyReader | null;
 }
 
+async function end(xr: XRSession): Promise<void> {
+  // reason: only a session that has ended already, or is about to, refuses to end
+  await xr.end().catch(() => undefined);
+}
+
 /** The headset that is worn, real or emulated, and the session in it. */
 export class Headset {
   readonly #options: HeadsetOptions;
@@ -163,7 +168,7 @@ export class Headset {
   }
 
   exit(): void {
-    void this.#session?.xr.end();
+    if (this.#session) void end(this.#session.xr);
   }
 
   /** Head, hands and buttons as the device has them; null: the head is not seen. */
@@ -192,14 +197,36 @@ export class Headset {
   }
 
   async #begin(): Promise<void> {
-    const { renderer, quality, settings } = this.#options;
-    const xr = await requestVrSession(settings.deviceBody);
+    const xr = await requestVrSession(this.#options.settings.deviceBody);
+    let ended = false;
+    xr.addEventListener('end', () => {
+      ended = true;
+    });
+    try {
+      const { space, room } = await this.#drawIn(xr);
+      if (ended) throw new Error('the session ended before it had begun');
+      this.#follow(xr, space, room);
+    } catch (error) {
+      // Else the headset waits for pictures that never come, and no other session can begin.
+      await end(xr);
+      throw error;
+    }
+  }
+
+  /** Has the session drawn; its floor, and the room that its boundary leaves. */
+  async #drawIn(xr: XRSession): Promise<{ readonly space: XRReferenceSpace; readonly room: PlayRoom | null }> {
+    const { renderer, quality } = this.#options;
     giveFramesToEvents(xr);
     await renderer.xr.setSession(xr);
     const space = renderer.xr.getReferenceSpace();
     if (!space) throw new Error('the headset offers no floor to stand on (local-floor)');
     if (this.#emulator) easeEmulatedPicture(renderer, quality);
-    const room = await roomOf(xr);
+    return { space, room: await roomOf(xr) };
+  }
+
+  /** From now on the session is worn, until it ends. */
+  #follow(xr: XRSession, space: XRReferenceSpace, room: PlayRoom | null): void {
+    const { renderer, settings } = this.#options;
     const bodyReader = settings.deviceBody ? new DeviceBodyReader() : null;
     const tracker = createTracker(xr, space, (moved) => renderer.xr.setReferenceSpace(moved), bodyReader);
     this.#session = { xr, room, tracker, bodyReader };

@@ -43,6 +43,8 @@ export class SessionChanges implements HeadsetListener {
   }
 
   refused(): void {
+    // A session that ends half begun leaves the picture at no size.
+    this.#options.controls.layOut();
     this.#changed();
   }
 

@@ -1,0 +1,95 @@
+import { afterEach, describe, expect, test, vi } from 'vitest';
+import { Headset, type HeadsetOptions } from '../../../src/app/shell/headset';
+
+afterEach(() => vi.unstubAllGlobals());
+
+/** A session that its wearer, or the device, may end at any time. */
+class Session extends EventTarget {
+  readonly visibilityState = 'visible';
+  readonly inputSources = [];
+  ended = false;
+  /** Resolves the question for a boundary. */
+  answerRoom: () => void = () => undefined;
+
+  requestReferenceSpace(): Promise<XRReferenceSpace> {
+    return new Promise((_, reject) => {
+      this.answerRoom = () => reject(new DOMException('no boundary', 'NotSupportedError'));
+    });
+  }
+
+  async end(): Promise<void> {
+    if (this.ended) throw new DOMException('The session has ended already', 'InvalidStateError');
+    this.ended = true;
+    await Promise.resolve();
+    this.dispatchEvent(new Event('end'));
+  }
+}
+
+/** A page before a headset, and what it was told. `draw`: how the renderer takes the session. */
+async function page(draw: () => Promise<void> = () => Promise.resolve()) {
+  const session = new Session();
+  vi.stubGlobal('window', { isSecureContext: true });
+  const xr = { isSessionSupported: async () => true, requestSession: async () => session };
+  vi.stubGlobal('navigator', { xr });
+  const happened: string[] = [];
+  const told: string[] = [];
+  const space = new EventTarget() as XRReferenceSpace;
+  const headset = new Headset({
+    renderer: { xr: { setSession: draw, getReferenceSpace: () => space } } as unknown as HeadsetOptions['renderer'],
+    quality: 'low',
+    switches: { emulate: false },
+    settings: { actor: true, emulatorPanel: false, deviceBody: false },
+    notices: { show: (_, text) => void told.push(text) },
+  });
+  headset.listen({
+    entered: () => void happened.push('entered'),
+    left: () => void happened.push('left'),
+    refused: () => void happened.push('refused'),
+    jumped: () => undefined,
+    visibilityChanged: () => undefined,
+    emulatorChanged: () => undefined,
+  });
+  await headset.prepare();
+  return { headset, session, happened, told };
+}
+
+const soon = (): Promise<void> => new Promise((resolve) => setTimeout(resolve));
+
+describe('entering VR', () => {
+  test('and leaving it again: each is told once', async () => {
+    const { headset, session, happened, told } = await page();
+    const entering = headset.enter();
+    await soon();
+    session.answerRoom();
+    await entering;
+    expect(headset.worn).toBe(true);
+    headset.exit();
+    headset.exit();
+    await soon();
+    expect(headset.worn).toBe(false);
+    expect(happened).toEqual(['entered', 'left']);
+    expect(told).toEqual([]);
+  });
+
+  test('in a session that ends before it has begun leaves the page without one', async () => {
+    const { headset, session, happened, told } = await page();
+    const entering = headset.enter();
+    await soon();
+    await session.end();
+    session.answerRoom();
+    await entering;
+    expect(headset.worn).toBe(false);
+    expect(happened).toEqual(['refused']);
+    expect(told).toEqual([expect.stringContaining('ended before it had begun')]);
+  });
+
+  test('where the picture cannot be drawn there ends the session that has begun', async () => {
+    const failing = () => Promise.reject(new DOMException('no such graphics device', 'InvalidStateError'));
+    const { headset, session, happened, told } = await page(failing);
+    await headset.enter();
+    expect(session.ended).toBe(true);
+    expect(headset.worn).toBe(false);
+    expect(happened).toEqual(['refused']);
+    expect(told).toEqual([expect.stringContaining('no such graphics device')]);
+  });
+});
