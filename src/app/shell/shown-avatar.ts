@@ -70,6 +70,8 @@ interface Asked {
   readonly name: string;
   readonly own: boolean;
   readonly ending: AbortController;
+  /** The file, once it has come whole; null: not yet, or it is one of ours. */
+  checked: CheckedAvatar | null;
 }
 
 /** The avatar on the stage. One is shown at a time; another takes its place only when it has arrived whole. */
@@ -175,6 +177,7 @@ export class ShownAvatar {
       const { signal } = asked.ending;
       const bytes = await readLimited(source, avatarFile, { onProgress: this.#progressOf(asked), signal });
       const checked = await checkInWorker(bytes, { name: asked.name, unpacked: Object.keys(decoders) });
+      asked.checked = checked;
       const bones = checked.hash === null ? undefined : this.#options.knownBones.of(checked.hash);
       return this.#read(checked, asked.name, bones);
     });
@@ -205,22 +208,19 @@ export class ShownAvatar {
   }
 
   async #read(checked: CheckedAvatar, name: string, bones: BoneMap | undefined): Promise<Arrived> {
+    const avatar = await createAvatarBetweenFrames(await parseChecked(checked, name, { decoders, bones }));
     try {
-      const avatar = await createAvatarBetweenFrames(await parseChecked(checked, name, { decoders, bones }));
       await this.#options.prepare(avatar.object);
       return { avatar, worn: { name, ...(await fileFor(checked, bones)) } };
     } catch (error) {
-      if (error instanceof UnknownBones) {
-        const { found, told } = error;
-        this.#waiting = { name, found, bones: told, complaint: null, checked };
-      }
+      avatar.dispose();
       throw error;
     }
   }
 
   #ask(name: string, own: boolean): Asked {
     this.#asked += 1;
-    const asked = { turn: this.#asked, name, own, ending: new AbortController() };
+    const asked: Asked = { turn: this.#asked, name, own, ending: new AbortController(), checked: null };
     this.#coming = own ? null : asked;
     this.#waiting = null;
     this.#tell(asked, '');
@@ -254,11 +254,10 @@ export class ShownAvatar {
       this.#show(arrived, name, turn);
       return true;
     } catch (error) {
-      if (ending.signal.aborted) {
-        this.#waiting = null;
-        return false;
-      }
-      if (error instanceof UnknownBones && turn === this.#asked) {
+      if (ending.signal.aborted) return false;
+      if (error instanceof UnknownBones && asked.checked && turn === this.#asked) {
+        const { found, told } = error;
+        this.#waiting = { name, found, bones: told, complaint: null, checked: asked.checked };
         this.#options.notices.show(
           'error',
           `${name} could not be shown: the names of its bones tell no body. ${howToTell}`,

@@ -1,9 +1,12 @@
 import { readFileSync } from 'node:fs';
-import { type Material, type Mesh, MeshStandardMaterial, Scene } from 'three';
-import { expect, test } from 'vitest';
+import { type Material, type Mesh, MeshStandardMaterial, type Object3D, Scene } from 'three';
+import { afterEach, describe, expect, test, vi } from 'vitest';
 import { ShownAvatar } from '../../../src/app/shell/shown-avatar';
+import { checkAvatar } from '../../../src/avatar/file/check-avatar';
+import type { WorkerAnswer, WorkerQuestion } from '../../../src/avatar/file/check-worker';
 import { palettes, skinColors } from '../../../src/avatar/palettes';
 import { defaultCalibration } from '../../../src/core/body/calibration';
+import { builtRig } from '../../avatar/built-rig';
 
 const file = readFileSync(new URL('../../../public/avatars/woman.vrm', import.meta.url));
 const bytes = () =>
@@ -35,4 +38,90 @@ test('a body of ours keeps the colours of its seat when another takes its place,
   expect(avatar.worn).toBe('woman-dark');
   avatar.wear(null);
   expect(colourOf('Top')).toBe(clothes('porcelain'));
+});
+
+/** The check of files on this thread; files of these names are held up until they are let go. */
+function checkFilesHere(...held: readonly string[]) {
+  const waiting = new Map<string, () => void>();
+  class Here extends EventTarget {
+    postMessage({ bytes, ...question }: WorkerQuestion): void {
+      const check = () => checkAvatar(bytes, question).then((checked) => this.#answer({ checked }));
+      if (held.includes(question.name)) waiting.set(question.name, check);
+      else void check();
+    }
+    terminate(): void {
+      // It ends with its only question.
+    }
+    #answer(data: WorkerAnswer): void {
+      this.dispatchEvent(new MessageEvent('message', { data }));
+    }
+  }
+  vi.stubGlobal('Worker', Here);
+  return (name: string) => waiting.get(name)?.();
+}
+
+const unknownNames = (name: string) => new File([builtRig({ nameOf: (bone) => [...bone].reverse().join('') })], name);
+
+function wardrobe(prepare: (object: Object3D) => Promise<void> = () => Promise.resolve()) {
+  const told: string[] = [];
+  const avatar = new ShownAvatar({
+    scene: new Scene(),
+    settings: { palette: 'porcelain', upperBodyOnly: false, ownBody: 'woman', skinTone: undefined },
+    body: { calibration: defaultCalibration },
+    notices: { show: (_, text) => void told.push(text) },
+    knownBones: { of: () => undefined, keep: () => undefined },
+    prepare,
+    onChange: () => undefined,
+  });
+  return { avatar, told };
+}
+
+describe('of files that are asked for one after the other', () => {
+  afterEach(() => vi.unstubAllGlobals());
+
+  test('one that another has taken the place of asks for no bones', async () => {
+    const letGo = checkFilesHere('first.glb');
+    const { avatar } = wardrobe();
+    const first = avatar.open(unknownNames('first.glb'));
+    await vi.waitFor(() => expect(avatar.pending).toContain('being looked at'));
+    expect(await avatar.openOwn(bytes())).toBe(true);
+    letGo('first.glb');
+    expect(await first).toBe(false);
+    expect(avatar.waiting).toBeNull();
+    expect(avatar.pending).toBeNull();
+  });
+
+  test('one that was given up leaves the next its question for bones', async () => {
+    const letGo = checkFilesHere('first.glb');
+    const { avatar } = wardrobe();
+    const first = avatar.open(unknownNames('first.glb'));
+    await vi.waitFor(() => expect(avatar.pending).toContain('being looked at'));
+    avatar.cancel();
+    expect(await avatar.open(unknownNames('second.glb'))).toBe(false);
+    expect(avatar.waiting?.name).toBe('second.glb');
+    letGo('first.glb');
+    await first;
+    expect(avatar.waiting?.name).toBe('second.glb');
+  });
+});
+
+test('a body from a file that comes to the graphics device only in part leaves nothing there', async () => {
+  checkFilesHere();
+  let held = 0;
+  const { avatar, told } = wardrobe(async (object) => {
+    object.traverse((node) => {
+      const { geometry } = node as Mesh;
+      if (!geometry) return;
+      held += 1;
+      geometry.addEventListener('dispose', () => {
+        held -= 1;
+      });
+    });
+    expect(held).toBeGreaterThan(0);
+    throw new Error('the graphics device is full');
+  });
+  expect(await avatar.open(new File([await bytes()], 'woman.vrm'))).toBe(false);
+  expect(told).toEqual([expect.stringContaining('the graphics device is full')]);
+  expect(held).toBe(0);
+  vi.unstubAllGlobals();
 });
