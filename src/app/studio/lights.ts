@@ -1,4 +1,14 @@
-import { Color, DirectionalLight, Fog, HemisphereLight, PMREMGenerator, type Scene, type WebGLRenderer } from 'three';
+import {
+  Color,
+  DirectionalLight,
+  Fog,
+  HemisphereLight,
+  type Mesh,
+  PMREMGenerator,
+  type Scene,
+  type WebGLRenderer,
+  type WebGLRenderTarget,
+} from 'three';
 import { createBlobShadow } from '../../scene/blob-shadow';
 import type { Quality } from '../../scene/renderer';
 import type { DistantLight, Lighting } from '../../scene/surroundings';
@@ -29,6 +39,8 @@ export class Lights {
   /** Where the body stands, floor frame [m]. */
   readonly #stand = { x: 0, z: 0 };
   #lighting: Lighting | null = null;
+  /** What surfaces reflect; null: nothing yet, or never in low quality. */
+  #reflections: WebGLRenderTarget | null = null;
 
   constructor(scene: Scene, renderer: WebGLRenderer, quality: Quality) {
     this.#scene = scene;
@@ -94,9 +106,14 @@ export class Lights {
 
   #setReflections({ reflected, reflectedIntensity }: Lighting): void {
     const generator = new PMREMGenerator(this.#renderer);
-    this.#scene.environment?.dispose();
-    this.#scene.environment = generator.fromScene(reflected(), reflectionBlur).texture;
+    const room = reflected();
+    // A target keeps its texture on the device until it is disposed of itself.
+    this.#reflections?.dispose();
+    this.#reflections = generator.fromScene(room, reflectionBlur);
+    this.#scene.environment = this.#reflections.texture;
     this.#scene.environmentIntensity = reflectedIntensity;
     generator.dispose();
+    // Materials hold nothing but programs, which the next place draws with too.
+    room.traverse((node) => (node as Mesh).geometry?.dispose());
   }
 }
