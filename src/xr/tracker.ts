@@ -28,6 +28,9 @@ const more = (a: HandButtons, b: HandButtons): HandButtons => ({
 /** How a side is tracked at the moment. */
 export type InputKind = 'controller' | 'hand' | 'none';
 
+const kindOf = ({ hand, gripSpace }: XRInputSource): InputKind =>
+  hand?.get('wrist') ? 'hand' : gripSpace ? 'controller' : 'none';
+
 /** XRFrame -> TrackingFrame: the only place that touches XRFrame. */
 export interface Tracker {
   /** Head and wrists of this frame, floor frame; null while the head is not seen. Call it before any await of the frame. */
@@ -178,14 +181,18 @@ class SessionTracker implements Tracker {
     if (suspended) return hands;
     for (const source of this.#session.inputSources) {
       const side = source.handedness;
-      if (side === 'none') continue;
+      if (side === 'none' || this.#tellsOfHandAgain(source)) continue;
       const pose = this.#readHand(frame, source, side, time);
       // A device may list a controller that lies on the table beside the hand that left it: what is seen wins.
-      if (pose && (hands[side] === null || pose.tracking === 'tracked')) {
+      const wins = pose !== null && (hands[side] === null || pose.tracking === 'tracked');
+      if (wins) {
         hands[side] = pose;
         fingers[side] = this.#shapeOf(source, side, time);
       }
-      buttons[side] = { ...more(buttons[side], this.#pressedBy(source, side)), device: this.#deviceOf(source) };
+      const kind = wins || kinds[side] === 'none' ? kindOf(source) : kinds[side];
+      const device = wins ? this.#deviceOf(source) : (buttons[side].device ?? this.#deviceOf(source));
+      kinds[side] = kind;
+      buttons[side] = { ...more(buttons[side], this.#pressedBy(source, side)), device };
     }
     for (const side of sides) {
       const kind = kinds[side];
@@ -196,13 +203,18 @@ class SessionTracker implements Tracker {
     return hands;
   }
 
-  #readHand(frame: XRFrame, source: XRInputSource, side: Side, time: number): TrackedPose | null {
-    if (source.hand?.get('wrist')) {
-      this.kinds[side] = 'hand';
-      return this.#handReaders[side].read(frame, source.hand, this.#space, time);
+  /** A pinch that a device tells of as a pointer of its own, for as long as it lasts: where it tells of the hand as well, that has it all. */
+  #tellsOfHandAgain({ targetRayMode, handedness }: XRInputSource): boolean {
+    if (targetRayMode !== 'transient-pointer') return false;
+    for (const other of this.#session.inputSources) {
+      if (other.handedness === handedness && other.targetRayMode !== 'transient-pointer') return true;
     }
+    return false;
+  }
+
+  #readHand(frame: XRFrame, source: XRInputSource, side: Side, time: number): TrackedPose | null {
+    if (source.hand?.get('wrist')) return this.#handReaders[side].read(frame, source.hand, this.#space, time);
     if (!source.gripSpace) return null;
-    this.kinds[side] = 'controller';
     const grip = frame.getPose(source.gripSpace, this.#space);
     if (!grip) return null;
     const tracked = toTrackedPose(grip);

@@ -41,6 +41,7 @@ class RigidTransform {
 
 export interface Input {
   readonly handedness: XRHandedness;
+  readonly targetRayMode?: XRTargetRayMode;
   readonly profiles: readonly string[];
   readonly gripSpace: { at: Seen };
   readonly hand?: Map<string, { at: Seen }>;

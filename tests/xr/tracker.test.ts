@@ -100,6 +100,42 @@ describe('which hand it is', () => {
     expect(tracker.buttons.right.device).not.toBe(before.right);
   });
 
+  test('is what is seen of two devices on one side, in whichever order they are listed', () => {
+    const { read, setInputs, tracker } = tracked();
+    const onTheTable = controller('left', null, 1);
+    const hand = bareHand('left', left, 0.005);
+    for (const inputs of [
+      [onTheTable, hand],
+      [hand, onTheTable],
+    ]) {
+      setInputs(...inputs);
+      expect(read()?.leftHand?.position.x).toBeCloseTo(left.position.x, 6);
+      expect(tracker.kinds.left).toBe('hand');
+      expect(tracker.buttons.left).toMatchObject({ kind: 'hand', device: 2 });
+    }
+    expect(tracker.input).toBe('hands');
+  });
+
+  test('is the hand itself while its pinch is told as a pointer of its own', () => {
+    const { read, setInputs, tracker } = tracked();
+    const hand = bareHand('right', right, 0.005);
+    setInputs(hand);
+    const before = read()?.rightHand;
+    const pinch = { ...controller('right', at(0.3, 1.2, -0.45), 1), targetRayMode: 'transient-pointer' as const };
+    setInputs(hand, pinch);
+    expect(read()?.rightHand).toEqual(before);
+    expect(tracker.kinds.right).toBe('hand');
+    expect(tracker.buttons.right).toMatchObject({ kind: 'hand', trigger: 0 });
+    expect(tracker.input).toBe('hands');
+  });
+
+  test('is where it pinches, of a device that tells of nothing else', () => {
+    const { read, setInputs, tracker } = tracked();
+    setInputs({ ...controller('right', right, 1), targetRayMode: 'transient-pointer' });
+    expect(read()?.rightHand).not.toBeNull();
+    expect(tracker.buttons.right.trigger).toBe(1);
+  });
+
   test('and of which kind, through ten changes between controllers and hands, nothing kept of the other', () => {
     const { read, setInputs, tracker } = tracked();
     let correct = 0;
