@@ -138,6 +138,18 @@ describe('in the headset', () => {
     expect(shown.at(-1)).toBeCloseTo(1.6, 0);
   });
 
+  test('a hand that rests on a button has the menu compared with what it shows once, not in every frame', () => {
+    const { controls, hands, onMenu } = headset();
+    controls.setWorn(true);
+    controls.show();
+    const { hand } = handAt(onMenu(160, 600));
+    hands.push({ ...hand, pressed: false });
+    const compared = vi.spyOn(JSON, 'stringify');
+    for (let frame = 0; frame < 100; frame++) controls.point();
+    expect(compared).toHaveBeenCalledTimes(1);
+    compared.mockRestore();
+  });
+
   test('larger text makes a larger menu', () => {
     const { controls, settings, menu } = headset();
     const writer = new SettingsWriter(settings, { remember: () => undefined }, () => controls.show());

@@ -25,6 +25,8 @@ export class VrMenu {
   readonly #actions: VrMenuActions;
   #state: VrMenuState | null = null;
   #buttons: readonly MenuButton[] = [];
+  /** Those of them that can be pressed. */
+  #usable: readonly MenuButton[] = [];
   /** The button that a hand points at. */
   #hovered: string | null = null;
   /** What the sheet shows, as a text that changes with it. */
@@ -61,11 +63,13 @@ export class VrMenu {
       for (const pointer of pointers) pointer.showRay(null);
       return;
     }
-    const usable = this.#buttons.filter(({ look }) => look !== 'off');
-    const { pointedAt, pressed } = this.#touch.follow(pointers, usable);
-    this.#hovered = pointedAt?.id ?? null;
+    const { pointedAt, pressed } = this.#touch.follow(pointers, this.#usable);
+    const hovered = pointedAt?.id ?? null;
+    const moved = hovered !== this.#hovered;
+    this.#hovered = hovered;
     for (const { act } of pressed) act();
-    this.#redraw();
+    // What a press has changed is shown by `show`: a frame in which nothing moves makes no text of the state.
+    if (moved) this.#redraw();
   }
 
   #redraw(): void {
@@ -78,6 +82,7 @@ export class VrMenu {
     if (key === this.#drawn) return;
     this.#drawn = key;
     this.#buttons = menuButtons(state, this.#actions);
+    this.#usable = this.#buttons.filter(({ look }) => look !== 'off');
     this.#menu.draw((context) => drawMenu(context, state, this.#buttons, this.#hovered));
   }
 }
