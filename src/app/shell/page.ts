@@ -90,10 +90,10 @@ function createGround(options: PageOptions) {
   const stage = createStage(canvas, quality);
   loading.mark('scene');
 
-  const recorder = new Recorder();
+  const onChange = changes.emit;
+  const recorder = new Recorder(onChange);
   const difference = new DeviceDifference();
   const { body } = ground;
-  const onChange = changes.emit;
   const knownBones = new KnownBones(store);
   const { scene } = stage.studio;
   const prepare = (object: Object3D) => prepareFirstPicture(stage.renderer, scene, object);

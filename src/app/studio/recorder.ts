@@ -35,6 +35,12 @@ export class Recorder {
   #paused = false;
   /** Recordings made so far. */
   #count = 0;
+  readonly #onEnd: () => void;
+
+  /** `onEnd` hears of a recording that is full and of a replay that is over: no one has stopped them. */
+  constructor(onEnd: () => void = () => undefined) {
+    this.#onEnd = onEnd;
+  }
 
   get mode(): 'idle' | 'recording' | 'replaying' {
     return this.#mode;
@@ -103,7 +109,7 @@ export class Recorder {
       ...(deviceBody && { deviceBody: deviceBody.slice() }),
     });
     this.#seconds = frame.time - (this.#frames[0]?.time ?? frame.time);
-    if (this.#frames.length >= most) this.stop();
+    if (this.#frames.length >= most) this.#end();
   }
 
   /** Ends recording or replay. */
@@ -118,6 +124,11 @@ export class Recorder {
     this.#seconds = 0;
     this.#paused = false;
     this.#sampledAt = null;
+  }
+
+  #end(): void {
+    this.stop();
+    this.#onEnd();
   }
 
   /** Plays the recording at hand from its beginning; nothing happens without one. */
@@ -136,7 +147,7 @@ export class Recorder {
     this.#sampledAt = time;
     if (this.#seconds > recordingDuration(recording)) {
       if (!this.#loop) {
-        this.stop();
+        this.#end();
         return null;
       }
       this.#seconds = 0;

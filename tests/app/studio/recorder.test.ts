@@ -50,6 +50,26 @@ describe('the recorder', () => {
     expect(recorder.mode).toBe('idle');
   });
 
+  test('tells of its end where no one has stopped it: a replay is over, a recording is full', () => {
+    let ends = 0;
+    const recorder = new Recorder(() => {
+      ends += 1;
+    });
+    recorder.setLoop(false);
+    recorder.record(source);
+    for (let frame = 0; frame < 64; frame++) recorder.observe(frameAt(frame / 64));
+    recorder.stop();
+    recorder.replay();
+    recorder.sample(50);
+    recorder.sample(50.5);
+    expect(ends).toBe(0);
+    recorder.sample(52);
+    expect([ends, recorder.mode]).toEqual([1, 'idle']);
+    recorder.record(source);
+    for (let frame = 0; recorder.mode === 'recording'; frame++) recorder.observe(frameAt(frame / 120));
+    expect([ends, recorder.frameCount]).toEqual([2, 108_000]);
+  });
+
   test('a replay that is paused stands at its second while time passes, and goes on from there', () => {
     const recorder = recorded(0, 4);
     recorder.replay();
