@@ -55,10 +55,16 @@ export interface PreferenceStore {
   /** Why what was stored could not be used; null: it could. */
   readonly complaint: string | null;
   /** Remembers a part; undefined forgets it. Where the browser stores nothing, it lasts as long as the page. */
-  remember(part: { readonly [Key in keyof Preferences]: Preferences[Key] | undefined }): void;
+  remember(part: Part): void;
 }
 
 const key = 'threepoint.preferences.1';
+
+type Part = { readonly [Key in keyof Preferences]: Preferences[Key] | undefined };
+
+/** undefined in a part takes what was there away. */
+const joined = (preferences: Preferences, part: Part): Preferences =>
+  Object.fromEntries(Object.entries({ ...preferences, ...part }).filter(([, value]) => value !== undefined));
 
 /** Reads stored preferences; anything that is not what we wrote is refused as a whole, with a sentence. */
 export function parsePreferences(text: string | null): { preferences: Preferences; complaint: string | null } {
@@ -95,6 +101,15 @@ export function createPreferenceStore(
   const read = parsePreferences(storage?.getItem(key) ?? null);
   let preferences = read.preferences;
   let told = false;
+  /** Whether the storage has taken what this window last wrote. */
+  let kept = true;
+
+  /** What the storage has now: another window of this page may have written since. null: nothing that can be used. */
+  function stored(): Preferences | null {
+    const text = storage?.getItem(key) ?? null;
+    const { preferences, complaint } = parsePreferences(text);
+    return text === null || complaint !== null ? null : preferences;
+  }
 
   function tellOfDenial(): void {
     if (!told) onDenied(denied);
@@ -108,12 +123,12 @@ export function createPreferenceStore(
     },
     complaint: read.complaint,
     remember(part) {
-      const next = Object.fromEntries(
-        Object.entries({ ...preferences, ...part }).filter(([, value]) => value !== undefined),
-      );
-      preferences = next as Preferences;
+      preferences = joined(preferences, part);
       try {
+        if (kept) preferences = joined(stored() ?? preferences, part);
+        kept = false;
         storage?.setItem(key, JSON.stringify(preferences));
+        kept = true;
       } catch (error) {
         // A full or forbidden storage costs the memory of the next visit, nothing of this one.
         if (!(error instanceof DOMException)) throw error;

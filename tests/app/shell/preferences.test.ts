@@ -26,6 +26,48 @@ describe('what the page remembers', () => {
     expect(createPreferenceStore(storage).preferences).toEqual({ mirror: false });
   });
 
+  test('what another window of the page has learned since stays', () => {
+    const storage = memory();
+    const [one, other] = [createPreferenceStore(storage), createPreferenceStore(storage)];
+    one.remember({ calibration: { eyeHeight: 1.58, armSpan: 1.33 } });
+    other.remember({ mirror: false });
+    one.remember({ sound: false });
+    const learned = { mirror: false, sound: false };
+    expect(createPreferenceStore(storage).preferences).toEqual({
+      calibration: { eyeHeight: 1.58, armSpan: 1.33 },
+      ...learned,
+    });
+    other.remember({ calibration: undefined });
+    one.remember({ overlay: true });
+    expect(createPreferenceStore(storage).preferences).toEqual({ ...learned, overlay: true });
+  });
+
+  test('what a full storage did not take lasts as long as the page', () => {
+    const storage = memory();
+    createPreferenceStore(storage).remember({ mirror: false });
+    const full = {
+      ...storage,
+      setItem() {
+        throw new DOMException('the storage is full', 'QuotaExceededError');
+      },
+    };
+    const store = createPreferenceStore(full);
+    store.remember({ sound: false });
+    store.remember({ overlay: true });
+    expect(store.preferences).toEqual({ mirror: false, sound: false, overlay: true });
+  });
+
+  test('what was damaged in the meantime is written anew from what this visit knows', () => {
+    const storage = memory();
+    const store = createPreferenceStore(storage);
+    store.remember({ mirror: false });
+    for (const damaged of ['no JSON', '{"calibration":3}']) {
+      storage.setItem('threepoint.preferences.1', damaged);
+      store.remember({ sound: false });
+      expect(createPreferenceStore(storage).preferences).toEqual({ mirror: false, sound: false });
+    }
+  });
+
   test('a first visit remembers nothing and complains of nothing', () => {
     expect(parsePreferences(null)).toEqual({ preferences: {}, complaint: null });
   });
