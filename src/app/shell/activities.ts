@@ -69,6 +69,8 @@ export class Activities {
   /** The colours of the own seat, as far as the own body wears them. */
   #worn: string | null = null;
   #newestFrame: TrackingFrame | null = null;
+  /** Waits no longer for a touch that lets the game be heard. */
+  #letSoundSleep: () => void = () => undefined;
 
   constructor(options: ActivitiesOptions) {
     this.#options = options;
@@ -127,7 +129,7 @@ export class Activities {
       if (game === 'archery') this.#archery = await games.archery(opening);
       else this.#ball = await games.ball(opening);
       const opened = this.#archery ?? this.#ball;
-      if (opened) wakeSound(opened.sound, settings.sound, notices);
+      if (opened) this.#letSoundSleep = wakeSound(opened.sound, settings.sound, notices);
     } catch (error) {
       const place = game === 'archery' ? 'The archery range' : 'The ball court';
       notices.show('error', `${place} could not be opened: ${firstLine(reasonOf(error))}`);
@@ -136,6 +138,7 @@ export class Activities {
   }
 
   #leave(): void {
+    this.#letSoundSleep();
     this.#archery?.dispose();
     this.#archery = null;
     this.#ball?.dispose();
@@ -187,7 +190,8 @@ export class Activities {
     const { writer, notices } = this.#options;
     writer.keep({ sound: on });
     const game = this.#archery ?? this.#ball;
-    if (game) wakeSound(game.sound, on, notices);
+    this.#letSoundSleep();
+    if (game) this.#letSoundSleep = wakeSound(game.sound, on, notices);
   }
 
   /** The mouse or the actor plays, where no headset is worn. */
