@@ -2,6 +2,7 @@ import { type EstimatedJoint, estimatedJoints } from '../../core/body/joints';
 import { type EstimatorName, threePointNames } from '../../core/estimation/pose-estimator';
 import type { WorkProgress } from '../../lib/run-work';
 import { button, element } from '../../ui/element';
+import { createRunningLine } from '../../ui/running-line';
 import type { ClipMean } from './clip-means';
 import { type JointErrors, meanOf } from './joint-errors';
 import { type TruthPlace, truthPlaces } from './truth-places';
@@ -58,6 +59,10 @@ const centimetres = (value: number): string => value.toFixed(1);
 const percent = ({ share, secondsLeft }: WorkProgress): string =>
   `${Math.floor(100 * share)}\u00a0%${secondsLeft === null ? '' : `, ${Math.ceil(secondsLeft)} s left`}`;
 
+/** How far measuring is; null: it is over, or failed. */
+const progressOf = (mean: ClipMean): WorkProgress | null =>
+  typeof mean === 'string' || mean instanceof Float64Array ? null : mean;
+
 /** A choice among a few. */
 function choice<Value extends string>(
   label: string,
@@ -79,14 +84,14 @@ function createErrorTable(labels: Labels) {
   const rows = ['Mean', ...estimatedJoints.map((joint) => jointLabels[joint])].map((label) =>
     element('tr', {}, element('th', { scope: 'row' }, label)),
   );
-  const told = element('p', { class: 'hint', role: 'status' });
+  const line = createRunningLine({ class: 'hint' });
   const cell = (errors: MethodErrors['mean'] | null, row: number): string => {
     if (!(errors instanceof Float64Array)) return none;
     return centimetres(row === 0 ? meanOf(errors) : errors[row - 1]!);
   };
   let shown = '';
   return {
-    nodes: [element('table', {}, element('thead', {}, head, under), element('tbody', {}, ...rows)), told],
+    nodes: [element('table', {}, element('thead', {}, head, under), element('tbody', {}, ...rows)), line.node],
     show(methods: readonly MethodErrors[]) {
       const names = methods.map(({ estimator }) => labels[estimator]);
       if (shown !== names.join()) {
@@ -109,13 +114,16 @@ function createErrorTable(labels: Labels) {
           cells[2 * k + 1]!.textContent = cell(mean, i);
         }
       }
-      told.textContent = methods
-        .flatMap(({ estimator, mean }) => {
-          if (mean instanceof Float64Array) return [];
-          return [`${labels[estimator]}: ${typeof mean === 'string' ? mean : `measuring the clip, ${percent(mean)}`}`];
-        })
-        .join(' · ');
-      told.hidden = told.textContent === '';
+      const unmeasured = methods.filter(({ mean }) => !(mean instanceof Float64Array));
+      // One is measured at a time: it stands last, before its figures.
+      const measured = unmeasured.find(({ mean }) => progressOf(mean)?.share);
+      const told = [...unmeasured.filter((method) => method !== measured), ...(measured ? [measured] : [])];
+      const words = told.map(
+        ({ estimator, mean }) => `${labels[estimator]}: ${typeof mean === 'string' ? mean : 'measuring the clip'}`,
+      );
+      const progress = measured && progressOf(measured.mean);
+      line.show(words.join(' · '), progress ? `, ${percent(progress)}` : '');
+      line.node.hidden = words.length === 0;
     },
   };
 }
@@ -181,11 +189,11 @@ export function createMocapCard(labels: Labels, actions: CardActions): MocapCard
   const link = button('Copy link', () => actions.copyLink());
   const title = element('h2');
   const bar = element('progress', { max: 1, value: 0, 'aria-label': 'Progress of reading' });
-  const told = element('p', { role: 'status' });
+  const told = createRunningLine();
   const reading = element(
     'div',
     { class: 'reading', hidden: true },
-    told,
+    told.node,
     bar,
     button('Cancel', () => actions.cancel()),
   );
@@ -227,7 +235,8 @@ export function createMocapCard(labels: Labels, actions: CardActions): MocapCard
     },
     showProgress(name, progress) {
       reading.hidden = progress === null;
-      told.textContent = progress ? `Reading ${name}: ${percent(progress)}` : '';
+      if (progress) told.show(`Reading ${name}`, `: ${percent(progress)}`);
+      else told.show('');
       bar.value = progress?.share ?? 0;
       node.hidden = reading.hidden && opened.hidden;
     },

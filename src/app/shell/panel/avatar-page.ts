@@ -3,6 +3,7 @@ import { skinColors } from '../../../avatar/palettes';
 import { plainAvatar, skinTones } from '../../../core/protocol/worn-avatar';
 import { button, element } from '../../../ui/element';
 import { fileButton } from '../../../ui/file-button';
+import { createRunningLine } from '../../../ui/running-line';
 import { toggle } from '../../../ui/toggle';
 import { createBonesForm } from './bones-form';
 import type { AvatarActions, PanelPage, PanelState } from './panel-state';
@@ -17,7 +18,7 @@ export interface PaletteChoice {
 /** The avatar that is shown, and the colours of ours. */
 function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions) {
   const name = element('p', { class: 'avatar-name' });
-  const pending = element('p', { class: 'hint', role: 'status' });
+  const pending = createRunningLine({ class: 'hint' });
   const own = button('Back to ours', () => actions.showOwnAvatar());
   const cancel = button('Cancel loading', () => actions.cancelAvatar());
   const bodies = bodyLabels.map((body) => ({
@@ -45,7 +46,7 @@ function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions)
       {},
       element('h2', {}, 'Avatar'),
       name,
-      pending,
+      pending.node,
       cancel,
       element('div', { class: 'chips', role: 'group', 'aria-label': 'Our bodies' }, ...bodies.map(({ node }) => node)),
       row('Colours', colours),
@@ -62,8 +63,8 @@ function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions)
       palette: worn,
     }: PanelState) {
       name.textContent = avatarName;
-      pending.textContent = avatarPending;
-      pending.hidden = avatarPending === null;
+      pending.show(avatarPending ?? '');
+      pending.node.hidden = avatarPending === null;
       own.hidden = !ownAvatarOffered;
       cancel.hidden = !avatarOnItsWay;
       for (const { name, node } of bodies) node.setAttribute('aria-pressed', String(name === ownBody));

@@ -1,15 +1,16 @@
 import { button, element } from '../../../ui/element';
 import { fileButton } from '../../../ui/file-button';
+import { createRunningLine } from '../../../ui/running-line';
 import { toggle } from '../../../ui/toggle';
 import type { ExportChoice, ExportState, PanelPage, PanelState, RecorderState, RecordingActions } from './panel-state';
 
 const seconds = (value: number): string => `${value.toFixed(1)} s`;
 
-/** What the recorder is doing, in words. */
-export function recorderText({ mode, name, seconds: passed, duration }: RecorderState): string {
-  if (mode === 'recording') return `Recording, ${seconds(passed)}`;
-  if (mode === 'replaying') return `Replaying ${name ?? ''}, ${seconds(passed)} of ${seconds(duration)}`;
-  return name ? `${name}, ${seconds(duration)}` : 'Nothing recorded yet.';
+/** What the recorder is doing, in words, and how long it has. */
+export function recorderText({ mode, name, seconds: passed, duration }: RecorderState): readonly [string, string] {
+  if (mode === 'recording') return ['Recording', `, ${seconds(passed)}`];
+  if (mode === 'replaying') return [`Replaying ${name ?? ''}`, `, ${seconds(passed)} of ${seconds(duration)}`];
+  return [name ? `${name}, ${seconds(duration)}` : 'Nothing recorded yet.', ''];
 }
 
 const about =
@@ -20,7 +21,7 @@ function createRecorderSection(actions: RecordingActions) {
   const stop = button('Stop', () => actions.stop());
   const replay = button('Replay', () => actions.replay());
   const download = button('Download', () => actions.download());
-  const text = element('p', { class: 'recorder-text', role: 'status' });
+  const text = createRunningLine({ class: 'recorder-text' });
   const slider = element('input', { type: 'range', min: 0, step: 0.01, 'aria-label': 'Second of the replay' });
   slider.addEventListener('input', () => actions.seek(slider.valueAsNumber));
   const pause = button('Pause', () => actions.setPaused(pause.textContent === 'Pause'));
@@ -41,7 +42,7 @@ function createRecorderSection(actions: RecordingActions) {
       element('h2', {}, 'Recorder'),
       element('p', { class: 'hint' }, about),
       element('div', { class: 'row' }, record, stop, replay, download),
-      text,
+      text.node,
       element('div', { class: 'row timeline' }, pause, slider),
       loop.node,
       element('div', { class: 'row' }, ...open, ...openMocap),
@@ -56,7 +57,7 @@ function createRecorderSection(actions: RecordingActions) {
       pause.textContent = recorder.paused ? 'Play' : 'Pause';
       slider.max = String(duration);
       slider.value = String(recorder.seconds);
-      text.textContent = recorderText(recorder);
+      text.show(...recorderText(recorder));
       loop.input.checked = recorder.loop;
     },
   };
