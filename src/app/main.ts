@@ -9,14 +9,6 @@ import { showThatNothingStarts, tellOfFaults } from './shell/page-faults';
 import { PageLoading } from './shell/page-loading';
 import { beginVisit, type Visit } from './shell/visit';
 
-/** Resolves at the first animation frame at which the condition holds. */
-function until(condition: () => boolean): Promise<void> {
-  return new Promise((resolve) => {
-    const look = () => (condition() ? resolve() : requestAnimationFrame(look));
-    look();
-  });
-}
-
 /** What entering would mean: a real headset, or why not and the emulated one. */
 async function offerSessions(headset: Headset, button: EnterButton): Promise<void> {
   const { real, sentence } = await headset.prepare();
@@ -41,8 +33,7 @@ async function showFirstBody({ avatarShown, frame }: Page, loading: PageLoading)
   await avatarShown;
   loading.mark('avatar');
   loading.report('the avatar', 1);
-  const drawn = frame.count;
-  await until(() => frame.count > drawn);
+  await frame.nextPicture();
   loading.bodyShown();
 }
 

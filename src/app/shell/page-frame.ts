@@ -49,6 +49,8 @@ export class PageFrame implements FrameParts<XRFrame> {
   #embodied: TrackingFrame | null = null;
   #count = 0;
   #lastFault = '';
+  /** Those who wait for the next picture. */
+  #waiting: (() => void)[] = [];
 
   constructor(options: PageFrameOptions) {
     this.#options = options;
@@ -58,6 +60,11 @@ export class PageFrame implements FrameParts<XRFrame> {
   /** Frames drawn since the page opened. */
   get count(): number {
     return this.#count;
+  }
+
+  /** Resolves when the next picture has been drawn, in the window or in a session: while one lasts, headsets let their windows rest. */
+  nextPicture(): Promise<void> {
+    return new Promise((resolve) => this.#waiting.push(resolve));
   }
 
   track(time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
@@ -95,6 +102,7 @@ export class PageFrame implements FrameParts<XRFrame> {
   render(time: number, frame: TrackingFrame | null): void {
     const { study, stage, activities } = this.#options;
     this.#count += 1;
+    if (this.#waiting.length > 0) for (const tell of this.#waiting.splice(0)) tell();
     study.run?.frame(time, frame);
     this.#point();
     this.#turn(time);

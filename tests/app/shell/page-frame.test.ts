@@ -1,0 +1,39 @@
+import { expect, test } from 'vitest';
+import { PageFrame, type PageFrameOptions } from '../../../src/app/shell/page-frame';
+
+/** A page that draws nothing, frame by frame as its device asks for them: a window, or a session, which lets windows rest. */
+function page(draw: () => void = () => undefined): PageFrame {
+  const parts = {
+    settings: { mirror: false },
+    headset: { visibility: 'visible', worn: true, takePress: () => false, turnByStick: () => false },
+    activities: { name: 'studio', watched: () => null, show: () => undefined },
+    controls: { point: () => undefined },
+    study: { run: null },
+    stage: { look: () => undefined, draw },
+    avatar: { current: null },
+    mocap: { aside: 0 },
+  };
+  return new PageFrame(parts as unknown as PageFrameOptions);
+}
+
+test('who waits for the next picture waits for the device that draws it, and no longer', async () => {
+  const frame = page();
+  frame.render(1, null);
+  const seen: number[] = [];
+  const waiting = frame.nextPicture().then(() => seen.push(frame.count));
+  await Promise.resolve();
+  expect(seen).toEqual([]);
+  frame.render(2, null);
+  frame.render(3, null);
+  await waiting;
+  expect(seen).toHaveLength(1);
+});
+
+test('a picture that fails is waited for no longer either', async () => {
+  const frame = page(() => {
+    throw new Error('no graphics device');
+  });
+  const waiting = frame.nextPicture();
+  expect(() => frame.render(1, null)).toThrow('no graphics device');
+  await waiting;
+});
