@@ -19,9 +19,9 @@ async function offerSessions(headset: Headset, button: EnterButton): Promise<voi
   });
 }
 
-/** Lets frames be drawn; the panel is as the address asks. */
-function run({ controls, stage, frame, body, timing }: Page, { switches }: Visit): void {
-  controls.setPanelOpen(switches.panel);
+/** Lets frames be drawn; the panel is as the address asks, else as it was left. */
+function run({ controls, stage, frame, body, timing }: Page, { switches, settings }: Visit): void {
+  controls.setPanelOpen(settings.panel);
   if (switches.view) stage.view.setView(switches.view);
   controls.layOut();
   const loop = createFrameLoop<XRFrame>(frame, body, timing);

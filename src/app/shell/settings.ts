@@ -12,6 +12,8 @@ export interface Settings {
   /** Frame times inside the headset. */
   readonly vrOverlay: boolean;
   readonly largerText: boolean;
+  /** Whether the controls are to be open where there is place for them beside the picture. */
+  readonly panel: boolean;
   readonly palette: string;
   /** Which of our own bodies is worn where no other avatar is. */
   readonly ownBody: OwnBody;
@@ -58,6 +60,7 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
     overlay: preferences.overlay ?? false,
     vrOverlay: false,
     largerText: preferences.largerText ?? false,
+    panel: switches.panel ?? preferences.panel ?? true,
     palette: preferences.palette ?? 'porcelain',
     ownBody: preferences.ownBody ?? plainAvatar,
     skinTone: preferences.skinTone,
@@ -89,6 +92,7 @@ export type LastingSettings = Partial<
     | 'upperBodyOnly'
     | 'overlay'
     | 'largerText'
+    | 'panel'
     | 'palette'
     | 'ownBody'
     | 'skinTone'

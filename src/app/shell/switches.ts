@@ -18,7 +18,8 @@ export interface Switches {
   /** Addresses of the files of one motion, and how it is to be looked at; null: none is asked for. */
   readonly mocap: ({ readonly addresses: readonly string[] } & Outlook) | null;
   readonly view: ViewName | null;
-  readonly panel: boolean;
+  /** Whether the controls are open; null: as they were left. */
+  readonly panel: boolean | null;
   /** What the page opens with. */
   readonly play: ActivityName;
   /** Of the first round's layout; null: another one with each visit. */
@@ -45,7 +46,7 @@ const wholeNumber = (least: number, most: number) =>
   v.pipe(v.string(), v.regex(/^\d{1,9}$/), v.transform(Number), v.minValue(least), v.maxValue(most));
 const schema = v.object({
   actor: v.optional(onOff, 'on'),
-  panel: v.optional(onOff, 'on'),
+  panel: v.optional(onOff),
   estimator: v.optional(v.picklist(estimatorNames)),
   ep: v.optional(v.picklist(['wasm', 'webgpu']), 'wasm'),
   avatar: v.optional(address),
@@ -133,7 +134,7 @@ export function readSwitches(query: string): { readonly switches: Switches; read
     switches: {
       emulate: 'emulate' in given && given.emulate !== 'off',
       actor: output.actor === 'on',
-      panel: output.panel === 'on',
+      panel: output.panel ? output.panel === 'on' : null,
       estimator: output.estimator ?? null,
       executionProvider: output.ep,
       avatar: output.avatar ?? null,

@@ -35,6 +35,13 @@ describe('what a visit begins with', () => {
     expect(visit('?actor=off').actor).toBe(false);
   });
 
+  test('the controls are open, unless they were left closed, and the address has the last word', () => {
+    expect(visit('').panel).toBe(true);
+    expect(visit('', { panel: false }).panel).toBe(false);
+    expect(visit('?panel=on', { panel: false }).panel).toBe(true);
+    expect(visit('?panel=off', { panel: true }).panel).toBe(false);
+  });
+
   test('a round is as long as the game has it, unless the address says', () => {
     expect(visit('')).not.toHaveProperty('seconds');
     expect(visit('?seconds=40').seconds).toBe(40);

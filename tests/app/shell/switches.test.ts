@@ -8,7 +8,7 @@ describe('the address of the page', () => {
       switches: {
         emulate: false,
         actor: true,
-        panel: true,
+        panel: null,
         estimator: null,
         executionProvider: 'wasm',
         avatar: null,

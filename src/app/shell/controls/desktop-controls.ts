@@ -73,7 +73,7 @@ export class DesktopControls {
       u: () => actions.setUpperBodyOnly(!settings.upperBodyOnly),
       o: () => actions.setOverlay(!settings.overlay),
       t: () => activities.ball?.voices.toggleMuted(),
-      p: () => this.#panel.setOpen(!this.#panel.open),
+      p: () => this.#panel.toggle(),
     };
   }
 

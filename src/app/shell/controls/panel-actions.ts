@@ -135,5 +135,6 @@ export function createPanelActions(options: PanelActionsOptions): PanelActions {
     ...viewActions(options),
     recentre: () => options.wearer.recentre(),
     exitVr: () => options.headset.exit(),
+    keepPanel: (panel) => options.writer.keep({ panel }),
   };
 }

@@ -9,6 +9,8 @@ import { createViewPage } from './view-page';
 export interface PanelActions extends BodyActions, AvatarActions, RecordingActions, ViewActions {
   recentre(): void;
   exitVr(): void;
+  /** The user opened or closed the panel. */
+  keepPanel(open: boolean): void;
 }
 
 export interface PanelOptions extends MeasureRanges {
@@ -19,6 +21,8 @@ export interface Panel {
   readonly open: boolean;
   /** The region hears of it as an event, `toggle`. */
   setOpen(open: boolean): void;
+  /** As the user wants it: opens or closes it, and tells. */
+  toggle(): void;
   show(state: PanelState): void;
 }
 
@@ -33,7 +37,7 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
   const content = element('div', { class: 'panel', id: 'panel' }, ...createTabs('Controls', pages));
   const recentre = button('Recentre', () => actions.recentre(), { class: 'quiet' });
   const exit = button('Exit VR', () => actions.exitVr(), { class: 'quiet' });
-  const opener = button('Controls', () => setOpen(content.hidden), {
+  const opener = button('Controls', () => toggle(), {
     class: 'quiet opener',
     'aria-controls': 'panel',
     'aria-expanded': 'true',
@@ -44,12 +48,17 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
     region.classList.toggle('closed', !open);
     region.dispatchEvent(new Event('toggle'));
   }
+  function toggle(): void {
+    setOpen(content.hidden);
+    actions.keepPanel(!content.hidden);
+  }
   region.append(element('div', { class: 'panel-bar' }, exit, recentre, opener), content);
   return {
     get open() {
       return !content.hidden;
     },
     setOpen,
+    toggle,
     show(state) {
       exit.hidden = !state.inSession;
       for (const page of pages) page.show(state);
