@@ -50,11 +50,23 @@ export function handleFit(profiles: readonly string[]): HandleFit {
   return genericFit;
 }
 
-/** The grip in the wrist's frame (docs/frames.md): its orientation and its origin [m]. */
-function gripInWrist(
-  side: Side,
-  { ahead, below, lean }: HandleFit,
-): { readonly orientation: Quat; readonly position: Vec3 } {
+/** A grip in the wrist's frame (docs/frames.md): its orientation, the inverse of that, and its origin [m]. */
+interface HeldGrip {
+  readonly orientation: Quat;
+  readonly inverse: Quat;
+  readonly position: Vec3;
+}
+
+/** What was worked out of each fit: the same in every frame. */
+const heldGrips = new WeakMap<HandleFit, Readonly<Record<Side, HeldGrip>>>();
+
+function gripInWrist(side: Side, fit: HandleFit): HeldGrip {
+  const known = heldGrips.get(fit) ?? { left: holdGrip('left', fit), right: holdGrip('right', fit) };
+  heldGrips.set(fit, known);
+  return known[side];
+}
+
+function holdGrip(side: Side, { ahead, below, lean }: HandleFit): HeldGrip {
   const sigma = sideSign(side);
   const thumb = vec3(-sigma, 0, 0);
   const back = vec3(0, 1, 0);
@@ -63,21 +75,24 @@ function gripInWrist(
   const x = scale(back, sigma);
   const z = scale(handle, -1);
   const y = vec3(z.y * x.z - z.z * x.y, z.z * x.x - z.x * x.z, z.x * x.y - z.y * x.x);
-  return { orientation: fromAxes(x, y, z), position: vec3(0, -below, -ahead) };
+  const orientation = fromAxes(x, y, z);
+  return { orientation, inverse: conjugate(orientation), position: vec3(0, -below, -ahead) };
 }
 
 /** The wrist of a hand that holds a controller by this grip, in the grip's own frame. */
 export function wristFromGrip<F extends Frame>(grip: Pose<F>, side: Side, fit: HandleFit): Pose<F> {
   const held = gripInWrist(side, fit);
-  const orientation = multiply(grip.orientation, conjugate(held.orientation));
-  return { orientation, position: subtract(grip.position, rotate(orientation, held.position)) };
+  const orientation = multiply(grip.orientation, held.inverse);
+  const position = rotate(orientation, held.position);
+  return { orientation, position: subtract(grip.position, position, position) };
 }
 
 /** Where a controller's grip lies in a hand with this wrist: the inverse of `wristFromGrip`. */
 export function gripFromWrist<F extends Frame>(wrist: Pose<F>, side: Side, fit: HandleFit): Pose<F> {
   const held = gripInWrist(side, fit);
+  const position = rotate(wrist.orientation, held.position);
   return {
     orientation: multiply(wrist.orientation, held.orientation),
-    position: add(wrist.position, rotate(wrist.orientation, held.position)),
+    position: add(wrist.position, position, position),
   };
 }
