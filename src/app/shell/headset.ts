@@ -67,6 +67,8 @@ export class Headset {
   readonly #options: HeadsetOptions;
   #listener: HeadsetListener | null = null;
   #emulator: Emulator | null = null;
+  /** null: it is not on its way. */
+  #installing: Promise<void> | null = null;
   #session: Session | null = null;
   /** Why no real headset can be worn here; null: one can, or the emulated one was asked for. */
   #fault: XrFault | null = null;
@@ -141,13 +143,19 @@ export class Headset {
   /** The emulator where there is no headset, loaded when it is first needed; null and a notice where it fails. */
   async ensureEmulator(): Promise<Emulator | null> {
     if (this.#real || this.#emulator) return this.#emulator;
+    this.#installing ??= this.#install();
+    await this.#installing;
+    return this.#emulator;
+  }
+
+  async #install(): Promise<void> {
     try {
       this.#emulator = await installEmulator();
     } catch (error) {
       this.#say(`The emulated headset could not be loaded: ${firstLine(reasonOf(error))}`);
     }
+    this.#installing = null;
     this.#listener?.emulatorChanged();
-    return this.#emulator;
   }
 
   /** Never rejects: what goes wrong becomes a notice. */

@@ -1,6 +1,21 @@
 import { afterEach, describe, expect, test, vi } from 'vitest';
 import { Headset, type HeadsetOptions } from '../../../src/app/shell/headset';
 
+/** Emulated devices that were installed in place of the browser's own. */
+let installed = 0;
+vi.mock('iwer', () => ({
+  metaQuest3: {},
+  XRDevice: class {
+    readonly position = { set: () => undefined };
+    readonly controllers = {};
+    readonly hands = {};
+    readonly viewSpaces = {};
+    installRuntime(): void {
+      installed += 1;
+    }
+  },
+}));
+
 afterEach(() => vi.unstubAllGlobals());
 
 /** A session that its wearer, or the device, may end at any time. */
@@ -92,4 +107,21 @@ describe('entering VR', () => {
     expect(happened).toEqual(['refused']);
     expect(told).toEqual([expect.stringContaining('no such graphics device')]);
   });
+});
+
+test('the emulated headset is installed once, however often it is asked for while it loads', async () => {
+  vi.stubGlobal('window', { isSecureContext: true });
+  vi.stubGlobal('navigator', { xr: { isSessionSupported: async () => false } });
+  const headset = new Headset({
+    renderer: {} as HeadsetOptions['renderer'],
+    quality: 'low',
+    switches: { emulate: false },
+    settings: { actor: true, emulatorPanel: false, deviceBody: false },
+    notices: { show: (_, text) => expect(text).toBeNull() },
+  });
+  await headset.prepare();
+  const asked = await Promise.all([headset.ensureEmulator(), headset.ensureEmulator()]);
+  expect(installed).toBe(1);
+  expect(asked[0]).toBe(asked[1]);
+  expect(await headset.ensureEmulator()).toBe(asked[0]);
 });
