@@ -32,15 +32,17 @@ export class DeviceBodyReader {
 
   /** Why there never was a body, or is none any more; null: it is there. */
   get complaint(): string | null {
+    if (this.#seen) return null;
     if (this.#fault !== null) return this.#fault;
-    if (this.#body === null) return 'the device reports no body';
-    return this.#seen ? null : 'the device has lost the body, or not found it yet';
+    return this.#body === null ? 'the device reports no body' : 'the device has lost the body, or not found it yet';
   }
 
   /** The joints [m] in the space, overwritten by the next; null: the device reports none in this frame, or not all of them. */
   read(frame: XRFrame, space: XRReferenceSpace): DeviceBody | null {
     try {
       this.#seen = this.#fill(frame as BodyFrame, space);
+      // What went wrong in one frame is over with the next; what the body lacks is not.
+      if (this.#seen) this.#fault = null;
     } catch (error) {
       this.#seen = false;
       this.#fault = `the device's body cannot be read: ${reasonOf(error)}`;
