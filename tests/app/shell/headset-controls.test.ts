@@ -127,6 +127,14 @@ describe('in the headset', () => {
     expect(done).toEqual([]);
   });
 
+  test('a study that is joined in a session takes the menu away', () => {
+    const { controls, study, menu } = headset();
+    controls.setWorn(true);
+    study.join(studyOf([]));
+    controls.show();
+    expect(menu.visible).toBe(false);
+  });
+
   test('a trigger pulled at a button does what it says, and the ray ends there', () => {
     const { controls, hands, done, onMenu } = headset();
     controls.setWorn(true);

@@ -37,6 +37,7 @@ export class HeadsetControls {
   #invitation: ShownInvitation | null = null;
   /** Who else is here is held up. */
   #listed = false;
+  #worn = false;
 
   constructor(options: HeadsetControlsOptions) {
     this.#options = options;
@@ -51,14 +52,19 @@ export class HeadsetControls {
 
   /** The headset is on, or off again. A study's sheet takes the place of the menu. */
   setWorn(worn: boolean): void {
-    const { study, pointers } = this.#options;
     this.#invitation = null;
     this.#listed = false;
-    this.#menu.setVisible(worn && study.run === null);
-    pointers.objects.visible = worn;
+    this.#worn = worn;
+    this.#options.pointers.objects.visible = worn;
+    this.#showMenu();
+  }
+
+  #showMenu(): void {
+    this.#menu.setVisible(this.#worn && this.#options.study.run === null);
   }
 
   show(): void {
+    this.#showMenu();
     this.#menu.object.scale.setScalar(this.#options.settings.largerText ? largerMenu : 1);
     this.#menu.show(this.#state());
   }
