@@ -67,6 +67,7 @@ export class Headset {
   readonly #options: HeadsetOptions;
   #listener: HeadsetListener | null = null;
   #emulator: Emulator | null = null;
+  #entering = false;
   /** null: it is not on its way. */
   #installing: Promise<void> | null = null;
   #session: Session | null = null;
@@ -158,8 +159,15 @@ export class Headset {
     this.#listener?.emulatorChanged();
   }
 
-  /** Never rejects: what goes wrong becomes a notice. */
+  /** Never rejects: what goes wrong becomes a notice. Nothing happens in a session or on the way into one. */
   async enter(): Promise<void> {
+    if (this.#entering || this.#session) return;
+    this.#entering = true;
+    await this.#enter();
+    this.#entering = false;
+  }
+
+  async #enter(): Promise<void> {
     try {
       if (!this.#real) {
         const emulator = await this.ensureEmulator();
@@ -206,13 +214,11 @@ export class Headset {
 
   async #begin(): Promise<void> {
     const xr = await requestVrSession(this.#options.settings.deviceBody);
-    let ended = false;
-    xr.addEventListener('end', () => {
-      ended = true;
+    const over = new Promise<never>((_, reject) => {
+      xr.addEventListener('end', () => reject(new Error('the session ended before it had begun')));
     });
     try {
-      const { space, room } = await this.#drawIn(xr);
-      if (ended) throw new Error('the session ended before it had begun');
+      const { space, room } = await Promise.race([this.#drawIn(xr), over]);
       this.#follow(xr, space, room);
     } catch (error) {
       // Else the headset waits for pictures that never come, and no other session can begin.

@@ -44,7 +44,14 @@ class Session extends EventTarget {
 async function page(draw: () => Promise<void> = () => Promise.resolve()) {
   const session = new Session();
   vi.stubGlobal('window', { isSecureContext: true });
-  const xr = { isSessionSupported: async () => true, requestSession: async () => session };
+  let asked = false;
+  const requestSession = async () => {
+    if (asked)
+      throw new DOMException('There is already an immersive session or a request for one', 'InvalidStateError');
+    asked = true;
+    return session;
+  };
+  const xr = { isSessionSupported: async () => true, requestSession };
   vi.stubGlobal('navigator', { xr });
   const happened: string[] = [];
   const told: string[] = [];
@@ -86,13 +93,26 @@ describe('entering VR', () => {
     expect(told).toEqual([]);
   });
 
+  test('by a double click, or once more from within, is entering once', async () => {
+    const { headset, session, happened, told } = await page();
+    const entering = [headset.enter(), headset.enter()];
+    await soon();
+    session.answerRoom();
+    await Promise.all(entering);
+    await headset.enter();
+    expect(headset.worn).toBe(true);
+    expect(happened).toEqual(['entered']);
+    expect(told).toEqual([]);
+  });
+
   test('in a session that ends before it has begun leaves the page without one', async () => {
     const { headset, session, happened, told } = await page();
     const entering = headset.enter();
     await soon();
     await session.end();
-    session.answerRoom();
     await entering;
+    session.answerRoom();
+    await soon();
     expect(headset.worn).toBe(false);
     expect(happened).toEqual(['refused']);
     expect(told).toEqual([expect.stringContaining('ended before it had begun')]);
