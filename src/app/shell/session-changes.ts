@@ -9,7 +9,7 @@ import type { PageStudy } from './page-study';
 
 export interface SessionChangesOptions {
   readonly headset: Pick<Headset, 'pictureRateHz' | 'visibility'>;
-  readonly recorder: Pick<Recorder, 'stop'>;
+  readonly recorder: Pick<Recorder, 'mode' | 'stop'>;
   readonly timing: FrameTiming;
   readonly view: DesktopView;
   readonly body: Pick<BareBody, 'begin' | 'jumped'>;
@@ -35,7 +35,9 @@ export class SessionChanges implements HeadsetListener {
   }
 
   left(): void {
-    const { controls, view } = this.#options;
+    const { recorder, controls, view } = this.#options;
+    // What moves the body from now on is not what the recording says.
+    if (recorder.mode === 'recording') recorder.stop();
     controls.setWorn(false);
     view.setView(view.view);
     controls.layOut();

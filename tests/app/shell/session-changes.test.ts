@@ -2,11 +2,14 @@ import { afterEach, expect, test, vi } from 'vitest';
 import { createFrameTiming } from '../../../src/app/shell/frame-timing';
 import type { Headset } from '../../../src/app/shell/headset';
 import { SessionChanges, type SessionChangesOptions } from '../../../src/app/shell/session-changes';
+import { Recorder } from '../../../src/app/studio/recorder';
+import { defaultCalibration } from '../../../src/core/body/calibration';
+import { actorFrame } from '../../../src/core/tracking/actor-motion';
 
 afterEach(() => vi.unstubAllGlobals());
 
-/** A player in a match, with a headset to put on and a window that may lie behind others. */
-function player() {
+/** A player in a match, with a headset to put on and a window that may lie behind others; `recorder`: keeps what is tracked. */
+function player(recorder = new Recorder()) {
   const page = Object.assign(new EventTarget(), { hidden: false });
   vi.stubGlobal('document', page);
   const headset = { pictureRateHz: 72, visibility: 'none' as Headset['visibility'] };
@@ -19,7 +22,7 @@ function player() {
   };
   const changes = new SessionChanges({
     headset,
-    recorder: { stop: nothing },
+    recorder,
     timing: createFrameTiming(() => 0),
     view: { view: 'third-person', setView: nothing } as unknown as SessionChangesOptions['view'],
     body: { begin: nothing, jumped: nothing },
@@ -75,4 +78,17 @@ test('a player who wears the headset is there, whatever lies before the window',
   expect(isAway()).toBe(true);
   setWindow(false);
   expect(isAway()).toBe(false);
+});
+
+test('a recording made in a session ends with it: what moves the body afterwards is another', () => {
+  const recorder = new Recorder();
+  const { enter, leave } = player(recorder);
+  const track = (time: number) => recorder.observe(actorFrame(time, defaultCalibration));
+  enter();
+  recorder.record({ device: 'headset', rateHz: 72, calibration: defaultCalibration });
+  track(1);
+  track(2);
+  leave();
+  track(3);
+  expect([recorder.mode, recorder.frameCount]).toEqual(['idle', 2]);
 });
