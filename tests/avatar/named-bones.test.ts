@@ -25,6 +25,14 @@ const bones: BoneMap = Object.fromEntries(
 );
 
 const estimator = createIk(defaultCalibration);
+const hashOf = (i: number) => String(i).padStart(43, 'h');
+
+/** A browser's storage. */
+function memory(): Pick<Storage, 'getItem' | 'setItem'> {
+  const items = new Map<string, string>();
+  return { getItem: (key) => items.get(key) ?? null, setItem: (key, value) => void items.set(key, value) };
+}
+
 /** Where the joints are of a body that stands as the built-in actor does. */
 function posed(loaded: LoadedAvatar) {
   const avatar = createAvatar(loaded);
@@ -115,12 +123,7 @@ describe('a map of bones that is given', () => {
   });
 
   test('is remembered by the file’s hash over a reload, of the newest twenty files', () => {
-    const items = new Map<string, string>();
-    const storage = {
-      getItem: (key: string) => items.get(key) ?? null,
-      setItem: (key: string, value: string) => void items.set(key, value),
-    };
-    const hashOf = (i: number) => String(i).padStart(43, 'h');
+    const storage = memory();
     const first = new KnownBones(createPreferenceStore(storage));
     for (let i = 0; i < 21; i++) first.keep(hashOf(i), { ...bones, head: `daeh${i}` });
     const store = createPreferenceStore(storage);
@@ -129,5 +132,15 @@ describe('a map of bones that is given', () => {
     expect(later.of(hashOf(0))).toBeUndefined();
     expect(later.of(hashOf(20))?.head).toBe('daeh20');
     expect(later.of('unknown')).toBeUndefined();
+  });
+
+  test('costs nothing else that is remembered where a bone has too long a name to be', () => {
+    const storage = memory();
+    const store = createPreferenceStore(storage);
+    store.remember({ mirror: false });
+    new KnownBones(store).keep(hashOf(1), { ...bones, head: 'head '.repeat(50) });
+    const next = createPreferenceStore(storage);
+    expect(next.complaint).toBeNull();
+    expect(next.preferences).toEqual({ mirror: false });
   });
 });

@@ -1,5 +1,6 @@
+import * as v from 'valibot';
 import type { BoneMap } from '../../avatar/humanoid/bone-names';
-import type { PreferenceStore } from './preferences';
+import { boneMap, type PreferenceStore } from './preferences';
 
 /** The maps of so many files are remembered, the newest ones. */
 const mostFiles = 20;
@@ -17,7 +18,9 @@ export class KnownBones {
     return this.#store.preferences.bones?.[hash];
   }
 
+  /** A map that could not be read again is not kept: all that is remembered would be lost with it. */
   keep(hash: string, bones: BoneMap): void {
+    if (!v.is(boneMap, bones)) return;
     const { [hash]: _before, ...others } = this.#store.preferences.bones ?? {};
     const kept = [...Object.entries(others), [hash, bones] as const].slice(-mostFiles);
     this.#store.remember({ bones: Object.fromEntries(kept) });
