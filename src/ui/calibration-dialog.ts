@@ -3,7 +3,6 @@ import { button, element } from './element';
 
 /** The guided calibration as people see it: an instruction, a countdown, then a bar that fills. */
 export interface CalibrationDialog {
-  readonly visible: boolean;
   show(step: CalibrationStep): void;
   hide(): void;
 }
@@ -46,9 +45,6 @@ export function createCalibrationDialog(onCancel: () => void, onAgain: () => voi
   });
   document.body.append(dialog);
   return {
-    get visible() {
-      return dialog.open;
-    },
     show(step) {
       const over = step.kind === 'done' || step.kind === 'failed';
       const figure = calibrationHeadline(step);

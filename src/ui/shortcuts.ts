@@ -9,12 +9,12 @@ function isTyping(target: EventTarget | null): boolean {
   );
 }
 
-/** Listens for single keys; `enabled` is asked at each press. */
+/** Listens for single keys; `enabled` is asked at each press. Behind an open dialog none acts. */
 export function listenToShortcuts(shortcuts: Shortcuts, enabled: () => boolean): void {
   window.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.repeat || isTyping(event.target)) return;
     const action = shortcuts[event.key.toLowerCase()];
-    if (!action || !enabled()) return;
+    if (!action || !enabled() || document.querySelector('dialog[open]')) return;
     event.preventDefault();
     action();
   });

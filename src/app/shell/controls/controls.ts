@@ -40,7 +40,7 @@ export class Controls {
     const measuring = this.#measuring;
     const motionExport = new MotionExport(parts);
     const actions = createPanelActions({ ...parts, measuring, motionExport, files: this.#files });
-    this.#desktop = new DesktopControls(panelRegion, { ...parts, measuring, motionExport, actions });
+    this.#desktop = new DesktopControls(panelRegion, { ...parts, motionExport, actions });
     const pointers = createVrPointers(stage.renderer);
     this.#inHeadset = new HeadsetControls({ ...parts, measuring, actions, pointers });
     this.#layout = new WindowLayout({

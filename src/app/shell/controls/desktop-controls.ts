@@ -12,12 +12,10 @@ import { estimatorOrder } from '../estimator-texts';
 import { createPanel, type Panel, type PanelActions } from '../panel/panel';
 import type { PanelState } from '../panel/panel-state';
 import type { ControlledParts } from './controlled-parts';
-import type { Measuring } from './measuring';
 import type { MotionExport } from './motion-export';
 
 export interface DesktopControlsOptions extends ControlledParts {
   readonly actions: PanelActions;
-  readonly measuring: Pick<Measuring, 'dialogVisible'>;
   readonly motionExport: Pick<MotionExport, 'state'>;
 }
 
@@ -29,7 +27,7 @@ export class DesktopControls {
   readonly #panel: Panel;
 
   constructor(region: HTMLElement, options: DesktopControlsOptions) {
-    const { actions, headset, measuring, study } = options;
+    const { actions, headset, study } = options;
     this.#options = options;
     this.#panel = createPanel(
       region,
@@ -44,7 +42,7 @@ export class DesktopControls {
       },
       actions,
     );
-    listenToShortcuts(this.#shortcuts(), () => !headset.worn && !measuring.dialogVisible && study.run === null);
+    listenToShortcuts(this.#shortcuts(), () => !headset.worn && study.run === null);
   }
 
   get panelOpen(): boolean {

@@ -37,11 +37,6 @@ export class Measuring {
     return this.#step;
   }
 
-  /** A dialog lies before the page. */
-  get dialogVisible(): boolean {
-    return this.#dialog.visible;
-  }
-
   /** Measures the wearer, or says what is missing for that. */
   start(): void {
     const { headset, settings, notices } = this.#options;
