@@ -11,6 +11,22 @@ export interface Takeover {
   onTakeover?(reason: string): void;
 }
 
+/** A run of a device that is lost may fail so long [ms] before the browser says that it is. */
+const lossPatienceMs = 1000;
+
+/** Why the device of this session is gone; null: it does not turn out to be. */
+async function lossOf({ lost }: InferenceSession): Promise<string | null> {
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  const inVain = new Promise<null>((resolve) => {
+    timer = setTimeout(resolve, lossPatienceMs, null);
+  });
+  try {
+    return await Promise.race([lost ?? null, inVain]);
+  } finally {
+    clearTimeout(timer);
+  }
+}
+
 /** A network in a session of the runtime: on a graphics device, and where that fails in WebAssembly. */
 export class SessionRegressor implements PoseRegressor {
   readonly contract: ModelContract;
@@ -60,12 +76,18 @@ export class SessionRegressor implements PoseRegressor {
     if (this.#disposed) await opened.release();
     this.#demand();
     this.#session = opened;
-    // A run may fail before its device is known to be lost.
-    const what = device.loss
-      ? `The graphics device was lost (${device.loss})`
-      : `WebGPU failed at ${file} (${reasonOf(error)})`;
-    this.#takeover.onTakeover?.(`${what}: WebAssembly takes over.`);
+    void this.#tell(device, error);
     return opened;
+  }
+
+  async #tell(device: InferenceSession, error: unknown): Promise<void> {
+    const loss = await lossOf(device);
+    if (this.#disposed) return;
+    const what =
+      loss === null
+        ? `WebGPU failed at ${this.contract.file} (${reasonOf(error)})`
+        : `The graphics device was lost (${loss})`;
+    this.#takeover.onTakeover?.(`${what}: WebAssembly takes over.`);
   }
 
   /** Throws where the network was let go. */

@@ -28,8 +28,8 @@ export interface InferenceSession {
   readonly provider: ExecutionProvider;
   readonly inputNames: readonly string[];
   readonly outputNames: readonly string[];
-  /** Why its graphics device is gone; null, or absent: it is there as far as is known, or has none. */
-  readonly loss?: string | null;
+  /** Resolves with why its graphics device is gone, when it is; absent: it has none. */
+  readonly lost?: Promise<string>;
   /** features: the input tensor's numbers; resolves to the output tensor's, in an array of their own. */
   run(features: Float32Array): Promise<Float32Array>;
   release(): Promise<void>;
@@ -59,21 +59,13 @@ export async function createSession(
     extra: { session: { disable_quant_qdq: '1' } },
   };
   const session = await ort.InferenceSession.create(model, options);
-  let loss: string | null = null;
-  const lost =
-    provider === 'webgpu'
-      ? lossOf((await ort.env.webgpu.device) as GraphicsDevice, (reason) => {
-          loss = reason;
-        })
-      : null;
+  const lost = provider === 'webgpu' ? lossOf((await ort.env.webgpu.device) as GraphicsDevice) : null;
   let last: Promise<unknown> = Promise.resolve();
   return {
     provider,
     inputNames: session.inputNames,
     outputNames: session.outputNames,
-    get loss() {
-      return loss;
-    },
+    ...(lost && { lost }),
     run(features) {
       const start = async (): Promise<Float32Array> => {
         const results = await session.run({ [input]: new ort.Tensor('float32', features, inputShape) });
@@ -87,19 +79,15 @@ export async function createSession(
       const run = last.then(start, start);
       last = run.catch(() => undefined);
       // What waits for a lost device waits for ever.
-      return lost ? Promise.race([run, lost]) : run;
+      return lost ? Promise.race([run, lost.then(fail)]) : run;
     },
     release: () => session.release(),
   };
 }
 
-/** Rejects when the graphics device is lost, of which `onLoss` hears first; a page that asks for nothing by then hears nothing of it. */
-function lossOf(device: GraphicsDevice, onLoss: (reason: string) => void): Promise<never> {
-  const loss = device.lost.then(({ message, reason }) => {
-    const told = message || reason || 'the device is gone';
-    onLoss(told);
-    throw new Error(told);
-  });
-  loss.catch(() => undefined);
-  return loss;
-}
+const lossOf = (device: GraphicsDevice): Promise<string> =>
+  device.lost.then(({ message, reason }) => message || reason || 'the device is gone');
+
+const fail = (reason: string): never => {
+  throw new Error(reason);
+};

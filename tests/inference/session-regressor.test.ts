@@ -1,4 +1,4 @@
-import { describe, expect, test } from 'vitest';
+import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
 import type { InferenceSession } from '../../src/inference/session';
 import { SessionRegressor } from '../../src/inference/session-regressor';
 import { readShipped } from '../core/estimation/shipped-models';
@@ -9,14 +9,18 @@ const features = new Float32Array(4);
 /** A session of the runtime that answers with one number, or fails; how often it was let go. */
 function session(provider: InferenceSession['provider'], answer: number | Error) {
   let released = 0;
-  const opened: InferenceSession & { loss: string | null } = {
-    ...{ provider, inputNames: [], outputNames: [], loss: null },
+  let lose!: (reason: string) => void;
+  const lost = new Promise<string>((resolve) => {
+    lose = resolve;
+  });
+  const opened: InferenceSession = {
+    ...{ provider, inputNames: [], outputNames: [], lost },
     run: () => (typeof answer === 'number' ? Promise.resolve(Float32Array.of(answer)) : Promise.reject(answer)),
     async release() {
       released += 1;
     },
   };
-  return { opened, released: () => released };
+  return { opened, lose, released: () => released };
 }
 
 /** A network on a graphics device that fails, and a session on WebAssembly that opens when it is told to. */
@@ -42,6 +46,9 @@ function failing(message = 'no memory is left') {
 }
 
 describe('a network on a graphics device that fails', () => {
+  beforeEach(() => void vi.useFakeTimers());
+  afterEach(() => void vi.useRealTimers());
+
   test('runs on in WebAssembly, which is opened once, and says what is known', async () => {
     const { regressor, told, asked, arrive } = failing();
     const runs = [regressor.run(features), regressor.run(features)];
@@ -49,15 +56,19 @@ describe('a network on a graphics device that fails', () => {
     expect((await Promise.all(runs)).map(([number]) => number)).toEqual([7, 7]);
     expect(regressor.provider).toBe('wasm');
     expect(asked()).toBe(1);
+    await vi.runAllTimersAsync();
     expect(told).toEqual(['WebGPU failed at learned.onnx (no memory is left): WebAssembly takes over.']);
   });
 
-  test('says that the device was lost where it was, also where that is known only after the run has failed', async () => {
+  test('says that the device was lost where it was, also where that is known only after WebAssembly runs', async () => {
     const { regressor, device, told, arrive } = failing();
     const run = regressor.run(features);
-    device.opened.loss = 'the driver was reset';
     arrive();
     await run;
+    expect(told).toEqual([]);
+    device.lose('the driver was reset');
+    await vi.advanceTimersByTimeAsync(0);
+    expect(vi.getTimerCount()).toBe(0);
     expect(told).toEqual(['The graphics device was lost (the driver was reset): WebAssembly takes over.']);
   });
 
@@ -67,6 +78,7 @@ describe('a network on a graphics device that fails', () => {
     fail(new Error('no room for it'));
     await expect(run).rejects.toThrow('learned.onnx: no room for it');
     await expect(regressor.run(features)).rejects.toThrow('learned.onnx: no room for it');
+    await vi.runAllTimersAsync();
     expect([asked(), told]).toEqual([1, []]);
   });
 });
