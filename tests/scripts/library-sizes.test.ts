@@ -17,6 +17,14 @@ describe('a size that a document says', () => {
     expect(stale('threepoint', 73_100, 24_500)).toEqual([]);
   });
 
+  test('is let stand where what was measured rounds to it', () => {
+    const text = '| `threepoint/onnx-worker` | 1.4 kB | 0.7 kB |';
+    const says = rowOf('threepoint/onnx-worker');
+    const claim = (...bytes: number[]) => staleSizes('docs/library.md', text, [{ what: 'it', says, bytes }]);
+    expect(claim(1_360, 660)).toEqual([]);
+    expect(claim(1_360, 640)).toEqual(['docs/library.md says 1.4 kB and 0.7 kB of it, it is 1.4 kB and 0.6 kB']);
+  });
+
   test('is told beside what was measured where it is further off', () => {
     expect(stale('threepoint/motion', 45_500, 18_049)).toEqual([
       'docs/library.md says 45.5 kB and 17.0 kB of threepoint/motion, it is 45.5 kB and 18.0 kB',
