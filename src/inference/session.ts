@@ -60,6 +60,9 @@ export async function createSession(
   };
   const session = await ort.InferenceSession.create(model, options);
   const lost = provider === 'webgpu' ? lossOf((await ort.env.webgpu.device) as GraphicsDevice) : null;
+  // Once for all runs; a page that asks for nothing by then hears nothing of it.
+  const failed = lost?.then(fail);
+  failed?.catch(() => undefined);
   let last: Promise<unknown> = Promise.resolve();
   return {
     provider,
@@ -79,7 +82,7 @@ export async function createSession(
       const run = last.then(start, start);
       last = run.catch(() => undefined);
       // What waits for a lost device waits for ever.
-      return lost ? Promise.race([run, lost.then(fail)]) : run;
+      return failed ? Promise.race([run, failed]) : run;
     },
     release: () => session.release(),
   };
