@@ -16,7 +16,7 @@ from .features import frame_features
 from .prepare import EYES_FROM_HEAD_JOINT
 from .prepared_corpus import PreparedCorpus, chest_axes_of, joints_of
 from .residual import residual
-from .simulate_trackers import FOREARM_ERROR, TrackerConfig, measured_tilts
+from .simulate_trackers import FOREARM_ERROR, TrackerConfig, draw_turns, measured_tilts
 from .skeleton import Body, body_from_calibration
 from .splits import VARIED
 
@@ -222,7 +222,7 @@ def _draw_bodies(parts: BodyParts, count: int, config: AugmentConfig, random: np
 
 def _draw_worn(count: int, trackers: TrackerConfig, random: np.random.Generator) -> tuple[Array, Array]:
     """How trackers of N wearers sit: offsets [N, 3, 3] in the frames of head and hands [m], and rotations [N, 3, 4] against those."""
-    hands = quaternion.from_rotation_vector(random.normal(size=(count, 2, 3)) * trackers.hand_turn / np.sqrt(3))
+    hands = draw_turns(trackers.hand_turn, (count, 2), random)
     head = quaternion.from_rotation_vector(
         np.stack([random.normal(size=count) * trackers.headset_pitch, np.zeros(count), np.zeros(count)], -1)
     )
@@ -308,7 +308,7 @@ def _trackers_at(ago: NDArray[np.int64], bodies: _Bodies, tracking: _Tracking) -
 
 def _with_noise(positions: Array, rotations: Array, trackers: TrackerConfig, random: np.random.Generator) -> tuple[Array, Array]:
     """What trackers report that are at these positions [N, 3, 3] and rotations [N, 3, 4]."""
-    jitter = quaternion.from_rotation_vector(random.normal(size=positions.shape) * trackers.rotation_noise / np.sqrt(3))
+    jitter = draw_turns(trackers.rotation_noise, positions.shape[:-1], random)
     return positions + random.normal(size=positions.shape) * trackers.position_noise, quaternion.multiply(rotations, jitter)
 
 

@@ -42,14 +42,19 @@ class Wearer:
     hand_turns: Array  # [2, 4]
 
 
+def draw_turns(deviation: float, shape: tuple[int, ...], random: np.random.Generator) -> Array:
+    """Rotations [*shape, 4] about random axes, by this much (standard deviation) [rad]."""
+    return quaternion.from_rotation_vector(random.normal(size=(*shape, 3)) * deviation / np.sqrt(3))
+
+
 def draw_wearer(config: TrackerConfig, random: np.random.Generator) -> Wearer:
     """A wearer with offsets and rotations drawn at random."""
-    turns = random.normal(size=(2, 3)) * config.hand_turn / np.sqrt(3)
+    turns = draw_turns(config.hand_turn, (2,), random)
     return Wearer(
         eyes_in_head=EYES_FROM_HEAD_JOINT + random.normal(size=3) * config.headset_offset,
         head_turn=quaternion.from_rotation_vector(np.array([random.normal() * config.headset_pitch, 0.0, 0.0])),
         wrist_offsets=random.normal(size=(2, 3)) * config.wrist_offset,
-        hand_turns=quaternion.from_rotation_vector(turns),
+        hand_turns=turns,
     )
 
 
@@ -71,5 +76,4 @@ def simulate(
     tracked = tracked + random.normal(size=tracked.shape) * config.position_noise
     turns = np.stack([wearer.head_turn, *wearer.hand_turns])
     turned = quaternion.multiply(rotations, np.broadcast_to(turns, (frames, 3, 4)))
-    jitter = quaternion.from_rotation_vector(random.normal(size=(frames, 3, 3)) * config.rotation_noise / np.sqrt(3))
-    return tracked, quaternion.multiply(turned, jitter)
+    return tracked, quaternion.multiply(turned, draw_turns(config.rotation_noise, (frames, 3), random))
