@@ -13,9 +13,8 @@ JOINTS = {
     "spine": "spine",
     "pelvis": "pelvis",
 }
-# Relative to IK, by what marks a protocol among those that a contract states; and what a protocol is called that no run has measured.
-AIMS_OF_PROTOCOLS = {"fold B (": 0.85, "in turn": 0.82}
-NAMES_OF_PROTOCOLS = {"fold B (": "fold B", "in turn": "people in turn"}
+# By what marks a protocol among those that a contract states: what it is called where no run has measured it, and the aim relative to IK.
+AIMS_OF_PROTOCOLS = {"fold B (": ("fold B", 0.85), "in turn": ("people in turn", 0.82)}
 Json = dict[str, Any]
 # Evaluations of the same people with nothing told of their hands, and with hands as the guided calibration measures them.
 ByHands = tuple[Json, Json]
@@ -230,7 +229,7 @@ def _row(what: str, aim: str, measured: str, met: bool | None) -> list[str]:
 def _protocol_rows(errors: dict[str, Json]) -> list[list[str]]:
     """Rows of `aims` for what a contract states of fold B and of people in turn; where it states nothing they say so."""
     rows = []
-    for mark, aim in AIMS_OF_PROTOCOLS.items():
+    for mark, (name, aim) in AIMS_OF_PROTOCOLS.items():
         stated = [protocol for protocol in errors if protocol.startswith("learned") and mark in protocol and _of_ik(protocol) in errors]
         for protocol in stated:
             own, other = errors[protocol], errors[_of_ik(protocol)]
@@ -240,7 +239,7 @@ def _protocol_rows(errors: dict[str, Json]) -> list[list[str]]:
             rows.append(_row(f"MPJPE relative to IK, {who}", f"≤ {aim}", f"{whole:.3f}", whole <= aim))
             rows.append(_row(f"elbows relative to IK, {who}", f"≤ {aim}", f"{of_elbows:.3f}", of_elbows <= aim))
         if not stated:
-            rows += [_row(f"{what} relative to IK, {NAMES_OF_PROTOCOLS[mark]}", f"≤ {aim}", "–", None) for what in ("MPJPE", "elbows")]
+            rows += [_row(f"{what} relative to IK, {name}", f"≤ {aim}", "–", None) for what in ("MPJPE", "elbows")]
     return rows
 
 
