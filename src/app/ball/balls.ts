@@ -140,7 +140,7 @@ class MatchBalls implements Balls {
   readonly #meshes: readonly [InstancedMesh, InstancedMesh];
   readonly #shadows: ShadowDiscs;
   /** By ball. */
-  readonly #approaches: Approach[] = [];
+  readonly #approaches: readonly Approach[];
   readonly #matrix = new Matrix4();
   readonly #at = new Vector3();
   readonly #turn = new Quaternion();
@@ -157,6 +157,7 @@ class MatchBalls implements Balls {
       createMesh(geometryOf(second, quality), material, perRack),
     ];
     this.#shadows = createShadowDiscs(most);
+    this.#approaches = Array.from({ length: most }, makeApproach);
     this.object.name = 'balls';
     this.object.add(...this.#meshes, this.#shadows.object);
   }
@@ -174,7 +175,7 @@ class MatchBalls implements Balls {
       } else position = ballPosition(state, ball, time);
       // A catch is told a moment later: until then the ball lies where it fell.
       if (place.on === 'air' && !place.missed && position && opening)
-        position = stoppedBy(opening, position, place.launch.time, this.#approachOf(ball));
+        position = stoppedBy(opening, position, place.launch.time, this.#approaches[ball]!);
       if (position) this.#put(ball, place, position, time);
       else this.#hide(ball);
     }
@@ -186,14 +187,6 @@ class MatchBalls implements Balls {
     this.object.removeFromParent();
     for (const mesh of this.#meshes) mesh.dispose();
     disposeTree(this.object);
-  }
-
-  #approachOf(ball: number): Approach {
-    const known = this.#approaches[ball];
-    if (known) return known;
-    const approach = makeApproach();
-    this.#approaches[ball] = approach;
-    return approach;
   }
 
   /** Where the ball lies that was caught after this many others. */
