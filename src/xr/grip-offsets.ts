@@ -61,8 +61,11 @@ interface HeldGrip {
 const heldGrips = new WeakMap<HandleFit, Readonly<Record<Side, HeldGrip>>>();
 
 function gripInWrist(side: Side, fit: HandleFit): HeldGrip {
-  const known = heldGrips.get(fit) ?? { left: holdGrip('left', fit), right: holdGrip('right', fit) };
-  heldGrips.set(fit, known);
+  let known = heldGrips.get(fit);
+  if (!known) {
+    known = { left: holdGrip('left', fit), right: holdGrip('right', fit) };
+    heldGrips.set(fit, known);
+  }
   return known[side];
 }
 
