@@ -29,7 +29,7 @@ export const learnedInputCount = (windowSeconds: readonly number[]): number =>
 
 /**
  * The corrected trunk moves more than IK's, where people crouch and lie most of all: a little more smoothing, and its jerk is no more than that of IK,
- * at 0.3 to 0.7 % more error (docs/decisions.md).
+ * at 0.5 to 1.2 % more error (docs/decisions.md).
  */
 const residualSmoothing: JointSmoothing = { arms: 0.02, trunk: 0.035, head: 0.045 };
 
