@@ -1,38 +1,58 @@
 import { existsSync, readFileSync } from 'node:fs';
+import { relative } from 'node:path';
+
+/** The specs of a suite of Playwright's report and of the suites within it. */
+const specsOf = ({ specs = [], suites = [] }) => [...specs, ...suites.flatMap(specsOf)];
 
 const readers = {
   /** `chosen`: whether tests of these tags were asked for; the runner counts all others as skipped. */
   vitest(text, chosen = () => true) {
     const report = JSON.parse(text);
-    const tests = report.testResults.flatMap((file) => file.assertionResults).filter(({ tags = [] }) => chosen(tags));
-    const count = (...kinds) => tests.filter(({ status }) => kinds.includes(status)).length;
+    const tests = report.testResults.flatMap((file) =>
+      file.assertionResults.map((test) => ({ ...test, file: relative('.', file.name) })),
+    );
+    const asked = tests.filter(({ tags = [] }) => chosen(tags));
+    const of = (...kinds) => asked.filter(({ status }) => kinds.includes(status));
     // A file that does not even load has no tests of its own to fail.
     const broken = report.testResults.filter((file) => file.status === 'failed' && file.assertionResults.length === 0);
     return {
-      passed: count('passed'),
-      failed: count('failed') + broken.length,
-      skipped: count('skipped', 'pending', 'todo'),
+      passed: of('passed').length,
+      failures: [
+        ...broken.map((file) => `${relative('.', file.name)} does not load`),
+        ...of('failed').map(({ file, fullName }) => `${file}: ${fullName}`),
+      ],
+      skipped: of('skipped', 'pending', 'todo').length,
     };
   },
   pytest(text) {
-    const sum = (attribute) =>
-      [...text.matchAll(/<testsuite\s[^>]*>/g)].reduce(
-        (total, [suite]) => total + Number(new RegExp(`\\s${attribute}="(\\d+)"`).exec(suite)?.[1] ?? 0),
-        0,
-      );
-    const failed = sum('failures') + sum('errors');
-    return { passed: Math.max(0, sum('tests') - failed - sum('skipped')), failed, skipped: sum('skipped') };
+    const skipped = [...text.matchAll(/<skipped\s/g)].length;
+    const cases = [...text.matchAll(/<testcase\s([^>]*?)(?:\/>|>(.*?)<\/testcase>)/gs)];
+    const attribute = (attributes, name) => new RegExp(`\\s${name}="([^"]*)"`).exec(` ${attributes}`)?.[1];
+    const failures = cases
+      .filter(([, , body]) => /<(failure|error)\s/.test(body ?? ''))
+      .map(([, attributes]) => `${attribute(attributes, 'classname')}: ${attribute(attributes, 'name')}`);
+    return { passed: cases.length - failures.length - skipped, failures, skipped };
   },
   playwright(text) {
-    const { stats, errors } = JSON.parse(text);
-    // Errors outside every test: a configuration that does not load, a server that does not start.
-    return { passed: stats.expected + stats.flaky, failed: stats.unexpected + errors.length, skipped: stats.skipped };
+    const { stats, errors, suites } = JSON.parse(text);
+    const specs = suites.flatMap(specsOf).filter(({ ok }) => !ok);
+    return {
+      passed: stats.expected + stats.flaky,
+      // Errors outside every test: a configuration that does not load, a server that does not start.
+      failures: [
+        ...errors.map(({ message = 'an error without words' }) => message.split('\n')[0]),
+        ...specs.map(({ file, title }) => `${file}: ${title}`),
+      ],
+      skipped: stats.skipped,
+    };
   },
 };
 
-/** Tests by outcome, as a runner's report file states them; null where it wrote none. */
+/** Tests by outcome and the names of those that failed, as a runner's report file states them; null where it wrote none. */
 export function readResults(runner, file, chosen) {
-  return existsSync(file) ? readers[runner](readFileSync(file, 'utf8'), chosen) : null;
+  if (!existsSync(file)) return null;
+  const { passed, failures, skipped } = readers[runner](readFileSync(file, 'utf8'), chosen);
+  return { passed, failed: failures.length, skipped, failures };
 }
 
 /** The line that ends a run: '12 passed, 0 failed', with the skipped where there are any. */

@@ -10,6 +10,9 @@ import { stages, stagesOf } from './test-stages.mjs';
 
 const reports = join(root, 'artifacts/test-reports');
 
+/** Failing tests of a stage that the summary names. */
+const mostNamed = 20;
+
 const seconds = (start) => `${((performance.now() - start) / 1000).toFixed(1)} s`;
 
 const heading = (name) => `\n── ${name} ${'─'.repeat(Math.max(3, 70 - name.length))}`;
@@ -35,7 +38,7 @@ async function runStage(name, { quiet = false } = {}) {
     problems.push(error.message.split('\n')[0]);
   }
   if (quiet) console.log(kept.join('\n').trimEnd());
-  const results = (runner && readResults(runner, report, chosen)) ?? { passed: 0, failed: 0, skipped: 0 };
+  const results = (runner && readResults(runner, report, chosen)) ?? { passed: 0, failed: 0, skipped: 0, failures: [] };
   if (results.failed === 0 && runner && results.passed === 0) problems.push('no test ran');
   // A stage that failed without a failing test (types, lint, a crash) counts as one, so that the last line cannot hide it.
   if (results.failed === 0 && problems.length > 0) results.failed = 1;
@@ -72,6 +75,9 @@ function printSummary(outcomes, start) {
   for (const { name, results, problems, counted, time } of outcomes) {
     const words = [counted ? countLine(results) : '', ...problems].filter(Boolean).join('; ');
     console.log(`${problems.length === 0 ? '✓' : '✗'} ${name.padEnd(14)}${time.padStart(8)}  ${words}`);
+    // Here once more, as a log of CI is often kept by its end alone.
+    for (const failure of results.failures.slice(0, mostNamed)) console.log(`✗   ${failure}`);
+    if (results.failures.length > mostNamed) console.log(`✗   and ${results.failures.length - mostNamed} more`);
   }
   const failed = outcomes.filter(({ problems }) => problems.length > 0).map(({ name }) => name);
   console.log(`\n${failed.length === 0 ? 'Everything passed' : `Failed: ${failed.join(', ')}`} in ${seconds(start)}.`);
