@@ -1,5 +1,6 @@
 import type { BallEvent, BallState } from '../../core/games/ball/ball-state';
 import { ballsLeft } from '../../core/games/ball/state-readings';
+import { rotationForRound } from '../../core/games/ball/stations';
 import { ink, paintCard, paintGround, signFont } from '../../scene/boards/lettering';
 import { paintScoreHeading } from '../../scene/boards/score-heading';
 import { paintButton, type SheetButton } from '../../scene/boards/sheet';
@@ -80,10 +81,9 @@ export function waitingFor(standing: Standing): string | null {
   const { state, people, me, rotate, acting } = standing;
   if (state.phase === 'running') return null;
   const there = people.flatMap((person, player) => (person ? [player] : []));
-  const roles = new Set(there.map((player) => state.players[player]?.role));
-  // Roles that move on after a match give any two players a round.
-  const canPlay =
-    (roles.has('thrower') && roles.has('holder')) || (rotate && state.phase === 'over' && there.length > 1);
+  const taken = there.flatMap((player) => state.players[player]?.station ?? []);
+  // Roles move on between two matches alone.
+  const canPlay = rotationForRound(taken, rotate && state.phase === 'over') !== null;
   if (!canPlay) return `${waitingLine({ ...standing, state: { ...state, phase: 'ready' } })}.`;
   const idle = there.filter((player) => !state.players[player]?.ready);
   const names = idle.flatMap((player) => (player !== me && people[player] ? [nameOf(people[player])] : []));

@@ -1,6 +1,6 @@
 import type { BallAction, BallDeed, BallEvent, BallOptions, BallState } from '../games/ball/ball-state';
 import { ballRules } from '../games/ball/rules';
-import { arenaFromSeatFloor, holderStation, stations } from '../games/ball/stations';
+import { arenaFromSeatFloor, rotationForRound, stations } from '../games/ball/stations';
 import { createMatch } from '../games/match';
 import type { Transform } from '../math/pose';
 import { ballActionFrom, ballKind, type SentBallGame } from '../protocol/ball-messages';
@@ -36,12 +36,9 @@ export class BallPolicy implements MatchPolicy<BallGame> {
     return createMatch(ballRules, ballRules.start(players, this.#seed, options), { onTick });
   }
 
-  /** A round needs a thrower and the holder. */
   nextRoles({ players }: BallState, rotate: boolean): number | null {
     const taken = players.filter(({ present }) => present).map(({ station }) => station);
-    const canPlay = (by: number): boolean =>
-      taken.length > 1 && taken.some((station) => (station + by) % stations.length === holderStation);
-    return (rotate ? [1, 2, 0] : [0]).find(canPlay) ?? null;
+    return rotationForRound(taken, rotate);
   }
 
   snapshot(state: BallState): PackedBall {

@@ -25,6 +25,16 @@ export function arenaFromSeatFloor(seat: number, match: BallState | null): Trans
 /** The station of the basket holder. */
 export const holderStation = 2;
 
+/**
+ * By how many stations those who have these move on for another round, which needs a thrower and the holder: with `rotate` by one where that
+ * gives a round, so that everyone has every role in turn; null where no move gives one.
+ */
+export function rotationForRound(taken: readonly number[], rotate: boolean): number | null {
+  const gives = (by: number): boolean =>
+    taken.length > 1 && taken.some((station) => (station + by) % stations.length === holderStation);
+  return (rotate ? [1, 2, 0] : [0]).find(gives) ?? null;
+}
+
 /** Every player stays this near to their own station [m]. */
 export const zoneRadius = 1.2;
 
