@@ -11,7 +11,10 @@ import {
   type WebGLRenderer,
 } from 'three';
 
-/** What one hand points with in this frame: a ray (origin, direction, world) and, where there is one, a finger tip. */
+/**
+ * What one input source points with: a ray (origin, direction, world) and, where there is one, a finger tip. The same object in every frame
+ * while its source is there, as of the last `take`.
+ */
 export interface Pointer {
   readonly origin: Vector3;
   readonly direction: Vector3;
@@ -22,20 +25,23 @@ export interface Pointer {
   showRay(distance: number | null): void;
 }
 
-/** Both hands' pointers, of controllers and of bare hands alike. */
+/** Pointers of controllers, of bare hands and of pinches that aim by the eyes, as many as a headset has at a time. */
 export interface VrPointers {
   readonly objects: Group;
   /** The pointers of this frame; presses are handed out once. */
   take(): readonly Pointer[];
 }
 
+/** Two hands, and a pinch of each: where eyes aim, hands themselves select nothing, and a pinch is an input source beside them. */
+const mostSources = 4;
+
 /** Reads target rays, triggers and index fingers through three; poses themselves belong to xr/tracker. */
 export function createVrPointers(renderer: WebGLRenderer): VrPointers {
   const objects = new Group();
-  const hands = [0, 1].map((index) => {
+  const sources = Array.from({ length: mostSources }, (_, index) => {
     const ray = renderer.xr.getController(index);
     const hand = renderer.xr.getHand(index);
-    const state = { connected: false, pressed: false };
+    const state = { connected: false, pressed: false, byEyes: false };
     const line = new Line(
       new BufferGeometry().setAttribute('position', new Float32BufferAttribute([0, 0, 0, 0, 0, -1], 3)),
       new LineBasicMaterial({ color: '#ffb468', transparent: true, opacity: 0.7, fog: false, toneMapped: false }),
@@ -44,8 +50,9 @@ export function createVrPointers(renderer: WebGLRenderer): VrPointers {
     line.visible = false;
     dot.visible = false;
     ray.add(line, dot);
-    ray.addEventListener('connected', () => {
+    ray.addEventListener('connected', ({ data }) => {
       state.connected = true;
+      state.byEyes = data.targetRayMode === 'transient-pointer';
     });
     ray.addEventListener('disconnected', () => {
       state.connected = false;
@@ -55,39 +62,45 @@ export function createVrPointers(renderer: WebGLRenderer): VrPointers {
       state.pressed = true;
     });
     objects.add(ray, hand);
-    const origin = new Vector3();
-    const direction = new Vector3();
     const tip = new Vector3();
-    const showRay = (distance: number | null) => {
-      line.visible = dot.visible = distance !== null;
-      if (distance === null) return;
-      line.scale.z = distance;
-      dot.position.z = -distance;
+    const pointer = {
+      origin: new Vector3(),
+      direction: new Vector3(),
+      tip: null as Vector3 | null,
+      pressed: false,
+      showRay(distance: number | null) {
+        dot.visible = distance !== null;
+        // A line that begins between the eyes would only blind its wearer.
+        line.visible = dot.visible && !state.byEyes;
+        if (distance === null) return;
+        line.scale.z = distance;
+        dot.position.z = -distance;
+      },
     };
-    return { ray, hand, state, origin, direction, tip, showRay };
+    return { ray, hand, state, tip, pointer };
   });
 
   return {
     objects,
     take() {
       const pointers: Pointer[] = [];
-      for (const { ray, hand, state, origin, direction, tip, showRay } of hands) {
-        const pressed = state.pressed;
+      for (const { ray, hand, state, tip, pointer } of sources) {
+        pointer.pressed = state.pressed;
         state.pressed = false;
         if (!state.connected || !ray.visible) {
-          showRay(null);
+          pointer.showRay(null);
           continue;
         }
         ray.updateWorldMatrix(true, false);
-        origin.setFromMatrixPosition(ray.matrixWorld);
-        direction.set(0, 0, -1).transformDirection(ray.matrixWorld);
+        pointer.origin.setFromMatrixPosition(ray.matrixWorld);
+        pointer.direction.set(0, 0, -1).transformDirection(ray.matrixWorld);
         const finger = hand.joints?.['index-finger-tip'];
-        const hasFinger = finger?.visible === true;
-        if (hasFinger) {
+        pointer.tip = finger?.visible ? tip : null;
+        if (finger && pointer.tip) {
           finger.updateWorldMatrix(true, false);
           tip.setFromMatrixPosition(finger.matrixWorld);
         }
-        pointers.push({ origin, direction, tip: hasFinger ? tip : null, pressed, showRay });
+        pointers.push(pointer);
       }
       return pointers;
     },

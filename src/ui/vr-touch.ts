@@ -23,7 +23,7 @@ export interface PanelTouch {
 }
 
 export function createPanelTouch(panel: VrPanel): PanelTouch {
-  const touching = new Map<number, boolean>();
+  const touching = new WeakMap<Pointer, boolean>();
   const raycaster = new Raycaster();
   return {
     follow<Target extends PanelTarget>(pointers: readonly Pointer[], targets: readonly Target[]) {
@@ -32,7 +32,7 @@ export function createPanelTouch(panel: VrPanel): PanelTouch {
         targets.find(({ at: [left, top, w, h] }) => x >= left && x <= left + w && y >= top && y <= top + h);
       let pointedAt: Target | null = null;
       const pressed = new Map<string, Target>();
-      for (const [index, pointer] of pointers.entries()) {
+      for (const pointer of pointers) {
         raycaster.set(pointer.origin, pointer.direction);
         const [hit] = raycaster.intersectObject(panel.mesh, false);
         pointer.showRay(hit ? hit.distance : null);
@@ -47,9 +47,9 @@ export function createPanelTouch(panel: VrPanel): PanelTouch {
         if (target) pointedAt = target;
         const through = target !== undefined && touch.distance < 0;
         // Only coming from the front counts: a hand that was behind the sheet has touched nothing.
-        if (through && touching.get(index) === false) pressed.set(target.id, target);
-        if (through || touch.distance < 0) touching.set(index, true);
-        else if (touch.distance > touchDepth) touching.set(index, false);
+        if (through && touching.get(pointer) === false) pressed.set(target.id, target);
+        if (through || touch.distance < 0) touching.set(pointer, true);
+        else if (touch.distance > touchDepth) touching.set(pointer, false);
       }
       return { pointedAt, pressed: [...pressed.values()] };
     },

@@ -51,9 +51,10 @@ function headset() {
       goTo: async (name) => void done.push(`go to ${name}`),
       rule: () => void done.push('rule'),
       restartRound: () => void done.push('restart'),
-      point(_, press) {
+      point({ direction }, press) {
         done.push(press ? 'a sheet of the game is pressed' : 'a sheet of the game is pointed at');
-        return null;
+        // The game's sheet hangs overhead.
+        return direction.y > 0.9 ? 2 : null;
       },
     },
     measuring: {
@@ -112,6 +113,17 @@ describe('in the headset', () => {
     expect([menu.visible, pointers.objects.visible]).toEqual([true, true]);
     controls.setWorn(false);
     expect([menu.visible, pointers.objects.visible]).toEqual([false, false]);
+  });
+
+  test('of two hands at a sheet of the game the one that presses is heard', () => {
+    const { controls, hands, done } = headset();
+    controls.setWorn(true);
+    const overhead = () => handAt(new Vector3(0, 5, 0));
+    const [idle, pressing] = [overhead(), overhead()];
+    hands.push({ ...idle.hand, pressed: false }, pressing.hand);
+    controls.point();
+    expect(done).toEqual(['a sheet of the game is pressed']);
+    expect([idle.shown.at(-1), pressing.shown.at(-1)]).toEqual([null, 2]);
   });
 
   test('a study’s sheet takes the place of the menu: it alone hears the hands', () => {

@@ -128,14 +128,28 @@ describe('the other players in the headset', () => {
     menu.show(listing(ben));
     const sheet = menu.object.children[0];
     const [x, y, w, h] = menuButtons(listing(ben), actions)[0]?.at ?? [0, 0, 0, 0];
-    /** A hand whose finger tip is so far before the middle of the first button [m], and whose ray points away from the sheet. */
-    const poke = (before: number): Pointer => {
-      menu.object.updateWorldMatrix(true, true);
-      const at = new Vector3((x + w / 2 - menuWidth / 2) / 1000, (menuHeight / 2 - y - h / 2) / 1000, before);
-      const tip = sheet?.localToWorld(at) ?? at;
-      return { origin: tip.clone(), direction: new Vector3(0, 1, 0), tip, pressed: false, showRay: () => undefined };
+    /** Hands whose rays point away from the sheet. */
+    const hand = (): Pointer & { tip: Vector3 } => {
+      const tip = new Vector3();
+      return { origin: tip, direction: new Vector3(0, 1, 0), tip, pressed: false, showRay: () => undefined };
     };
-    for (const before of [0.1, 0.03, -0.01, -0.01]) menu.point([poke(before)]);
+    const [left, right] = [hand(), hand()];
+    /** Puts a finger tip so far before the middle of the first button [m]. */
+    const put = ({ tip }: { tip: Vector3 }, before: number) => {
+      menu.object.updateWorldMatrix(true, true);
+      tip.set((x + w / 2 - menuWidth / 2) / 1000, (menuHeight / 2 - y - h / 2) / 1000, before);
+      sheet?.localToWorld(tip);
+    };
+    // A hand that was behind the sheet before has touched nothing, also where the other is no longer seen.
+    put(left, 0.1);
+    put(right, -0.03);
+    menu.point([left, right]);
+    menu.point([right]);
+    expect(done).toEqual([]);
+    for (const before of [0.1, 0.03, -0.01, -0.01]) {
+      put(left, before);
+      menu.point([left]);
+    }
     expect(done).toEqual(['silence 0 true']);
   });
 });

@@ -82,12 +82,15 @@ export class HeadsetControls {
       return;
     }
     this.#menu.point(hands);
-    for (const { origin, direction, pressed, showRay } of hands) {
-      const distance = activities.point({ origin: { ...origin }, direction: { ...direction } }, pressed);
-      if (distance === null) continue;
-      showRay(distance);
-      // One hand's ray is lit; the other's would put the light out again.
-      break;
+    // One hand's ray is lit, as the other's would put the light out again: that of a hand that presses, where one does.
+    for (const presses of [true, false]) {
+      for (const { origin, direction, pressed, showRay } of hands) {
+        if (pressed !== presses) continue;
+        const distance = activities.point({ origin: { ...origin }, direction: { ...direction } }, pressed);
+        if (distance === null) continue;
+        showRay(distance);
+        return;
+      }
     }
   }
 
