@@ -42,6 +42,20 @@ test('the estimators are switched live, on the same motion, without moving the h
   await expect.poll(async () => (await probe(page)).estimator).toBe('ik');
 });
 
+test('single keys can be switched off, for who presses them by chance @full', async ({ page }) => {
+  await open(page, 'quality=low&estimator=ik');
+  await page.getByRole('tab', { name: 'View' }).click();
+  const singleKeys = page.getByRole('switch', { name: 'Single keys' });
+  const { view } = await probe(page);
+  await singleKeys.uncheck();
+  await page.keyboard.press('v');
+  await singleKeys.check();
+  expect((await probe(page)).view).toBe(view);
+  await page.keyboard.press('v');
+  await expect.poll(async () => (await probe(page)).view).not.toBe(view);
+  await keepPicture(page, 'single-keys');
+});
+
 test('third person, front and first person are a button away @full', async ({ page }) => {
   await open(page, 'quality=low');
   await page.getByRole('tab', { name: 'View' }).click();

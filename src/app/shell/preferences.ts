@@ -38,6 +38,7 @@ const schema = v.object({
   everyHitCounts: v.optional(v.boolean()),
   sound: v.optional(v.boolean()),
   largerText: v.optional(v.boolean()),
+  singleKeys: v.optional(v.boolean()),
   bots: v.optional(v.boolean()),
   name: v.optional(v.pipe(v.string(), v.maxLength(40))),
   /** Of files whose bones' names tell no body, by SHA-256. */

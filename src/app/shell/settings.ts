@@ -12,6 +12,8 @@ export interface Settings {
   /** Frame times inside the headset. */
   readonly vrOverlay: boolean;
   readonly largerText: boolean;
+  /** Keys without a modifier act: not where speech or a tremor presses them by chance. */
+  readonly singleKeys: boolean;
   /** Whether the controls are to be open where there is place for them beside the picture. */
   readonly panel: boolean;
   readonly palette: string;
@@ -60,6 +62,7 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
     overlay: preferences.overlay ?? false,
     vrOverlay: false,
     largerText: preferences.largerText ?? false,
+    singleKeys: preferences.singleKeys ?? true,
     panel: switches.panel ?? preferences.panel ?? true,
     palette: preferences.palette ?? 'porcelain',
     ownBody: preferences.ownBody ?? plainAvatar,
@@ -92,6 +95,7 @@ export type LastingSettings = Partial<
     | 'upperBodyOnly'
     | 'overlay'
     | 'largerText'
+    | 'singleKeys'
     | 'panel'
     | 'palette'
     | 'ownBody'

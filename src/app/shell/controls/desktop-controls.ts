@@ -27,7 +27,7 @@ export class DesktopControls {
   readonly #panel: Panel;
 
   constructor(region: HTMLElement, options: DesktopControlsOptions) {
-    const { actions, headset, study } = options;
+    const { actions, headset, settings, study } = options;
     this.#options = options;
     this.#panel = createPanel(
       region,
@@ -42,7 +42,7 @@ export class DesktopControls {
       },
       actions,
     );
-    listenToShortcuts(this.#shortcuts(), () => !headset.worn && study.run === null);
+    listenToShortcuts(this.#shortcuts(), () => settings.singleKeys && !headset.worn && study.run === null);
   }
 
   get panelOpen(): boolean {

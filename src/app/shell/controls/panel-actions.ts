@@ -123,6 +123,7 @@ function viewActions({ writer, stage, onChange }: PanelActionsOptions): ViewActi
     setDebugSkeleton: (debugSkeleton) => writer.change({ debugSkeleton }),
     setOverlay: (overlay) => writer.keep({ overlay }),
     setLargerText: (largerText) => writer.keep({ largerText }),
+    setSingleKeys: (singleKeys) => writer.keep({ singleKeys }),
   };
 }
 

@@ -39,6 +39,7 @@ export interface PanelState {
   readonly debugSkeleton: boolean;
   readonly overlay: boolean;
   readonly largerText: boolean;
+  readonly singleKeys: boolean;
   readonly avatarName: string;
   /** What became of an avatar that was asked for and is not shown; null: nothing to tell. */
   readonly avatarPending: string | null;
@@ -120,6 +121,7 @@ export interface ViewActions {
   setDebugSkeleton(on: boolean): void;
   setOverlay(on: boolean): void;
   setLargerText(on: boolean): void;
+  setSingleKeys(on: boolean): void;
 }
 
 /** A page of the panel, behind its tab. It shows a state and reports wishes; what happens is decided elsewhere. */

@@ -24,11 +24,12 @@ const keys: readonly (readonly [string, string])[] = [
   ['Arrows, + −', 'camera, with the picture focused'],
 ];
 
-const keysSection = (): HTMLElement =>
+const keysSection = (on: HTMLElement): HTMLElement =>
   element(
     'section',
     {},
     element('h2', {}, 'Keys'),
+    on,
     element(
       'dl',
       { class: 'keys' },
@@ -46,6 +47,7 @@ export function createViewPage(actions: ViewActions): PanelPage {
   const skeleton = toggle('Debug skeleton', (on) => actions.setDebugSkeleton(on));
   const overlay = toggle('Frame times', (on) => actions.setOverlay(on));
   const largerText = toggle('Larger text', (on) => actions.setLargerText(on));
+  const singleKeys = toggle('Single keys', (on) => actions.setSingleKeys(on));
   const camera = element(
     'section',
     {},
@@ -55,13 +57,14 @@ export function createViewPage(actions: ViewActions): PanelPage {
   );
   return {
     name: 'View',
-    content: [camera, keysSection()],
+    content: [camera, keysSection(singleKeys.node)],
     show(state) {
       for (const { view, node } of views) node.setAttribute('aria-pressed', String(view === state.view));
       mirror.input.checked = state.mirror;
       skeleton.input.checked = state.debugSkeleton;
       overlay.input.checked = state.overlay;
       largerText.input.checked = state.largerText;
+      singleKeys.input.checked = state.singleKeys;
     },
   };
 }
