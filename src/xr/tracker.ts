@@ -3,7 +3,7 @@ import { allReleased, type HandButtons } from '../core/games/button-presses';
 import type { Pose, TrackedPose } from '../core/math/pose';
 import { conjugate, fromAxisAngle, multiply, rotate } from '../core/math/quat';
 import { type Side, sides } from '../core/math/side';
-import { scale, subtract, up } from '../core/math/vec3';
+import { subtract, up } from '../core/math/vec3';
 import { headingOf } from '../core/tracking/heading';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { Belief } from './believed';
@@ -135,9 +135,8 @@ class SessionTracker implements Tracker {
     const origin = { ...head.position, y: 0 };
     // The new space's origin in the old one: under the head, turned as it looks.
     this.#moveTo(this.#space.getOffsetReferenceSpace(new XRRigidTransform({ ...origin, w: 1 }, turned)));
-    const toNew = conjugate(turned);
-    const position = rotate(toNew, scale(origin, -1));
-    this.#lastHead = { position: { ...position, y: head.position.y }, orientation: fromAxisAngle(up, 0) };
+    const { y } = head.position;
+    this.#lastHead = { position: { x: 0, y, z: 0 }, orientation: multiply(conjugate(turned), head.orientation) };
   }
 
   turn(angle: number): void {

@@ -2,7 +2,7 @@ import { afterEach, describe, expect, test, vi } from 'vitest';
 import type { Pose } from '../../src/core/math/pose';
 import { angleBetween, fromAxisAngle, identity } from '../../src/core/math/quat';
 import { distance, up, vec3 } from '../../src/core/math/vec3';
-import { createTracker } from '../../src/xr/tracker';
+import { createTracker, type Tracker } from '../../src/xr/tracker';
 import { measured } from '../reliability/measured';
 import { bareHand, controller, fakeHeadset } from './fake-headset';
 
@@ -171,6 +171,20 @@ describe('where the floor is', () => {
       9,
     );
     expect(spaces).toHaveLength(1);
+  });
+
+  test.each([
+    ['again', (tracker: Tracker) => tracker.recentre(), 0],
+    ['and turned', (tracker: Tracker) => tracker.turn(1), 1],
+  ])('after recentring %s before the next frame lies under the head too', (_, then, yaw) => {
+    const { read, setHead, tracker } = tracked();
+    setHead({ position: vec3(1, 1.6, 2), orientation: fromAxisAngle(up, 2) });
+    read();
+    tracker.recentre();
+    then(tracker);
+    const { head } = read()!;
+    expect(distance(head.position, vec3(0, 1.6, 0))).toBeLessThan(1e-9);
+    expect(angleBetween(head.orientation, fromAxisAngle(up, yaw))).toBeLessThan(1e-6);
   });
 
   test('turns about the head, which stays: thirty degrees a push, one turn for one push', () => {
