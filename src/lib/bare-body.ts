@@ -93,7 +93,7 @@ export class BareBody {
     this.#timing?.mark('features');
   };
 
-  /** Throws a RangeError where the calibration is no person's. */
+  /** Throws a RangeError where the calibration is no person's, or there is no estimator of this name. */
   constructor(options: BareBodyOptions) {
     const { estimator = 'learned', calibration = 'auto', networks, timing = null } = options;
     this.#events = options.events ?? {};
@@ -154,7 +154,10 @@ export class BareBody {
     return this.#choice.regressor?.provider ?? null;
   }
 
-  /** Resolves when this estimator draws, or when `fallback` told why it cannot; rejects only with what an event's listener throws. */
+  /**
+   * Resolves when this estimator draws, or when `fallback` told why it cannot; rejects with a RangeError where there is none of this name, else only
+   * with what an event's listener throws.
+   */
   choose(estimator: EstimatorName): Promise<void> {
     return this.#choice.choose(estimator);
   }

@@ -59,22 +59,36 @@ export class EstimatorChoice {
     return this.#unavailable;
   }
 
-  /** Resolves when this estimator draws, or when it turned out that it cannot. Rejects only with what a listener throws. */
+  /**
+   * Resolves when this estimator draws, or when it turned out that it cannot. Rejects with a RangeError where there is none of this name, and changes
+   * nothing; else only with what a listener throws.
+   */
   async choose(name: EstimatorName): Promise<void> {
     if (this.#disposed || this.#unavailable[name] !== undefined) return;
-    this.#wanted = name;
     const needed = networkOf(name);
+    if (needed) {
+      this.#wanted = name;
+      return this.#chooseWith(name, needed);
+    }
+    this.#drawWith(name, null);
+    this.#wanted = name;
+    this.#options.onChange();
+  }
+
+  async #chooseWith(name: EstimatorName, needed: NetworkName): Promise<void> {
     let network: PoseRegressor | null = null;
-    if (needed && this.#unavailable[needed] === undefined) {
+    if (this.#unavailable[needed] === undefined) {
       try {
         network = await this.#network(needed);
+        // What a page brings may be another method's: then it cannot be had, which is no matter of who chose it.
+        this.#make(needed, network);
       } catch (error) {
         this.#giveUp(needed, error);
       }
     }
     // While it loaded, the user may have thought of something else, or it may have failed at its first run.
     if (this.#disposed || this.#wanted !== name) return;
-    this.#drawWith(name, needed && this.#unavailable[needed] === undefined ? network : null);
+    this.#drawWith(name, this.#unavailable[needed] === undefined ? network : null);
     this.#options.onChange();
   }
 
@@ -140,14 +154,16 @@ export class EstimatorChoice {
     this.#regressor = network;
   }
 
-  /** What draws with this network goes on without where it can, else inverse kinematics does. */
+  /** What draws with this network goes on without where it can; else, and where the network was wanted next, inverse kinematics does. */
   #giveUp(network: NetworkName, error: unknown): void {
     if (this.#disposed || this.#unavailable[network] !== undefined) return;
     const reason = reasonOf(error);
     this.#unavailable[network] = reason;
-    if (this.#wanted === network) this.#wanted = 'ik';
     const { name } = this.#current;
-    if (this.#regressor && networkOf(name) === network) this.#drawWith(needsRegressor(name) ? 'ik' : name, null);
+    const wanted = this.#wanted === network;
+    if (wanted) this.#wanted = 'ik';
+    if (wanted && name !== 'ik') this.#drawWith('ik', null);
+    else if (this.#regressor && networkOf(name) === network) this.#drawWith(needsRegressor(name) ? 'ik' : name, null);
     this.#options.onFault(network, reason);
     this.#options.onChange();
   }

@@ -41,6 +41,10 @@ const standing = (time: number, eyeHeight: number): TrackingFrame => ({
 });
 
 describe('a body', () => {
+  test('by an estimator that there is none of is refused in a sentence', () => {
+    expect(() => new Body({ estimator: 'Learned' as 'learned' })).toThrow('“Learned” is no estimator: hands-only, ik');
+  });
+
   test('follows three points: its wrists lie on the hands, by the network that was chosen', async () => {
     const { body, told } = await observed({ calibration });
     for (let frame = 0; frame < 30; frame++) {

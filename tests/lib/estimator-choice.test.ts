@@ -1,7 +1,10 @@
 import { describe, expect, test } from 'vitest';
-import type { EstimatorName, PoseEstimator } from '../../src/core/estimation/pose-estimator';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { createEstimator, networkOf } from '../../src/core/estimation/estimators';
+import { type EstimatorName, estimatorNames, type PoseEstimator } from '../../src/core/estimation/pose-estimator';
 import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
 import { EstimatorChoice } from '../../src/lib/estimator-choice';
+import { openPlainModel } from '../core/estimation/shipped-models';
 
 const head = {
   position: { x: 0, y: 1.6, z: 0 },
@@ -11,6 +14,7 @@ const head = {
 
 /** A stand-in that draws nothing; its network is at fault when the regressor's provider says so. */
 function estimatorOf(name: EstimatorName, _: unknown, network?: PoseRegressor): PoseEstimator {
+  if (!estimatorNames.includes(name)) return createEstimator(name, defaultCalibration);
   return {
     name,
     calibrate: () => undefined,
@@ -67,6 +71,45 @@ describe('which estimator draws', () => {
     expect([choice.wanted, choice.current.name]).toEqual(['ik', 'ik']);
     expect(choice.unavailable.learned).toBe('learned.onnx: 404');
     expect(faults).toEqual(['learned: learned.onnx: 404']);
+  });
+
+  test('also where another network drew until then, which is not what was wanted', async () => {
+    const { choice, changes } = choiceThat(async (name) => {
+      if (name === 'paper') throw new Error('paper.onnx: 404');
+      return networkOn('wasm');
+    });
+    await choice.choose('learned');
+    await choice.choose('paper');
+    expect([choice.wanted, choice.current.name, choice.regressor]).toEqual(['ik', 'ik', null]);
+    expect(changes).toEqual(['learned wasm', 'ik alone']);
+  });
+
+  test.each(['paper', 'device'] as const)('a network for another method is none for %s', async (name) => {
+    const network = openPlainModel();
+    const other =
+      name === 'paper' ? network : { ...network, contract: { ...network.contract, name: 'paper' as const } };
+    const faults: string[] = [];
+    const choice = new EstimatorChoice({
+      estimator: 'ik',
+      calibration: defaultCalibration,
+      create: createEstimator,
+      load: async () => other,
+      onChange: () => undefined,
+      onFault: (network, reason) => faults.push(`${network}: ${reason}`),
+    });
+    await choice.choose(name);
+    const needed = networkOf(name);
+    expect([choice.wanted, choice.current.name]).toEqual(name === 'paper' ? ['ik', 'ik'] : ['device', 'device']);
+    expect(faults).toEqual([`${needed}: estimator “${needed}” needs the regressor of the same name`]);
+  });
+
+  test('a name of no estimator is refused in a sentence, and changes nothing', async () => {
+    const { choice, changes } = choiceThat(async () => networkOn('wasm'));
+    await choice.choose('learned');
+    const lerned = 'lerned' as EstimatorName;
+    await expect(choice.choose(lerned)).rejects.toThrow('“lerned” is no estimator: hands-only, ik');
+    expect([choice.wanted, choice.current.name]).toEqual(['learned', 'learned']);
+    expect(changes).toHaveLength(1);
   });
 
   test('a network that fails while it runs gives way to inverse kinematics, once', async () => {

@@ -6,7 +6,7 @@ import { transformJoints } from './joint-positions';
 import type { JointSource } from './joint-source';
 import { createPaper } from './paper';
 import { Pipeline } from './pipeline';
-import type { EstimatorName, PoseEstimator } from './pose-estimator';
+import { type EstimatorName, estimatorNames, type PoseEstimator } from './pose-estimator';
 import type { PoseRegressor } from './pose-regressor';
 import { createResidual } from './residual';
 
@@ -47,7 +47,10 @@ export function createWithNetwork(
   );
 }
 
-/** One estimator by name; `paper` and `learned` throw without their regressor, `device` falls back on IK without that of `learned`. */
+/**
+ * One estimator by name; `paper` and `learned` throw without their regressor, `device` falls back on IK without that of `learned`. A name of none
+ * throws a RangeError.
+ */
 export function createEstimator(
   name: EstimatorName,
   calibration: Calibration,
@@ -58,5 +61,7 @@ export function createEstimator(
     const otherwise = regressor ? createResidual(calibration, regressor) : ikAlone;
     return new Pipeline(name, calibration, createDeviceSource(otherwise));
   }
-  return name === 'ik' ? createIk(calibration) : createHandsOnly(calibration);
+  if (name === 'ik') return createIk(calibration);
+  if (name === 'hands-only') return createHandsOnly(calibration);
+  throw new RangeError(`“${String(name)}” is no estimator: ${estimatorNames.join(', ')}`);
 }
