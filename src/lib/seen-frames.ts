@@ -2,9 +2,12 @@ import { isFinitePose, type TrackedPose } from '../core/math/pose';
 import { isFiniteDeviceBody } from '../core/tracking/device-body';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 
-/** undefined: a page without types has left it out. */
-const seenHand = (hand: TrackedPose | null | undefined): TrackedPose | null =>
-  hand && isFinitePose(hand) ? hand : null;
+/** undefined: a page without types has left it out. One that leaves out how a point is tracked means that it is there. */
+function seenPoint(point: TrackedPose | null | undefined): TrackedPose | null {
+  if (!point || !isFinitePose(point)) return null;
+  const { position, orientation, tracking } = point;
+  return tracking === undefined ? { position, orientation, tracking: 'tracked' } : point;
+}
 
 /** What a body can take of a page's frames, one after the other. */
 export class SeenFrames {
@@ -12,19 +15,22 @@ export class SeenFrames {
   #time = Number.NaN;
 
   /**
-   * The frame itself, or a copy in which a hand that is no finite pose is not seen, a device's body that is not finite is not told, and a time that
-   * is no number is that of the frame before. null: the head is not seen, or no time is known yet.
+   * The frame itself, or a copy in which a hand that is no finite pose is not seen, a point that does not say how it is tracked is tracked, a
+   * device's body that is not finite is not told, and a time that is no number is that of the frame before. null: the head is not seen, or no time is
+   * known yet.
    */
   next(frame: TrackingFrame | null | undefined): TrackingFrame | null {
-    if (!frame || !isFinitePose(frame.head)) return null;
+    const head = seenPoint(frame?.head);
+    if (!frame || !head) return null;
     const dated = Number.isFinite(frame.time);
     if (dated) this.#time = frame.time;
     else if (Number.isNaN(this.#time)) return null;
-    const leftHand = seenHand(frame.leftHand);
-    const rightHand = seenHand(frame.rightHand);
+    const leftHand = seenPoint(frame.leftHand);
+    const rightHand = seenPoint(frame.rightHand);
     const told = frame.deviceBody === undefined || isFiniteDeviceBody(frame.deviceBody);
-    if (dated && told && leftHand === frame.leftHand && rightHand === frame.rightHand) return frame;
-    const { head, fingers, deviceBody } = frame;
+    const same = head === frame.head && leftHand === frame.leftHand && rightHand === frame.rightHand;
+    if (dated && told && same) return frame;
+    const { fingers, deviceBody } = frame;
     return { time: this.#time, head, leftHand, rightHand, fingers, deviceBody: told ? deviceBody : undefined };
   }
 }

@@ -1,6 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import type { EstimatorName } from '../../src/core/estimation/pose-estimator';
+import type { TrackedPose } from '../../src/core/math/pose';
 import { deviceBodySize } from '../../src/core/tracking/device-body';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import { Body } from '../../src/lib/body';
@@ -16,6 +17,8 @@ const rate = 60;
 const nowhere = { x: Number.NaN, y: 1, z: 0 };
 const noRotation = { x: 0, y: 0, z: 0, w: 0 };
 
+const untold = ({ position, orientation }: TrackedPose) => ({ position, orientation });
+
 /** A frame with one thing in it that no tracker means. */
 const slips: readonly (readonly [what: string, slip: (frame: TrackingFrame) => TrackingFrame])[] = [
   ['a hand that is nowhere', (frame) => ({ ...frame, leftHand: { ...frame.leftHand!, position: nowhere } })],
@@ -30,6 +33,13 @@ const slips: readonly (readonly [what: string, slip: (frame: TrackingFrame) => T
   ['a time without end', (frame) => ({ ...frame, time: Number.POSITIVE_INFINITY })],
   // reason: a page without types leaves out what it does not see
   ['no word of its hands', ({ time, head }) => ({ time, head }) as TrackingFrame],
+  // reason: of a page without types; the same holds for the next
+  ['a head that is null', (frame) => ({ ...frame, head: null }) as unknown as TrackingFrame],
+  [
+    'no word of how its points are tracked',
+    ({ time, head, leftHand, rightHand }) =>
+      ({ time, head: untold(head), leftHand: untold(leftHand!), rightHand: untold(rightHand!) }) as TrackingFrame,
+  ],
   [
     'a device’s body that is nowhere',
     (frame) => ({ ...frame, deviceBody: new Float32Array(deviceBodySize).fill(Number.NaN) }),
@@ -85,6 +95,19 @@ test('a point that is no place is lost for its frame, and found again', async ()
     ...['found head', 'found left', 'found right', 'lost left', 'found left'],
     ...['lost head', 'lost left', 'lost right'],
   ]);
+});
+
+test('a point of a page that does not say how it is tracked is there', () => {
+  const bodies = [new Body({ estimator: 'ik', calibration }), new Body({ estimator: 'ik', calibration })] as const;
+  const { time, head, leftHand, rightHand } = at(0);
+  // reason: a page without types
+  const bare = {
+    time,
+    head: untold(head),
+    leftHand: untold(leftHand!),
+    rightHand: untold(rightHand!),
+  } as TrackingFrame;
+  expect(bodies[0].update(bare)?.body).toEqual(bodies[1].update(at(0))?.body);
 });
 
 test('a time that is no number is that of the frame before; before any with one, nothing is seen', () => {
