@@ -40,10 +40,10 @@ export class LatestResult {
     return this.#running;
   }
 
-  /** Runs a regressor that answers at once; what was wrong with the answer is in `fault`. Makes no garbage. */
-  answerNow(runNow: (features: Float32Array) => Float32Array, features: Float32Array): void {
+  /** Runs a regressor that answers at once (`runNow`); what was wrong with the answer is in `fault`. Makes no garbage. */
+  answerNow(features: Float32Array): void {
     try {
-      this.#take(runNow(features));
+      this.#take(this.#regressor.runNow!(features));
     } catch (error) {
       this.#refuse(error);
     }

@@ -117,11 +117,11 @@ class Residual implements JointSource, JointNetwork {
   }
 
   joints(solved: SolvedFrame, deltaSeconds: number, target: MutableJointPositions): void {
-    const { runNow, contract } = this.#regressor;
-    if (runNow && this.#isDue(solved.time)) {
+    const { contract } = this.#regressor;
+    if (this.#regressor.runNow && this.#isDue(solved.time)) {
       this.#remember(solved);
       this.#fillInput(solved);
-      this.#inference.answerNow(runNow, this.#input);
+      this.#inference.answerNow(this.#input);
     }
     const { ik, floorFromHeading } = solved;
     // Without an answer IK stands alone, and what was there fades. Two low-passes of half the half-life are as late as one, and make no corner

@@ -98,6 +98,20 @@ describe('the learned network without a runtime', () => {
     expect(runs).toBe(1);
   });
 
+  test('may be an object with memory of its own, as those of a class are', () => {
+    const { contract, provider, run, dispose } = plain;
+    const own = {
+      ...{ contract, provider, run, dispose, network: plain },
+      runNow(features: Float32Array) {
+        return this.network.runNow!(features);
+      },
+    };
+    const calibration = { eyeHeight: 1.65, armSpan: 1.56 };
+    const estimator = createEstimator('learned', calibration, own);
+    estimator.update(movingPerson(7, calibration, { x: 1, z: -0.5, yaw: 2 })(3));
+    expect(estimator.fault()).toBeNull();
+  });
+
   test('a network that breaks in a frame leaves that frame to inverse kinematics and says so', () => {
     const calibration = { eyeHeight: 1.65, armSpan: 1.56 };
     const at = movingPerson(3, calibration, { x: 1, z: -0.5, yaw: 2 });
