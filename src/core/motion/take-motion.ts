@@ -129,7 +129,8 @@ export class MotionTaker {
     times[index] = time - this.#firstTime;
     const at = turnPoint(body.hipsPosition, hipsOfBody);
     hips.set([at.x, at.y, at.z], 3 * index);
-    seen[index] = (leftHand ? 1 : 0) + (rightHand ? 2 : 0);
+    // Where the device only guesses, the arm is a guess.
+    seen[index] = (leftHand?.tracking === 'tracked' ? 1 : 0) + (rightHand?.tracking === 'tracked' ? 2 : 0);
     const deltaSeconds = index === 0 ? 0 : times[index] - times[index - 1]!;
     this.#rotations.write(body, fingers, deltaSeconds, rotations, 4 * index * measured);
     this.#count += 1;
