@@ -1,4 +1,4 @@
-import { type Calibration, provisionalCalibration } from '../core/body/calibration';
+import { type Calibration, calibrationComplaint, provisionalCalibration } from '../core/body/calibration';
 import { createEstimator, type NetworkName, networkOf } from '../core/estimation/estimators';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
@@ -8,9 +8,11 @@ import { partOf, type Work } from '../core/motion/work';
 import { type BvhOptions, writeBvh } from '../core/motion/write-bvh';
 import { writeCsv } from '../core/motion/write-csv';
 import { writeVrma } from '../core/motion/write-vrma';
-import type { Replayable } from '../core/tracking/recording';
+import type { Replayable, TrackingFrames } from '../core/tracking/recording';
+import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { type MotionFormat, motionFormats } from './motion-formats';
 import { runWork, type WorkOptions } from './run-work';
+import { SeenFrames, seenOf } from './seen-frames';
 
 /** A file that was made, in memory: `new Blob(parts, {type})` or written one after the other. */
 export interface MotionFile {
@@ -57,6 +59,52 @@ function* demandBody({ frames }: Replayable): Generator<number, void> {
   throw new Error('The recording has no body of its device: choose another method.');
 }
 
+/** What a body takes of a recording that a program has made itself; one without the head is left out. */
+class SeenRecording implements TrackingFrames {
+  readonly #frames: TrackingFrames;
+
+  constructor({ frames }: Replayable) {
+    this.#frames = frames;
+  }
+
+  /** At most. */
+  get length(): number {
+    return this.#frames.length;
+  }
+
+  at(index: number): TrackingFrame | undefined {
+    return this.#frames.at(index);
+  }
+
+  /** Throws a sentence where times do not rise, or no frame has a head. */
+  *[Symbol.iterator](): Generator<TrackingFrame> {
+    const seen = new SeenFrames();
+    let number = 0;
+    let last = Number.NEGATIVE_INFINITY;
+    for (const frame of this.#frames) {
+      number += 1;
+      const taken = seen.next(frame);
+      if (!taken) continue;
+      if (taken.time <= last) throw new Error(`Frame ${number} of the recording is not later than the one before it.`);
+      last = taken.time;
+      yield taken;
+    }
+    if (last === Number.NEGATIVE_INFINITY) throw new Error('The recording has no frame in which the head is seen.');
+  }
+}
+
+/** Whose body an export draws. Throws a RangeError where their measures are no person's. */
+function personOf({ calibration, frames }: Replayable, given: Calibration | undefined): Calibration {
+  const person = given ?? calibration;
+  if (!person) {
+    const [first] = seenOf(frames);
+    return provisionalCalibration(first?.head.position.y ?? Number.NaN);
+  }
+  const complaint = calibrationComplaint(person);
+  if (complaint) throw new RangeError(complaint);
+  return person;
+}
+
 async function* exportWork(
   recording: Replayable,
   calibration: Calibration,
@@ -66,19 +114,20 @@ async function* exportWork(
 ): AsyncGenerator<number, MotionFile['parts']> {
   if (estimator === 'device') yield* demandBody(recording);
   const drawn = createEstimator(estimator, calibration, regressor);
-  const motion = yield* partOf(estimateMotion(recording, calibration, drawn), 0, estimating);
+  const seen = { ...recording, frames: new SeenRecording(recording) };
+  const motion = yield* partOf(estimateMotion(seen, calibration, drawn), 0, estimating);
   return yield* partOf(writer.write(motion), estimating, 1);
 }
 
 /**
  * A file of what a method draws of a recording, with fingers: BVH, a table of joints (CSV), VRM Animation, or what a writer makes. Rejects with a
- * sentence where the method draws no body or fails, no network comes, or the device's body is asked for that no frame has; with the signal's reason where it is given up.
+ * sentence where the method draws no body or fails, no network comes, the measures are no person's, times do not rise, or the device's body is asked
+ * for that no frame has; with the signal's reason where it is given up.
  */
 export async function exportMotionBare(recording: Replayable, options: BareExportOptions): Promise<MotionFile> {
   const { estimator = 'learned', networks } = options;
   const writer = writerOf(options);
-  const calibration =
-    options.calibration ?? recording.calibration ?? provisionalCalibration(recording.frames.at(0)!.head.position.y);
+  const calibration = personOf(recording, options.calibration);
   options.signal?.throwIfAborted();
   const network = networkOf(estimator);
   const regressor = network && (await networks(network));

@@ -12,6 +12,7 @@ import { finishWork } from '../../src/core/motion/work';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import { deviceBodySize } from '../../src/core/tracking/device-body';
 import type { Recording } from '../../src/core/tracking/recording';
+import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import { exportMotion } from '../../src/lib/export-motion';
 import { show } from '../core/estimation/drawn';
 import { openPlainModel, openShippedModel } from '../core/estimation/shipped-models';
@@ -72,6 +73,56 @@ describe('a recording', () => {
     await expect(exportMotion(recording, { to: 'fbx' as 'bvh', estimator: 'ik' })).rejects.toThrow(
       /“fbx” is no format/,
     );
+  });
+
+  test('is of what is seen of frames that a program has made: one that is nowhere leaves no trace behind it', async () => {
+    const nowhere = { x: Number.NaN, y: 0, z: 0 };
+    const slips = [
+      { ...recording.frames[5]!, leftHand: { ...recording.frames[5]!.leftHand!, position: nowhere } },
+      { ...recording.frames[9]!, head: { ...recording.frames[9]!.head, position: nowhere } },
+      // reason: a program without types leaves out what it does not see
+      (({ time, head }) => ({ time, head }) as TrackingFrame)(recording.frames[12]!),
+    ] as const;
+    const frames = recording.frames.with(5, slips[0]).with(9, slips[1]).with(12, slips[2]);
+    for (const calibration of [defaultCalibration, null]) {
+      const { parts } = await exportMotion({ ...recording, calibration, frames }, { to: 'csv', estimator: 'ik' });
+      const rows = textOf(parts).trimEnd().split('\n').slice(1);
+      expect(rows).toHaveLength(recording.frames.length - 1);
+      expect(rows.flatMap((row) => row.split(',').map(Number)).every(Number.isFinite)).toBe(true);
+    }
+  });
+
+  test.each<[string, () => Promise<unknown>, RegExp]>([
+    [
+      'of a person of centimetres',
+      () => exportMotion(recording, { to: 'csv', estimator: 'ik', calibration: { eyeHeight: 160, armSpan: 151 } }),
+      /^A height of 170\.94 m is outside/,
+    ],
+    [
+      'of no frames',
+      () => exportMotion({ ...recording, frames: [] }, { to: 'bvh', estimator: 'ik' }),
+      /^The recording has no frame in which the head is seen\.$/,
+    ],
+    [
+      'that runs backwards',
+      () => exportMotion({ ...recording, frames: recording.frames.toReversed() }, { to: 'bvh', estimator: 'ik' }),
+      /^Frame 2 of the recording is not later/,
+    ],
+    [
+      'in inches',
+      () => exportMotion(recording, { to: 'bvh', estimator: 'ik', unit: 'inch' as 'm' }),
+      /^“inch” is no unit of a BVH here: m, cm$/,
+    ],
+  ])('%s is refused in a sentence', async (_, work, sentence) => {
+    await expect(work()).rejects.toThrow(sentence);
+  });
+
+  test('says in a table that a hand was not seen where the device guessed it', async () => {
+    const guessed = { ...recording.frames[3]!.leftHand!, tracking: 'emulated' as const };
+    const frames = recording.frames.with(3, { ...recording.frames[3]!, leftHand: guessed });
+    const { parts } = await exportMotion({ ...recording, frames }, { to: 'csv', estimator: 'ik' });
+    const rows = textOf(parts).split('\n').slice(1);
+    expect(rows.slice(2, 5).map((row) => row.split(',').slice(1, 3).join())).toEqual(['1,1', '0,1', '1,1']);
   });
 
   test('without measures is of a person as tall as its first frame tells', async () => {

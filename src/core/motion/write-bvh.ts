@@ -68,12 +68,13 @@ const resampling = 0.3;
 
 /**
  * The text of a BVH file, in parts: T-pose at rest facing +Z, the root at the hips, angles in the order Y, X, Z, an even rate. Bones that are
- * not measured have no channels. Yields the share [0, 1] that is done. Throws a sentence where the rate is none.
+ * not measured have no channels. Yields the share [0, 1] that is done. Throws a sentence where the rate or the unit is none.
  */
 export function* writeBvh(
   motion: Motion,
   { unit = 'm', rateHz = motion.rateHz }: BvhOptions = {},
 ): Generator<number, readonly string[]> {
+  if (unit !== 'm' && unit !== 'cm') throw new Error(`“${String(unit)}” is no unit of a BVH here: m, cm`);
   const even = yield* portionOf(resampleMotion(motion, rateHz), 0, resampling);
   const perMetre = unit === 'cm' ? 100 : 1;
   const digits = unit === 'cm' ? 4 : 6;
