@@ -48,6 +48,9 @@ export function fromMappedRest(
   for (const [ours, theirs] of Object.entries(map.joints))
     if (!file.names.includes(theirs))
       throw new Error(`no joint “${theirs}”, which the map “${map.name}” names as ${ours}`);
+  for (const [ours, theirs] of Object.entries(map.rotations ?? {}))
+    if (!file.names.includes(theirs))
+      throw new Error(`no joint “${theirs}”, which the map “${map.name}” names as the rotation of ${ours}`);
   if (restPose) {
     if (!bvh) throw new Error('restPose is for BVH files; here restFrame can be given');
     return facingForward(countedFrom(file, poseOfAngles(bvh.motion, bvh.joints, restPose)), map);

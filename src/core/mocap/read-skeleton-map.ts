@@ -6,6 +6,7 @@ import {
   type SkeletonMap,
   type TrackedJoint,
   type TruthJoint,
+  trackedJoints,
   truthJoints,
 } from './skeleton-map';
 
@@ -47,7 +48,7 @@ export function readSkeletonMap(text: string, name: string): SkeletonMap {
     forward: forward as FileAxis,
     ...numberOf(content, 'scale'),
     ...numberOf(content, 'frameRate'),
-    ...(isObject(content.rotations) && { rotations: content.rotations as Partial<Record<TrackedJoint, string>> }),
+    ...rotationsOf(content),
     ...restFrameOf(content),
     ...(restPose && { restPose }),
   };
@@ -73,6 +74,17 @@ function jointsOf({ joints }: Content): Readonly<Partial<Record<TruthJoint, stri
     if (typeof theirs !== 'string') throw new Error(`joints.${joint} should be the name of a joint in the file`);
   }
   return given as Partial<Record<TruthJoint, string>>;
+}
+
+function rotationsOf({ rotations = null }: Content) {
+  if (rotations === null) return {};
+  if (!isObject(rotations)) throw new Error('“rotations” should be an object: a joint of the file for head or hands');
+  for (const [joint, theirs] of Object.entries(rotations)) {
+    if (!(trackedJoints as readonly string[]).includes(joint))
+      throw new Error(`rotations.${joint} is none of ${trackedJoints.join(', ')}`);
+    if (typeof theirs !== 'string') throw new Error(`rotations.${joint} should be the name of a joint in the file`);
+  }
+  return { rotations: rotations as Partial<Record<TrackedJoint, string>> };
 }
 
 function numberOf(content: Content, key: 'scale' | 'frameRate') {

@@ -34,6 +34,18 @@ describe('a map of a skeleton', () => {
       changed({ joints: { ...map.joints, head: 'Kopf' } }),
       /^folded_1\.bvh: no joint “Kopf”/,
     ],
+    [
+      'a rotation of a joint that is not tracked',
+      changed({ rotations: { neck: 'bip_Head' } }),
+      /map\.json: rotations\.neck is none of head, leftHand, rightHand/,
+    ],
+    ['a rotation of no joint', changed({ rotations: { head: 7 } }), /rotations\.head should be the name of a joint/],
+    ['rotations in a list', changed({ rotations: ['bip_Head'] }), /map\.json: “rotations” should be an object/],
+    [
+      'a rotation of a joint that the file lacks',
+      changed({ rotations: { head: 'Kopf' } }),
+      /^folded_1\.bvh: no joint “Kopf”, which the map “.*” names as the rotation of head/,
+    ],
     ['one axis for two', changed({ up: '-z' }), /“up” -z and “forward” \+z are one axis/],
     ['an axis that is none', changed({ up: 'north' }), /“up” should be one of \+x/],
     ['a scale of nothing', changed({ scale: 0 }), /“scale” should be a number above zero/],
