@@ -14,8 +14,16 @@ export function buzz(session: XRSession, pulses: readonly Pulse[]): void {
       if (handedness !== side) continue;
       // Quest and Vive offer `pulse` on the first actuator, which no type knows yet.
       const [actuator] = (gamepad as { hapticActuators?: readonly HapticPulser[] } | undefined)?.hapticActuators ?? [];
-      void actuator?.pulse?.(Math.min(1, Math.max(0, strength)), 1000 * seconds);
+      if (actuator) void tryPulse(actuator, Math.min(1, Math.max(0, strength)), 1000 * seconds);
     }
+  }
+}
+
+async function tryPulse(actuator: HapticPulser, strength: number, milliseconds: number): Promise<void> {
+  try {
+    await actuator.pulse?.(strength, milliseconds);
+  } catch {
+    // reason: a controller that was put away rejects; a buzz that no one can feel is no fault of the page
   }
 }
 
