@@ -55,11 +55,11 @@ export interface BareBodyOptions {
   readonly events?: BodyEvents;
 }
 
-/** Throws where these are no person's measures. */
-function checked(calibration: Calibration): Calibration {
+/** A copy, which a page that goes on changing its own object does not change. Throws where these are no person's measures. */
+function copyChecked(calibration: Calibration): Calibration {
   const complaint = calibrationComplaint(calibration);
   if (complaint) throw new RangeError(complaint);
-  return calibration;
+  return { ...calibration };
 }
 
 /**
@@ -100,7 +100,7 @@ export class BareBody {
     this.#clock = options.clock ?? createPageClock(() => performance.now());
     this.#timing = timing;
     this.#given = calibration !== 'auto';
-    this.#wearer = calibration === 'auto' ? defaultCalibration : checked(calibration);
+    this.#wearer = calibration === 'auto' ? defaultCalibration : copyChecked(calibration);
     this.#calibration = this.#wearer;
     this.#choice = new EstimatorChoice({
       estimator,
@@ -165,7 +165,7 @@ export class BareBody {
   /** Measures of the wearer [m], or 'auto', which forgets what was known of them. Throws a RangeError where they are no person's. */
   calibrate(calibration: Calibration | 'auto'): void {
     const given = calibration !== 'auto';
-    const measures = given ? checked(calibration) : defaultCalibration;
+    const measures = given ? this.#own(calibration) : defaultCalibration;
     this.#given = given;
     if (!given) this.#height.begin();
     this.#measure(measures, given ? 'given' : 'default');
@@ -207,7 +207,7 @@ export class BareBody {
     this.#notice('left', frame !== null && frame.leftHand !== null);
     this.#notice('right', frame !== null && frame.rightHand !== null);
     if (frame === null) return this.#pose;
-    if (!this.#isMovedBy(standIn)) this.#handOver(standIn && checked(standIn));
+    if (!this.#isMovedBy(standIn)) this.#handOver(standIn && this.#own(standIn));
     if (standIn === null) this.#height.observe(frame);
     const { pose, request } = this.#choice.current.update(frame);
     this.#pose = pose;
@@ -238,6 +238,12 @@ export class BareBody {
   /** Forgets which points were seen, without a word: another session begins. */
   forgetPoints(): void {
     for (const point of trackedPoints) this.#seen[point] = false;
+  }
+
+  /** Measures that a page gives, apart from its own object, unless it had them of this body. */
+  #own(calibration: Calibration): Calibration {
+    const known = calibration === this.#calibration || calibration === this.#wearer;
+    return known ? calibration : copyChecked(calibration);
   }
 
   /** Whether they moved it in the frame before; a page may write the measures of a stand-in out in every frame. */
