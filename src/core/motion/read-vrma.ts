@@ -19,6 +19,9 @@ const rateHz = 60;
 const mostFrames = 540_000;
 const mostNodes = 5000;
 
+/** By how much a time in single precision may be too small, as a share of it. */
+const precision = 2 ** -23;
+
 type Path = 'translation' | 'rotation';
 interface Track {
   readonly path: Path;
@@ -231,7 +234,7 @@ export function readVrma(description: unknown, binary: Uint8Array): FileMotion {
   const nodes = nodesOf(description);
   const scene = new Scene(nodes, inOrder(nodes));
   const duration = readTracks(description, binary, nodes);
-  const frameCount = Math.floor(duration * rateHz + 1e-6) + 1;
+  const frameCount = Math.floor(duration * (1 + precision) * rateHz + 1e-6) + 1;
   if (!(frameCount <= mostFrames))
     throw new Error(`it lasts ${Math.round(duration)} s; a person's motion here may last 9000`);
   const names = Object.keys(humanoid);
