@@ -119,6 +119,24 @@ async function* exportWork(
   return yield* partOf(writer.write(motion), estimating, 1);
 }
 
+/** The network that is on its way; rejects as soon as the work is given up, and lets go what comes after that. */
+async function unlessGivenUp(loading: Promise<PoseRegressor>, signal: AbortSignal | undefined): Promise<PoseRegressor> {
+  if (!signal) return loading;
+  let giveUp = (): void => undefined;
+  const givenUp = new Promise<never>((_, reject) => {
+    giveUp = () => reject(signal.reason);
+  });
+  signal.addEventListener('abort', giveUp);
+  try {
+    return await Promise.race([loading, givenUp]);
+  } catch (error) {
+    loading.then((network) => network.dispose()).catch(() => undefined); // reason: no one waits for it any more
+    throw error;
+  } finally {
+    signal.removeEventListener('abort', giveUp);
+  }
+}
+
 /**
  * A file of what a method draws of a recording, with fingers: BVH, a table of joints (CSV), VRM Animation, or what a writer makes. Rejects with a
  * sentence where the method draws no body or fails, no network comes, the measures are no person's, times do not rise, or the device's body is asked
@@ -130,7 +148,7 @@ export async function exportMotionBare(recording: Replayable, options: BareExpor
   const calibration = personOf(recording, options.calibration);
   options.signal?.throwIfAborted();
   const network = networkOf(estimator);
-  const regressor = network && (await networks(network));
+  const regressor = network && (await unlessGivenUp(networks(network), options.signal));
   try {
     const parts = await runWork(exportWork(recording, calibration, regressor, options, writer), options);
     return { extension: writer.extension, type: writer.type, parts };

@@ -1,9 +1,10 @@
-import { describe, expect, test } from 'vitest';
+import { describe, expect, test, vi } from 'vitest';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { forwardKinematics } from '../../src/core/body/forward-kinematics';
 import { closedHand } from '../../src/core/body/hand-shape';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { createEstimator, needsRegressor } from '../../src/core/estimation/estimators';
+import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
 import { distance } from '../../src/core/math/vec3';
 import { makeJointPoses } from '../../src/core/motion/file-motion';
 import { poseBvh, readBvh } from '../../src/core/motion/read-bvh';
@@ -158,6 +159,23 @@ describe('a long export', () => {
     await exportMotion(recordingOf(20), { to: 'bvh', estimator: 'ik' });
     clearInterval(timer);
     expect(turns).toBeGreaterThan(3);
+  });
+
+  test('is given up while its network is still on its way, which is let go when it comes', async () => {
+    const giveUp = new AbortController();
+    const network = { ...openPlainModel(), dispose: vi.fn(async () => undefined) };
+    let arrive: (network: PoseRegressor) => void = () => undefined;
+    const loading = new Promise<PoseRegressor>((resolve) => {
+      arrive = resolve;
+    });
+    const asked = vi.fn(() => loading);
+    const work = exportMotion(recording, { to: 'bvh', networks: asked, signal: giveUp.signal });
+    const refused = expect(work).rejects.toThrow('enough');
+    await vi.waitFor(() => expect(asked).toHaveBeenCalled());
+    giveUp.abort(new Error('enough'));
+    await refused;
+    arrive(network);
+    await vi.waitFor(() => expect(network.dispose).toHaveBeenCalledTimes(1));
   });
 
   test('is given up when it is asked to, and lets its network go', async () => {
