@@ -31,7 +31,10 @@ export function pairFiles(files: readonly MocapFile[]): MocapFiles & { readonly 
   const given = map ? [map] : [];
   if (endingOf(motion) !== 'amc') return { motion, skeleton: null, map, others: without([motion, ...given]) };
   const name = nameOf(motion);
-  const own = skeletons.find((file) => name.startsWith(nameOf(file).replace(/\.asf$/i, ''))) ?? skeletons[0];
+  const stemOf = (file: MocapFile): string => nameOf(file).replace(/\.asf$/i, '');
+  // Of 10.asf and 105.asf, whose names both begin 105_01.amc, the longer is its own.
+  const likely = skeletons.filter((file) => name.startsWith(stemOf(file)));
+  const [own = skeletons[0]] = likely.sort((a, b) => stemOf(b).length - stemOf(a).length);
   if (!own) throw new Error(`${name}: a motion without its skeleton; open its .asf together with it`);
   return { motion, skeleton: own, map, others: without([motion, own, ...given]) };
 }

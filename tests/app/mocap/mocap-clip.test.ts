@@ -92,6 +92,11 @@ describe('files of one motion', () => {
     expect([motion, skeleton, others]).toEqual(['01_02.amc', '01.asf', ['02.asf']]);
   });
 
+  test('are an AMC and its own skeleton, also where another one’s name begins as it does', () => {
+    expect(pairFiles(['10.asf', '105.asf', '105_01.amc']).skeleton).toBe('105.asf');
+    expect(pairFiles(['10.asf', '105.asf', '10_01.amc']).skeleton).toBe('10.asf');
+  });
+
   test('are a BVH and the map of its skeleton', () => {
     expect(pairFiles(['map.json', 'dance.bvh'])).toEqual({
       motion: 'dance.bvh',
