@@ -13,7 +13,8 @@ export interface PageClock {
   /**
    * The time of a frame that the device dates `timestampMs`. A time stamp that goes back is taken as another clock's: this one goes on by
    * the length of the last frame. One that is more than `longestStep` ahead follows a pause: this clock goes on by `longestStep`. The same
-   * one again within half a frame is the same frame's, asked by another part of the page: its time stays, and `paused`.
+   * one again within half a frame is the same frame's, asked by another part of the page: its time stays, and `paused`. In
+   * place of one that is no finite number stands what `read` says.
    */
   frame(timestampMs: number): number;
   /** Whether the newest frame follows a pause. */
@@ -36,7 +37,8 @@ export function createPageClock(read: () => number): PageClock {
   let leftOut = 0;
 
   return {
-    frame(timestampMs) {
+    frame(dated) {
+      const timestampMs = Number.isFinite(dated) ? dated : read();
       // Devices that round their time stamps date frames alike too, but a whole frame apart.
       if (timestampMs === stamp && Math.abs(read() - readAt) < 500 * step) return time;
       if (stamp === null) time = timestampMs / 1000;

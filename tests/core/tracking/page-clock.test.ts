@@ -45,6 +45,12 @@ describe('the page’s clock', () => {
     expect(timesOf(stamps)).toEqual(stamps.map((stamp) => expect.closeTo(stamp / 1000, 9)));
   });
 
+  test('with a time stamp that is no finite number, be it the first, it goes on all the same', () => {
+    const stamps = [Number.NaN, 1014, 1028, Number.POSITIVE_INFINITY, 1056, Number.NaN, 1084];
+    const read = (_: number, index: number) => 1000 + 14 * index;
+    expect(timesOf(stamps, read)).toEqual(stamps.map((_, index) => expect.closeTo(1 + 0.014 * index, 9)));
+  });
+
   test('one for two bodies is at one time in a frame, however late in it the second asks', () => {
     let read = 0;
     const clock = createPageClock(() => read);
