@@ -63,6 +63,16 @@ test('a link leads to the same second, method and body beside it', async ({ page
   expect(Number(link.get('at'))).toBe(0.5);
 });
 
+test('of another file with as many pieces its own can be chosen', async ({ page }) => {
+  await open(page, 'emulate&quality=low&estimator=ik&actor=off');
+  const [motion] = filesOf(leaping!);
+  const pieces = card(page).getByLabel('Clip', { exact: true }).getByRole('option');
+  await choose(page, [motion!]);
+  await expect(pieces).toHaveText(['someone_walks#1', 'someone_walks#2']);
+  await choose(page, [{ ...motion!, name: 'another_walks.bvh' }]);
+  await expect(pieces).toHaveText(['another_walks#1', 'another_walks#2']);
+});
+
 test('a damaged file is refused with line and column, and what is shown stays', async ({ page, complaints }) => {
   complaints.allow(/could not be shown/);
   await open(page, 'emulate&quality=low&estimator=ik&actor=off');

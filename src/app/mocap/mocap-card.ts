@@ -214,7 +214,8 @@ export function createMocapCard(labels: Labels, actions: CardActions): MocapCard
   const showOpened = (state: CardState): void => {
     title.textContent = state.clips[state.clip]!;
     clip.node.hidden = state.clips.length === 1;
-    if (clip.select.length !== state.clips.length)
+    const listed = [...clip.select.options].map(({ text }) => text);
+    if (listed.join('\n') !== state.clips.join('\n'))
       clip.select.replaceChildren(...state.clips.map((name, i) => element('option', { value: i }, name)));
     clip.select.value = String(state.clip);
     const [first, second] = state.methods;
