@@ -206,7 +206,10 @@ export class BareBody {
     this.#notice('head', frame !== null);
     this.#notice('left', frame !== null && frame.leftHand !== null);
     this.#notice('right', frame !== null && frame.rightHand !== null);
-    if (frame === null) return this.#pose;
+    if (frame === null) {
+      this.#height.lose();
+      return this.#pose;
+    }
     if (!this.#isMovedBy(standIn)) this.#handOver(standIn && this.#own(standIn));
     if (standIn === null) this.#height.observe(frame);
     const { pose, request } = this.#choice.current.update(frame);

@@ -2,7 +2,7 @@ import { type Calibration, provisionalCalibration } from '../core/body/calibrati
 import { createHeightWatch } from '../core/tracking/height-watch';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 
-/** Seconds after the first tracked frame, or the first after a guessed one, from which a headset's height says something about its wearer. */
+/** Seconds after the first tracked frame, or the first after a guessed one, a loss or a pause, from which a headset's height says something about its wearer. */
 const settleSeconds = 0.7;
 
 export interface HeightPolicyOptions {
@@ -25,7 +25,7 @@ export interface HeightPolicyOptions {
 export class HeightPolicy {
   readonly #options: HeightPolicyOptions;
   readonly #watch = createHeightWatch();
-  /** Since when the head is tracked [s]; null: it was not yet, or is guessed; 'done' once the height of the headset was taken. */
+  /** Since when the head is tracked [s]; null: it was not yet, or is guessed or not seen; 'done' once the height of the headset was taken. */
   #settledSince: number | 'done' | null = null;
   /** The calibration that its wearer has been told is too small. */
   #toldTooSmall: Calibration | null = null;
@@ -39,8 +39,14 @@ export class HeightPolicy {
     this.#settledSince = null;
   }
 
+  /** The head is not seen: how long it was tracked before says nothing of what comes. */
+  lose(): void {
+    if (this.#settledSince !== 'done') this.#settledSince = null;
+  }
+
   /** The floor lies elsewhere, or another person may wear the headset. */
   reset(): void {
+    this.lose();
     this.#watch.reset();
   }
 

@@ -100,6 +100,18 @@ describe('a body', () => {
     expect(told).toEqual(['found head', 'calibrated 1.62 headset']);
   });
 
+  test.each([
+    ['is not seen', (body: Body) => body.update(null)],
+    ['pauses', (body: Body) => body.jumped()],
+  ])('takes no height from the moments before a headset %s, nor at once after', async (_, interrupt) => {
+    const { body, told } = await observed({ estimator: 'ik', grows: false });
+    for (let frame = 0; frame < 30; frame++) body.update(standing(frame / 60, 0.9));
+    interrupt(body);
+    for (let frame = 600; frame < 630; frame++) body.update(standing(frame / 60, 1.4));
+    for (let frame = 630; frame < 660; frame++) body.update(standing(frame / 60, 1.62));
+    expect(told.filter((line) => line.startsWith('calibrated'))).toEqual(['calibrated 1.62 headset']);
+  });
+
   test('keeps measures that it was given, however tall its wearer stands', async () => {
     const { body, told } = await observed({ estimator: 'ik', calibration });
     for (let frame = 0; frame < 240; frame++) body.update(standing(frame / 60, 1.72));
