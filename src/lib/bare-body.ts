@@ -33,7 +33,7 @@ export interface BodyEvents {
   changed?(): void;
   /** The body begins anew where it is next: nothing may be drawn, sent or scored on the way there. */
   jumped?(): void;
-  /** No longer tracked: the head's body stands still, a hand's arm sinks to rest. */
+  /** No longer tracked: the body of a head that is not seen stands still; the arm of a hand that is not, or only guessed, sinks to rest. */
   lost?(point: TrackedPoint): void;
   /** Tracked, for the first time or again. */
   found?(point: TrackedPoint): void;
@@ -204,8 +204,8 @@ export class BareBody {
   update(tracked: TrackingFrame | null, standIn: Calibration | null = null): AvatarPose | null {
     const frame = this.#frames.next(tracked);
     this.#notice('head', frame !== null);
-    this.#notice('left', frame !== null && frame.leftHand !== null);
-    this.#notice('right', frame !== null && frame.rightHand !== null);
+    this.#notice('left', frame?.leftHand?.tracking === 'tracked');
+    this.#notice('right', frame?.rightHand?.tracking === 'tracked');
     if (frame === null) {
       this.#height.lose();
       return this.#pose;

@@ -67,6 +67,16 @@ describe('a body', () => {
     expect(told).toEqual(['lost left', 'found left']);
   });
 
+  test('says that a hand is lost where the device only guesses it: its arm sinks to rest', async () => {
+    const { body, told } = await observed({ calibration, estimator: 'ik' });
+    body.update(at(0));
+    told.length = 0;
+    const guessed = { ...at(1 / 60).leftHand!, tracking: 'emulated' as const };
+    for (let frame = 1; frame < 4; frame++) body.update({ ...at(frame / 60), leftHand: guessed });
+    body.update(at(4 / 60));
+    expect(told).toEqual(['lost left', 'found left']);
+  });
+
   test('keeps its pose while the head is not seen', async () => {
     const { body, told } = await observed({ calibration });
     const shown = JSON.stringify(body.update(at(0)));
