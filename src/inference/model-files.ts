@@ -88,7 +88,10 @@ async function download(url: string, onProgress?: (share: number) => void): Prom
 
 async function verify({ file, bytes, sha256 }: StatedFile, model: Uint8Array): Promise<void> {
   if (model.length !== bytes) throw new Error(`${file}: ${model.length} bytes long, its contract says ${bytes}`);
-  const digest = new Uint8Array(await crypto.subtle.digest('SHA-256', model as Uint8Array<ArrayBuffer>));
+  // Browsers give none to pages of another origin than https: or localhost.
+  const { subtle } = crypto as { readonly subtle?: SubtleCrypto };
+  if (!subtle) throw new Error(`${file}: cannot be checked: the page is not secure (https: or localhost)`);
+  const digest = new Uint8Array(await subtle.digest('SHA-256', model as Uint8Array<ArrayBuffer>));
   const hex = Array.from(digest, (byte) => byte.toString(16).padStart(2, '0')).join('');
   if (hex !== sha256) {
     throw new Error(`${file}: its SHA-256 begins ${hex.slice(0, 12)}, its contract says ${sha256.slice(0, 12)}`);

@@ -1,4 +1,4 @@
-import { expect, test } from 'vitest';
+import { expect, test, vi } from 'vitest';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import type { Recording } from '../../src/core/tracking/recording';
@@ -36,4 +36,9 @@ test('a contract that is not on the disk is told in a sentence', async () => {
   await expect(loadLearned({ modelUrl: new URL('gone.json', models) })).rejects.toThrow(
     /^gone\.json: could not be read \(ENOENT/,
   );
+});
+
+test('weights that cannot be checked, as on a page without https, are refused in a sentence', async () => {
+  vi.stubGlobal('crypto', {});
+  await expect(loadLearned()).rejects.toThrow(/^learned\.bin: cannot be checked: the page is not secure/);
 });
