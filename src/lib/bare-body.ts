@@ -179,6 +179,8 @@ export class BareBody {
 
   /** The floor lies elsewhere from one frame to the next (recentre, teleport, pause): nothing may be drawn on the way. */
   jumped(): void {
+    // A question that still waits is about a frame from before.
+    this.#request = null;
     this.#choice.reset();
     this.#height.reset();
     this.#events.jumped?.();

@@ -385,6 +385,20 @@ describe('a network that answers later', () => {
     expect(body.provider).toBe('later');
   });
 
+  test('is not asked about a frame from before a jump', async () => {
+    let runs = 0;
+    const { network } = answeringLater(() => {
+      runs += 1;
+    });
+    const { body } = await observed({ calibration, networks: async (name) => network(name) });
+    body.update(at(0));
+    body.jumped();
+    for (let turn = 0; turn < 3; turn++) await new Promise((resolve) => setTimeout(resolve, 0));
+    expect(runs).toBe(0);
+    body.update(at(1 / 60));
+    await expect.poll(() => runs).toBe(1);
+  });
+
   test('is measured where a page measures: features until it is asked, inference until it waits', async () => {
     const marks: string[] = [];
     const { network } = answeringLater(() => void marks.push('runs'));
