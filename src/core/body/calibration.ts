@@ -83,7 +83,8 @@ export const calibrationComplaint = (calibration: Calibration): string | null =>
 
 /** Of the body's measures. */
 function bodyComplaint({ eyeHeight, armSpan, forearm }: Calibration): string | null {
-  const told = (value: number) => `${value.toFixed(2)} m`;
+  // Number: a page without types may leave one out.
+  const told = (value: number) => `${Number(value).toFixed(2)} m`;
   // Written so that NaN is refused too.
   if (!(eyeHeight >= eyeHeightRange.min && eyeHeight <= eyeHeightRange.max)) {
     const stature = told(statureFromEyeHeight(eyeHeight));

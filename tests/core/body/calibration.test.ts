@@ -53,6 +53,9 @@ describe('what is a person’s body', () => {
     ['no number', { eyeHeight: Number.NaN, armSpan: 1.5 }, /height/],
     ['a span of nothing', { eyeHeight: 1.6, armSpan: 0 }, /arm span of 0\.00 m/],
     ['no number for a span', { eyeHeight: 1.6, armSpan: Number.NaN }, /arm span/],
+    // reason: what a page without types leaves out; the same holds for the next
+    ['a span that is left out', { eyeHeight: 1.6 } as Calibration, /arm span of NaN m is outside/],
+    ['a forearm of null', { ...defaultCalibration, forearm: null as unknown as number }, /forearm of 0\.00 m/],
     ['a giant with a child’s arms', { eyeHeight: 2.1, armSpan: 0.9 }, /does not go with/],
     ['a forearm as long as an arm', { ...defaultCalibration, forearm: 0.5 }, /forearm of 0\.50 m/],
     ['a forearm of inches', { ...defaultCalibration, forearm: 0.11 }, /does not go with an arm span of/],
