@@ -1,12 +1,23 @@
 import { isFinitePose, type TrackedPose } from '../core/math/pose';
+import { normaliseQuat, type Quat } from '../core/math/quat';
 import { isFiniteDeviceBody } from '../core/tracking/device-body';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 
-/** undefined: a page without types has left it out. One that leaves out how a point is tracked means that it is there. */
+/** By how much the square of a rotation's length may differ from 1: files round. */
+const tolerance = 2e-3;
+
+const isUnit = ({ x, y, z, w }: Quat): boolean => Math.abs(x * x + y * y + z * z + w * w - 1) <= tolerance;
+
+/**
+ * undefined: a page without types has left it out. One that leaves out how a point is tracked means that it is there; one that mixes quaternions
+ * straight means their direction.
+ */
 function seenPoint(point: TrackedPose | null | undefined): TrackedPose | null {
   if (!point || !isFinitePose(point)) return null;
   const { position, orientation, tracking } = point;
-  return tracking === undefined ? { position, orientation, tracking: 'tracked' } : point;
+  const unit = isUnit(orientation);
+  if (tracking !== undefined && unit) return point;
+  return { position, orientation: unit ? orientation : normaliseQuat(orientation), tracking: tracking ?? 'tracked' };
 }
 
 /** What a body can take of a page's frames, one after the other. */
@@ -16,8 +27,8 @@ export class SeenFrames {
 
   /**
    * The frame itself, or a copy in which a hand that is no finite pose is not seen, a point that does not say how it is tracked is tracked, a
-   * device's body that is not finite is not told, and a time that is no number is that of the frame before. null: the head is not seen, or no time is
-   * known yet.
+   * rotation has length 1, a device's body that is not finite is not told, and a time that is no number is that of the frame before. null: the head is
+   * not seen, or no time is known yet.
    */
   next(frame: TrackingFrame | null | undefined): TrackingFrame | null {
     const head = seenPoint(frame?.head);

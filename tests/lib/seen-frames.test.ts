@@ -110,6 +110,18 @@ test('a point of a page that does not say how it is tracked is there', () => {
   expect(bodies[0].update(bare)?.body).toEqual(bodies[1].update(at(0))?.body);
 });
 
+test('a rotation of another length than 1, as of quaternions that were mixed straight, is taken for its direction', () => {
+  const bodies = [new Body({ estimator: 'ik', calibration }), new Body({ estimator: 'ik', calibration })] as const;
+  const frame = at(0);
+  const longer = (pose: TrackedPose, by: number): TrackedPose => {
+    const { x, y, z, w } = pose.orientation;
+    return { ...pose, orientation: { x: by * x, y: by * y, z: by * z, w: by * w } };
+  };
+  const mixed = { ...frame, head: longer(frame.head, 0.9), leftHand: longer(frame.leftHand!, 2) };
+  const [drawn, whole] = [bodies[0].update(mixed)!, bodies[1].update(frame)!];
+  for (const [i, number] of numbersIn(drawn).entries()) expect(number).toBeCloseTo(numbersIn(whole)[i]!, 9);
+});
+
 test('a time that is no number is that of the frame before; before any with one, nothing is seen', () => {
   const body = new Body({ estimator: 'ik', calibration });
   expect(body.update({ ...at(0), time: Number.NaN })).toBeNull();
