@@ -132,15 +132,16 @@ export class EstimatorChoice {
     if (fault !== null && network !== null) this.#giveUp(network, fault);
   }
 
-  /** Lets every network go that was loaded, and those that still arrive. Nothing is told from then on. */
+  /** Lets every network go that was loaded, and those that still arrive; rejects where one cannot be. Nothing is told from then on. */
   async dispose(): Promise<void> {
     this.#disposed = true;
     this.#changes += 1;
     this.#current = this.#make('ik', null);
     this.#regressor = null;
-    for (const arriving of await Promise.allSettled(this.#loading.values())) {
-      if (arriving.status === 'fulfilled') await arriving.value.dispose();
-    }
+    const arrived = await Promise.allSettled(this.#loading.values());
+    const goes = arrived.map((arriving) => (arriving.status === 'fulfilled' ? arriving.value.dispose() : null));
+    await Promise.allSettled(goes);
+    await Promise.all(goes);
   }
 
   #make(name: EstimatorName, network: PoseRegressor | null): PoseEstimator {

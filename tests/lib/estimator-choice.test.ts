@@ -160,6 +160,21 @@ describe('which estimator draws', () => {
     expect([choice.unavailable, faults]).toEqual([{}, []]);
   });
 
+  test('every network is let go, also after one that cannot be', async () => {
+    const letGo: string[] = [];
+    const { choice } = choiceThat(async (name) => ({
+      ...networkOn('webgpu'),
+      async dispose() {
+        letGo.push(name);
+        if (name === 'learned') throw new Error('the device is lost');
+      },
+    }));
+    await choice.choose('learned');
+    await choice.choose('paper');
+    await expect(choice.dispose()).rejects.toThrow('the device is lost');
+    expect(letGo).toEqual(['learned', 'paper']);
+  });
+
   test('a person who changes their mind while a network loads keeps the later choice', async () => {
     let arrive: (network: PoseRegressor) => void = () => undefined;
     const { choice } = choiceThat(() => new Promise((resolve) => (arrive = resolve)));
