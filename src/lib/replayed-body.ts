@@ -35,7 +35,7 @@ export function* leadUpTo(recording: Replayable, seconds: number, time: number):
  * replay stands at another second, or another method draws, the body lives through the seconds before.
  */
 export class ReplayedBody {
-  readonly #body: Pick<BareBody, 'update' | 'relive' | 'pose' | 'estimator'>;
+  readonly #body: Pick<BareBody, 'update' | 'relive' | 'jumped' | 'pose' | 'estimator'>;
   readonly #replay: MovingReplay;
   /** How long replays stood still since the last one began [s]. */
   #stood = 0;
@@ -48,7 +48,7 @@ export class ReplayedBody {
     method: '',
   };
 
-  constructor(body: Pick<BareBody, 'update' | 'relive' | 'pose' | 'estimator'>, replay: MovingReplay) {
+  constructor(body: Pick<BareBody, 'update' | 'relive' | 'jumped' | 'pose' | 'estimator'>, replay: MovingReplay) {
     this.#body = body;
     this.#replay = replay;
   }
@@ -63,6 +63,7 @@ export class ReplayedBody {
     }
     if (paused) return this.#stand(frame, standIn);
     this.#time = frame.time;
+    if (this.#beginsAnew()) this.#body.jumped();
     const pose = this.#body.update(this.#dated(frame), standIn);
     this.#arrive();
     return pose;
@@ -77,6 +78,12 @@ export class ReplayedBody {
     const { recording, seconds } = this.#replay;
     if (recording) void this.#body.relive(leadUpTo(recording, seconds, dated.time));
     return this.#body.pose;
+  }
+
+  /** Whether the same recording is at an earlier second than before: no body is drawn on the way from its end. */
+  #beginsAnew(): boolean {
+    const { recording, seconds } = this.#replay;
+    return recording === this.#moment.recording && seconds < this.#moment.seconds;
   }
 
   /** The same by the body's clock. */

@@ -1,4 +1,4 @@
-import { describe, expect, test } from 'vitest';
+import { describe, expect, test, vi } from 'vitest';
 import { Recorder } from '../../src/app/studio/recorder';
 import type { Calibration } from '../../src/core/body/calibration';
 import { forwardKinematics } from '../../src/core/body/forward-kinematics';
@@ -123,4 +123,22 @@ describe('a replay that stands still', () => {
     await lived;
     expect(body.pose).toBe(before);
   });
+});
+
+test('a replay that begins anew is drawn without a way from its end', async () => {
+  const { recorder, body, draw } = await replaying('ik');
+  recorder.setLoop(true);
+  draw(1);
+  const jumped = vi.spyOn(body, 'jumped');
+  draw(frames.length - 1);
+  expect(recorder.seconds).toBeCloseTo((frames.length - 1) / rateHz, 6);
+  expect(jumped).not.toHaveBeenCalled();
+  const begun = draw(1);
+  expect(recorder.seconds).toBe(0);
+  expect(jumped).toHaveBeenCalledTimes(1);
+  const { body: other, draw: drawOther } = await replaying('ik');
+  drawOther(frames.length);
+  other.jumped();
+  const pose = other.update({ ...frames[0]!, time: 200 }, calibration);
+  expect(apart(begun, structuredClone(forwardKinematics(skeletonFromCalibration(calibration), pose!.body!)))).toBe(0);
 });

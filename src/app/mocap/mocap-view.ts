@@ -88,8 +88,6 @@ export class MocapView {
   readonly #drawn = [false, false];
   /** Resolves when the ghosts' first picture waits for nothing. */
   readonly #prepared: Promise<unknown>;
-  /** Of the newest frame's replay. */
-  #seconds = 0;
 
   constructor(options: MocapViewOptions) {
     this.#options = options;
@@ -155,11 +153,7 @@ export class MocapView {
       this.#hide();
       return;
     }
-    const { seconds } = replay;
-    // The clip begins anew: no body is drawn on the way from its end.
-    if (seconds < this.#seconds) this.#seek(seconds);
-    this.#seconds = seconds;
-    const places = opened.truth.at(seconds);
+    const places = opened.truth.at(replay.seconds);
     const second = this.#second?.update(frame) ?? null;
     for (const [i, drawn] of [body, second].entries()) {
       this.#drawn[i] = drawn !== null;
