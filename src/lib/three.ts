@@ -23,14 +23,14 @@ export interface LoadAvatarOptions {
   readonly bones?: BoneMap;
 }
 
+/** An address, a file, or the bytes of one. */
+export type AvatarSource = string | URL | Blob | ArrayBuffer | ArrayBufferView;
+
 /**
  * An avatar from an address, a file or its bytes: VRM 0.x or 1.0, or a humanoid GLB with a map of its bones. Rejects with a sentence that names
  * the file: not reached, no GLB, larger than `avatarLimits`, a bone missing.
  */
-export async function loadAvatar(
-  source: string | URL | Blob | ArrayBuffer,
-  { bones }: LoadAvatarOptions = {},
-): Promise<Avatar> {
+export async function loadAvatar(source: AvatarSource, { bones }: LoadAvatarOptions = {}): Promise<Avatar> {
   const { name, bytes } = await read(source);
   return createAvatar(await parseAvatar(bytes, name, { bones }));
 }
@@ -39,16 +39,17 @@ export async function loadAvatar(
  * Makes GLB files of an avatar that moves, as `to` of `exportMotion`: all that is in its file stays, bones turn as the person's, and steps are as
  * long as its own legs make them. Rejects as `loadAvatar`.
  */
-export async function avatarMotion(
-  source: string | URL | Blob | ArrayBuffer,
-  { bones }: LoadAvatarOptions = {},
-): Promise<MotionWriter> {
+export async function avatarMotion(source: AvatarSource, { bones }: LoadAvatarOptions = {}): Promise<MotionWriter> {
   const [{ avatarClip }, { name, bytes }] = await Promise.all([import('../avatar/avatar-clip'), read(source)]);
   return avatarClip(bytes, name, { bones });
 }
 
-async function read(source: string | URL | Blob | ArrayBuffer): Promise<{ name: string; bytes: ArrayBuffer }> {
+async function read(source: AvatarSource): Promise<{ name: string; bytes: ArrayBuffer }> {
   if (source instanceof ArrayBuffer) return { name: 'the avatar', bytes: source };
+  if (ArrayBuffer.isView(source)) {
+    const { buffer, byteOffset, byteLength } = source;
+    return { name: 'the avatar', bytes: new Uint8Array(buffer, byteOffset, byteLength).slice().buffer };
+  }
   if (source instanceof Blob) {
     return { name: source instanceof File ? source.name : 'the avatar', bytes: await source.arrayBuffer() };
   }

@@ -27,6 +27,14 @@ describe('an avatar', () => {
     json.extensionsUsed = [];
   });
 
+  test('of bytes that lie within others, as those of Node’s Buffer do, is read where they lie', async () => {
+    const bytes = new Uint8Array(mannequin());
+    const wider = new Uint8Array(bytes.length + 200);
+    wider.set(bytes, 100);
+    const avatar = await loadAvatar(wider.subarray(100, 100 + bytes.length));
+    expect(avatar.object.children.length).toBeGreaterThan(0);
+  });
+
   test('of a humanoid without VRM stands on a map of its bones', async () => {
     const [own, other] = [await loadAvatar(mannequin()), await loadAvatar(foreign, { bones })];
     const pose = poseOf(createIk(defaultCalibration), actorFrame(1, defaultCalibration));
