@@ -62,7 +62,8 @@ const poseChannels = points.flatMap(({ of: part, point, placement }) =>
     reference_frame: 'floor',
     read(frame: TrackingFrame): string {
       const pose = frame[part];
-      return pose ? of(pose).toFixed(6) : absent;
+      // Where the device only guesses a hand, nothing was measured.
+      return pose && (part === 'head' || pose.tracking === 'tracked') ? of(pose).toFixed(6) : absent;
     },
   })),
 );
@@ -101,7 +102,8 @@ export const bidsChannelFrames = {
 
 /**
  * `*_motion.tsv`: a row per frame without a header, columns as `bidsChannels` names them: seconds since the first frame by the recording's
- * clock, which runs on in pauses; then head and wrists [m, unit quaternions, floor frame], `n/a` where a hand was not seen.
+ * clock, which runs on in pauses; then head and wrists [m, unit quaternions, floor frame], `n/a` where a hand was not seen or
+ * only guessed.
  */
 export function bidsMotion({ frames }: Recording): string {
   const start = frames[0]!.time;
