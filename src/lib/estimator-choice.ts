@@ -149,7 +149,9 @@ export class EstimatorChoice {
     return network ? create(name, this.#calibration, network) : create(name, this.#calibration);
   }
 
+  /** What draws so already goes on: it has noticed how the hands are held. */
   #drawWith(name: EstimatorName, network: PoseRegressor | null): void {
+    if (this.#current.name === name && this.#regressor === network) return;
     this.#current = this.#make(name, network);
     this.#changes += 1;
     this.#regressor = network;

@@ -63,6 +63,19 @@ describe('which estimator draws', () => {
     expect(faults).toEqual([]);
   });
 
+  test('what draws already goes on where it is chosen again', async () => {
+    const { choice } = choiceThat(async () => networkOn('wasm'));
+    const { current } = choice;
+    await choice.choose('ik');
+    expect(choice.current).toBe(current);
+    await choice.choose('learned');
+    const learned = choice.current;
+    await choice.choose('learned');
+    expect(choice.current).toBe(learned);
+    await choice.choose('ik');
+    expect(choice.current).not.toBe(learned);
+  });
+
   test('a network that cannot be loaded leaves inverse kinematics, with the reason', async () => {
     const { choice, faults } = choiceThat(async () => {
       throw new Error('learned.onnx: 404');
