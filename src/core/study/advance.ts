@@ -292,9 +292,12 @@ function stop(at: Moment, { by, reason }: EventOf<'stop'>): Advance | null {
   return at.taken(at.entered(told.progress, schedule.steps.at(-1) as StudyStep), told.records);
 }
 
+/** Questions that stood behind the one whether to stop have not been seen yet: their clock begins now. A rest has run meanwhile. */
 function goOn(at: Moment): Advance | null {
   const { unwell, ...decided } = at.progress;
-  return unwell ? at.withEvent(decided, { type: 'go-on' }) : null;
+  if (!unwell) return null;
+  const begins = at.step.kind === 'questionnaire' ? at.entered(decided, at.step) : decided;
+  return at.withEvent(begins, { type: 'go-on' });
 }
 
 function resume(at: Moment): Advance | null {

@@ -229,6 +229,41 @@ describe('a questionnaire', () => {
   });
 });
 
+describe('a questionnaire that stands behind the question whether to stop', () => {
+  const plan = paperPlan({ askToStop: [{ questionnaire: 'archery', measure: 'Q2', atLeast: 4 }] });
+  const tasks = plan.tasks.map((task) => ({ ...task, questionnaire: ['archery', 'nasa-tlx-raw'] }));
+  const asked = () => {
+    const one = session(scheduleFor({ ...plan, tasks }, 'P02'));
+    one.doUntil(({ kind }) => kind === 'questionnaire');
+    one.doStep(4);
+    expect(one.progress.unwell).toBe(true);
+    expect(one.step.id).toBe('archery/1/questionnaire-2');
+    return one;
+  };
+  const secondsOf = (one: ReturnType<typeof asked>) =>
+    one.records.flatMap((record) => (record.kind === 'answers' ? [record.body.seconds] : []));
+
+  test('takes its time from its first question on, not from that one', () => {
+    const one = asked();
+    one.wait(300);
+    one.tell({ type: 'go-on' });
+    one.doStep(4);
+    // One second before the first answer, five for each of six.
+    expect(secondsOf(one)).toEqual([36, 31]);
+  });
+
+  test('also where the session is paused meanwhile', () => {
+    const one = asked();
+    one.wait(300);
+    one.tell({ type: 'pause' });
+    one.tell({ type: 'go-on' });
+    one.wait(300);
+    one.tell({ type: 'resume' });
+    one.doStep(4);
+    expect(secondsOf(one)).toEqual([36, 31]);
+  });
+});
+
 describe('a trial', () => {
   const playing = () => {
     const one = session(schedule);
