@@ -1,4 +1,4 @@
-import { expect, test } from 'vitest';
+import { describe, expect, test } from 'vitest';
 import { planFrom } from '../../../src/app/study/preview/plan-source';
 import { PreviewWalk } from '../../../src/app/study/preview/preview-walk';
 import { planComplaints } from '../../../src/core/study/plan';
@@ -72,6 +72,58 @@ test('a pause can be seen and left; a language holds for all that follows', () =
   expect(screenAt(walk).id).toBe('question-mine');
   walk.goTo(walk.stops.length - 1);
   expect(screenAt(walk).kicker).toBe('Zwei Avatare beim Bogenschießen, mit Fragen jeder Art');
+});
+
+describe('a screen that asks whether to stop', () => {
+  const unwellPlan = () => {
+    const plan = paperPlan({ askToStop: [{ questionnaire: 'archery', measure: 'Q2', atLeast: 4 }] });
+    return {
+      ...plan,
+      tasks: plan.tasks.map((task) => (task.id === 'archery' ? { ...task, questionnaire: ['archery', 'ball'] } : task)),
+    };
+  };
+  const atTheQuestions = () => {
+    const walk = walkOf(unwellPlan());
+    walk.goTo(walk.stops.findIndex(({ kind }) => kind === 'question'));
+    return walk;
+  };
+
+  test('is left behind by walking on, as by its own buttons', () => {
+    const walk = atTheQuestions();
+    press(walk, 'pause');
+    press(walk, 'ask-to-stop');
+    expect(screenAt(walk).id).toBe('stopping');
+    walk.next();
+    expect(screenAt(walk).id).toBe('question-Q2');
+  });
+
+  test('comes after answers that reach a value of the plan, until one walks on', () => {
+    const walk = atTheQuestions();
+    for (let index = 1; index <= 7; index++) {
+      const { field } = screenAt(walk).question ?? {};
+      if (field?.kind !== 'likert') throw new Error('expected a scale');
+      field.choose(5);
+      press(walk, index < 7 ? 'next' : 'submit');
+    }
+    expect(walk.stop.id).toBe('archery/1/questionnaire-2/Q8');
+    expect(screenAt(walk).id).toBe('unwell');
+    walk.next();
+    expect(screenAt(walk).id).toBe('question-Q9');
+  });
+
+  test('stops nothing but this look: the end is reached as usual afterwards', () => {
+    const walk = atTheQuestions();
+    press(walk, 'pause');
+    press(walk, 'ask-to-stop');
+    press(walk, 'stop');
+    expect(walk.stop.kind).toBe('end');
+    const stopped = screenAt(walk).text;
+    walk.back();
+    expect(screenAt(walk).id).toBe('question-Q12');
+    walk.next();
+    expect(screenAt(walk).id).toBe('end');
+    expect(screenAt(walk).text).not.toEqual(stopped);
+  });
 });
 
 test('what is met at one place alone is shown there; the rest where one wants it', () => {

@@ -64,8 +64,10 @@ class PreviewSession implements ShownSession {
     return 'seconds' in this.step ? this.step.seconds : null;
   }
 
+  /** A participant who comes there is neither paused, nor asked whether to stop, nor has stopped. */
   goTo(step: string): void {
-    this.#progress = { ...this.#progress, step, paused: false, draft: this.#drafts.get(step) ?? {} };
+    const { unwell: _, stopped: __, ...progress } = this.#progress;
+    this.#progress = { ...progress, step, paused: false, draft: this.#drafts.get(step) ?? {} };
   }
 
   read(language: string): void {
@@ -167,13 +169,23 @@ export class PreviewWalk {
 
   /** To a stop by its place in the list; beyond the ends: to the last one there. */
   goTo(index: number): void {
-    this.#at = Math.min(this.stops.length - 1, Math.max(0, index));
-    const { step, question } = this.stop;
-    if (this.#session.step.id !== step || this.#session.progress.paused) {
-      this.#session.goTo(step);
-      this.#answering.enterStep();
-    }
-    this.#answering.goTo(question);
+    const { step } = this.stops[this.#nearest(index)] as PreviewStop;
+    const { paused, unwell } = this.#session.progress;
+    const leaves = this.#session.step.id !== step;
+    if (leaves || paused || unwell) this.#session.goTo(step);
+    if (leaves) this.#answering.enterStep();
+    this.#stand(index);
+  }
+
+  #nearest(index: number): number {
+    return Math.min(this.stops.length - 1, Math.max(0, index));
+  }
+
+  /** At a stop of the step that the session is at already. */
+  #stand(index: number): void {
+    this.#at = this.#nearest(index);
+    this.#stopping = false;
+    this.#answering.goTo(this.stop.question);
     this.#said(null);
   }
 
@@ -268,7 +280,8 @@ export class PreviewWalk {
     const refusal = refusalFor(this.#session.apply(event), this.#session.phrases);
     const { step } = this.#session;
     if (step.id === id) this.#said(refusal);
-    else this.goTo(this.stops.findIndex((stop) => stop.step === step.id));
+    // Not by goTo: what was handed in may ask whether to stop there.
+    else this.#stand(this.stops.findIndex((stop) => stop.step === step.id));
   }
 
   #goToQuestion(index: number): void {
