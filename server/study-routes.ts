@@ -1,5 +1,6 @@
 import type { IncomingMessage } from 'node:http';
 import * as v from 'valibot';
+import { wearerIn } from '../src/core/study/known-wearer';
 import { checkedPlan, languagesOf, type StudyPlan, studyTitle } from '../src/core/study/plan';
 import { mostMotionBytes, type PlanVersion, type StudyInfo } from '../src/core/study/study-api';
 import { checkedRecord } from '../src/core/study/study-record';
@@ -236,7 +237,8 @@ function participantTable({ store, now, guard, seats, software, makeZip }: Table
       const plan = store.planFor(study, participant);
       // A session that another device began goes on where that one was.
       const progress = store.progress(study, participant, now());
-      return json({ token, withdrawalCode, plan, simulated, progress }, 201);
+      const wearer = wearerIn(store.records(study, participant));
+      return json({ token, withdrawalCode, plan, simulated, progress, ...wearer }, 201);
     }),
     route('POST', `${own}/invitation`, 'experimenter', 0, ({ study, participant }) => {
       store.reinvite(study, participant);

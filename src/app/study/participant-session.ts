@@ -1,6 +1,7 @@
 import type { Calibration } from '../../core/body/calibration';
 import type { Side } from '../../core/math/side';
 import { advance, type ProgressEvent } from '../../core/study/advance';
+import { preferredHandOf } from '../../core/study/known-wearer';
 import { type Phrases, phrasesOf } from '../../core/study/phrases/phrases';
 import { languagesOf } from '../../core/study/plan';
 import { begin, currentStep, type Progress, remainingSeconds, reported } from '../../core/study/progress';
@@ -74,7 +75,7 @@ export interface ParticipantSessionOptions {
   readonly onCommand?: () => void;
 }
 
-/** The first session of a participant on this device. */
+/** The first session of a participant on this device; another one may have gone before it. */
 export function startSession(claim: Claim, study: string, participant: string): KeptSession {
   const schedule = scheduleFor(claim.plan, participant);
   return {
@@ -85,8 +86,8 @@ export function startSession(claim: Claim, study: string, participant: string): 
     plan: claim.plan,
     simulated: claim.simulated,
     progress: claim.progress ?? begin(schedule, claim.simulated),
-    preferredHand: null,
-    calibration: null,
+    preferredHand: claim.preferredHand,
+    calibration: claim.calibration,
   };
 }
 
@@ -236,11 +237,11 @@ class DeviceSession implements ParticipantSession {
     const before = command === undefined ? session.progress : { ...session.progress, commandsSeen: command };
     const { progress, records, refusal } = advance(this.schedule, before, event, this.#now());
     if (progress === session.progress && records.length === 0) return refusal;
-    const hand = records.find((record) => record.kind === 'demographics')?.body.handedness;
+    const told = records.find((record) => record.kind === 'demographics')?.body;
     const next = {
       ...session,
       progress,
-      ...(hand && { preferredHand: hand === 'left' ? ('left' as const) : ('right' as const) }),
+      ...(told && { preferredHand: preferredHandOf(told) }),
       ...(event.type === 'calibrated' && { calibration: event.calibration }),
     };
     this.#store.change(next, records);

@@ -32,6 +32,18 @@ export type Opened =
       ): Promise<ParticipantSession | 'uninvited' | { readonly why: unknown }>;
     };
 
+/**
+ * A session that another device began, as it goes on here: in the language chosen now, and without motion where that is not agreed to
+ * again. Agreed to for the first time it changes nothing, for the consent that is recorded says no.
+ */
+function withChoices(session: KeptSession, { motion, language }: ConsentChoices): KeptSession {
+  const { progress } = session;
+  const keptMotion = progress.motion && motion;
+  return { ...session, progress: { ...progress, motion: keptMotion, ...(language !== null && { language }) } };
+}
+
+const noMotionHere = 'On another device the participant did not agree to have motion kept: from here on none is.';
+
 export type OpeningOptions = Omit<ParticipantSessionOptions, 'vault'>;
 
 async function openVault(): Promise<StudyVault | null> {
@@ -91,20 +103,21 @@ export async function openSession(place: Place, opening: OpeningOptions): Promis
   return {
     kind: 'new',
     study,
-    async agree({ motion, language }, invitation) {
+    async agree(choices, invitation) {
+      const { motion, language } = choices;
       try {
-        const claim = await client.claim(id, participant, invitation);
-        const session = createParticipantSession(
-          startSession(claim, id, participant),
-          { records: [], motion: [] },
-          options,
-        );
-        if (session.step.kind === 'consent') {
-          const { version } = study.consent;
-          const said = session.apply({ type: 'consent', motion, version, ...(language !== null && { language }) });
-          if (said !== null) return { why: new Error(said) };
-        } else session.apply({ type: 'reload' });
-        return session;
+        const claimed = startSession(await client.claim(id, participant, invitation), id, participant);
+        const begun = claimed.progress.motion !== null;
+        const nothing = { records: [], motion: [] };
+        const session = createParticipantSession(begun ? withChoices(claimed, choices) : claimed, nothing, options);
+        if (begun) {
+          session.apply({ type: 'reload' });
+          if (claimed.progress.motion && !motion) session.apply({ type: 'remark', text: noMotionHere });
+          return session;
+        }
+        const { version } = study.consent;
+        const said = session.apply({ type: 'consent', motion, version, ...(language !== null && { language }) });
+        return said === null ? session : { why: new Error(said) };
       } catch (error) {
         if (error instanceof ServerRefusal && error.field === 'invitation') return 'uninvited';
         if (error instanceof ServerRefusal && error.status === 409)

@@ -1,12 +1,11 @@
 import { type DBSchema, type IDBPDatabase, openDB } from 'idb';
-import type { Calibration } from '../../core/body/calibration';
-import type { Side } from '../../core/math/side';
+import type { KnownWearer } from '../../core/study/known-wearer';
 import type { StudyPlan } from '../../core/study/plan';
 import type { Progress } from '../../core/study/progress';
 import type { StudyRecord } from '../../core/study/study-record';
 
 /** A session as this device remembers it. */
-export interface KeptSession {
+export interface KeptSession extends KnownWearer {
   readonly study: string;
   readonly participant: string;
   readonly token: string;
@@ -15,10 +14,6 @@ export interface KeptSession {
   readonly plan: StudyPlan;
   readonly simulated: boolean;
   readonly progress: Progress;
-  /** The hand they prefer, once told: the bow goes into the other one. */
-  readonly preferredHand: Side | null;
-  /** The newest measures of the body; null: not measured yet. */
-  readonly calibration: Calibration | null;
 }
 
 /** Tracked frames of a trial on their way to the server. */

@@ -1,3 +1,4 @@
+import type { KnownWearer } from './known-wearer';
 import type { StudyPlan } from './plan';
 import type { Progress } from './progress';
 import type { StudyRecord } from './study-record';
@@ -97,8 +98,8 @@ export interface SignedSeat {
   readonly token: string;
 }
 
-/** What a device is given that takes a participant's place. */
-export interface Claim {
+/** What a device is given that takes a participant's place; of the wearer what an earlier device sent. */
+export interface Claim extends KnownWearer {
   readonly token: string;
   /** With the first claim, and again while nothing was recorded; null later. */
   readonly withdrawalCode: string | null;
