@@ -76,7 +76,9 @@ export function advance(schedule: Schedule, progress: Progress, event: ProgressE
     return at.refused(refusals.asked);
   }
   try {
-    return follow(at, event) ?? at.refused(`"${event.type}" has no place in the step "${at.step.id}"`);
+    const next = follow(at, event) ?? at.refused(`"${event.type}" has no place in the step "${at.step.id}"`);
+    if (next.progress === progress) return next;
+    return { ...next, progress: { ...next.progress, changes: (progress.changes ?? 0) + 1 } };
   } catch (error) {
     if (!(error instanceof ValidationError)) throw error;
     return at.refused(error.message);

@@ -39,6 +39,8 @@ const progressSchema = v.object({
   stopped: v.exactOptional(v.boolean()),
   /** Number of the newest of the experimenter's commands that was followed; absent: none, or told by a program that did not say. */
   commandsSeen: v.exactOptional(integerBetween(0, Number.MAX_SAFE_INTEGER)),
+  /** How often this session has changed: of two states of it, which is the later; absent: never, or told by a program that did not count. */
+  changes: v.exactOptional(integerBetween(0, Number.MAX_SAFE_INTEGER)),
   /** Attempts at the present step, from 1. */
   attempt: integerBetween(1, 1000),
   /** Events recorded so far: their ids count on after a reload. */
