@@ -76,8 +76,8 @@ export interface StudyStore {
 /** A place as the experimenter sees it, at this time [s]. */
 function stateOf(row: PlaceRow, { plan, version }: PlanVersion, records: number, now: number): ParticipantState {
   const schedule = scheduleFor(plan, row.participant);
-  const reportedAt = row.progress_at ?? now;
-  const progress = row.progress === null ? null : sinceReport(resumed(schedule, row.progress), now - reportedAt);
+  const silence = now - (row.progress_at ?? now);
+  const progress = row.progress === null ? null : sinceReport(resumed(schedule, row.progress), silence);
   return {
     participant: row.participant,
     version,
@@ -93,7 +93,7 @@ function stateOf(row: PlaceRow, { plan, version }: PlanVersion, records: number,
       unwell: progress.unwell ?? false,
       stopped: progress.stopped ?? false,
       remainingSeconds: remainingSeconds(schedule, progress, now),
-      reportedAt,
+      silence,
     },
   };
 }

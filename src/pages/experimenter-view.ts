@@ -10,6 +10,8 @@ import { tableNode } from './table';
 /** A study as the experimenter's page has it open. */
 export interface OpenStudy extends StudyInfo {
   readonly states: readonly ParticipantState[];
+  /** When the server told them, by the clock of this page [s since 1970]. */
+  readonly toldAt: number;
   readonly receipts: readonly Receipt[];
 }
 
@@ -39,7 +41,7 @@ export function versionsText({ versions }: Pick<OpenStudy, 'versions'>): string 
   );
 }
 
-/** An open study, as of `now` [s since 1970]: what it is, its participants, what was deleted. */
+/** An open study, as of `now` [s since 1970, by the clock of this page]: what it is, its participants, what was deleted. */
 export const openStudy = (study: OpenStudy, now: number, actions: StudyActions): readonly Node[] => [
   ...studyHead(study, actions),
   tableNode(
@@ -47,7 +49,8 @@ export const openStudy = (study: OpenStudy, now: number, actions: StudyActions):
     participantHeads,
     study.states.map((state) => {
       const followed = study.versions.find(({ version }) => version === state.version)?.plan ?? study.plan;
-      return participantRow(state, { plan: followed, several: study.versions.length > 1 }, now, actions);
+      const several = study.versions.length > 1;
+      return participantRow(state, { plan: followed, several }, Math.max(0, now - study.toldAt), actions);
     }),
   ),
   ...receiptList(study.receipts),

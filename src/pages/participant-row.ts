@@ -41,16 +41,16 @@ export interface FollowedPlan {
   readonly several: boolean;
 }
 
-/** A participant's line in the table, as of `now` [s since 1970]. */
+/** A participant's line in the table, `age` seconds after the server told the state. */
 export function participantRow(
   state: ParticipantState,
   { plan, several }: FollowedPlan,
-  now: number,
+  age: number,
   actions: ParticipantActions,
 ): TableRow {
   const { participant, session, records } = state;
   const schedule = scheduleFor(plan, participant);
-  const silence = session ? now - session.reportedAt : 0;
+  const silence = session ? session.silence + age : 0;
   return {
     look: silence > silentAfter ? 'stale' : '',
     cells: [

@@ -87,9 +87,9 @@ describe('the store', () => {
     const { store } = withPaperStudy();
     store.claim('paper', 'P02', now);
     store.saveProgress('paper', 'P02', { ...begin(scheduleFor(paperPlan(), 'P02')), step: 'consent' }, now);
-    const [first, second] = store.overview('paper', now);
+    const [first, second] = store.overview('paper', now + 20);
     expect(first).toMatchObject({ participant: 'P01', claimed: false, session: null });
-    expect(second).toMatchObject({ participant: 'P02', claimed: true, session: { step: 'consent', reportedAt: now } });
+    expect(second).toMatchObject({ participant: 'P02', claimed: true, session: { step: 'consent', silence: 20 } });
     expect(store.progress('paper', 'P02')?.step).toBe('consent');
   });
 

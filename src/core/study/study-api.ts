@@ -48,8 +48,8 @@ export interface ParticipantState {
     readonly stopped: boolean;
     /** null: the step has no time limit. */
     readonly remainingSeconds: number | null;
-    /** When the page last reported, in seconds since 1970. */
-    readonly reportedAt: number;
+    /** Since when the page has not reported, by the server's clock [s]: that of the experimenter's computer may be minutes off. */
+    readonly silence: number;
   } | null;
 }
 

@@ -1,0 +1,31 @@
+import { readFileSync } from 'node:fs';
+import { parsePlan } from '../src/core/study/plan';
+import { begin } from '../src/core/study/progress';
+import { scheduleFor } from '../src/core/study/schedule';
+import { expect } from './page-fixture';
+import { signIn, test } from './study-participant';
+import { experimenter } from './study-server';
+
+const plan = (id: string) => ({ ...parsePlan(readFileSync('public/studies/latency.json', 'utf8'), 'latency.json'), id });
+
+test.use({ viewport: { width: 1280, height: 860 } });
+
+test('a participant whose page has just reported is there, though the experimenter’s computer has another clock', async ({
+  page,
+  origin,
+}) => {
+  const study = plan('clocks');
+  const experimenting = experimenter(origin);
+  await experimenting.begin(study, false);
+  const place = '/clocks/participants/P01';
+  expect((await experimenting.ask(`${place}/claim`, 'POST', {})).status).toBe(201);
+  const progress = { ...begin(scheduleFor(study, 'P01')), motion: false, step: 'demographics' };
+  expect((await experimenting.ask(`${place}/progress`, 'PUT', progress)).status).toBe(204);
+  await page.clock.setFixedTime(Date.now() + 600_000);
+  await page.goto(`${origin}/experimenter`);
+  await signIn(page);
+  await page.getByRole('combobox', { name: 'Study' }).selectOption('clocks');
+  const row = page.getByRole('row', { name: /^P01 / });
+  await expect(row).toContainText('waiting');
+  await expect(row).toContainText(/\d s ago/);
+});
