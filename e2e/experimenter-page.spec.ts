@@ -22,10 +22,23 @@ test('a participant whose page has just reported is there, though the experiment
   const progress = { ...begin(scheduleFor(study, 'P01')), motion: false, step: 'demographics' };
   expect((await experimenting.ask(`${place}/progress`, 'PUT', progress)).status).toBe(204);
   await page.clock.setFixedTime(Date.now() + 600_000);
-  await page.goto(`${origin}/experimenter`);
+  await page.goto(`${origin}/experimenter?study=clocks`);
   await signIn(page);
-  await page.getByRole('combobox', { name: 'Study' }).selectOption('clocks');
   const row = page.getByRole('row', { name: /^P01 / });
   await expect(row).toContainText('waiting');
   await expect(row).toContainText(/\d s ago/);
+});
+
+test('a study that the address asks for is opened as soon as the token is given', async ({ page, origin }) => {
+  await experimenter(origin).begin(plan('asked-for'), false);
+  for (const [address, said] of [
+    ['experimenter', 'asked-for · 18 participants'],
+    ['results', 'asked-for, from this server.'],
+  ]) {
+    await page.goto(`${origin}/${address}?study=asked-for`);
+    await page.evaluate(() => sessionStorage.clear());
+    await page.reload();
+    await signIn(page);
+    await expect(page.getByText(said as string)).toBeVisible();
+  }
 });

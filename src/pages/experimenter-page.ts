@@ -27,7 +27,10 @@ const refreshEveryMs = 1500;
 /** The experimenter's page: one study, its participants, and what can be done about them. */
 class ExperimenterPage {
   readonly #content: HTMLElement;
-  readonly #access = new StudyAccess(() => this.#render());
+  readonly #access = new StudyAccess(
+    () => this.#render(),
+    (study) => void this.#open(study),
+  );
   #study: OpenStudy | null = null;
   #notice = '';
   #complaint = '';
@@ -53,8 +56,7 @@ class ExperimenterPage {
       });
     }
     this.#render();
-    const study = await this.#access.resume();
-    if (study !== null) await this.#open(study);
+    await this.#access.resume();
     setInterval(() => {
       if (document.visibilityState === 'visible' && this.#study) void this.#refresh();
     }, refreshEveryMs);

@@ -10,7 +10,10 @@ import { openStudyFile } from './study-file';
 
 const content = pageElement('content', HTMLElement);
 
-const access = new StudyAccess(() => render());
+const access = new StudyAccess(
+  () => render(),
+  (study) => void load(study),
+);
 let shown: (ShownStudy & { readonly source: string }) | null = null;
 let selection: Selection | null = null;
 let complaint = '';
@@ -122,10 +125,5 @@ function render(): void {
   );
 }
 
-async function start(): Promise<void> {
-  render();
-  const study = await access.resume();
-  if (study !== null) await load(study);
-}
-
-void start();
+render();
+void access.resume();

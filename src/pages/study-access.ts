@@ -10,13 +10,18 @@ import { studySelect } from './study-select';
 /** The studies of this server, as a page sees them whose visitor has given the experimenter's token. */
 export class StudyAccess {
   readonly #onChange: () => void;
+  readonly #onAsked: (study: string) => void;
   readonly #server = new ServerPresence(pageFolder(), () => undefined);
   #client: ExperimenterClient | null = null;
   #listed: readonly StudyListing[] = [];
 
-  /** `onChange` hears when the token has opened the server, and when there turns out to be none. */
-  constructor(onChange: () => void) {
+  /**
+   * `onChange` hears when the token has opened the server, and when there turns out to be none; `onAsked`, once it has, which study the
+   * address asks for.
+   */
+  constructor(onChange: () => void, onAsked: (study: string) => void) {
     this.#onChange = onChange;
+    this.#onAsked = onAsked;
   }
 
   /** null: no token has opened the server yet. */
@@ -28,14 +33,13 @@ export class StudyAccess {
     return this.#listed;
   }
 
-  /** Signs in with the token of this tab, where there is one; the answer is the study that the address asks for, null: none, or no token. */
-  async resume(): Promise<string | null> {
+  /** Signs in with the token of this tab, where there is one. */
+  async resume(): Promise<void> {
     void this.#server.known().then((state) => {
       if (state === 'none') this.#onChange();
     });
     const token = keptToken();
-    if (token === null || (await this.#signIn(token)) !== null) return null;
-    return new URLSearchParams(location.search).get('study') || null;
+    if (token !== null) await this.#signIn(token);
   }
 
   /** Plan and records of a study, of this version of its plan or of the newest, which the address asks for from now on. */
@@ -82,6 +86,8 @@ export class StudyAccess {
     }
     this.#client = candidate;
     this.#onChange();
+    const asked = new URLSearchParams(location.search).get('study');
+    if (asked) this.#onAsked(asked);
     return null;
   }
 }
