@@ -42,3 +42,18 @@ test('a study that the address asks for is opened as soon as the token is given'
     await expect(page.getByText(said as string)).toBeVisible();
   }
 });
+
+test('a study stays marked as simulated when its first file was wrong', async ({ page, origin }) => {
+  await page.goto(`${origin}/experimenter`);
+  await signIn(page);
+  const choose = (text: string) =>
+    page
+      .getByLabel('Study file', { exact: true })
+      .setInputFiles({ name: 'mine.json', mimeType: 'application/json', buffer: Buffer.from(text) });
+  await page.getByLabel('simulated: a program takes part').check();
+  await choose(JSON.stringify({ ...plan('second-try'), participants: 0 }));
+  await expect(page.getByRole('alert')).toContainText('participants');
+  await choose(JSON.stringify(plan('second-try')));
+  await expect(page.getByText('SIMULATED: in this study a program takes part')).toBeVisible();
+  await expect(page.getByText('second-try-simulated · ')).toBeVisible();
+});

@@ -10,6 +10,7 @@ import { pageFolder } from '../ui/page-folder';
 import { sentence } from '../ui/phrases';
 import {
   type NewStudy,
+  type NewStudyActions,
   newStudyCard,
   type OpenStudy,
   openStudy,
@@ -32,6 +33,8 @@ class ExperimenterPage {
     (study) => void this.#open(study),
   );
   #study: OpenStudy | null = null;
+  /** Whether the study to be begun is marked as simulated. */
+  #simulated = false;
   #notice = '';
   #complaint = '';
   #online = true;
@@ -107,6 +110,13 @@ class ExperimenterPage {
     }
     await this.#refresh();
   }
+
+  readonly #newStudyActions: NewStudyActions = {
+    begin: (study) => void this.#begin(study),
+    mark: (simulated) => {
+      this.#simulated = simulated;
+    },
+  };
 
   #begin({ name, simulated, json }: NewStudy): Promise<void> {
     return this.#attempt(async (client) => {
@@ -305,7 +315,7 @@ class ExperimenterPage {
       element('p', { role: 'alert', class: 'complaint' }, this.#complaint),
       ...(study
         ? [...openStudy(study, now, this.#actionsOn(study)), anotherStudy()]
-        : [newStudyCard((begun) => void this.#begin(begun))]),
+        : [newStudyCard(this.#simulated, this.#newStudyActions)]),
     ];
   }
 }

@@ -122,10 +122,17 @@ export interface NewStudy {
   json(): Promise<string>;
 }
 
-/** Where a study is begun. */
-export function newStudyCard(begin: (study: NewStudy) => void): HTMLElement {
+export interface NewStudyActions {
+  begin(study: NewStudy): void;
+  /** Hears of the mark whenever it changes: the card is built anew when a file was wrong. */
+  mark(simulated: boolean): void;
+}
+
+/** Where a study is begun; `marked`: as simulated. */
+export function newStudyCard(marked: boolean, { begin, mark }: NewStudyActions): HTMLElement {
   const file = element('input', { type: 'file', accept: '.json,application/json', 'aria-label': 'Study file' });
-  const simulated = element('input', { type: 'checkbox' });
+  const simulated = element('input', { type: 'checkbox', checked: marked });
+  simulated.addEventListener('change', () => mark(simulated.checked));
   file.addEventListener('change', () => {
     const [chosen] = file.files ?? [];
     if (chosen) begin({ name: chosen.name, simulated: simulated.checked, json: () => chosen.text() });
