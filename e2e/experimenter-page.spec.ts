@@ -29,6 +29,24 @@ test('a participant whose page has just reported is there, though the experiment
   await expect(row).toContainText(/\d s ago/);
 });
 
+test('the link of a participant under way is in sight on a narrow screen too', async ({ page, origin }) => {
+  const study = plan('narrow');
+  const experimenting = experimenter(origin);
+  await experimenting.begin(study, false);
+  const place = '/narrow/participants/P01';
+  expect((await experimenting.ask(`${place}/claim`, 'POST', {})).status).toBe(201);
+  const progress = { ...begin(scheduleFor(study, 'P01')), motion: false, step: 'archery/2/questionnaire', running: true };
+  expect((await experimenting.ask(`${place}/progress`, 'PUT', progress)).status).toBe(204);
+  await page.setViewportSize({ width: 960, height: 800 });
+  await page.goto(`${origin}/experimenter`);
+  await signIn(page);
+  await page.getByRole('combobox', { name: 'Study' }).selectOption('narrow');
+  const row = page.getByRole('row', { name: /^P01 / });
+  await expect(row).toContainText('running');
+  const shown = await row.getByText('New …').boundingBox();
+  expect(shown && shown.x + shown.width).toBeLessThan(960);
+});
+
 test('a study that the address asks for is opened as soon as the token is given', async ({ page, origin }) => {
   await experimenter(origin).begin(plan('asked-for'), false);
   for (const [address, said] of [
