@@ -75,3 +75,47 @@ test('a study stays marked as simulated when its first file was wrong', async ({
   await expect(page.getByText('SIMULATED: in this study a program takes part')).toBeVisible();
   await expect(page.getByText('second-try-simulated · ')).toBeVisible();
 });
+
+test('a block of those who play together is voided for all of them, if the experimenter does not want otherwise', async ({
+  page,
+  origin,
+}) => {
+  const study = { ...parsePlan(readFileSync('public/studies/paper.json', 'utf8'), 'paper.json'), id: 'trios' };
+  const experimenting = experimenter(origin);
+  await experimenting.begin(study, false);
+  const { members } = scheduleFor(study, 'P01').groups.ball as { readonly members: readonly string[] };
+  const placeOf = (participant: string) => `/trios/participants/${participant}`;
+  const at = async (participant: string, step: string) => {
+    await experimenting.ask(`${placeOf(participant)}/claim`, 'POST', {});
+    const progress = { ...begin(scheduleFor(study, participant)), motion: false, step };
+    expect((await experimenting.ask(`${placeOf(participant)}/progress`, 'PUT', progress)).status).toBe(204);
+  };
+  const others = members.filter((member) => member !== 'P01');
+  const [second, third] = others as [string, string];
+  await at('P01', 'ball/1/trial-1');
+  await at(second, 'ball/1/rest');
+  await at(third, 'ball/2/calibration');
+  await page.goto(`${origin}/experimenter`);
+  await signIn(page);
+  await page.getByRole('combobox', { name: 'Study' }).selectOption('trios');
+  const voided = async (participant: string) => {
+    const { commands } = (await (await experimenting.ask(`${placeOf(participant)}/commands`)).json()) as {
+      commands: { command: { type: string } }[];
+    };
+    return commands.length;
+  };
+  const voidBlock = async (uncheck: boolean) => {
+    await page.getByRole('row', { name: /^P01 / }).getByRole('button', { name: 'Void block' }).click();
+    await page.getByRole('textbox').fill('a ball rolled away');
+    const together = page.getByLabel(`Also for ${second}: a match is played together`);
+    await expect(together).toBeChecked();
+    if (uncheck) await together.uncheck();
+    await page.getByRole('button', { name: 'Void it' }).click();
+    await expect(page.getByRole('status')).toContainText('is being voided');
+  };
+  await voidBlock(false);
+  expect([await voided('P01'), await voided(second), await voided(third)]).toEqual([1, 1, 0]);
+  await voidBlock(true);
+  await expect(page.getByRole('status')).toHaveText('P01: the block is being voided.');
+  expect([await voided('P01'), await voided(second)]).toEqual([2, 1]);
+});

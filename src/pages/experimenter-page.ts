@@ -21,6 +21,7 @@ import { askForRehearsal } from './rehearsal-dialog';
 import { rehearse } from './rehearse';
 import { askForSentence } from './sentence-dialog';
 import { StudyAccess } from './study-access';
+import { askHowToVoid } from './void-block-dialog';
 
 /** How often the states are asked for [ms]. */
 const refreshEveryMs = 1500;
@@ -132,7 +133,8 @@ class ExperimenterPage {
     });
   }
 
-  #actionsOn({ plan }: OpenStudy): StudyActions {
+  #actionsOn(study: OpenStudy): StudyActions {
+    const { plan } = study;
     const { id } = plan;
     return {
       rehearse: () => void this.#rehearse(plan),
@@ -140,7 +142,7 @@ class ExperimenterPage {
       exportAll: (version) => void this.#exportZip(id, { version }),
       exportZip: (participant) => void this.#exportZip(id, { participant }),
       command: (participant, command) => void this.#command(id, participant, command),
-      voidBlock: (participant) => void this.#voidBlock(id, participant),
+      voidBlock: (participant) => void this.#voidBlock(study, participant),
       stop: (participant) => void this.#stop(id, participant),
       remark: (participant) => void this.#remark(id, participant),
       release: (participant) => void this.#release(id, participant),
@@ -205,19 +207,13 @@ class ExperimenterPage {
     });
   }
 
-  async #voidBlock(study: string, participant: string): Promise<void> {
-    const repeat = element('input', { type: 'checkbox', checked: true });
-    const choice = element('span', {}, 'Repeat the block at once (otherwise the next one follows)');
-    const reason = await askForSentence({
-      title: `Void the present block of ${participant}`,
-      label: 'Why? It is recorded and stated in the results.',
-      confirm: 'Void it',
-      extra: [element('label', { class: 'inline' }, repeat, choice)],
-    });
-    if (reason === null) return;
+  async #voidBlock(study: OpenStudy, participant: string): Promise<void> {
+    const voided = await askHowToVoid(study, participant);
+    if (!voided) return;
+    const { reason, repeat, participants } = voided;
     await this.#attempt(async (client) => {
-      await client.command(study, participant, { type: 'void-block', reason, repeat: repeat.checked });
-      return `${participant}: the block is being voided.`;
+      for (const one of participants) await client.command(study.plan.id, one, { type: 'void-block', reason, repeat });
+      return `${participants.join(', ')}: the block is being voided.`;
     });
   }
 

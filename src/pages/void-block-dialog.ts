@@ -1,0 +1,57 @@
+import { type Schedule, scheduleFor } from '../core/study/schedule';
+import type { ParticipantState } from '../core/study/study-api';
+import { element } from '../ui/element';
+import type { OpenStudy } from './experimenter-view';
+import { askForSentence } from './sentence-dialog';
+
+/** What is to be voided. */
+export interface VoidedBlock {
+  readonly reason: string;
+  readonly repeat: boolean;
+  /** Whose block it is; more than one of those who play it together. */
+  readonly participants: readonly string[];
+}
+
+/** The task and block of a session's step; null: it is in none. */
+function blockOf({ steps }: Schedule, { session }: ParticipantState) {
+  const step = steps.find(({ id }) => id === session?.step);
+  return step && 'task' in step ? step : null;
+}
+
+/** Who plays the matches of the present block with a participant, and is in it too; archery is played alone also in groups. */
+function companions({ plan, versions, states }: Pick<OpenStudy, 'plan' | 'versions' | 'states'>, participant: string) {
+  const own = states.find((state) => state.participant === participant);
+  if (!own) return [];
+  const followed = versions.find(({ version }) => version === own.version)?.plan ?? plan;
+  const schedule = scheduleFor(followed, participant);
+  const block = blockOf(schedule, own);
+  if (!block || followed.tasks.find(({ id }) => id === block.task)?.game !== 'ball') return [];
+  const members = schedule.groups[block.task]?.members ?? [];
+  return states
+    .filter((state) => state.participant !== participant && members.includes(state.participant))
+    .filter(({ session }) => session?.step.startsWith(`${block.task}/${block.block}/`))
+    .map((state) => state.participant);
+}
+
+const option = (text: string) => {
+  const input = element('input', { type: 'checkbox', checked: true });
+  return { input, node: element('label', { class: 'inline' }, input, element('span', {}, text)) };
+};
+
+/** Asks why a participant's present block is to be voided, and how; null: cancelled. */
+export async function askHowToVoid(study: OpenStudy, participant: string): Promise<VoidedBlock | null> {
+  const others = companions(study, participant);
+  const repeat = option('Repeat the block at once (otherwise the next one follows)');
+  const together = option(
+    `Also for ${others.join(' and ')}: a match is played together, and one that is repeated waits for all`,
+  );
+  const reason = await askForSentence({
+    title: `Void the present block of ${participant}`,
+    label: 'Why? It is recorded and stated in the results.',
+    confirm: 'Void it',
+    extra: [repeat.node, ...(others.length > 0 ? [together.node] : [])],
+  });
+  if (reason === null) return null;
+  const participants = [participant, ...(together.input.checked ? others : [])];
+  return { reason, repeat: repeat.input.checked, participants };
+}
