@@ -42,13 +42,14 @@ export class StudyDeletion {
   }
 
   delete(study: string, participant: string, reason: Receipt['reason'], at: number): Receipt {
-    const { database, places, records, motion, commands } = this.#parts;
+    const { database, plans, places, records, motion, commands } = this.#parts;
     const receipt = database.transaction(() => {
       const invitation = this.#invitationAfter(study, participant, reason);
       const recordCount = records.delete(study, participant);
       const motionFiles = motion.delete(study, participant);
       commands.delete(study, participant);
       places.clear(study, participant, invitation, reason === 'withdrawn');
+      if (reason === 'experimenter') plans.freePlaces(study, participant);
       return database.getOne<ReceiptRow>(
         `INSERT INTO receipts (study, participant, reason, records, motion_files, at) VALUES (?, ?, ?, ?, ?, ?)
          RETURNING *`,

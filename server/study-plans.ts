@@ -101,6 +101,33 @@ export class StudyPlans {
     });
   }
 
+  /**
+   * Inside a transaction: a place that was cleared, and those that stay with an older version for its sake alone, follow the newest one or go
+   * where that has none. They stay where another who plays with them, by either version, has begun.
+   */
+  freePlaces(id: string, participant: string): void {
+    const { plan, version, versions } = this.get(id);
+    const own = versions.find(({ participants }) => participants.includes(participant));
+    if (!own || own.version === version) return;
+    const freed = togetherWith(own.plan, participant);
+    const keeps = new Set(
+      versions.flatMap((older) => (older.version === version ? [] : older.participants.filter((one) => !freed.has(one)))),
+    );
+    const inPlan = participantsOf(plan).filter((one) => freed.has(one));
+    const mixed = inPlan.some((one) => [...togetherWith(plan, one)].some((other) => keeps.has(other)));
+    if (mixed || this.#begun(id).some((begun) => freed.has(begun.participant))) return;
+    for (const one of freed) {
+      const place = [id, one] as const;
+      if (inPlan.includes(one)) {
+        this.#database.run('UPDATE participants SET plan_version = NULL WHERE study = ? AND participant = ?', ...place);
+        continue;
+      }
+      for (const table of ['commands', 'participants']) {
+        this.#database.run(`DELETE FROM ${table} WHERE study = ? AND participant = ?`, ...place);
+      }
+    }
+  }
+
   /** Inside a transaction, of a study in which nothing is recorded. */
   remove(id: string): void {
     for (const table of ['commands', 'participants', 'plan_versions']) {

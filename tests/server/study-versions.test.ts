@@ -133,6 +133,67 @@ describe('a plan that has participants', () => {
   });
 });
 
+describe('a place that the experimenter clears', () => {
+  test('is free, and the next who takes it follows the new version', async () => {
+    const { change, take, of, ask, store } = await begunStudy();
+    await change(asksMore, true);
+    expect(store.planFor('latency', 'P01')).toEqual(latencyPlan());
+    expect((await ask('DELETE', of('P01'), { token: experimenter })).status).toBe(200);
+    expect((await take('P01', asksMore)).plan).toEqual(asksMore);
+    expect(store.overview('latency', now)[0]).toMatchObject({ participant: 'P01', version: 2 });
+  });
+
+  test('goes where the new version has no such place', async () => {
+    const { change, of, ask, store } = await begunStudy();
+    for (const participant of ['P02', 'P18']) store.claim('latency', participant, now);
+    await change({ ...later, participants: 12 }, true);
+    const places = () => store.overview('latency', now).map(({ participant }) => participant);
+    expect(places()).toHaveLength(13);
+    expect((await ask('DELETE', of('P18'), { token: experimenter })).status).toBe(200);
+    expect(places()).toHaveLength(12);
+    expect(store.receipts('latency')).toMatchObject([{ participant: 'P18', reason: 'experimenter' }]);
+  });
+
+  test('stays with the version of a group in which another has begun, and leaves it with the last of them', async () => {
+    const { store } = await servedStudies();
+    store.addStudy(paperPlan(), { simulated: false, at: now });
+    const [first = '', second = '', third = ''] = togetherWith(paperPlan(), 'P04');
+    for (const participant of [first, second]) store.claim('paper', participant, now);
+    store.addStudy(paperPlan({ title: 'Changed' }), { simulated: false, newVersion: true, at: now });
+    const versions = () => {
+      const states = store.overview('paper', now);
+      return [first, second, third].map((one) => states.find(({ participant }) => participant === one)?.version);
+    };
+    store.deleteParticipant('paper', first, 'experimenter', now);
+    expect(versions()).toEqual([1, 1, 1]);
+    store.deleteParticipant('paper', second, 'experimenter', now);
+    expect(versions()).toEqual([2, 2, 2]);
+  });
+
+  test('stays where the new version groups it with a participant who began', async () => {
+    const { store } = await servedStudies();
+    const plan = paperPlan({ participants: 6 });
+    store.addStudy(plan, { simulated: false, at: now });
+    const one = [...togetherWith(plan, 'P01')];
+    const other = ['P01', 'P02', 'P03', 'P04', 'P05', 'P06'].find((name) => !one.includes(name)) as string;
+    for (const participant of ['P01', other]) store.claim('paper', participant, now);
+    // By another seed everybody plays with others, and all stay: nothing is mixed yet.
+    const seed = [1, 2, 3, 4, 5, 6, 7, 8].find((value) =>
+      [...togetherWith({ ...plan, seed: value }, 'P01')].some((name) => !one.includes(name)),
+    );
+    store.addStudy({ ...plan, seed: seed as number }, { simulated: false, newVersion: true, at: now });
+    store.deleteParticipant('paper', 'P01', 'experimenter', now);
+    expect(store.overview('paper', now).map(({ version }) => version)).toEqual([1, 1, 1, 1, 1, 1]);
+  });
+
+  test('stays taken for a participant who has withdrawn', async () => {
+    const { change, store } = await begunStudy();
+    await change(asksMore, true);
+    store.deleteParticipant('latency', 'P01', 'withdrawn', now);
+    expect(store.overview('latency', now)[0]).toMatchObject({ participant: 'P01', version: 1, withdrawn: true });
+  });
+});
+
 describe('those who play together', () => {
   test('follow one version: the group of a participant who began stays with them', async () => {
     const { store } = await servedStudies();
