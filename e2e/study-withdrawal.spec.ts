@@ -43,7 +43,7 @@ test('a participant withdraws alone, by the code on the page that stands beside 
   await expect(go).toBeDisabled();
   await page.getByLabel(/I want everything deleted/).check();
   await go.click();
-  await expect(page.getByRole('alert')).toHaveText('Nothing was deleted: nothing is recorded under this code.');
+  await expect(page.getByRole('alert')).toContainText('Nothing is recorded under this code.');
   await keepPicture(page, 'study-withdraw');
   await page.getByLabel('Your withdrawal code').fill(code.toLowerCase().replaceAll('-', ' '));
   await go.click();
@@ -66,4 +66,29 @@ test('a participant withdraws alone, by the code on the page that stands beside 
   };
   expect(participants[0]).toMatchObject({ withdrawn: true, claimed: false, invitation: null, records: 0 });
   expect(await sessionsInBrowser(page)).toBe(0);
+});
+
+test('a participant whose network fails while everything is deleted is not told that nothing was', async ({
+  page,
+  origin,
+  complaints,
+}) => {
+  complaints.allow(/404.*\/withdraw/, /ERR_FAILED/);
+  const experimenting = experimenter(origin);
+  await experimenting.begin(shortStudy('unheard'), false);
+  const claimed = await experimenting.ask('/unheard/participants/P01/claim', 'POST', {});
+  const { withdrawalCode } = (await claimed.json()) as { withdrawalCode: string };
+  await page.goto(`${origin}/withdraw?study=unheard`);
+  await page.getByLabel('Your withdrawal code').fill(withdrawalCode);
+  await page.getByLabel(/I want everything deleted/).check();
+  await page.route('**/unheard/withdraw', async (route) => {
+    await route.fetch();
+    await route.abort();
+  });
+  const go = page.getByRole('button', { name: 'Delete everything' });
+  await go.click();
+  await expect(page.getByRole('alert')).toContainText('It is not known whether everything is deleted');
+  await page.unroute('**/unheard/withdraw');
+  await go.click();
+  await expect(page.getByRole('alert')).toContainText('if you have sent it before, everything is deleted already');
 });

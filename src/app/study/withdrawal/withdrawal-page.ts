@@ -3,7 +3,7 @@ import { reasonOf } from '../../../core/errors/reasons';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../../../core/study/phrases/phrases';
 import type { PublicStudy, Receipt } from '../../../core/study/study-api';
 import { inLanguage } from '../../../core/study/words';
-import { createWithdrawalClient, ServerRefusal } from '../../../net/study-client';
+import { createWithdrawalClient, ServerRefusal, ServerUnreachable } from '../../../net/study-client';
 import { offerDownload } from '../../../ui/downloads';
 import { button, element, pageElement } from '../../../ui/element';
 import { pageFolder } from '../../../ui/page-folder';
@@ -78,11 +78,12 @@ interface Asking {
 /** What the server says of a code that is no one's. */
 const unknownCode = 'nothing is recorded under this code';
 
-/** Why nothing was deleted. */
-const failure = (error: unknown, phrases: Phrases): string =>
-  error instanceof ServerRefusal && error.message === unknownCode
-    ? phrases.say('withdrawal.unknownCode')
-    : phrases.say('withdrawal.failed', { reason: reasonOf(error) });
+/** Why there is no receipt. Where no answer came, the server may have deleted everything all the same. */
+function failure(error: unknown, phrases: Phrases): string {
+  if (error instanceof ServerRefusal && error.message === unknownCode) return phrases.say('withdrawal.unknownCode');
+  const reason = reasonOf(error);
+  return phrases.say(error instanceof ServerUnreachable ? 'withdrawal.unheard' : 'withdrawal.failed', { reason });
+}
 
 /** Asks for the code, and deletes once it is confirmed. */
 function withdrawalForm({ asked, about, phrases, done }: Asking): HTMLElement {

@@ -264,7 +264,10 @@ export const english = {
   'withdrawal.delete': 'Delete everything',
   'withdrawal.lookUp': 'The code was shown to you after you agreed to take part; no one can look it up.',
   'withdrawal.contact': 'Does something not work? {contact}',
-  'withdrawal.unknownCode': 'Nothing was deleted: nothing is recorded under this code.',
+  'withdrawal.unknownCode':
+    'Nothing is recorded under this code. Compare it with your note; if you have sent it before, everything is deleted already.',
+  'withdrawal.unheard':
+    'It is not known whether everything is deleted: {reason}. Send the code again; if it was, nothing is recorded under it any more.',
   'withdrawal.failed': 'Nothing was deleted: {reason}.',
   'receipt.name': 'Receipt',
   'receipt.title': 'Everything is deleted',

@@ -266,7 +266,10 @@ export const german = {
   'withdrawal.delete': 'Alles löschen',
   'withdrawal.lookUp': 'Der Code wurde Ihnen nach Ihrer Einwilligung angezeigt; niemand kann ihn für Sie nachschlagen.',
   'withdrawal.contact': 'Funktioniert etwas nicht? {contact}',
-  'withdrawal.unknownCode': 'Es wurde nichts gelöscht: Unter diesem Code ist nichts gespeichert.',
+  'withdrawal.unknownCode':
+    'Unter diesem Code ist nichts gespeichert. Vergleichen Sie ihn mit Ihrer Notiz; haben Sie ihn schon einmal abgeschickt, ist bereits alles gelöscht.',
+  'withdrawal.unheard':
+    'Ob alles gelöscht ist, ist nicht bekannt. Schicken Sie den Code noch einmal ab; wurde gelöscht, ist unter ihm nichts mehr gespeichert. Technischer Grund (englisch): {reason}.',
   'withdrawal.failed': 'Es wurde nichts gelöscht. Technischer Grund (englisch): {reason}.',
   'receipt.name': 'Beleg',
   'receipt.title': 'Alles ist gelöscht',
