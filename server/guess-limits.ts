@@ -37,7 +37,8 @@ export class TooManyGuesses extends Error {
 export interface GuessLimits {
   /**
    * Asks `isRight` where another guess may be made from this address and at this study; throws TooManyGuesses where it may not.
-   * `isRight` answers at once. A wrong secret that is repeated is one guess; one that was right before waits for no one.
+   * `isRight` answers at once; where it throws, nothing was guessed. A wrong secret that is repeated is one guess; one that was right before
+   * waits for no one.
    */
   attempt(guess: Guess, isRight: () => boolean): Promise<boolean>;
 }
@@ -101,7 +102,14 @@ export function createGuessLimits(onWrong: (guess: WrongGuess) => void): GuessLi
         await byAddress.giveBack(address);
         throw new TooManyGuesses(what, studyWait);
       }
-      if (isRight()) {
+      let opens: boolean;
+      try {
+        opens = isRight();
+      } catch (error) {
+        await Promise.all([byAddress.giveBack(address), byStudy.giveBack(study)]);
+        throw error;
+      }
+      if (opens) {
         await Promise.all([byAddress.forget(address), byStudy.giveBack(study), right.set(digest, 1, trustSeconds)]);
         return true;
       }

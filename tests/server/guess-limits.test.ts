@@ -33,6 +33,16 @@ function door(secret = 'the right one') {
 }
 
 describe('guesses from one address', () => {
+  test('that could not be looked at count for nothing: a right code waits for no one once the fault is over', async () => {
+    const limits = createGuessLimits(() => undefined);
+    const guess = { what: 'withdrawal code', address: '203.0.113.7', of: 'paper', secret: 'the right one' } as const;
+    const full = () => {
+      throw new Error('the disk is full');
+    };
+    for (let i = 0; i < 40; i++) await expect(limits.attempt(guess, full)).rejects.toThrow('the disk is full');
+    expect(await limits.attempt(guess, () => true)).toBe(true);
+  });
+
   test('are looked at five times, then after 1, 2, 4 … seconds', async () => {
     const { guess } = door();
     for (let i = 0; i < 5; i++) expect(await guess(`wrong ${i}`)).toBe(false);
