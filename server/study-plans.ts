@@ -188,6 +188,13 @@ export class StudyPlans {
     if (text !== textBefore && plan.consent.version === before.consent.version) {
       throw new ValidationError('consent.version', 'the text has changed, and its version has not');
     }
+    const [code, codeBefore] = [plan, before].map((one) => participantsOf(one)[0]);
+    if (code !== codeBefore) {
+      throw new ValidationError(
+        'participants',
+        `the codes of participants would change from ${codeBefore} to ${code}, and links that were sent would open nothing: give the plan another id`,
+      );
+    }
     const kept = new Map<string, number>();
     for (const { participant, plan_version } of this.#begun(id)) {
       const own = versions.find((one) => one.version === plan_version)?.plan ?? before;

@@ -119,6 +119,15 @@ describe('a plan that has participants', () => {
     expect(store.study('latency').retentionUntil).toBe(now + 365 * 86_400);
   });
 
+  test('does not give its participants other codes: links that were sent would open nothing', async () => {
+    const { change, see } = await begunStudy();
+    const { status, json } = await change({ ...later, participants: 120 }, true);
+    expect(status).toBe(400);
+    expect(json).toMatchObject({ field: 'participants', error: expect.stringContaining('from P01 to P001') });
+    expect((await see('/participants')).participants).toHaveLength(18);
+    expect((await change({ ...later, participants: 99 }, true)).status).toBe(201);
+  });
+
   test('does not change its consent text under the same version of the text', async () => {
     const { change, plan } = await begunStudy();
     const consent = { ...plan.consent, paragraphs: ['Another text.'] };
