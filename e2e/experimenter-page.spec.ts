@@ -119,3 +119,28 @@ test('a block of those who play together is voided for all of them, if the exper
   await expect(page.getByRole('status')).toHaveText('P01: the block is being voided.');
   expect([await voided('P01'), await voided(second)]).toEqual([2, 1]);
 });
+
+test('a block that is over by the time the reason is written is not taken for the next one', async ({ page, origin }) => {
+  const study = plan('moving-on');
+  const experimenting = experimenter(origin);
+  await experimenting.begin(study, false);
+  const place = '/moving-on/participants/P01';
+  await experimenting.ask(`${place}/claim`, 'POST', {});
+  const at = async (step: string) => {
+    const progress = { ...begin(scheduleFor(study, 'P01')), motion: false, step };
+    expect((await experimenting.ask(`${place}/progress`, 'PUT', progress)).status).toBe(204);
+  };
+  await at('archery/1/questionnaire');
+  await page.goto(`${origin}/experimenter`);
+  await signIn(page);
+  await page.getByRole('combobox', { name: 'Study' }).selectOption('moving-on');
+  const row = page.getByRole('row', { name: /^P01 / });
+  await row.getByRole('button', { name: 'Void block' }).click();
+  await at('archery/2/trial-1');
+  await expect(page.locator('tr', { hasText: 'P01' }).first()).toContainText('archery, block 2');
+  await page.getByRole('textbox').fill('the phone rang');
+  await page.getByRole('button', { name: 'Void it' }).click();
+  await expect(page.getByRole('alert')).toHaveText('Not voided for P01: block 1 of archery is over there.');
+  const { commands } = (await (await experimenting.ask(`${place}/commands`)).json()) as { commands: unknown[] };
+  expect(commands).toEqual([]);
+});

@@ -79,7 +79,12 @@ const commandSchema = v.variant('type', [
   v.strictObject({ type: v.literal('pause') }),
   v.strictObject({ type: v.literal('resume') }),
   v.strictObject({ type: v.literal('stop'), by: v.literal('experimenter'), reason: text(500) }),
-  v.strictObject({ type: v.literal('void-block'), reason: text(500), repeat: v.boolean('expected true or false') }),
+  v.strictObject({
+    type: v.literal('void-block'),
+    reason: text(500),
+    repeat: v.boolean('expected true or false'),
+    of: v.exactOptional(v.strictObject({ task: identifier, block: integerBetween(1, 1000) })),
+  }),
 ]);
 
 const newStudySchema = v.strictObject({

@@ -21,7 +21,7 @@ import { askForRehearsal } from './rehearsal-dialog';
 import { rehearse } from './rehearse';
 import { askForSentence } from './sentence-dialog';
 import { StudyAccess } from './study-access';
-import { askHowToVoid } from './void-block-dialog';
+import { askHowToVoid, isIn } from './void-block-dialog';
 
 /** How often the states are asked for [ms]. */
 const refreshEveryMs = 1500;
@@ -209,11 +209,17 @@ class ExperimenterPage {
 
   async #voidBlock(study: OpenStudy, participant: string): Promise<void> {
     const voided = await askHowToVoid(study, participant);
-    if (!voided) return;
-    const { reason, repeat, participants } = voided;
+    if (!voided?.of) return;
+    const { reason, repeat, participants, of } = voided;
+    const { id } = study.plan;
+    // The participant may have gone on while the reason was written.
+    const now = this.#study?.plan.id === id ? this.#study : study;
+    const here = participants.filter((one) => isIn(now, one, of));
     await this.#attempt(async (client) => {
-      for (const one of participants) await client.command(study.plan.id, one, { type: 'void-block', reason, repeat });
-      return `${participants.join(', ')}: the block is being voided.`;
+      for (const one of here) await client.command(id, one, { type: 'void-block', reason, repeat, of });
+      const gone = participants.filter((one) => !here.includes(one));
+      if (gone.length === 0) return `${here.join(', ')}: the block is being voided.`;
+      throw new Error(`Not voided for ${gone.join(', ')}: block ${of.block} of ${of.task} is over there.`);
     });
   }
 

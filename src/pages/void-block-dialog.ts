@@ -1,5 +1,5 @@
-import { type Schedule, scheduleFor } from '../core/study/schedule';
-import type { ParticipantState } from '../core/study/study-api';
+import { scheduleFor } from '../core/study/schedule';
+import type { MeantBlock } from '../core/study/study-api';
 import { element } from '../ui/element';
 import type { OpenStudy } from './experimenter-view';
 import { askForSentence } from './sentence-dialog';
@@ -10,27 +10,31 @@ export interface VoidedBlock {
   readonly repeat: boolean;
   /** Whose block it is; more than one of those who play it together. */
   readonly participants: readonly string[];
+  /** null: the participant was in none. */
+  readonly of: MeantBlock | null;
 }
 
-/** The task and block of a session's step; null: it is in none. */
-function blockOf({ steps }: Schedule, { session }: ParticipantState) {
-  const step = steps.find(({ id }) => id === session?.step);
-  return step && 'task' in step ? step : null;
+/** Where a participant is, by the plan that they follow. */
+function placeOf({ plan, versions, states }: OpenStudy, participant: string) {
+  const own = states.find((state) => state.participant === participant);
+  const followed = versions.find(({ version }) => version === own?.version)?.plan ?? plan;
+  const schedule = scheduleFor(followed, participant);
+  const step = schedule.steps.find(({ id }) => id === own?.session?.step);
+  return { followed, schedule, block: step && 'task' in step ? { task: step.task, block: step.block } : null };
+}
+
+/** Whether a participant is in this block now. */
+export function isIn(study: OpenStudy, participant: string, { task, block }: MeantBlock): boolean {
+  const now = placeOf(study, participant).block;
+  return now?.task === task && now.block === block;
 }
 
 /** Who plays the matches of the present block with a participant, and is in it too; archery is played alone also in groups. */
-function companions({ plan, versions, states }: Pick<OpenStudy, 'plan' | 'versions' | 'states'>, participant: string) {
-  const own = states.find((state) => state.participant === participant);
-  if (!own) return [];
-  const followed = versions.find(({ version }) => version === own.version)?.plan ?? plan;
-  const schedule = scheduleFor(followed, participant);
-  const block = blockOf(schedule, own);
+function companions(study: OpenStudy, participant: string): readonly string[] {
+  const { followed, schedule, block } = placeOf(study, participant);
   if (!block || followed.tasks.find(({ id }) => id === block.task)?.game !== 'ball') return [];
   const members = schedule.groups[block.task]?.members ?? [];
-  return states
-    .filter((state) => state.participant !== participant && members.includes(state.participant))
-    .filter(({ session }) => session?.step.startsWith(`${block.task}/${block.block}/`))
-    .map((state) => state.participant);
+  return members.filter((member) => member !== participant && isIn(study, member, block));
 }
 
 const option = (text: string) => {
@@ -53,5 +57,5 @@ export async function askHowToVoid(study: OpenStudy, participant: string): Promi
   });
   if (reason === null) return null;
   const participants = [participant, ...(together.input.checked ? others : [])];
-  return { reason, repeat: repeat.input.checked, participants };
+  return { reason, repeat: repeat.input.checked, participants, of: placeOf(study, participant).block };
 }

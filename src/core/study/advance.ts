@@ -4,6 +4,7 @@ import { checkedDemographics } from './demographics';
 import { currentStep, elapsedSeconds, type Progress, placeOf, runningOn } from './progress';
 import { type Answer, checkedAnswers, checkedDraft } from './questionnaires';
 import type { Schedule, StudyStep } from './schedule';
+import type { MeantBlock } from './study-api';
 import { type Place, recordVersion, type StudyEvent, type StudyRecord } from './study-record';
 import { checkedOutcome, type TrialOutcome } from './trial-log';
 import { unwellBy } from './unwell';
@@ -30,8 +31,8 @@ export type ProgressEvent =
   /** Asked for their answers whether to stop, the participant goes on. */
   | { readonly type: 'go-on' }
   | { readonly type: 'resume' }
-  /** The present block counts for nothing; repeat: it starts again, otherwise the next one follows. */
-  | { readonly type: 'void-block'; readonly reason: string; readonly repeat: boolean }
+  /** The present block, if it is the one that is meant, counts for nothing; repeat: it starts again, otherwise the next one follows. */
+  | { readonly type: 'void-block'; readonly reason: string; readonly repeat: boolean; readonly of?: MeantBlock }
   | { readonly type: 'remark'; readonly text: string }
   /** The page was loaded again, here or on another device: a trial that ran is lost and is tried again; everything else goes on. */
   | { readonly type: 'reload' };
@@ -310,8 +311,11 @@ function resume(at: Moment): Advance | null {
 
 function voidBlock(at: Moment, event: EventOf<'void-block'>): Advance | null {
   if (!at.place) return null;
-  const { repeat } = event;
+  const { repeat, of } = event;
   const { task, block, run } = at.place;
+  if (of && (of.task !== task || of.block !== block)) {
+    return at.refused(`block ${of.block} of "${of.task}", which was meant, is not under way`);
+  }
   const { steps } = at.schedule;
   const { runs } = at.progress;
   const reason = checked(text(500), event.reason);

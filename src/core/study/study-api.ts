@@ -3,13 +3,19 @@ import type { StudyPlan } from './plan';
 import type { Progress } from './progress';
 import type { StudyRecord } from './study-record';
 
-/** What an experimenter asks of a participant's page. */
+/** A block of a task, from 1. */
+export interface MeantBlock {
+  readonly task: string;
+  readonly block: number;
+}
+
+/** What an experimenter asks of a participant's page; `of`: the block that was under way when it was asked, absent: the present one. */
 export type StudyCommand =
   | { readonly type: 'start' }
   | { readonly type: 'pause' }
   | { readonly type: 'resume' }
   | { readonly type: 'stop'; readonly by: 'experimenter'; readonly reason: string }
-  | { readonly type: 'void-block'; readonly reason: string; readonly repeat: boolean };
+  | { readonly type: 'void-block'; readonly reason: string; readonly repeat: boolean; readonly of?: MeantBlock };
 
 /** A recording of tracked frames that the server takes at once [bytes]. */
 export const mostMotionBytes = 16 * 2 ** 20;

@@ -327,6 +327,18 @@ describe('a voided block', () => {
     expect(new Set(one.records.map(({ id }) => id)).size).toBe(one.records.length);
   });
 
+  test('is the one that was meant: a participant who has moved on loses no other', () => {
+    const one = session(schedule);
+    one.doUntil(({ id }) => id === 'archery/2/calibration');
+    const of = { task: 'archery', block: 1 };
+    const late = { type: 'void-block', reason: 'controller died', repeat: true, of } as const;
+    expect(one.tell(late)).toBe('block 1 of "archery", which was meant, is not under way');
+    expect(one.step.id).toBe('archery/2/calibration');
+    expect(one.tell({ ...late, of: { ...of, block: 2 } })).toBeNull();
+    expect(one.step.id).toBe('archery/2/calibration');
+    expect(one.progress.runs).toEqual({ 'archery/2': 2 });
+  });
+
   test('or is left behind', () => {
     const one = session(schedule);
     one.doUntil(({ id }) => id === 'archery/1/trial-1');
