@@ -1,6 +1,6 @@
 import { reasonOf } from '../../core/errors/reasons';
 import type { StudyRecord } from '../../core/study/study-record';
-import type { KeptMotion, KeptSession, StudyVault } from './study-vault';
+import { type KeptMotion, type KeptSession, SessionForgotten, type StudyVault } from './study-vault';
 
 /** What an earlier visit of the page left in the vault. */
 export interface Unsent {
@@ -29,6 +29,9 @@ export class SessionStore {
   #unsaved: readonly StudyRecord[] = [];
   readonly #unsavedMotion = new Map<string, KeptMotion>();
   #fault: string | null;
+  /** Whether this page has stored the session, and whether another one has deleted it since: then nothing of it is stored any more. */
+  #stored = false;
+  #forgotten = false;
   #saving: Promise<void> = Promise.resolve();
 
   /** `vault` null: this browser stores nothing. `onChange` hears of every change, and of every attempt to store it. */
@@ -57,6 +60,7 @@ export class SessionStore {
 
   /** Of these, how many are in the memory of the page alone. */
   get unsaved(): number {
+    if (this.#forgotten) return 0;
     return this.#vault ? this.#unsaved.length + this.#unsavedMotion.size : this.unsent;
   }
 
@@ -136,12 +140,13 @@ export class SessionStore {
   }
 
   async #saveOnce(): Promise<void> {
-    const vault = this.#vault;
+    const vault = this.#forgotten ? null : this.#vault;
     const session = this.#session;
     const records = this.#unsaved;
     if (!vault || (records.length === 0 && this.#unsavedMotion.size === 0 && this.#saved === session)) return;
     try {
-      await vault.save(session, records);
+      await vault.save(session, records, this.#stored);
+      this.#stored = true;
       this.#unsaved = this.#unsaved.filter((record) => !records.includes(record));
       this.#saved = session;
       for (const motion of [...this.#unsavedMotion.values()]) {
@@ -150,7 +155,8 @@ export class SessionStore {
       }
       this.#fault = null;
     } catch (error) {
-      this.#fault = reasonOf(error);
+      if (error instanceof SessionForgotten) this.#forgotten = true;
+      else this.#fault = reasonOf(error);
     }
     this.#onChange();
   }

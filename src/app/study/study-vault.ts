@@ -31,11 +31,17 @@ interface Schema extends DBSchema {
   motion: { key: [string, string, string]; value: KeptMotion & { study: string; participant: string } };
 }
 
+/** The session was in the vault and is no more: another page of this browser has forgotten it, as when its participant withdrew there. */
+export class SessionForgotten extends Error {}
+
 /** What this device keeps until the server has it: sessions, records and tracked frames, in IndexedDB. */
 export interface StudyVault {
   session(study: string, participant: string): Promise<KeptSession | null>;
-  /** The session and new records, both or neither; rejects where the device has no room. */
-  save(session: KeptSession, records: readonly StudyRecord[]): Promise<void>;
+  /**
+   * The session and new records, both or neither; rejects where the device has no room, and with SessionForgotten where it is saved `again` and
+   * the vault holds it no more.
+   */
+  save(session: KeptSession, records: readonly StudyRecord[], again?: boolean): Promise<void>;
   /** Records that the server has not acknowledged, in the order in which they came about. */
   records(study: string, participant: string): Promise<readonly StudyRecord[]>;
   removeRecords(study: string, participant: string, ids: readonly string[]): Promise<void>;
@@ -72,12 +78,14 @@ export async function openStudyVault(name = 'threepoint-studies'): Promise<Study
       const kept = await database.get('sessions', [study, participant]);
       return kept ? broughtUpToDate(kept) : null;
     },
-    async save(session, records) {
+    async save(session, records, again = false) {
       // strict: resolved means written to the disk, not to its cache.
       const transaction = database.transaction(['sessions', 'records'], 'readwrite', { durability: 'strict' });
       const { study, participant } = session;
+      const sessions = transaction.objectStore('sessions');
+      if (again && (await sessions.getKey([study, participant])) === undefined) throw new SessionForgotten();
       await Promise.all([
-        transaction.objectStore('sessions').put(session),
+        sessions.put(session),
         ...records.map((record) =>
           transaction.objectStore('records').put({ study, participant, id: record.id, record }),
         ),

@@ -1,0 +1,23 @@
+import { expect, test } from 'vitest';
+import { openStudyVault } from '../../../src/app/study/study-vault';
+import { beforeTheQuestions } from './participant-steps';
+import { studyServer } from './study-server';
+
+test('a participant who withdrew in another tab is written to this browser no more, whatever is pressed in the first one', async () => {
+  const server = await studyServer();
+  const { tab } = await beforeTheQuestions(server);
+  await tab.exchange();
+  server.store.deleteParticipant('paper', 'P01', 'withdrawn', 1e9);
+  const vault = await openStudyVault();
+  await vault.forget('paper', 'P01');
+  const field = tab.display.screen?.question?.field;
+  if (field?.kind !== 'likert') throw new Error('expected a Likert scale');
+  field.choose(4);
+  tab.display.press('pause');
+  await tab.exchange();
+  expect(tab.display.shown).toBe('locked-out');
+  expect(await vault.session('paper', 'P01')).toBeNull();
+  expect(await vault.records('paper', 'P01')).toEqual([]);
+  // Nothing is lost that should be kept: the page may be closed without a question.
+  expect(tab.visit.losesAnswers).toBe(false);
+});
