@@ -6,7 +6,10 @@ import { expect } from './page-fixture';
 import { signIn, test } from './study-participant';
 import { experimenter } from './study-server';
 
-const plan = (id: string) => ({ ...parsePlan(readFileSync('public/studies/latency.json', 'utf8'), 'latency.json'), id });
+const plan = (id: string) => ({
+  ...parsePlan(readFileSync('public/studies/latency.json', 'utf8'), 'latency.json'),
+  id,
+});
 
 test.use({ viewport: { width: 1280, height: 860 } });
 
@@ -35,7 +38,12 @@ test('the link of a participant under way is in sight on a narrow screen too', a
   await experimenting.begin(study, false);
   const place = '/narrow/participants/P01';
   expect((await experimenting.ask(`${place}/claim`, 'POST', {})).status).toBe(201);
-  const progress = { ...begin(scheduleFor(study, 'P01')), motion: false, step: 'archery/2/questionnaire', running: true };
+  const progress = {
+    ...begin(scheduleFor(study, 'P01')),
+    motion: false,
+    step: 'archery/2/questionnaire',
+    running: true,
+  };
   expect((await experimenting.ask(`${place}/progress`, 'PUT', progress)).status).toBe(204);
   await page.setViewportSize({ width: 960, height: 800 });
   await page.goto(`${origin}/experimenter`);
@@ -120,7 +128,10 @@ test('a block of those who play together is voided for all of them, if the exper
   expect([await voided('P01'), await voided(second)]).toEqual([2, 1]);
 });
 
-test('a block that is over by the time the reason is written is not taken for the next one', async ({ page, origin }) => {
+test('a block that is over by the time the reason is written is not taken for the next one', async ({
+  page,
+  origin,
+}) => {
   const study = plan('moving-on');
   const experimenting = experimenter(origin);
   await experimenting.begin(study, false);

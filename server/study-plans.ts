@@ -111,7 +111,9 @@ export class StudyPlans {
     if (!own || own.version === version) return;
     const freed = togetherWith(own.plan, participant);
     const keeps = new Set(
-      versions.flatMap((older) => (older.version === version ? [] : older.participants.filter((one) => !freed.has(one)))),
+      versions.flatMap((older) =>
+        older.version === version ? [] : older.participants.filter((one) => !freed.has(one)),
+      ),
     );
     const inPlan = participantsOf(plan).filter((one) => freed.has(one));
     const mixed = inPlan.some((one) => [...togetherWith(plan, one)].some((other) => keeps.has(other)));
