@@ -102,6 +102,9 @@ export function resolvedQuestionnaire(file: QuestionnaireFile, field = ''): Ques
     const first = file.questions.findIndex(({ id }) => id === question.id);
     if (first !== index)
       throw new ValidationError(`${way}.id`, `"${question.id}" is the name of question ${first} too`);
+    // Answers are kept by name: such a one would be there before anything is answered.
+    if (question.id in {})
+      throw new ValidationError(`${way}.id`, `"${question.id}" is a name that the program keeps for itself`);
     const answer = question.answer ?? file.answer;
     if (!answer) throw new ValidationError(`${way}.answer`, 'is missing, and the questionnaire says none for all');
     if (question.answer) refuseForm(question.answer, `${way}.answer`);

@@ -275,3 +275,18 @@ test('what is typed is an answer as soon as it is one', () => {
   expect(typedAnswer({ kind: 'text', maxLength: 5 }, '  ')).toBeNull();
   expect(typedAnswer({ kind: 'text', maxLength: 5 }, ' yes ')).toBe('yes');
 });
+
+test.each(['constructor', 'toString', 'valueOf'])(
+  'a question is not named "%s", under which every object has something',
+  (id) => {
+    const file: QuestionnaireFile = {
+      id: 'mine',
+      title: 'Mine',
+      answer: { kind: 'likert', from: 1, to: 5 },
+      questions: [{ id, text: 'How was it?' }],
+    };
+    expect(() => resolvedQuestionnaire(file)).toThrow(
+      `questions[0].id: "${id}" is a name that the program keeps for itself`,
+    );
+  },
+);
