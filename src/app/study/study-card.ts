@@ -21,6 +21,21 @@ const buttonNode = ({ id, label, look, act }: StudyScreen['buttons'][number]): H
     disabled: look === 'off',
   });
 
+const put = (node: HTMLElement, text: string | null) => {
+  node.hidden = text === null;
+  if (text !== null && node.textContent !== text) node.textContent = text;
+};
+
+/** Puts another screen or form into the card. `held`: the one before had the focus of the keyboard, which goes to the new words; they are read out. */
+function fill(card: HTMLElement, nodes: readonly Node[], held: boolean): void {
+  card.replaceChildren(...nodes);
+  card.scrollTop = 0;
+  const words = held ? card.querySelector<HTMLElement>('h1, legend') : null;
+  if (!words) return;
+  words.tabIndex = -1;
+  words.focus({ preventScroll: true });
+}
+
 /** `parent`: what the card lies over. */
 export function createStudyCard(parent: HTMLElement = document.body): StudyCard {
   const kicker = element('p', { class: 'kicker' });
@@ -37,11 +52,6 @@ export function createStudyCard(parent: HTMLElement = document.body): StudyCard 
   const dots = element('nav', { class: 'dots' });
   let shownKey = '';
   let shownDots = '';
-
-  const put = (node: HTMLElement, text: string | null) => {
-    node.hidden = text === null;
-    if (text !== null && node.textContent !== text) node.textContent = text;
-  };
 
   const speak = ({ say, spoken }: Phrases) => {
     card.lang = spoken;
@@ -65,17 +75,21 @@ export function createStudyCard(parent: HTMLElement = document.body): StudyCard 
       if (key !== shownKey) {
         shownKey = key;
         const focused = document.activeElement?.getAttribute('data-id');
+        const held = card.contains(document.activeElement);
         const another = card.dataset.screen !== screen.id;
         card.dataset.screen = screen.id;
         content.replaceChildren(
           ...(question ? [dots, ...questionNodes(question)] : [element('h1', {}, title), ...paragraphs(text)]),
         );
         row.replaceChildren(...buttons.map(buttonNode));
-        card.replaceChildren(kicker, content, figure, bar, hint, row, footnote);
-        // A card built anew keeps the focus of the keyboard where it was.
-        const again = focused && card.querySelector<HTMLElement>(`[data-id="${focused}"]`);
-        if (again) again.focus({ preventScroll: true });
-        if (another) card.scrollTop = 0;
+        const parts = [kicker, content, figure, bar, hint, row, footnote];
+        if (another) fill(card, parts, held);
+        else {
+          card.replaceChildren(...parts);
+          // The same card built anew keeps the focus of the keyboard where it was.
+          const again = focused && card.querySelector<HTMLElement>(`[data-id="${focused}"]`);
+          if (again) again.focus({ preventScroll: true });
+        }
       }
       if (question) {
         const state = JSON.stringify([question.number, question.all]);
@@ -97,8 +111,7 @@ export function createStudyCard(parent: HTMLElement = document.body): StudyCard 
       if (shownKey === `form ${form.kind}`) return;
       shownKey = `form ${form.kind}`;
       card.dataset.screen = form.kind;
-      card.replaceChildren(...formNodes(form, speak), footnote);
-      card.scrollTop = 0;
+      fill(card, [...formNodes(form, speak), footnote], card.contains(document.activeElement));
     },
   };
 }
