@@ -3,7 +3,7 @@ import { measuresIn, overallComparisons } from '../../src/core/study/exported-re
 import { answersIn, trialsIn } from '../../src/core/study/study-tables';
 import { createExperimenterClient } from '../../src/net/study-client';
 import { rehearse } from '../../src/pages/rehearse';
-import { latencyPlan } from '../core/study/studies';
+import { examplePlan, latencyPlan } from '../core/study/studies';
 import { experimenter, now, servedStudies } from '../server/running-studies';
 
 const effects = { answers: { 'late-200': -1.5 }, scores: {} };
@@ -34,6 +34,19 @@ test('a rehearsal goes through the plan to the end, into a study of its own, wit
   const compared = overallComparisons(measuresIn(records, rehearsed).answers, rehearsed);
   expect(compared.filter(({ variance }) => (variance?.within?.p ?? 1) < 0.05).length).toBeGreaterThan(4);
   expect((await client.records('latency')).records).toEqual([]);
+});
+
+test('a rehearsal of a study in two languages is called SIMULATED in both', async () => {
+  const { client } = await server();
+  const { title, ...plan } = examplePlan();
+  const id = await rehearse(
+    client,
+    { ...plan, title, participants: 2 },
+    { seed: 3, effects: { answers: {}, scores: {} }, at: now },
+  );
+  const { en, de } = title as Readonly<Record<'en' | 'de', string>>;
+  expect((await client.records(id)).plan.title).toEqual({ en: `SIMULATED: ${en}`, de: `SIMULATED: ${de}` });
+  expect((await client.studies()).map((listed) => listed.title)).toContain(`SIMULATED: ${en}`);
 });
 
 test('another rehearsal takes the place of the first, and is the same for the same seed', async () => {

@@ -7,6 +7,7 @@ import { type Schedule, type StudyStep, scheduleFor } from '../study/schedule';
 import type { StudyRecord } from '../study/study-record';
 import type { TrialOutcome } from '../study/trial-log';
 import { ValidationError } from '../study/validation';
+import type { Words } from '../study/words';
 import { type AnswerModel, answerModelWith, drawAnswers, drawPerson } from './answer-model';
 import {
   drawArchery,
@@ -61,10 +62,17 @@ export interface SimulatedParticipant {
   readonly records: readonly StudyRecord[];
 }
 
+const marked = (title: string): string => `SIMULATED: ${title}`.slice(0, 120);
+
+const markedInAll = (title: Words): Words =>
+  typeof title === 'string'
+    ? marked(title)
+    : Object.fromEntries(Object.entries(title).map(([language, text]) => [language, marked(text)]));
+
 const renamed = (plan: StudyPlan, ending: string): StudyPlan => ({
   ...plan,
   id: `${plan.id.slice(0, 37)}-${ending}`,
-  title: `SIMULATED: ${plan.title}`.slice(0, 120),
+  title: markedInAll(plan.title),
 });
 
 /** The plan under a name that cannot be taken for a study of people. */
