@@ -20,7 +20,7 @@ function placeOf({ plan, versions, states }: OpenStudy, participant: string) {
   const followed = versions.find(({ version }) => version === own?.version)?.plan ?? plan;
   const schedule = scheduleFor(followed, participant);
   const step = schedule.steps.find(({ id }) => id === own?.session?.step);
-  return { followed, schedule, block: step && 'task' in step ? { task: step.task, block: step.block } : null };
+  return { schedule, block: step && 'task' in step ? { task: step.task, block: step.block } : null };
 }
 
 /** Whether a participant is in this block now. */
@@ -29,10 +29,10 @@ export function isIn(study: OpenStudy, participant: string, { task, block }: Mea
   return now?.task === task && now.block === block;
 }
 
-/** Who plays the matches of the present block with a participant, and is in it too; archery is played alone also in groups. */
+/** Who plays the matches of the present block with a participant, and is in it too. */
 function companions(study: OpenStudy, participant: string): readonly string[] {
-  const { followed, schedule, block } = placeOf(study, participant);
-  if (!block || followed.tasks.find(({ id }) => id === block.task)?.game !== 'ball') return [];
+  const { schedule, block } = placeOf(study, participant);
+  if (!block) return [];
   const members = schedule.groups[block.task]?.members ?? [];
   return members.filter((member) => member !== participant && isIn(study, member, block));
 }

@@ -211,6 +211,11 @@ export function checkedPlan(value: unknown): StudyPlan {
     }
   });
   refuseUnfilledCohorts(plan);
+  plan.tasks.forEach(({ game, groupSize }, index) => {
+    if (game === 'archery' && groupSize > 1) {
+      throw new ValidationError(`tasks[${index}].groupSize`, 'archery is played alone: expected 1');
+    }
+  });
   return plan;
 }
 

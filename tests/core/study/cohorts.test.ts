@@ -34,7 +34,7 @@ describe('cohorts', () => {
         fc.constantFrom(1, 3),
         fc.integer({ min: 1, max: 3 }),
         (planSeed, cohorts, groupSize, times) => {
-          const task = { ...archery, groupSize };
+          const task = { ...archery, groupSize, game: groupSize > 1 ? ('ball' as const) : archery.game };
           const participants = cohorts * groupSize * 2 * times;
           const plan = checkedPlan(
             paperPlan({ seed: planSeed, cohorts: bodies(cohorts), participants, tasks: [task] }),

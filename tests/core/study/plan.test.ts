@@ -288,3 +288,9 @@ describe('a study file with a mistake', () => {
     expect(() => scheduleFor(paperPlan(), 'P16')).toThrow('P01 to P15, not P16');
   });
 });
+
+test('archery is played alone: of a group one score would count for all', () => {
+  const plan = paperPlan();
+  const tasks = plan.tasks.map((task) => ({ ...task, groupSize: 3 }));
+  expect(() => checkedPlan({ ...plan, tasks })).toThrow('tasks[0].groupSize: archery is played alone: expected 1');
+});
