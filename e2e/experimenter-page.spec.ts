@@ -13,7 +13,7 @@ const plan = (id: string) => ({
 
 test.use({ viewport: { width: 1280, height: 860 } });
 
-test('a participant whose page has just reported is there, though the experimenter’s computer has another clock', async ({
+test('a participant whose page has just reported is there, though the experimenter’s computer has another clock @full', async ({
   page,
   origin,
 }) => {
@@ -32,7 +32,7 @@ test('a participant whose page has just reported is there, though the experiment
   await expect(row).toContainText(/\d s ago/);
 });
 
-test('the link of a participant under way is in sight on a narrow screen too', async ({ page, origin }) => {
+test('the link of a participant under way is in sight on a narrow screen too @full', async ({ page, origin }) => {
   const study = plan('narrow');
   const experimenting = experimenter(origin);
   await experimenting.begin(study, false);
@@ -55,7 +55,7 @@ test('the link of a participant under way is in sight on a narrow screen too', a
   expect(shown && shown.x + shown.width).toBeLessThan(960);
 });
 
-test('a study that the address asks for is opened as soon as the token is given', async ({ page, origin }) => {
+test('a study that the address asks for is opened as soon as the token is given @full', async ({ page, origin }) => {
   await experimenter(origin).begin(plan('asked-for'), false);
   for (const [address, said] of [
     ['experimenter', 'asked-for · 18 participants'],
@@ -69,7 +69,7 @@ test('a study that the address asks for is opened as soon as the token is given'
   }
 });
 
-test('a study stays marked as simulated when its first file was wrong', async ({ page, origin }) => {
+test('a study stays marked as simulated when its first file was wrong @full', async ({ page, origin }) => {
   await page.goto(`${origin}/experimenter`);
   await signIn(page);
   const choose = (text: string) =>
@@ -84,7 +84,7 @@ test('a study stays marked as simulated when its first file was wrong', async ({
   await expect(page.getByText('second-try-simulated · ')).toBeVisible();
 });
 
-test('a block of those who play together is voided for all of them, if the experimenter does not want otherwise', async ({
+test('a block of those who play together is voided for all of them, if the experimenter does not want otherwise @full', async ({
   page,
   origin,
 }) => {
@@ -128,7 +128,7 @@ test('a block of those who play together is voided for all of them, if the exper
   expect([await voided('P01'), await voided(second)]).toEqual([2, 1]);
 });
 
-test('a block that is over by the time the reason is written is not taken for the next one', async ({
+test('a block that is over by the time the reason is written is not taken for the next one @full', async ({
   page,
   origin,
 }) => {

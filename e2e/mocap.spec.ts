@@ -63,7 +63,7 @@ test('a link leads to the same second, method and body beside it', async ({ page
   expect(Number(link.get('at'))).toBe(0.5);
 });
 
-test('of another file with as many pieces its own can be chosen', async ({ page }) => {
+test('of another file with as many pieces its own can be chosen @full', async ({ page }) => {
   await open(page, 'emulate&quality=low&estimator=ik&actor=off');
   const [motion] = filesOf(leaping!);
   const pieces = card(page).getByLabel('Clip', { exact: true }).getByRole('option');

@@ -68,7 +68,7 @@ test('a participant withdraws alone, by the code on the page that stands beside 
   expect(await sessionsInBrowser(page)).toBe(0);
 });
 
-test('a participant whose network fails while everything is deleted is not told that nothing was', async ({
+test('a participant whose network fails while everything is deleted is not told that nothing was @full', async ({
   page,
   origin,
   complaints,
