@@ -165,6 +165,13 @@ export interface MocapCard {
   show(state: CardState | null): void;
 }
 
+/** Puts a file's clips into their choice, where it has not got them yet: a choice that is built anew closes under the hand. */
+function listClips(select: HTMLSelectElement, names: readonly string[]): void {
+  const listed = Array.from(select.options, ({ text }) => text);
+  if (listed.join('\n') === names.join('\n')) return;
+  select.replaceChildren(...names.map((name, i) => element('option', { value: i }, name)));
+}
+
 /** What is known of an opened motion: errors by joint, the time, which methods draw it. */
 export function createMocapCard(labels: Labels, actions: CardActions): MocapCard {
   const methods = threePointNames.map((name) => [name, labels[name]] as const);
@@ -214,9 +221,7 @@ export function createMocapCard(labels: Labels, actions: CardActions): MocapCard
   const showOpened = (state: CardState): void => {
     title.textContent = state.clips[state.clip]!;
     clip.node.hidden = state.clips.length === 1;
-    const listed = [...clip.select.options].map(({ text }) => text);
-    if (listed.join('\n') !== state.clips.join('\n'))
-      clip.select.replaceChildren(...state.clips.map((name, i) => element('option', { value: i }, name)));
+    listClips(clip.select, state.clips);
     clip.select.value = String(state.clip);
     const [first, second] = state.methods;
     method.select.value = first!.estimator;
