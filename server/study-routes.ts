@@ -229,6 +229,14 @@ function studyTable({ store, now, guard, software, makeZip }: TableOptions): Rou
   ];
 }
 
+/** What a device goes by that has taken a participant's place: a session that another device began goes on where that one was. */
+const sessionOf = ({ store, now }: Pick<TableOptions, 'store' | 'now'>, study: string, participant: string) => ({
+  plan: store.planFor(study, participant),
+  simulated: store.study(study).simulated,
+  progress: store.progress(study, participant, now()),
+  ...wearerIn(store.records(study, participant)),
+});
+
 /** What is of one participant. */
 function participantTable({ store, now, guard, seats, software, makeZip }: TableOptions): Route<StudyAccess>[] {
   const own = '/:study/participants/:participant';
@@ -238,12 +246,7 @@ function participantTable({ store, now, guard, seats, software, makeZip }: Table
       const { invitation } = checked(claimSchema, jsonOf(call));
       const claim = () => store.claim(study, participant, now());
       const { token, withdrawalCode } = await guard.claiming(call, invitation, claim);
-      const { simulated } = store.study(study);
-      const plan = store.planFor(study, participant);
-      // A session that another device began goes on where that one was.
-      const progress = store.progress(study, participant, now());
-      const wearer = wearerIn(store.records(study, participant));
-      return json({ token, withdrawalCode, plan, simulated, progress, ...wearer }, 201);
+      return json({ token, withdrawalCode, ...sessionOf({ store, now }, study, participant) }, 201);
     }),
     route('POST', `${own}/invitation`, 'experimenter', 0, ({ study, participant }) => {
       store.reinvite(study, participant);
