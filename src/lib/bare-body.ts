@@ -1,5 +1,5 @@
 import type { AvatarPose } from '../core/body/avatar-pose';
-import { type Calibration, calibrationComplaint, defaultCalibration, sameCalibration } from '../core/body/calibration';
+import { type Calibration, defaultCalibration, demandPerson, sameCalibration } from '../core/body/calibration';
 import { createEstimator, type NetworkName } from '../core/estimation/estimators';
 import type { EstimatorName, InferenceRequest } from '../core/estimation/pose-estimator';
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
@@ -57,8 +57,7 @@ export interface BareBodyOptions {
 
 /** A copy, which a page that goes on changing its own object does not change. Throws where these are no person's measures. */
 function copyChecked(calibration: Calibration): Calibration {
-  const complaint = calibrationComplaint(calibration);
-  if (complaint) throw new RangeError(complaint);
+  demandPerson(calibration);
   return { ...calibration };
 }
 

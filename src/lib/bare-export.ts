@@ -1,4 +1,4 @@
-import { type Calibration, calibrationComplaint, provisionalCalibration } from '../core/body/calibration';
+import { type Calibration, demandPerson, provisionalCalibration } from '../core/body/calibration';
 import { createEstimator, type NetworkName, networkOf } from '../core/estimation/estimators';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
@@ -100,8 +100,7 @@ function personOf({ calibration, frames }: Replayable, given: Calibration | unde
     const [first] = seenOf(frames);
     return provisionalCalibration(first?.head.position.y ?? Number.NaN);
   }
-  const complaint = calibrationComplaint(person);
-  if (complaint) throw new RangeError(complaint);
+  demandPerson(person);
   return person;
 }
 

@@ -81,6 +81,12 @@ export const sameCalibration = (a: Calibration, b: Calibration): boolean =>
 export const calibrationComplaint = (calibration: Calibration): string | null =>
   bodyComplaint(calibration) ?? wornComplaint(calibration);
 
+/** Throws a RangeError where these are no person's measures. */
+export function demandPerson(calibration: Calibration): void {
+  const complaint = calibrationComplaint(calibration);
+  if (complaint) throw new RangeError(complaint);
+}
+
 /** Of the body's measures. */
 function bodyComplaint({ eyeHeight, armSpan, forearm }: Calibration): string | null {
   // Number: a page without types may leave one out.
