@@ -82,15 +82,13 @@ export class HeadsetControls {
       return;
     }
     this.#menu.point(hands);
-    // One hand's ray is lit, as the other's would put the light out again: that of a hand that presses, where one does.
-    for (const presses of [true, false]) {
-      for (const { origin, direction, pressed, showRay } of hands) {
-        if (pressed !== presses) continue;
-        const distance = activities.point({ origin: { ...origin }, direction: { ...direction } }, pressed);
-        if (distance === null) continue;
-        showRay(distance);
-        return;
-      }
+    const pressingFirst = [...hands].sort((a, b) => Number(b.pressed) - Number(a.pressed));
+    for (const { origin, direction, pressed, showRay } of pressingFirst) {
+      const distance = activities.point({ origin: { ...origin }, direction: { ...direction } }, pressed);
+      if (distance === null) continue;
+      showRay(distance);
+      // One hand's ray is lit; the other's would put the light out again.
+      break;
     }
   }
 
