@@ -41,6 +41,10 @@ export function versionsText({ versions }: Pick<OpenStudy, 'versions'>): string 
   );
 }
 
+/** The plan of this version, which a participant follows; of none that is known: the newest. */
+export const planOf = ({ plan, versions }: Pick<OpenStudy, 'plan' | 'versions'>, followed: number | undefined) =>
+  versions.find(({ version }) => version === followed)?.plan ?? plan;
+
 /** An open study, as of `now` [s since 1970, by the clock of this page]: what it is, its participants, what was deleted. */
 export const openStudy = (study: OpenStudy, now: number, actions: StudyActions): readonly Node[] => [
   ...studyHead(study, actions),
@@ -48,9 +52,13 @@ export const openStudy = (study: OpenStudy, now: number, actions: StudyActions):
     'Participants',
     participantHeads,
     study.states.map((state) => {
-      const followed = study.versions.find(({ version }) => version === state.version)?.plan ?? study.plan;
       const several = study.versions.length > 1;
-      return participantRow(state, { plan: followed, several }, Math.max(0, now - study.toldAt), actions);
+      return participantRow(
+        state,
+        { plan: planOf(study, state.version), several },
+        Math.max(0, now - study.toldAt),
+        actions,
+      );
     }),
   ),
   ...receiptList(study.receipts),

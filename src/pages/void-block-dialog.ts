@@ -1,7 +1,7 @@
 import { scheduleFor } from '../core/study/schedule';
 import type { MeantBlock } from '../core/study/study-api';
 import { element } from '../ui/element';
-import type { OpenStudy } from './experimenter-view';
+import { type OpenStudy, planOf } from './experimenter-view';
 import { askForSentence } from './sentence-dialog';
 
 /** What is to be voided. */
@@ -15,10 +15,9 @@ export interface VoidedBlock {
 }
 
 /** Where a participant is, by the plan that they follow. */
-function placeOf({ plan, versions, states }: OpenStudy, participant: string) {
-  const own = states.find((state) => state.participant === participant);
-  const followed = versions.find(({ version }) => version === own?.version)?.plan ?? plan;
-  const schedule = scheduleFor(followed, participant);
+function placeOf(study: OpenStudy, participant: string) {
+  const own = study.states.find((state) => state.participant === participant);
+  const schedule = scheduleFor(planOf(study, own?.version), participant);
   const step = schedule.steps.find(({ id }) => id === own?.session?.step);
   return { schedule, block: step && 'task' in step ? { task: step.task, block: step.block } : null };
 }
