@@ -45,12 +45,13 @@ export function fromMappedRest(
   bvh: { readonly motion: BvhMotion; readonly joints: readonly BvhJoint[] } | null,
 ): FileMotion {
   const { restFrame, restPose } = map;
-  for (const [ours, theirs] of Object.entries(map.joints))
-    if (!file.names.includes(theirs))
-      throw new Error(`no joint “${theirs}”, which the map “${map.name}” names as ${ours}`);
-  for (const [ours, theirs] of Object.entries(map.rotations ?? {}))
-    if (!file.names.includes(theirs))
-      throw new Error(`no joint “${theirs}”, which the map “${map.name}” names as the rotation of ${ours}`);
+  const demand = (joints: Readonly<Record<string, string>>, what: string) => {
+    for (const [ours, theirs] of Object.entries(joints))
+      if (!file.names.includes(theirs))
+        throw new Error(`no joint “${theirs}”, which the map “${map.name}” names as ${what}${ours}`);
+  };
+  demand(map.joints, '');
+  demand(map.rotations ?? {}, 'the rotation of ');
   if (restPose) {
     if (!bvh) throw new Error('restPose is for BVH files; here restFrame can be given');
     return facingForward(countedFrom(file, poseOfAngles(bvh.motion, bvh.joints, restPose)), map);
