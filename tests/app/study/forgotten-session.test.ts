@@ -3,7 +3,7 @@ import { openStudyVault } from '../../../src/app/study/study-vault';
 import { beforeTheQuestions } from './participant-steps';
 import { studyServer } from './study-server';
 
-test('a participant who withdrew in another tab is written to this browser no more, whatever is pressed in the first one', async () => {
+test('after a withdrawal in another tab nothing that is pressed here stores the participant in this browser again', async () => {
   const server = await studyServer();
   const { tab } = await beforeTheQuestions(server);
   await tab.exchange();
