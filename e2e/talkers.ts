@@ -159,17 +159,30 @@ export async function joinVoices(page: Page): Promise<void> {
 
 export const connected = (page: Page) => expect.poll(async () => (await otherOf(page))?.link).toBe('connected');
 
-/** How loud all voices are at the ears of this page [dB of full scale]: the middle one of so many readings, each over a third of a second. */
-export const loudness = (page: Page, readings = 1): Promise<number> =>
-  page.evaluate(async (count) => {
-    const levels: number[] = [];
-    while (levels.length < count) {
+/** The middle one of so many readings of a page's voices, each over a third of a second. */
+async function middle(page: Page, readings: number, of: 'loudness' | 'byDistance'): Promise<number> {
+  const voices = await page.evaluate(async (count) => {
+    const seen: { loudness: number; byDistance: number }[] = [];
+    while (seen.length < count) {
       await new Promise((resolve) => setTimeout(resolve, 150));
       const game = window.threepoint?.probe().game;
-      if (game?.name === 'ball') levels.push(game.voices.loudness);
+      if (game?.name !== 'ball') continue;
+      const { loudness, spokenLoudness } = game.voices;
+      seen.push({ loudness, byDistance: loudness - spokenLoudness });
     }
-    return levels.sort((a, b) => a - b)[count >> 1] ?? Number.NaN;
+    return seen;
   }, readings);
+  return voices.map((one) => one[of]).sort((a, b) => a - b)[readings >> 1] ?? Number.NaN;
+}
+
+/** How loud all voices are at the ears of this page [dB of full scale]. */
+export const loudness = (page: Page, readings = 1): Promise<number> => middle(page, readings, 'loudness');
+
+/**
+ * What distance and direction do to the voices [dB], of fifteen readings. Loudness alone would not tell: a browser changes how loud its
+ * microphone is over minutes, and stretches what arrives late.
+ */
+export const attenuation = (page: Page): Promise<number> => middle(page, 15, 'byDistance');
 
 export const heard = (page: Page) => expect.poll(() => loudness(page), { timeout: 60_000 }).toBeGreaterThan(-50);
 export const silent = (page: Page) => expect.poll(() => loudness(page), { timeout: 60_000 }).toBeLessThan(-90);

@@ -31,6 +31,8 @@ export interface VoicesProbe {
   readonly said: string | null;
   /** All voices at the own ears [dB of full scale]; −120: silence. */
   readonly loudness: number;
+  /** The same voices as they arrive, before distance and direction change them. */
+  readonly spokenLoudness: number;
   readonly ownLevel: number;
   readonly people: readonly (PersonVoice & { readonly seat: number; readonly level: number })[];
 }
@@ -257,6 +259,7 @@ export class Voices {
       muted,
       said,
       loudness: this.#stay?.sound.loudness() ?? -120,
+      spokenLoudness: this.#stay?.sound.spokenLoudness() ?? -120,
       ownLevel: this.#mySeat === null ? 0 : this.levelOf(this.#mySeat),
       people: seats.flatMap((info, seat) =>
         info && seat !== this.#options.play.room?.mySeat

@@ -53,6 +53,7 @@ export class VoiceSound {
   readonly #heard = new Map<string, Heard>();
   readonly #bus: GainNode;
   readonly #meter: AnalyserNode;
+  readonly #spokenMeter: AnalyserNode;
   readonly #samples = new Float32Array(window);
   #own: {
     readonly track: MediaStreamTrack;
@@ -66,6 +67,7 @@ export class VoiceSound {
     this.#context = context;
     this.#bus = context.createGain();
     this.#meter = this.#analyser(longWindow);
+    this.#spokenMeter = this.#analyser(longWindow);
     this.#bus.connect(this.#meter).connect(context.destination);
   }
 
@@ -84,6 +86,7 @@ export class VoiceSound {
     panner.refDistance = near;
     panner.rolloffFactor = rolloff;
     source.connect(level.analyser).connect(gain).connect(panner).connect(this.#bus);
+    gain.connect(this.#spokenMeter);
     this.#heard.set(id, { stream, element, source, level, gain, panner });
   }
 
@@ -92,6 +95,7 @@ export class VoiceSound {
     if (!heard) return;
     this.#heard.delete(id);
     heard.source.disconnect();
+    heard.gain.disconnect();
     heard.panner.disconnect();
     heard.element.srcObject = null;
   }
@@ -143,6 +147,11 @@ export class VoiceSound {
   /** How loud all voices together are at the ears [dB of full scale], for tools; −120: silent. */
   loudness(): number {
     return decibels(rmsOf(this.#meter, new Float32Array(longWindow)));
+  }
+
+  /** The same before distance and direction change them; the difference is what these do, however loud a microphone makes its voice meanwhile. */
+  spokenLoudness(): number {
+    return decibels(rmsOf(this.#spokenMeter, new Float32Array(longWindow)));
   }
 
   dispose(): void {
