@@ -11,14 +11,13 @@ import type { Launch } from '../../core/games/ballistics';
 import { ballInPalm } from '../../core/games/fist';
 import {
   composeTransforms,
-  type MutablePose,
   type MutableTransform,
   makePose,
   makeTransform,
   type TrackedPose,
   type Transform,
   transformPoint,
-  transformPose,
+  transformSeen,
 } from '../../core/math/pose';
 import type { Side } from '../../core/math/side';
 import { length, type MutableVec3, type Vec3, vec3 } from '../../core/math/vec3';
@@ -247,7 +246,10 @@ export class CourtPeople {
     station: number,
   ): Opening | null {
     if (!isInZone(transformPoint(arenaFromFloor, head.position, this.head), station)) return null;
-    return basketInHands(seenIn(arenaFromFloor, leftHand, this.left), seenIn(arenaFromFloor, rightHand, this.right));
+    return basketInHands(
+      transformSeen(arenaFromFloor, leftHand, this.left),
+      transformSeen(arenaFromFloor, rightHand, this.right),
+    );
   }
 
   private viewOf(seat: number): SeatView {
@@ -291,13 +293,6 @@ function remoteOn(seat: number, others: readonly RemotePlayer[]): RemotePlayer |
   for (const other of others) if (other.seat === seat) return other;
   return null;
 }
-
-/** A hand that is tracked, arena frame; null: it is not. */
-const seenIn = (
-  arenaFromFloor: Transform<'arena', 'floor'>,
-  hand: TrackedPose | null,
-  target: MutablePose<'arena'>,
-): MutablePose<'arena'> | null => (hand?.tracking === 'tracked' ? transformPose(arenaFromFloor, hand, target) : null);
 
 /** Where a ball lies in a hand, arena frame; null: the hand is not seen. */
 function palmIn(

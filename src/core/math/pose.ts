@@ -20,6 +20,9 @@ export interface Pose<F extends Frame> {
 /** tracked: seen in this frame. emulated: the device guesses the position (WebXR `emulatedPosition`). */
 export type TrackedPose = Pose<'floor'> & { readonly tracking: 'tracked' | 'emulated' };
 
+/** The pose where the device sees it, null where it is lost or only guessed. */
+export const seenPose = (pose: TrackedPose | null): TrackedPose | null => (pose?.tracking === 'tracked' ? pose : null);
+
 /** A pose that its owner overwrites: an optional last argument `target`, as with `MutableVec3`. */
 export interface MutablePose<F extends Frame> extends Pose<F> {
   readonly position: MutableVec3;
@@ -94,6 +97,13 @@ export function transformPose<To extends Frame, From extends Frame>(
   multiply(t.orientation, pose.orientation, target.orientation);
   return target;
 }
+
+/** The pose in To where the device sees it, null where it is lost or only guessed. */
+export const transformSeen = <To extends Frame>(
+  t: Transform<To, 'floor'>,
+  pose: TrackedPose | null,
+  target?: MutablePose<To>,
+): MutablePose<To> | null => (pose?.tracking === 'tracked' ? transformPose(t, pose, target) : null);
 
 /** From From to To by way of Via. */
 export function composeTransforms<To extends Frame, Via extends Frame, From extends Frame>(

@@ -1,4 +1,4 @@
-import { type Pose, type TrackedPose, type Transform, transformPoint, transformPose } from '../math/pose';
+import { transformPoint, transformSeen } from '../math/pose';
 import { type ClientMessage, type Joining, packSeatInfo, protocolVersion } from '../protocol/messages';
 import { decodePoints, makePoints } from '../protocol/pose-codec';
 import type { PointsPacket } from '../protocol/pose-packet';
@@ -35,10 +35,6 @@ const watchSeconds = 0.1;
 
 /** Of the packet that is being taken. */
 const points = makePoints();
-
-/** A wrist that was seen, in the arena. */
-const seenWrist = (arenaFromFloor: Transform<'arena', 'floor'>, hand: TrackedPose | null): Pose<'arena'> | null =>
-  hand?.tracking === 'tracked' ? transformPose(arenaFromFloor, hand) : null;
 
 /**
  * The authority over one room and the matches played in it: seats, presence, the match's clock, rematches, newest poses. It knows no
@@ -261,8 +257,8 @@ export class Room<Game extends HostedGame> {
       player,
       at: packetTime - this.#match.matchStart,
       head: transformPoint(arenaFromFloor, head.position),
-      left: seenWrist(arenaFromFloor, leftHand),
-      right: seenWrist(arenaFromFloor, rightHand),
+      left: transformSeen(arenaFromFloor, leftHand),
+      right: transformSeen(arenaFromFloor, rightHand),
     });
   }
 

@@ -2,7 +2,7 @@ import { type Calibration, calibrationComplaint, steepestGazePitch } from '../bo
 import { type HandTilts, handTiltOf, isBelievableTilt } from '../body/hand-tilt';
 import { sideSign, skeletonFromCalibration } from '../body/skeleton';
 import { clamp } from '../math/damper';
-import { makePose, type Pose, type TrackedPose, transformPose } from '../math/pose';
+import { type Pose, transformSeen } from '../math/pose';
 import { rotate, rotateInverse } from '../math/quat';
 import { type Side, sides } from '../math/side';
 import { add, addScaled, distance, forward, length, normalise, scale, subtract, type Vec3, vec3 } from '../math/vec3';
@@ -76,13 +76,11 @@ export function stepGuidedCalibration(state: GuidedCalibration, frame: TrackingF
 
 function sampleOf({ head, leftHand, rightHand }: TrackingFrame): Sample {
   const fromFloor = headingFromFloor(head);
-  const wrist = (hand: TrackedPose | null): Pose<'heading'> | null =>
-    hand?.tracking === 'tracked' ? transformPose(fromFloor, hand, makePose<'heading'>()) : null;
   return {
     head: head.position,
     gaze: rotate(head.orientation, forward).y,
-    left: wrist(leftHand),
-    right: wrist(rightHand),
+    left: transformSeen(fromFloor, leftHand),
+    right: transformSeen(fromFloor, rightHand),
   };
 }
 

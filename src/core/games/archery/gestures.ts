@@ -1,4 +1,4 @@
-import { copyPose, makePose, type TrackedPose, type Transform, transformPoint } from '../../math/pose';
+import { copyPose, makePose, seenPose, type TrackedPose, type Transform, transformPoint } from '../../math/pose';
 import { identity, rotate } from '../../math/quat';
 import { otherSide, type Side, sides } from '../../math/side';
 import { addScaled, copyVec3, distance, type Vec3, vec3, zero } from '../../math/vec3';
@@ -101,8 +101,6 @@ const nearMargin = 0.03;
 const longestFrame = longestStep - 1e-3;
 
 const none: readonly never[] = [];
-
-const seenHand = (hand: TrackedPose | null): TrackedPose | null => (hand?.tracking === 'tracked' ? hand : null);
 
 /** The view of the bow, in memory that every frame overwrites. */
 const makeView = () => ({
@@ -212,7 +210,7 @@ class BowGestures implements ArcheryGestures {
   }
 
   #look(side: Side, tracked: TrackedPose | null): void {
-    const hand = seenHand(tracked);
+    const hand = seenPose(tracked);
     this.#hands[side] = hand;
     this.#pressed[side] = this.#presses.follow(side, this.#buttons[side], hand !== null);
   }

@@ -2,6 +2,7 @@ import {
   type MutablePose,
   makePose,
   makeTransform,
+  seenPose,
   type TrackedPose,
   type Transform,
   transformPoint,
@@ -101,8 +102,6 @@ interface Holding {
   opened: Opened | null;
 }
 
-const seenHand = (hand: TrackedPose | null): TrackedPose | null => (hand?.tracking === 'tracked' ? hand : null);
-
 /** What a hand does with balls, and what it did before. */
 interface HandMemory {
   readonly speed: HandSpeed;
@@ -164,8 +163,8 @@ class PlayerGestures implements BallGestures {
     const { player, state, arenaFromFloor } = this.now;
     const paused = frame.time - this.lastTime > longestPause;
     this.lastTime = frame.time;
-    const left = seenHand(frame.leftHand);
-    const right = seenHand(frame.rightHand);
+    const left = seenPose(frame.leftHand);
+    const right = seenPose(frame.rightHand);
     this.pose.left = left && transformPose(arenaFromFloor, left, this.hands.left.pose);
     this.pose.right = right && transformPose(arenaFromFloor, right, this.hands.right.pose);
     const playing = state.players[player]?.role === 'thrower' && state.phase === 'running';
