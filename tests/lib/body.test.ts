@@ -2,35 +2,11 @@ import { describe, expect, test } from 'vitest';
 import { type Calibration, defaultCalibration } from '../../src/core/body/calibration';
 import { forwardKinematics } from '../../src/core/body/forward-kinematics';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
 import { distance } from '../../src/core/math/vec3';
 import { createPageClock } from '../../src/core/tracking/page-clock';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
-import { Body, type BodyOptions } from '../../src/lib/body';
-import { movingPerson } from '../core/estimation/moving-person';
-import { openPlainModel } from '../core/estimation/shipped-models';
-import { openPorts } from './open-ports';
-
-const calibration: Calibration = { eyeHeight: 1.65, armSpan: 1.56 };
-const at = movingPerson(3, calibration, { x: 1, z: -0.5, yaw: 2 });
-
-/** A body whose every event is written down, and its networks loaded. */
-async function observed(options: BodyOptions = {}) {
-  const told: string[] = [];
-  const body = new Body({
-    networks: async () => openPlainModel(),
-    ...options,
-    events: {
-      calibrated: ({ eyeHeight }, source) => told.push(`calibrated ${eyeHeight.toFixed(2)} ${source}`),
-      outgrown: (difference) => told.push(`outgrown by ${difference.toFixed(2)}`),
-      fallback: (estimator, reason) => told.push(`fallback ${estimator} ${reason}`),
-      lost: (point) => told.push(`lost ${point}`),
-      found: (point) => told.push(`found ${point}`),
-    },
-  });
-  await body.choose(options.estimator ?? 'learned');
-  return { body, told };
-}
+import { Body } from '../../src/lib/body';
+import { at, calibration, observed } from './observed-body';
 
 /** Stands upright at this height of the eyes [m]. */
 const standing = (time: number, eyeHeight: number): TrackingFrame => ({
@@ -320,129 +296,4 @@ test('bodies that share a clock are at one time, and each begins anew after a pa
     expect(second!.frame(timestampMs)).toBe(time);
   }
   expect(jumped).toEqual(['first', 'second']);
-});
-
-describe('a body whose network is not to be had', () => {
-  test('is drawn by inverse kinematics, and says why', async () => {
-    const { body, told } = await observed({ networks: async () => Promise.reject(new Error('learned.bin: gone')) });
-    expect(told).toEqual(['fallback learned learned.bin: gone']);
-    expect(body.update(at(0))?.body).not.toBeNull();
-    expect(body.estimator).toBe('ik');
-  });
-
-  test('goes over to it when the network breaks in a frame', async () => {
-    const plain = openPlainModel();
-    let broken = false;
-    const runNow = (features: Float32Array) => {
-      if (broken) throw new Error('out of memory');
-      return plain.runNow!(features);
-    };
-    const { body, told } = await observed({ calibration, networks: async () => ({ ...plain, runNow }) });
-    body.update(at(0));
-    expect(body.estimator).toBe('learned');
-    broken = true;
-    body.update(at(1 / 30));
-    expect(body.estimator).toBe('ik');
-    expect(told.at(-1)).toBe('fallback learned learned: out of memory');
-  });
-
-  test('the paper’s network asks for a runtime', async () => {
-    const told: string[] = [];
-    const body = new Body({ estimator: 'ik', events: { fallback: (name, reason) => told.push(`${name} ${reason}`) } });
-    await body.choose('paper');
-    expect(told).toEqual([expect.stringMatching(/^paper .*onnxNetworks/)]);
-    expect(body.estimator).toBe('ik');
-  });
-});
-
-/** The learned network as a runtime brings it: it answers later, and `begun` is what it does before. */
-function answeringLater(begun: () => void = () => undefined) {
-  const plain = openPlainModel();
-  const disposed: string[] = [];
-  const network = (name: string): PoseRegressor => ({
-    contract: { ...plain.contract, name: name as 'learned' },
-    provider: 'later',
-    async run(features) {
-      begun();
-      await Promise.resolve();
-      return plain.run(features);
-    },
-    dispose: async () => void disposed.push(name),
-  });
-  return { network, disposed };
-}
-
-describe('a network that answers later', () => {
-  test('is asked once a frame is over, about the newest frame alone', async () => {
-    let runs = 0;
-    const { network } = answeringLater(() => {
-      runs += 1;
-    });
-    const { body } = await observed({ calibration, networks: async (name) => network(name) });
-    for (let frame = 0; frame < 3; frame++) body.update(at(frame / 60));
-    expect(runs).toBe(0);
-    await expect.poll(() => runs).toBe(1);
-    expect(body.provider).toBe('later');
-  });
-
-  test('is not asked about a frame from before a jump', async () => {
-    let runs = 0;
-    const { network } = answeringLater(() => {
-      runs += 1;
-    });
-    const { body } = await observed({ calibration, networks: async (name) => network(name) });
-    body.update(at(0));
-    body.jumped();
-    for (let turn = 0; turn < 3; turn++) await new Promise((resolve) => setTimeout(resolve, 0));
-    expect(runs).toBe(0);
-    body.update(at(1 / 60));
-    await expect.poll(() => runs).toBe(1);
-  });
-
-  test('is measured where a page measures: features until it is asked, inference until it waits', async () => {
-    const marks: string[] = [];
-    const { network } = answeringLater(() => void marks.push('runs'));
-    const { body } = await observed({
-      calibration,
-      networks: async (name) => network(name),
-      timing: { resume: () => void marks.push('resume'), mark: (part) => void marks.push(part) },
-    });
-    body.update(at(0));
-    expect(marks, 'nothing of it lies in the frame').toEqual([]);
-    await expect.poll(() => marks).toEqual(['resume', 'features', 'runs', 'inference', 'features']);
-  });
-
-  test('leaves nothing that keeps a process running once its body is disposed of', async () => {
-    const open = openPorts();
-    const { network } = answeringLater();
-    const { body } = await observed({ calibration, networks: async (name) => network(name) });
-    body.update(at(0));
-    expect(openPorts()).toBeGreaterThan(open);
-    await body.dispose();
-    body.update(at(1 / 60));
-    await expect.poll(openPorts).toBe(open);
-  });
-
-  test('is let go with the body, as is one that was chosen before and one that still arrives', async () => {
-    const { network, disposed } = answeringLater();
-    let arrive: () => void = () => undefined;
-    const arriving = new Promise<void>((resolve) => {
-      arrive = resolve;
-    });
-    const { body, told } = await observed({
-      calibration,
-      async networks(name) {
-        if (name === 'paper') await arriving;
-        return network(name);
-      },
-    });
-    await body.choose('ik');
-    const chosen = body.choose('paper');
-    const over = body.dispose();
-    arrive();
-    await Promise.all([chosen, over]);
-    expect(disposed.toSorted()).toEqual(['learned', 'paper']);
-    expect(body.estimator).toBe('ik');
-    expect(told).toEqual([]);
-  });
 });

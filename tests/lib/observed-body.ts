@@ -1,0 +1,27 @@
+import type { Calibration } from '../../src/core/body/calibration';
+import { Body, type BodyOptions } from '../../src/lib/body';
+import { movingPerson } from '../core/estimation/moving-person';
+import { openPlainModel } from '../core/estimation/shipped-models';
+
+/** Of the wearer below. */
+export const calibration: Calibration = { eyeHeight: 1.65, armSpan: 1.56 };
+/** What is tracked of a wearer who moves, by time [s]. */
+export const at = movingPerson(3, calibration, { x: 1, z: -0.5, yaw: 2 });
+
+/** A body whose every event is written down, and its networks loaded. */
+export async function observed(options: BodyOptions = {}) {
+  const told: string[] = [];
+  const body = new Body({
+    networks: async () => openPlainModel(),
+    ...options,
+    events: {
+      calibrated: ({ eyeHeight }, source) => told.push(`calibrated ${eyeHeight.toFixed(2)} ${source}`),
+      outgrown: (difference) => told.push(`outgrown by ${difference.toFixed(2)}`),
+      fallback: (estimator, reason) => told.push(`fallback ${estimator} ${reason}`),
+      lost: (point) => told.push(`lost ${point}`),
+      found: (point) => told.push(`found ${point}`),
+    },
+  });
+  await body.choose(options.estimator ?? 'learned');
+  return { body, told };
+}
