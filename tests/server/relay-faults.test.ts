@@ -13,6 +13,7 @@ import { collectGarbage } from '../collect-garbage';
 import { fists, holding, opening, releaseOf, visitor } from '../net/people';
 import { isNightly } from '../nightly';
 import { percentile, tell } from '../tell';
+import { expectPromised } from './promised-time';
 import { forkRelay } from './relay-child';
 import { arrive, pause, poseBytes, rawGuest, seconds, startRelay, testSecret, tokenFor, until } from './running-relay';
 import { createSlowWay } from './slow-way';
@@ -65,7 +66,7 @@ test('the relay is killed in the middle of a game and restarted after 3 s: all p
   );
   await until('the news', () => people.every(({ news }) => news.includes('voided')));
   tell('relay killed', { 'rejoined after [s]': percentile(back, 0.95), port: again.port });
-  expect(percentile(back, 0.95)).toBeLessThan(5);
+  expectPromised(percentile(back, 0.95), 5);
   expect(people.map(({ seat }) => seat)).toEqual(seats);
   expect(people.map(({ connection }) => connection.room?.voided)).toEqual([1, 1, 1]);
   expect(people.map(({ match }) => match.phase)).toEqual(['ready', 'ready', 'ready']);
@@ -119,7 +120,8 @@ test('100 ms ± 30 ms with 2 % of losses: a thrower behind it plays on', async (
     'machine busy [%]': 100 * busy,
     'delay of playback [ms]': 1000 * (watching[behind]?.report(seatOf(near))?.delay ?? 0),
   });
-  expect(busy, 'this machine is too busy to tell anything').toBeLessThan(0.9);
+  // A machine that is busier than this tells nothing.
+  expectPromised(busy, 0.9);
   // Less than one a minute, and one that a run may end with.
   for (const pair of pairs) expect(pair?.counted).toBeLessThanOrEqual(1 + (lasting / 60) * (1 - busy));
   expect(people[0]?.connection.status.phase).toBe('joined');
@@ -139,8 +141,7 @@ test('a connection that is gone for 5 s comes back to its seat with one snapshot
   const resync = performance.now() - (way.acceptedAt ?? 0);
   await until('the others to see it', () => ben!.connection.room?.seats[seat]?.presence === 'here');
   tell('5 s without connection', { 'resync [ms]': resync });
-  // A second is the promise; a machine that others use is allowed three.
-  expect(resync).toBeLessThan(3000);
+  expectPromised(resync, 1000);
   expect(ann!.seat).toBe(seat);
   expect(ann!.connection.room?.match?.phase).toBe('running');
   await until('the snapshot', () => ann!.news.filter((word) => word === 'welcome').length > welcomes);
@@ -187,9 +188,9 @@ test('500 clients reconnect at once', async () => {
     'max [ms]': lagMaxMs,
     "an idle process's p99 [ms]": machine.lagP99Ms,
   });
-  expect(took).toBeLessThan(15);
+  expectPromised(took, 15);
   // 100 ms are the promise. Where an idle process waits too, five hundred clients share its cores: then much more.
-  expect(lagP99Ms).toBeLessThan(100 + 20 * Math.max(0, machine.lagP99Ms - 10));
+  expectPromised(lagP99Ms, 100 + 20 * Math.max(0, machine.lagP99Ms - 10));
 }, 120_000);
 
 /** A player in a room of sixteen seats who sends thirty poses a second, and when they heard of others. */
@@ -253,7 +254,7 @@ test('a reader that stalls is kicked within 10 s, and the others do not notice',
   stalled.pause();
   const start = seconds();
   for (const { gaps } of movers) gaps.length = 0;
-  await until('the kick', () => slowSeat()?.info?.[4] === 2, 12);
+  await until('the kick', () => slowSeat()?.info?.[4] === 2, 30);
   const kicked = seconds() - start;
   const after = await relay.measure();
   const gaps = movers.flatMap((moving) => moving.gaps);
@@ -264,10 +265,10 @@ test('a reader that stalls is kicked within 10 s, and the others do not notice',
     "its process's memory grew by [MB]": (after.rssBytes - before.rssBytes) / 2 ** 20,
     "others' frames p95 apart [ms]": percentile(gaps, 0.95),
   });
-  expect(kicked).toBeLessThan(10);
+  expectPromised(kicked, 10);
   // What is held for the stalled one is promised; a young process's memory grows by itself.
   expect(grown).toBeLessThan(5);
-  expect(percentile(gaps, 0.95)).toBeLessThan(100);
+  expectPromised(percentile(gaps, 0.95), 100);
 });
 
 describe('abuse', () => {
@@ -310,15 +311,15 @@ describe('abuse', () => {
       const guest = await rawGuest(relay.url, 'counting-calm');
       const start = performance.now();
       const stop = attack(guest);
-      await until(`an end of ${name}`, () => guest.closedAt !== null, 3);
+      await until(`an end of ${name}`, () => guest.closedAt !== null, 30);
       stop?.();
       figures[`${name} [ms]`] = (guest.closedAt ?? Number.NaN) - start;
     }
     stormy.push(...watcher.gaps, ...other.gaps);
     const slower = percentile(stormy, 0.95) - percentile(calm, 0.95);
     tell('abuse ended after', { ...figures, "others' p95 later by [ms]": slower });
-    for (const time of Object.values(figures)) expect(time).toBeLessThan(1000);
-    expect(slower).toBeLessThan(40);
+    for (const time of Object.values(figures)) expectPromised(time, 1000);
+    expectPromised(slower, 40);
     expect(watcher.closedAt).toBeNull();
   });
 
