@@ -23,6 +23,12 @@ const mostOrdersListed = 4;
 /** What one condition says, all must say: else what is seen would follow from what a headset remembers. */
 const saidByAllOrNone = ['estimator', 'avatar', 'mirror', 'upperBodyOnly'] as const;
 
+/** How many play a game together: a score of archery would count for all of a group, and a ball game of a study waits for every seat. */
+const groupsOfGame: Record<StudyTask['game'], { readonly size: number; readonly because: string }> = {
+  archery: { size: 1, because: 'archery is played alone' },
+  ball: { size: 3, because: 'the ball game is played by three' },
+};
+
 /** How many play together at most. */
 export const largestGroup = ({ tasks }: Pick<StudyPlan, 'tasks'>): number =>
   Math.max(...tasks.map(({ groupSize }) => groupSize));
@@ -113,7 +119,7 @@ function refuseUnclearBodies({ conditions, cohorts = [] }: StudyPlan): void {
 }
 
 function refuseUnfilledCohorts(plan: StudyPlan): void {
-  const { cohorts, conditions, participants, tasks } = plan;
+  const { cohorts, conditions, participants } = plan;
   if (!cohorts) {
     if (conditions.length < 2) {
       throw new ValidationError('conditions', 'expected at least two conditions to compare, or cohorts');
@@ -125,13 +131,6 @@ function refuseUnfilledCohorts(plan: StudyPlan): void {
     (index) => `cohorts[${index}].id`,
   );
   const together = largestGroup(plan);
-  tasks.forEach(({ groupSize }, index) => {
-    if (groupSize === 1 || groupSize === together) return;
-    throw new ValidationError(
-      `tasks[${index}].groupSize`,
-      `those who play together belong to one cohort: expected 1 or ${together}`,
-    );
-  });
   if (participants / together < cohorts.length) {
     const whom = together === 1 ? 'participants' : `groups of ${together}`;
     throw new ValidationError('cohorts', `${participants / together} ${whom} do not fill ${cohorts.length} cohorts`);
@@ -202,7 +201,9 @@ export function checkedPlan(value: unknown): StudyPlan {
   refuseUntranslated(plan);
   refusePhrases(plan.phrases ?? {}, languagesOf(plan));
   refuseUnknownMeasures(plan);
-  plan.tasks.forEach(({ groupSize }, index) => {
+  plan.tasks.forEach(({ game, groupSize }, index) => {
+    const { size, because } = groupsOfGame[game];
+    if (groupSize !== size) throw new ValidationError(`tasks[${index}].groupSize`, `${because}: expected ${size}`);
     if (plan.participants % groupSize !== 0) {
       throw new ValidationError(
         `tasks[${index}].groupSize`,
@@ -211,11 +212,6 @@ export function checkedPlan(value: unknown): StudyPlan {
     }
   });
   refuseUnfilledCohorts(plan);
-  plan.tasks.forEach(({ game, groupSize }, index) => {
-    if (game === 'archery' && groupSize > 1) {
-      throw new ValidationError(`tasks[${index}].groupSize`, 'archery is played alone: expected 1');
-    }
-  });
   return plan;
 }
 

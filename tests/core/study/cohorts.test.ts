@@ -115,15 +115,6 @@ describe('a plan whose bodies are not clear names field and reason', () => {
       { cohorts: bodies(2), conditions: [ik, learned].map((one) => ({ ...one, avatar: 'man' as const })) },
       'conditions[0].avatar: is said by cohorts already',
     ],
-    [
-      'players of one group in two cohorts',
-      {
-        cohorts: bodies(2),
-        participants: 30,
-        tasks: paperPlan().tasks.map((task, index) => ({ ...task, groupSize: 2 + index })),
-      },
-      'tasks[0].groupSize: those who play together belong to one cohort: expected 1 or 3',
-    ],
     ['more cohorts than groups', { cohorts: bodies(6) }, 'cohorts: 5 groups of 3 do not fill 6 cohorts'],
     ['one condition and no cohorts', { conditions: [ik] }, 'conditions: expected at least two conditions to compare'],
   ])('%s', (_, changes, message) => {

@@ -289,8 +289,15 @@ describe('a study file with a mistake', () => {
   });
 });
 
-test('archery is played alone: of a group one score would count for all', () => {
-  const plan = paperPlan();
-  const tasks = plan.tasks.map((task) => ({ ...task, groupSize: 3 }));
-  expect(() => checkedPlan({ ...plan, tasks })).toThrow('tasks[0].groupSize: archery is played alone: expected 1');
+describe('who plays together', () => {
+  const groupsOfSize = (game: StudyTask['game'], groupSize: number) => () =>
+    checkedPlan(paperPlan({ tasks: [{ ...(paperPlan().tasks[0] as StudyTask), game, groupSize }] }));
+
+  test('is one in archery: of a group one score would count for all', () => {
+    expect(groupsOfSize('archery', 3)).toThrow('tasks[0].groupSize: archery is played alone: expected 1');
+  });
+
+  test.each([1, 5])('is three in the ball game: of %i no round would begin', (size) => {
+    expect(groupsOfSize('ball', size)).toThrow('tasks[0].groupSize: the ball game is played by three: expected 3');
+  });
 });
