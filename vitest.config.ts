@@ -19,6 +19,8 @@ export default defineConfig({
     // A property with many runs on a busy machine is slow, not wrong.
     testTimeout: 120_000,
     hookTimeout: 120_000,
+    // Nor is what a test waits for.
+    expect: { poll: { timeout: 30_000 } },
     // One for each core: much of the time is spent waiting for servers and sockets.
     maxWorkers: '100%',
     slowTestThreshold: 5_000,

@@ -192,7 +192,7 @@ freshTest(
         activity: 'desktop',
       });
       const start = performance.now();
-      await expect(page.getByText('This browser has no WebXR.').first()).toBeVisible({ timeout: 1000 });
+      await expect(page.getByText('This browser has no WebXR.').first()).toBeVisible();
       measured('isolation', {
         isolated: `${estimator} on ${provider}`,
         'not isolated': 'every other test of the page',
@@ -263,9 +263,7 @@ freshTest('nothing but our own files runs, and a refused session is said', async
 
   const start = performance.now();
   await page.getByRole('button', { name: 'Enter VR' }).click();
-  await expect(page.getByRole('alert').filter({ hasText: 'the headset refused the session' })).toBeVisible({
-    timeout: 1000,
-  });
+  await expect(page.getByRole('alert').filter({ hasText: 'the headset refused the session' })).toBeVisible();
   measured('no-headset', { 'session refused': `said after ${Math.round(performance.now() - start)} ms` });
   expect((await probe(page)).activity).toBe('desktop');
 });

@@ -37,16 +37,14 @@ describe('a program that is run', () => {
       const script = `
       require('node:child_process').spawn(process.execPath, ['-e', ${JSON.stringify(listening)}]);
       setInterval(() => {}, 1000);`;
-      const running = node(script, { limitSeconds: 2 });
-      await expect
-        .poll(() => existsSync(portFile) && readFileSync(portFile, 'utf8') !== '', { timeout: 2000 })
-        .toBe(true);
+      const running = node(script, { limitSeconds: 5 });
+      await expect.poll(() => existsSync(portFile) && readFileSync(portFile, 'utf8') !== '').toBe(true);
       const port = Number(readFileSync(portFile, 'utf8'));
       expect(await answers(port)).toBe(true);
       const result = await running;
       expect(result.timedOut).toBe(true);
       expect(result.code).not.toBe(0);
-      await expect.poll(() => answers(port), { timeout: 5000 }).toBe(false);
+      await expect.poll(() => answers(port)).toBe(false);
     },
   );
 

@@ -129,7 +129,7 @@ describe('the relay over HTTP', () => {
     expect(await found()).toMatchObject({ found: false });
     const guest = await rawGuest(server.url, 'meadow');
     await until('the lobby to know', () => server.relay.host.rooms.length === 1);
-    await expect.poll(found, { timeout: 5000 }).toEqual({ room: 'meadow', found: true });
+    await expect.poll(found).toEqual({ room: 'meadow', found: true });
     guest.socket.disconnect();
   });
 });
