@@ -51,7 +51,7 @@ export async function startRelay(environment: Record<string, string> = {}, port 
 export type RunningRelay = Awaited<ReturnType<typeof startRelay>>;
 
 /** Waits until something is true; says what was awaited if it never is. */
-export async function until(what: string, isTrue: () => boolean, seconds = 15): Promise<void> {
+export async function until(what: string, isTrue: () => boolean, seconds = 30): Promise<void> {
   const end = performance.now() + seconds * 1000;
   while (!isTrue()) {
     if (performance.now() > end) throw new Error(`waited ${seconds} s in vain: ${what}`);

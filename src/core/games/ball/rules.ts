@@ -180,9 +180,13 @@ function act(state: BallState, action: BallAction): Step {
   }
 }
 
-/** Why the round is over; null: it goes on. While a ball is in the air that may be caught, it does. */
+/** Whether a throw from before the bell can no longer arrive. */
+const isPastThrows = (state: BallState): boolean =>
+  state.startedAt !== null && ballMatchTime(state) >= state.startedAt + state.options.seconds + longestDelay;
+
+/** Why the round is over; null: it goes on. While a ball may be caught that is in the air or may have been thrown by now, it does. */
 function roundEnd(state: BallState): BallEnd | null {
-  for (const place of state.balls) if (place.on === 'air' && !place.missed) return null;
+  for (const place of state.balls) if (place.on === 'hand' || (place.on === 'air' && !place.missed)) return null;
   if (ballsLeft(state) === 0) return 'balls';
   return ballSecondsLeft(state) <= 0 ? 'time' : null;
 }
@@ -247,7 +251,7 @@ export const ballRules: GameRules<BallState, BallAction, BallEvent, BallOptions>
     if (next.basket.at < decided) take(decide(next, { ...next.basket, at: decided }));
     next = { ...next, tick: next.tick + 1 };
     if (next.phase === 'running') {
-      if (ballSecondsLeft(next) <= 0) take(returnHeld(next, null));
+      if (isPastThrows(next)) take(returnHeld(next, null));
       const end = roundEnd(next);
       if (end) {
         next = { ...next, phase: 'over', end, players: next.players.map((player) => ({ ...player, ready: false })) };

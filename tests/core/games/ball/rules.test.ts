@@ -2,7 +2,7 @@ import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import type { BallAction } from '../../../../src/core/games/ball/ball-state';
 import { basketInHands, gripRadius } from '../../../../src/core/games/ball/basket';
-import { armReach, fastestThrow } from '../../../../src/core/games/ball/deeds';
+import { armReach, fastestThrow, longestDelay } from '../../../../src/core/games/ball/deeds';
 import { ballRadius } from '../../../../src/core/games/ball/flight';
 import { ballRules } from '../../../../src/core/games/ball/rules';
 import { ballPosition, ballSecondsLeft, ballsLeft } from '../../../../src/core/games/ball/state-readings';
@@ -130,7 +130,7 @@ describe('a match', () => {
     expect(match.happened('ended')).toEqual([{ type: 'ended', end: 'balls', score: 20 }]);
   });
 
-  test('ends with the bell; a ball in the air still counts, one in the hand goes back', () => {
+  test('ends with the bell; a ball in the air still counts, one in the hand goes back half a second later', () => {
     const match = told({ seconds: 5 });
     match.pass(4.4);
     match.take(leftThrower, 1);
@@ -138,10 +138,28 @@ describe('a match', () => {
     match.toss(leftThrower, 1, inFront);
     match.pass(0.6);
     expect(match.state.phase).toBe('running');
+    match.take(leftThrower, 2);
+    match.toss(rightThrower, 11, inFront);
+    expect(match.refusals()).toEqual(['time', 'time']);
+    expect(match.happened('returned')).toEqual([]);
+    match.pass(longestDelay);
     expect(match.happened('returned')).toEqual([{ type: 'returned', ball: 11, player: rightThrower }]);
-    match.take(rightThrower, 12);
-    expect(match.refusals()).toEqual(['time']);
     match.pass(2);
+    expect(match.happened('ended')).toEqual([{ type: 'ended', end: 'time', score: 1 }]);
+  });
+
+  test('counts a throw from before the bell that arrives after it', () => {
+    const match = told({ seconds: 5 });
+    match.pass(4.5);
+    match.take(leftThrower, 1);
+    match.pass(0.7);
+    expect(match.now()).toBeGreaterThan(5);
+    const position = match.release(leftThrower);
+    const velocity = velocityTo(position, inFront, 1);
+    const thrown = { type: 'throw', side: 'right', ball: 1, at: 4.9, position, velocity } as const;
+    match.step(hold(match.now(), inFront), stand(leftThrower, match.now(), position), match.deed(leftThrower, thrown));
+    expect(match.refusals()).toEqual([]);
+    match.pass(1);
     expect(match.happened('ended')).toEqual([{ type: 'ended', end: 'time', score: 1 }]);
   });
 
