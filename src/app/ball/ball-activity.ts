@@ -35,7 +35,8 @@ import { createMatchClock } from './match-clock';
 import { type PlayerProbe, playersOf } from './player-probe';
 import { SeenAvatars } from './seen-avatars';
 import { type OwnWear, SharedAvatar } from './shared-avatar';
-import { Voices, type VoicesOptions, type VoicesProbe } from './voices';
+import { Voices, type VoicesOptions } from './voices';
+import type { VoicesProbe } from './voices-state';
 
 export interface BallActivityOptions {
   readonly quality: Quality;

@@ -22,6 +22,19 @@ export interface PersonVoice {
   readonly hidden: boolean;
 }
 
+/** What tools may know of the voices. */
+export interface VoicesProbe {
+  readonly phase: VoicesState['phase'];
+  readonly muted: boolean;
+  readonly said: string | null;
+  /** All voices at the own ears [dB of full scale]; −120: silence. */
+  readonly loudness: number;
+  /** The same voices as they arrive, before distance and direction change them. */
+  readonly spokenLoudness: number;
+  readonly ownLevel: number;
+  readonly people: readonly (PersonVoice & { readonly seat: number; readonly level: number })[];
+}
+
 /** What everyone reads before they first take part. */
 export const consentText =
   'Voices go straight from page to page: people in the room could learn your network address (IP). Nothing is recorded, and you begin muted.';

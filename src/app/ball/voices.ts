@@ -12,7 +12,7 @@ import { VoiceSound } from '../../scene/sound/voice-sound';
 import type { BodyFrame } from './ball-frame';
 import type { BallPlay } from './ball-play';
 import { PersonMarks } from './person-marks';
-import type { PersonVoice, VoicesState } from './voices-state';
+import type { PersonVoice, VoicesProbe, VoicesState } from './voices-state';
 
 export interface VoicesOptions {
   readonly play: Pick<BallPlay, 'room' | 'status' | 'voices'>;
@@ -22,19 +22,6 @@ export interface VoicesOptions {
   openAudio(): Promise<AudioContext>;
   /** Voices go by a relay alone, so that no page learns this one's address. */
   relayOnly(): boolean;
-}
-
-/** What tools may know of the voices. */
-export interface VoicesProbe {
-  readonly phase: VoicesState['phase'];
-  readonly muted: boolean;
-  readonly said: string | null;
-  /** All voices at the own ears [dB of full scale]; −120: silence. */
-  readonly loudness: number;
-  /** The same voices as they arrive, before distance and direction change them. */
-  readonly spokenLoudness: number;
-  readonly ownLevel: number;
-  readonly people: readonly (PersonVoice & { readonly seat: number; readonly level: number })[];
 }
 
 /** Connections are looked after this often [ms], seen or hidden. */
