@@ -57,13 +57,13 @@ class AugmentConfig:
     arm_span_error: float = 0.02
     # Share of hands, each by itself, that are tilted otherwise than was noticed (a wearer who has only begun, a controller gripped anew), and by
     # how much [rad].
-    mistaken_hands: float = 0.1
+    mistaken_hands: float = 0.05
     mistaken_turn: float = np.radians(40.0)
     # Share of wearers who typed how long their forearm is, and by how much they err [m].
     typed_forearms: float = 0.5
     forearm_error: float = FOREARM_ERROR
     balance: BalanceConfig = BalanceConfig()
-    trackers: TrackerConfig = TrackerConfig(headset_offset=0.025, wrist_offset=0.02)
+    trackers: TrackerConfig = TrackerConfig(headset_offset=0.025, wrist_offset=0.01)
 
 
 @dataclass(frozen=True)
