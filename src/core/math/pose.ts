@@ -99,11 +99,14 @@ export function transformPose<To extends Frame, From extends Frame>(
 }
 
 /** The pose in To where the device sees it, null where it is lost or only guessed. */
-export const transformSeen = <To extends Frame>(
+export function transformSeen<To extends Frame>(
   t: Transform<To, 'floor'>,
   pose: TrackedPose | null,
   target?: MutablePose<To>,
-): MutablePose<To> | null => (pose?.tracking === 'tracked' ? transformPose(t, pose, target) : null);
+): MutablePose<To> | null {
+  const seen = seenPose(pose);
+  return seen && transformPose(t, seen, target);
+}
 
 /** From From to To by way of Via. */
 export function composeTransforms<To extends Frame, Via extends Frame, From extends Frame>(
