@@ -24,6 +24,9 @@ function rmsOf(analyser: AnalyserNode, samples: Float32Array<ArrayBuffer>): numb
 
 const decibels = (rms: number): number => 20 * Math.log10(Math.max(rms, 1e-6));
 
+/** How loud it is at a meter of long windows [dB of full scale]; −120: silent. */
+const loudnessAt = (meter: AnalyserNode): number => decibels(rmsOf(meter, new Float32Array(longWindow)));
+
 /** How loud a voice is as it is drawn, and when that was read [s of the context]. */
 interface Level {
   readonly analyser: AnalyserNode;
@@ -146,12 +149,12 @@ export class VoiceSound {
 
   /** How loud all voices together are at the ears [dB of full scale], for tools; −120: silent. */
   loudness(): number {
-    return decibels(rmsOf(this.#meter, new Float32Array(longWindow)));
+    return loudnessAt(this.#meter);
   }
 
   /** The same before distance and direction change them; the difference is what these do, however loud a microphone makes its voice meanwhile. */
   spokenLoudness(): number {
-    return decibels(rmsOf(this.#spokenMeter, new Float32Array(longWindow)));
+    return loudnessAt(this.#spokenMeter);
   }
 
   dispose(): void {
