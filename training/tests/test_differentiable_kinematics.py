@@ -10,7 +10,7 @@ from threepoint_training.differentiable_kinematics import DifferentiableKinemati
 from threepoint_training.features import ARM_LENGTH, IK_JOINTS
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.skeleton import load_proportions
-from threepoint_training.train_learned import Condition, HeldOut, fitted_errors_cm, held_out, ik_errors_cm, mean_distance, raw_errors_cm
+from threepoint_training.train_learned import Condition, HeldOut, fitted_errors_cm, held_out, ik_errors_cm, mean_distances, raw_errors_cm, regret
 
 pytestmark = pytest.mark.training
 
@@ -80,5 +80,11 @@ def test_elbows_count_in_the_loss_for_what_their_share_says():
     away = torch.zeros(10, 6, 3)
     away[:, :2, 0], away[:, 2:, 1] = 3.0, 1.5
     still = torch.zeros_like(away)
-    assert mean_distance(away, still).item() == pytest.approx((2 * 3.0 + 4 * 1.5) / 6)
-    assert mean_distance(away, still, 0.8).item() == pytest.approx(0.8 * 3.0 + 0.2 * 1.5)
+    torch.testing.assert_close(mean_distances(away, still), torch.full((10,), (2 * 3.0 + 4 * 1.5) / 6))
+    torch.testing.assert_close(mean_distances(away, still, 0.8), torch.full((10,), 0.8 * 3.0 + 0.2 * 1.5))
+
+
+def test_bodies_better_than_asked_do_not_make_up_for_worse_ones():
+    bound = torch.full((3,), 5.0)
+    assert regret(torch.tensor([1.0, 5.0, 8.0]), bound).item() == pytest.approx(1.0)
+    assert regret(torch.tensor([1.0, 5.0, 4.0]), bound).item() == 0.0

@@ -70,7 +70,8 @@ def variants(config: TrainLearnedConfig) -> dict[str, TrainLearnedConfig]:
         "no shrinkage": replace(config, shrinkage=1.0, arm_shrinkage=1.0),
         "no per-subject random effects": replace(config, effects_learning_rate=0.0),
         "every joint alike in the loss": replace(config, elbow_share=1 / 3),
-        "loss on raw joints alone": replace(config, fitted_loss_weight=0.0, auxiliary_loss_weight=1.0),
+        "no regret in the loss": replace(config, regret_weight=0.0),
+        "loss on raw joints alone": replace(config, fitted_loss_weight=0.0, auxiliary_loss_weight=1.0, regret_weight=0.0),
         "only the newest frame": without(window_frames=(0,)),
     }
 

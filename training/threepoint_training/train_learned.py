@@ -1,5 +1,6 @@
 """Trains our network, which predicts the residual of IK's joints, on recombined bodies; its weights are averaged over steps, then shrunk."""
 
+import functools
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
@@ -38,13 +39,17 @@ class TrainLearnedConfig:
     weight_decay: float = 1e-2
     average_half_life_steps: float = 300.0
     # What corrections of trunk and arm are multiplied by after training: what is learned of the people trained on holds for others in part.
-    shrinkage: float = 0.9
+    shrinkage: float = 0.92
     arm_shrinkage: float = 1.0
     # Weights in the loss of errors after torso and arm fitting, and of raw joints: these keep small what fitting would undo.
     fitted_loss_weight: float = 1.0
     auxiliary_loss_weight: float = 0.1
     # Of both losses, a third would be every joint alike. An elbow hangs from its shoulder: trunks are put where elbows come right, too.
     elbow_share: float = 2 / 3
+    # Weight of the regret: how far the errors of the network alone, without random effects, exceed this part of IK's. What harms costs more than
+    # what helps gains, so that corrections stay small where their direction is uncertain.
+    regret_weight: float = 2.0
+    regret_threshold: float = 0.7
     # Ridge and learning rate of the per-subject random effects; at a rate of 0 they stay 0.
     effects_ridge: float = 1e-3
     effects_learning_rate: float = 2e-2
@@ -261,11 +266,15 @@ def train(
     for step in range(config.steps):
         current = draw_batch(parts, config.batch, config.augment, random)
         x, y = torch.from_numpy(current.inputs), torch.from_numpy(current.targets)
-        corrections = network(x).view(-1, 6, 3) + effects(x, torch.from_numpy(current.people))
-        truth = y.view(-1, 6, 3)
-        raw, fitted = (mean_distance(joints, truth, config.elbow_share) for joints in (corrections, kinematics(corrections, x)))
-        distance = config.auxiliary_loss_weight * raw + config.fitted_loss_weight * fitted
-        loss = distance / _RESIDUAL + config.effects_ridge * effects.penalty()
+        shared = network(x).view(-1, 6, 3)
+        corrections = shared + effects(x, torch.from_numpy(current.people))
+        distance = functools.partial(mean_distances, truth=y.view(-1, 6, 3), elbow_share=config.elbow_share)
+        loss = config.auxiliary_loss_weight * distance(corrections).mean()
+        loss = loss + config.fitted_loss_weight * distance(kinematics(corrections, x)).mean()
+        if config.regret_weight > 0:
+            of_ik = distance(kinematics(torch.zeros_like(shared), x))
+            loss = loss + config.regret_weight * regret(distance(kinematics(shared, x)), config.regret_threshold * of_ik)
+        loss = loss / _RESIDUAL + config.effects_ridge * effects.penalty()
         optimiser.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(network.parameters(), 1.0)
@@ -306,7 +315,7 @@ def train_frame_random(
     network.train()
     for step in range(config.steps):
         batch = torch.randint(len(x), (config.batch,))
-        loss = mean_distance(network(x[batch]).view(-1, 6, 3), y[batch].view(-1, 6, 3)) / _RESIDUAL
+        loss = mean_distances(network(x[batch]).view(-1, 6, 3), y[batch].view(-1, 6, 3)).mean() / _RESIDUAL
         optimiser.zero_grad()
         loss.backward()
         optimiser.step()
@@ -319,10 +328,15 @@ def train_frame_random(
 _RESIDUAL = 0.025
 
 
-def mean_distance(corrections: torch.Tensor, truth: torch.Tensor, elbow_share: float = 1 / 3) -> torch.Tensor:
-    """Mean distance of joints [N, 6, 3] (ESTIMATED_JOINTS) in which both elbows together count for so much; a third: every joint alike.
+def mean_distances(corrections: torch.Tensor, truth: torch.Tensor, elbow_share: float = 1 / 3) -> torch.Tensor:
+    """Mean distance [N] of the joints [N, 6, 3] (ESTIMATED_JOINTS), both elbows together counting for so much; a third: every joint alike.
 
     Not its square: MPJPE counts distances, and the large errors of people who climb and tumble would outweigh all others.
     """
     distance = (corrections - truth).norm(dim=-1)
-    return elbow_share * distance[:, :2].mean() + (1 - elbow_share) * distance[:, 2:].mean()
+    return elbow_share * distance[:, :2].mean(dim=-1) + (1 - elbow_share) * distance[:, 2:].mean(dim=-1)
+
+
+def regret(ours: torch.Tensor, bound: torch.Tensor) -> torch.Tensor:
+    """By how much errors [N] exceed these bounds [N], on average; errors below make up for none above."""
+    return torch.relu(ours - bound).mean()
