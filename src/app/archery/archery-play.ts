@@ -61,6 +61,8 @@ export interface ArcheryPlay {
   restart(calibration: Calibration, eyeHeight?: number): void;
   /** The floor lies elsewhere from the next frame on. */
   jumped(): void;
+  /** Other hands have the bow from the next frame on: they let go of no arrow that they did not draw. */
+  handedOver(): void;
   /** The start signal: the clock of a round that waits runs from the next frame on, not from the first arrow. */
   signal(): void;
 }
@@ -123,6 +125,7 @@ export function createArcheryPlay(
   /** Of the frame that was followed last, by the page's clock [s]. */
   let followedAt = Number.NaN;
   let signalled = false;
+  let otherHands = false;
   const gestures = createArcheryGestures(() => ({
     ...defaultArcheryGestureSettings,
     bowSide: settings().bowSide,
@@ -160,7 +163,11 @@ export function createArcheryPlay(
       return newest;
     },
     follow(frame, buttons) {
-      const { bow, actions, cues, haptics } = gestures.follow(frame, buttons);
+      const { bow, actions, cues, haptics } = gestures.follow(
+        otherHands ? { ...frame, suspended: true } : frame,
+        buttons,
+      );
+      otherHands = false;
       const signals: readonly ArcheryAction[] = signalled ? [{ type: 'start' }] : [];
       signalled = false;
       const events = match.advance(frame.time, [...signals, ...actions]);
@@ -178,6 +185,9 @@ export function createArcheryPlay(
     },
     restart,
     jumped: () => gestures.jumped(),
+    handedOver() {
+      otherHands = true;
+    },
     signal() {
       signalled = true;
     },

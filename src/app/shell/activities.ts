@@ -213,6 +213,11 @@ export class Activities {
     this.#ball?.play.jumped();
   }
 
+  /** A headset is worn, or no longer: other hands play from the next frame on. */
+  sessionChanged(): void {
+    this.#archery?.play.handedOver();
+  }
+
   /** Whom the camera shows instead of an own body; null: there is one. */
   watched(): Watched | null {
     if (!this.#watching) return null;

@@ -13,7 +13,7 @@ export interface SessionChangesOptions {
   readonly timing: FrameTiming;
   readonly view: DesktopView;
   readonly body: Pick<BareBody, 'begin' | 'jumped'>;
-  readonly activities: Pick<Activities, 'ball'>;
+  readonly activities: Pick<Activities, 'ball' | 'sessionChanged'>;
   readonly controls: Pick<Controls, 'show' | 'setWorn' | 'layOut'>;
   readonly study: Pick<PageStudy, 'run'>;
 }
@@ -76,10 +76,11 @@ export class SessionChanges implements HeadsetListener {
   }
 
   #changed(): void {
-    const { timing, headset, body, controls, study } = this.#options;
+    const { timing, headset, body, activities, controls, study } = this.#options;
     timing.setRate(headset.pictureRateHz);
     this.#sightChanged();
     body.jumped();
+    activities.sessionChanged();
     controls.show();
     study.run?.sessionChanged();
   }

@@ -1,14 +1,17 @@
 import { Scene } from 'three';
 import { describe, expect, test, vi } from 'vitest';
 import { Activities } from '../../../src/app/shell/activities';
+import { createFrameTiming } from '../../../src/app/shell/frame-timing';
 import { PageGames } from '../../../src/app/shell/games';
 import { PageStudy } from '../../../src/app/shell/page-study';
+import { SessionChanges, type SessionChangesOptions } from '../../../src/app/shell/session-changes';
 import { createSettings, type LastingSettings, SettingsWriter } from '../../../src/app/shell/settings';
 import { createArcheryRunner } from '../../../src/app/shell/study-archery';
 import { readSwitches } from '../../../src/app/shell/switches';
+import { Recorder } from '../../../src/app/studio/recorder';
 import type { StudyRun } from '../../../src/app/study/study-run';
 import { defaultCalibration } from '../../../src/core/body/calibration';
-import { nothingPressed } from '../../../src/core/games/button-presses';
+import { allReleased, nothingPressed } from '../../../src/core/games/button-presses';
 import type { Side } from '../../../src/core/math/side';
 import { vec3 } from '../../../src/core/math/vec3';
 import { plainAvatar } from '../../../src/core/protocol/worn-avatar';
@@ -18,6 +21,7 @@ import { ServerPresence } from '../../../src/net/server-presence';
 import type { SceneName } from '../../../src/scene/desktop-view';
 import type { Surroundings } from '../../../src/scene/surroundings';
 import type { Notice } from '../../../src/ui/notices';
+import { posed } from '../../core/games/archery/bowman';
 import { drawNowhere } from './drawing-in-node';
 
 drawNowhere();
@@ -212,6 +216,56 @@ describe('a round', () => {
     expect(seen).toMatchObject({ aims: true, orbit: false });
     await activities.goTo('studio');
     expect(seen).toMatchObject({ aims: false, orbit: true });
+  });
+});
+
+describe('a player who takes the headset off', () => {
+  /** The range of a page whose headset is put on and taken off. */
+  async function worn() {
+    const opened = await range();
+    const { activities, headset, study } = opened;
+    vi.stubGlobal('document', { hidden: false });
+    const nothing = () => undefined;
+    const changes = new SessionChanges({
+      headset: { pictureRateHz: 72, visibility: 'none' },
+      recorder: new Recorder(),
+      timing: createFrameTiming(() => 0),
+      view: { view: 'third-person', setView: nothing } as unknown as SessionChangesOptions['view'],
+      body: { begin: nothing, jumped: () => activities.jumped() },
+      controls: { show: nothing, setWorn: nothing, layOut: nothing },
+      ...{ activities, study },
+    });
+    return {
+      ...opened,
+      enter() {
+        headset.worn = true;
+        changes.entered();
+      },
+      leave() {
+        headset.worn = false;
+        changes.left();
+      },
+    };
+  }
+
+  test('at full draw shoots no arrow: it is back in the quiver, whatever the hands do that come next', async () => {
+    const { activities, enter, leave } = await worn();
+    enter();
+    const pressed = { left: allReleased, right: { ...allReleased, trigger: 1 } };
+    let time = 10;
+    const hold = (draw: number, buttons = pressed) => {
+      for (let i = 0; i < 9; i++) {
+        time += 1 / 90;
+        activities.play(posed(time, { draw }), buttons);
+      }
+    };
+    hold(0, nothingPressed);
+    hold(0);
+    hold(0.5);
+    expect(activities.archery?.probe()?.draw).toBeGreaterThan(0.3);
+    leave();
+    hold(0, nothingPressed);
+    expect(activities.archery?.probe()).toMatchObject({ phase: 'ready', arrowsLeft: 5, stage: 'empty' });
   });
 });
 

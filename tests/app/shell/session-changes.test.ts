@@ -26,7 +26,7 @@ function player(recorder = new Recorder()) {
     timing: createFrameTiming(() => 0),
     view: { view: 'third-person', setView: nothing } as unknown as SessionChangesOptions['view'],
     body: { begin: nothing, jumped: nothing },
-    activities: { ball: { play } } as unknown as SessionChangesOptions['activities'],
+    activities: { ball: { play }, sessionChanged: nothing } as unknown as SessionChangesOptions['activities'],
     controls: { show: nothing, setWorn: nothing, layOut: nothing },
     study: { run: null },
   });
