@@ -216,6 +216,7 @@ export class Activities {
   /** A headset is worn, or no longer: other hands play from the next frame on. */
   sessionChanged(): void {
     this.#archery?.play.handedOver();
+    this.#steerByMouse();
   }
 
   /** Whom the camera shows instead of an own body; null: there is one. */

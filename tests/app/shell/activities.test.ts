@@ -224,7 +224,6 @@ describe('a player who takes the headset off', () => {
   async function worn() {
     const opened = await range();
     const { activities, headset, study } = opened;
-    vi.stubGlobal('document', { hidden: false });
     const nothing = () => undefined;
     const changes = new SessionChanges({
       headset: { pictureRateHz: 72, visibility: 'none' },
@@ -266,6 +265,16 @@ describe('a player who takes the headset off', () => {
     leave();
     hold(0, nothingPressed);
     expect(activities.archery?.probe()).toMatchObject({ phase: 'ready', arrowsLeft: 5, stage: 'empty' });
+  });
+
+  test('aims by the mouse again that was chosen at the desk, also on a range that was opened in the headset', async () => {
+    const { activities, seen, enter, leave } = await worn();
+    activities.chooseShooter('mouse');
+    enter();
+    await activities.goTo('studio');
+    await activities.goTo('archery');
+    leave();
+    expect(seen).toMatchObject({ aims: true, orbit: false });
   });
 });
 
