@@ -13,7 +13,7 @@ import type { Settings } from './settings';
 export interface TrackingSourceOptions {
   readonly settings: Pick<Settings, 'actor'>;
   readonly headset: Pick<Headset, 'worn' | 'emulator' | 'read' | 'buttons'>;
-  readonly recorder: Pick<Recorder, 'sample' | 'person'>;
+  readonly recorder: Pick<Recorder, 'sample' | 'person' | 'giveWay'>;
   readonly body: Pick<BareBody, 'wearerCalibration'>;
   readonly actor: Pick<Actor, 'frameAt'>;
   readonly activities: Pick<Activities, 'begin' | 'act' | 'watched'>;
@@ -56,7 +56,9 @@ export class TrackingSource {
   }
 
   #readSession(time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
-    const { headset, settings, study } = this.#options;
+    const { headset, settings, study, recorder } = this.#options;
+    // A file may arrive in a session: the wearer's body neither follows its replay nor stands still with it.
+    recorder.giveWay();
     if (headset.emulator && settings.actor && !study.idle) {
       // What the actor does now is seen with the next frame: the device froze this one before it called.
       const performed = this.#perform(time);

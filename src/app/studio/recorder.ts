@@ -126,6 +126,11 @@ export class Recorder {
     this.#sampledAt = null;
   }
 
+  /** Another moves the body: a replay is over. */
+  giveWay(): void {
+    if (this.#mode === 'replaying') this.#end();
+  }
+
   #end(): void {
     this.stop();
     this.#onEnd();

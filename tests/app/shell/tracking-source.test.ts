@@ -1,0 +1,59 @@
+import { expect, test } from 'vitest';
+import { TrackingSource } from '../../../src/app/shell/tracking-source';
+import { Recorder } from '../../../src/app/studio/recorder';
+import { defaultCalibration } from '../../../src/core/body/calibration';
+import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
+import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
+import { nothingPressed } from '../../../src/core/games/button-presses';
+import { actorFrame } from '../../../src/core/tracking/actor-motion';
+import { BareBody } from '../../../src/lib/bare-body';
+import { ReplayedBody } from '../../../src/lib/replayed-body';
+
+const skeleton = skeletonFromCalibration(defaultCalibration);
+
+/** A page whose headset is worn by a person who moves as the actor does, with its recorder and its body. */
+function worn() {
+  const recorder = new Recorder();
+  const body = new BareBody({
+    estimator: 'ik',
+    calibration: defaultCalibration,
+    networks: () => Promise.reject(new Error('inverse kinematics has none')),
+  });
+  const replayed = new ReplayedBody(body, recorder);
+  const source = new TrackingSource({
+    settings: { actor: true },
+    headset: {
+      worn: true,
+      emulator: null,
+      buttons: nothingPressed,
+      read: (_, time) => actorFrame(time, defaultCalibration),
+    },
+    recorder,
+    body,
+    actor: { frameAt: (time) => actorFrame(time, defaultCalibration) },
+    activities: { begin: () => undefined, act: () => null, watched: () => null },
+    study: { idle: false },
+  });
+  const wristAt = (time: number) => {
+    const pose = replayed.update(source.read(time, {} as XRFrame), source.standIn);
+    return { ...forwardKinematics(skeleton, pose!.body!).rightHand.position };
+  };
+  return { recorder, wristAt };
+}
+
+test('a replay that arrives paused while a headset is worn does not hold its wearer still', () => {
+  const { recorder, wristAt } = worn();
+  wristAt(10);
+  recorder.take('dance.json', {
+    device: 'a test',
+    rateHz: 60,
+    calibration: defaultCalibration,
+    frames: [0, 1, 2, 3].map((time) => actorFrame(time, defaultCalibration)),
+  });
+  recorder.seek(2);
+  recorder.setPaused(true);
+  wristAt(11);
+  expect(wristAt(12)).not.toEqual(wristAt(13));
+  expect(recorder.mode).toBe('idle');
+  expect(recorder.name).toBe('dance.json');
+});
