@@ -73,6 +73,17 @@ test('of another file with as many pieces its own can be chosen @full', async ({
   await expect(pieces).toHaveText(['another_walks#1', 'another_walks#2']);
 });
 
+test('a clip that was stopped is played again by its own button @full', async ({ page }) => {
+  await open(page, 'emulate&quality=low&estimator=ik&actor=off');
+  await choose(page, filesOf(acclaim!));
+  await expect(card(page).getByRole('heading', { name: '11_07' })).toBeVisible();
+  await page.getByRole('button', { name: 'Stop' }).click();
+  expect((await probe(page)).recorder.mode).toBe('idle');
+  await card(page).getByRole('button', { name: 'Play' }).click();
+  expect((await probe(page)).recorder.mode).toBe('replaying');
+  await expect(card(page).getByRole('button', { name: 'Pause' })).toBeVisible();
+});
+
 test('a damaged file is refused with line and column, and what is shown stays', async ({ page, complaints }) => {
   complaints.allow(/could not be shown/);
   await open(page, 'emulate&quality=low&estimator=ik&actor=off');

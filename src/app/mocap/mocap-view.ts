@@ -176,7 +176,7 @@ export class MocapView {
     this.#card.show({
       clips: opened.clips.map(({ name }) => name),
       clip: opened.index,
-      paused: replay.paused,
+      paused: replay.paused || replay.mode !== 'replaying',
       seconds: replay.seconds,
       duration: replay.duration,
       truth: this.#truthPlace,
@@ -204,7 +204,9 @@ export class MocapView {
     return {
       chooseClip: (index) => this.#chooseClip(index),
       setPaused: (on) => {
-        replay.setPaused(on);
+        // A replay that was stopped, or is over, begins anew.
+        if (replay.mode === 'replaying') replay.setPaused(on);
+        else this.#seek(0);
         this.show();
       },
       seek: (seconds) => {
