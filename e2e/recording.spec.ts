@@ -85,3 +85,14 @@ test('a recording becomes files for other programs, drawn by the chosen method @
   await page.getByRole('button', { name: 'BVH', exact: true }).click();
   await expect(page.getByRole('alert')).toContainText('recording-1 could not be exported');
 });
+
+test('a recording in the address is replayed on the range too, whichever of them comes first @full', async ({
+  page,
+}) => {
+  await recordTheActor(page);
+  const { bytes: body } = await downloaded(page, 'Download');
+  await page.route('**/walk.json', (route) => route.fulfill({ body, contentType: 'application/json' }));
+  await open(page, 'play=archery&replay=walk.json&panel=off&quality=low&estimator=ik');
+  await expect(page.getByRole('button', { name: 'Archery' })).toHaveAttribute('aria-pressed', 'true');
+  await expect.poll(async () => (await probe(page)).recorder.mode).toBe('replaying');
+});

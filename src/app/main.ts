@@ -37,6 +37,13 @@ async function showFirstBody({ avatarShown, frame }: Page, loading: PageLoading)
   loading.bodyShown();
 }
 
+/** Goes where the address asks, and only there begins what it asks for: who arrives in a game leaves a replay behind. */
+async function goWhereAsked({ activities, controls, mocap }: Page, { switches }: Visit): Promise<void> {
+  await activities.goTo(switches.play);
+  if (switches.replay) void controls.openRecording(switches.replay);
+  if (switches.mocap) void mocap.open(switches.mocap.addresses, switches.mocap);
+}
+
 /** Takes part in the study that the address asks for, if it does. */
 async function takePart(page: Page, visit: Visit): Promise<void> {
   const { switches } = visit;
@@ -61,7 +68,7 @@ async function start(): Promise<void> {
   const visit = beginVisit(notices);
   const { switches, store } = visit;
   const page = createPage({ visit, notices, loading });
-  const { avatar, body, controls, headset, activities, timing, mocap } = page;
+  const { avatar, body, controls, headset, timing } = page;
 
   // Ours stands there until another has arrived, and stays where that does not.
   if (switches.avatar) void avatar.open(switches.avatar);
@@ -73,9 +80,7 @@ async function start(): Promise<void> {
   const chosen = body.choose(switches.estimator ?? store.preferences.estimator ?? 'learned');
   void chosen.then(() => loading.report('the network', 1));
   await showFirstBody(page, loading);
-  if (switches.replay) void controls.openRecording(switches.replay);
-  if (switches.mocap) void mocap.open(switches.mocap.addresses, switches.mocap);
-  await Promise.all([chosen, sessionsOffered, activities.goTo(switches.play)]);
+  await Promise.all([chosen, sessionsOffered, goWhereAsked(page, visit)]);
   await takePart(page, visit);
   loading.finish();
   // Compiling shaders is loading, not drawing.
