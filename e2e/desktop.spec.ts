@@ -83,3 +83,13 @@ test('the overlay names the stages of a frame, the estimator and where it runs @
   await expect(overlay).toContainText(/wasm/i);
   await expect(overlay).toContainText(/missed at/);
 });
+
+for (const [where, query, viewport] of [
+  ['in a game', 'play=archery&panel=on', { width: 960, height: 600 }],
+  ['in a narrow window', 'panel=on', { width: 600, height: 800 }],
+] as const)
+  test(`the controls are open ${where} where the address asks for them @full`, async ({ page }) => {
+    await page.setViewportSize(viewport);
+    await open(page, `${query}&quality=low&estimator=ik`);
+    await expect(page.getByRole('button', { name: 'Controls' })).toHaveAttribute('aria-expanded', 'true');
+  });

@@ -37,9 +37,10 @@ async function showFirstBody({ avatarShown, frame }: Page, loading: PageLoading)
   loading.bodyShown();
 }
 
-/** Goes where the address asks, and only there begins what it asks for: who arrives in a game leaves a replay behind. */
+/** Goes where the address asks, and only there begins what it asks for: who arrives in a game leaves a replay and the controls behind. */
 async function goWhereAsked({ activities, controls, mocap }: Page, { switches }: Visit): Promise<void> {
   await activities.goTo(switches.play);
+  if (switches.panel) controls.setPanelOpen(true);
   if (switches.replay) void controls.openRecording(switches.replay);
   if (switches.mocap) void mocap.open(switches.mocap.addresses, switches.mocap);
 }

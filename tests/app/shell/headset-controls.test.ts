@@ -43,7 +43,7 @@ function headset() {
   let step: CalibrationStep | null = null;
   const pointers = { objects: new Group(), take: () => hands };
   const controls = new HeadsetControls({
-    ...{ settings, writer, study, pointers, switches: { room: null }, server: { state: 'here' } },
+    ...{ settings, writer, study, pointers, switches: { room: null, panel: null }, server: { state: 'here' } },
     notices: { show: () => undefined, current: () => [] },
     body: { estimator: 'ik', unavailable: {} },
     activities: {

@@ -17,7 +17,7 @@ import type { Wearer } from '../wearer';
 
 /** The parts of the page that its controls show and act on. */
 export interface ControlledParts {
-  readonly switches: Pick<Switches, 'room'>;
+  readonly switches: Pick<Switches, 'room' | 'panel'>;
   readonly settings: Settings;
   readonly writer: Pick<SettingsWriter, 'change' | 'keep'>;
   readonly store: Pick<PreferenceStore, 'remember'>;

@@ -77,9 +77,10 @@ export class Controls {
     this.#desktop.setPanelOpen(!worn && this.#panelOpenBefore);
   }
 
-  /** Where there is no place beside the picture, the panel stays closed until its button is pressed. */
+  /** Where there is no place beside the picture, the panel stays closed until its button is pressed, unless the address asks for it. */
   setPanelOpen(open: boolean): void {
-    this.#desktop.setPanelOpen(open && !isNarrow());
+    const asked = this.#parts.switches.panel === true;
+    this.#desktop.setPanelOpen(open && (asked || !isNarrow()));
   }
 
   /** What is heard, in words. */
