@@ -59,6 +59,16 @@ export class StudyPlans {
     return checkedPlan(JSON.parse(plan));
   }
 
+  /** The one invitation to all places of an open study, which those who follow its newest plan have; null: none of them has one. */
+  commonInvitation(id: string): string | null {
+    const place = this.#database.get<{ invitation: string }>(
+      `SELECT invitation FROM participants WHERE study = ? AND invitation IS NOT NULL AND (plan_version IS NULL OR plan_version =
+         (SELECT max(version) FROM plan_versions WHERE plan_versions.study = participants.study)) LIMIT 1`,
+      id,
+    );
+    return place?.invitation ?? null;
+  }
+
   /** Oldest first. */
   all(): readonly StudyInfo[] {
     return this.#database
@@ -213,6 +223,7 @@ export class StudyPlans {
           'group sizes as they are, or give the plan another id',
       );
     }
+    const common = plan.entry === 'open' ? this.commonInvitation(id) : null;
     this.#database.run(
       'INSERT INTO plan_versions (study, version, plan, since) VALUES (?, ?, ?, ?)',
       ...[id, version + 1, JSON.stringify(plan), at],
@@ -227,11 +238,17 @@ export class StudyPlans {
         ...[itsVersion, id, participant],
       );
     }
-    this.#renewFreePlaces(plan, plan.entry === before.entry);
+    this.#renewFreePlaces(plan, { linksHold: plan.entry === before.entry, common });
   }
 
-  /** The places that no one has are those of the new plan; links that were sent already open them still, if one may. */
-  #renewFreePlaces(plan: StudyPlan, linksHold: boolean): void {
+  /**
+   * The places that no one has are those of the new plan; links that were sent already open them still, if one may: that of all (`common`; null:
+   * there is none) also those that the plan has more.
+   */
+  #renewFreePlaces(
+    plan: StudyPlan,
+    { linksHold, common }: { readonly linksHold: boolean; readonly common: string | null },
+  ): void {
     const { id } = plan;
     const free = this.#database.all<{ participant: string; invitation: string | null }>(
       'SELECT participant, invitation FROM participants WHERE study = ? AND plan_version IS NULL',
@@ -239,7 +256,7 @@ export class StudyPlans {
     );
     const links = new Map(free.map(({ participant, invitation }) => [participant, invitation]));
     this.#database.run('DELETE FROM participants WHERE study = ? AND plan_version IS NULL', id);
-    this.#addPlaces(plan, (participant) => (linksHold ? (links.get(participant) ?? null) : null));
+    this.#addPlaces(plan, (participant) => (linksHold ? (links.get(participant) ?? common) : null));
   }
 
   #insert(plan: StudyPlan, simulated: boolean, at: number): void {

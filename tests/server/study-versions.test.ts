@@ -119,6 +119,17 @@ describe('a plan that has participants', () => {
     expect(store.study('latency').retentionUntil).toBe(now + 365 * 86_400);
   });
 
+  test('that is open keeps its one invitation, also to the places that the new version has more', async () => {
+    const { store } = await servedStudies();
+    const open = latencyPlan({ entry: 'open', participants: 6 });
+    store.addStudy(open, { simulated: false, at: now });
+    const invitations = () => store.overview('latency', now).map(({ invitation }) => invitation);
+    const [sent] = invitations();
+    for (const { participant } of store.overview('latency', now)) store.claim('latency', participant, now);
+    store.addStudy({ ...open, participants: 12 }, { simulated: false, at: now, newVersion: true });
+    expect(invitations()).toEqual(Array.from({ length: 12 }, () => sent));
+  });
+
   test('does not give its participants other codes: links that were sent would open nothing', async () => {
     const { change, see } = await begunStudy();
     const { status, json } = await change({ ...later, participants: 120 }, true);
