@@ -44,7 +44,8 @@ export class StudyDeletion {
   delete(study: string, participant: string, reason: Receipt['reason'], at: number): Receipt {
     const { database, plans, places, records, motion, commands } = this.#parts;
     const receipt = database.transaction(() => {
-      const invitation = this.#invitationAfter(study, participant, reason);
+      places.get(study, participant);
+      const invitation = this.#invitationAfter(study, reason);
       const recordCount = records.delete(study, participant);
       const motionFiles = motion.delete(study, participant);
       commands.delete(study, participant);
@@ -98,11 +99,11 @@ export class StudyDeletion {
     return rows.map(receiptOf);
   }
 
-  /** A participant who withdrew stays out; a place that the experimenter cleared may be taken anew, by a new invitation. */
-  #invitationAfter(study: string, participant: string, reason: Receipt['reason']): string | null {
-    const { plans, places } = this.#parts;
-    const { invitation } = places.get(study, participant);
+  /** A participant who withdrew stays out; a place that the experimenter cleared may be taken anew, by a new invitation or by that of all. */
+  #invitationAfter(study: string, reason: Receipt['reason']): string | null {
+    const { plans } = this.#parts;
     if (reason !== 'experimenter') return null;
-    return plans.get(study).plan.entry === 'open' ? invitation : newCode();
+    const common = plans.get(study).plan.entry === 'open' ? plans.commonInvitation(study) : null;
+    return common ?? newCode();
   }
 }

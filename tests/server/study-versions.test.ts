@@ -206,6 +206,20 @@ describe('a place that the experimenter clears', () => {
     expect(store.overview('paper', now).map(({ version }) => version)).toEqual([1, 1, 1, 1, 1, 1]);
   });
 
+  test('of a study that has been opened to all is taken by the invitation of all, and not by the old one', async () => {
+    const { store } = await servedStudies();
+    const invited = latencyPlan({ participants: 6 });
+    store.addStudy(invited, { simulated: false, at: now });
+    const invitations = () => store.overview('latency', now).map(({ invitation }) => invitation);
+    const old = invitations()[0] as string;
+    store.claim('latency', 'P01', now);
+    store.addStudy({ ...invited, entry: 'open' }, { simulated: false, at: now, newVersion: true });
+    const [, ofAll] = invitations();
+    store.deleteParticipant('latency', 'P01', 'experimenter', now);
+    expect(invitations()).toEqual(Array.from({ length: 6 }, () => ofAll));
+    expect(store.invites('latency', 'P01', old)).toBe(false);
+  });
+
   test('stays taken for a participant who has withdrawn', async () => {
     const { change, store } = await begunStudy();
     await change(asksMore, true);
