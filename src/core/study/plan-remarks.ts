@@ -2,6 +2,7 @@ import { cohortsByParticipant, groupsOf, ordersByGroup, ordersOf } from './alloc
 import { embodimentFieldsOf, embodimentInWords, type PartialEmbodiment } from './embodiment';
 import { missingKeys, phraseKeys } from './phrases/phrases';
 import { languagesOf, type StudyCohort, type StudyPlan, type StudyTask, taskTitle } from './plan';
+import { isNumeric, questionnaireNamed } from './questionnaires';
 
 /** How many participants each cohort has, by its id. */
 export function cohortCounts(plan: StudyPlan): ReadonlyMap<string, number> {
@@ -90,6 +91,15 @@ const unspokenRemarks = (plan: StudyPlan): readonly string[] =>
     ];
   });
 
+/** Of what the plan names as planned though no table of results can hold it. */
+const untestedRemarks = (plan: StudyPlan): readonly string[] =>
+  (plan.planned ?? []).flatMap((measure) => {
+    const [, of = '', id] = measure.split('/');
+    const questionnaire = id === undefined ? null : questionnaireNamed(plan, of);
+    if (!questionnaire || isNumeric(questionnaire, id ?? '')) return [];
+    return [`Planned "${measure}" is not answered with a number: it is tested nowhere.`];
+  });
+
 /** What experimenters should know before the first participant comes, in sentences; empty: nothing. */
 export function remarksOn(plan: StudyPlan): readonly string[] {
   const { conditions, cohorts = [], tasks } = plan;
@@ -100,6 +110,7 @@ export function remarksOn(plan: StudyPlan): readonly string[] {
     ...alikeRemarks('Conditions', conditions),
     ...alikeRemarks('Cohorts', cohorts),
     ...unspokenRemarks(plan),
+    ...untestedRemarks(plan),
     ...unmirrored.map(({ id }) => `${taskTitle(plan, id)}: the ball game has no mirror.`),
   ];
 }

@@ -178,6 +178,11 @@ export function questionnaireNamed(
   return Object.hasOwn(shippedQuestionnaires, id) ? (shippedQuestionnaires[id] as Questionnaire) : null;
 }
 
+/** Whether this is one of its scales, or a question that is answered with a number. */
+export const isNumeric = ({ questions, scales }: Questionnaire, id: string): boolean =>
+  scales.some((scale) => scale.id === id) ||
+  questions.some(({ id: own, answer }) => own === id && answer.kind !== 'text' && answer.kind !== 'choice');
+
 /** What an answer to a form must be, in words: "expected a whole number from 1 to 5". */
 export function expectedAnswer(form: AnswerForm): string {
   switch (form.kind) {

@@ -1,6 +1,6 @@
 import * as v from 'valibot';
 import { scaleScore } from './questionnaire-scores';
-import type { Answers, Questionnaire } from './questionnaires';
+import { type Answers, isNumeric, type Questionnaire } from './questionnaires';
 import { identifier, numberBetween, ValidationError } from './validation';
 
 const limit = 1_000_000;
@@ -23,10 +23,6 @@ export type StopLimit = v.InferOutput<typeof askToStopSchema>;
 export interface UnwellMeasure extends StopLimit {
   readonly value: number;
 }
-
-const isNumeric = ({ questions, scales }: Questionnaire, id: string): boolean =>
-  scales.some((scale) => scale.id === id) ||
-  questions.some(({ id: own, answer }) => own === id && answer.kind !== 'text' && answer.kind !== 'choice');
 
 /** Throws a ValidationError where a limit is of something that the study does not ask. */
 export function refuseUnaskedLimits(limits: readonly StopLimit[], asked: readonly Questionnaire[]): void {

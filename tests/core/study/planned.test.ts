@@ -4,7 +4,8 @@ import { holm } from '../../../src/core/statistics/holm';
 import { compareConditions } from '../../../src/core/study/compare-conditions';
 import { measuresIn, overallComparisons, resultTables } from '../../../src/core/study/exported-results';
 import { checkedPlan } from '../../../src/core/study/plan';
-import { latencyPlan } from './studies';
+import { remarksOn } from '../../../src/core/study/plan-remarks';
+import { examplePlan, latencyPlan } from './studies';
 
 const plan = latencyPlan({ participants: 6 });
 const effects = { answers: { 'late-200': -1 }, scores: {} };
@@ -69,4 +70,19 @@ test('without planned measures nothing is planned', () => {
 test('a measure that is nowhere is named', () => {
   const wrong = { ...plan, planned: ['archery/score', 'archery/embodiment/soul'] };
   expect(() => checkedPlan(wrong)).toThrow('planned[1]: "archery/embodiment/soul" is measured nowhere');
+});
+
+test('an experimenter is told of a planned question that is answered by a choice or in words: no test takes it', () => {
+  const named = [
+    'archery/body/watched',
+    'archery/body/guess',
+    'archery/body/embodiment',
+    'archery/body/remarks',
+    'archery/score',
+  ];
+  const plan = checkedPlan({ ...examplePlan(), planned: named });
+  expect(remarksOn(plan)).toEqual([
+    'Planned "archery/body/watched" is not answered with a number: it is tested nowhere.',
+    'Planned "archery/body/remarks" is not answered with a number: it is tested nowhere.',
+  ]);
 });
