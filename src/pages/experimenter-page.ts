@@ -1,7 +1,7 @@
 import '../styles/document.css';
 import { reasonOf } from '../core/errors/reasons';
 import { statedInWords } from '../core/rehearsal/simulate-study';
-import { checkedPlan, type StudyPlan, studyTitle } from '../core/study/plan';
+import type { StudyPlan } from '../core/study/plan';
 import type { StudyCommand, StudyInfo } from '../core/study/study-api';
 import { type ExperimenterClient, ServerRefusal } from '../net/study-client';
 import { offerDownload } from '../ui/downloads';
@@ -17,6 +17,7 @@ import {
   receiptText,
   type StudyActions,
 } from './experimenter-view';
+import { planToBegin } from './new-study';
 import { askForRehearsal } from './rehearsal-dialog';
 import { rehearse } from './rehearse';
 import { askForSentence } from './sentence-dialog';
@@ -121,10 +122,7 @@ class ExperimenterPage {
 
   #begin({ name, simulated, json }: NewStudy): Promise<void> {
     return this.#attempt(async (client) => {
-      const checked = checkedPlan(JSON.parse(await json()));
-      const added = simulated
-        ? { ...checked, id: `${checked.id}-simulated`, title: `SIMULATED: ${studyTitle(checked)}` }
-        : checked;
+      const added = planToBegin(await json(), simulated);
       const info = await addOrChange(client, added, simulated);
       if (!info) return `Nothing was changed: the study “${added.id}” keeps its plan.`;
       await this.#access.list(client);
