@@ -94,7 +94,8 @@ const newStudySchema = v.strictObject({
 });
 const versionSchema = v.object({ version: v.optional(integerBetween(1, 10_000)) });
 const withdrawalSchema = v.object({ code: text(60) });
-const claimSchema = v.strictObject({ invitation: v.optional(text(60)) });
+/** `consent`: version of the text that the participant has read. */
+const claimSchema = v.strictObject({ invitation: v.optional(text(60)), consent: v.optional(text(40)) });
 const seatSchema = v.strictObject({ step: text(120), run: integerBetween(1, 99) });
 const remarkSchema = v.strictObject({ text: text(2000) });
 const sinceSchema = v.object({ after: integerBetween(0, 2 ** 53 - 1) });
@@ -237,14 +238,27 @@ const sessionOf = ({ store, now }: Pick<TableOptions, 'store' | 'now'>, study: s
   ...wearerIn(store.records(study, participant)),
 });
 
+/** `read`: version of the text that was consented to; undefined: not told. Throws where the plan shows another one, and the place stays free. */
+function takePlace(
+  { store, now }: Pick<TableOptions, 'store' | 'now'>,
+  { study, participant }: StudyCall,
+  read: string | undefined,
+) {
+  const { version } = store.planFor(study, participant).consent;
+  if (read !== undefined && read !== version) {
+    throw new HttpError(409, `consent was given to text ${read}, but the study shows ${version}`, { field: 'consent' });
+  }
+  return store.claim(study, participant, now());
+}
+
 /** What is of one participant. */
 function participantTable({ store, now, guard, seats, software, makeZip }: TableOptions): Route<StudyAccess>[] {
   const own = '/:study/participants/:participant';
   return [
     route('POST', `${own}/claim`, 'invited', bodyLimits.json, async (call) => {
       const { study, participant } = call;
-      const { invitation } = checked(claimSchema, jsonOf(call));
-      const claim = () => store.claim(study, participant, now());
+      const { invitation, consent } = checked(claimSchema, jsonOf(call));
+      const claim = () => takePlace({ store, now }, call, consent);
       const { token, withdrawalCode } = await guard.claiming(call, invitation, claim);
       return json({ token, withdrawalCode, ...sessionOf({ store, now }, study, participant) }, 201);
     }),

@@ -116,8 +116,8 @@ const versionPart = (version: number | undefined) => (version === undefined ? ''
 export interface ParticipantClient {
   /** As this participant may read it. */
   study(study: string, participant: string): Promise<PublicStudy>;
-  /** `invitation` as it stands in the link, or as it was typed. */
-  claim(study: string, participant: string, invitation: string): Promise<Claim>;
+  /** `invitation` as it stands in the link, or as it was typed; `consent`: version of the text that was read. */
+  claim(study: string, participant: string, invitation: string, consent: string): Promise<Claim>;
   /** Returns the ids that are safely stored now. */
   send(study: string, participant: string, token: string, records: readonly StudyRecord[]): Promise<readonly string[]>;
   /** null: nothing has been reported. */
@@ -133,8 +133,8 @@ export function createParticipantClient(server: string): ParticipantClient {
   const answer = answersOf(server);
   return {
     study: (study, participant) => answer(`${of(study)}?participant=${encodeURIComponent(participant)}`),
-    claim: (study, participant, invitation) =>
-      answer(`${of(study, participant)}/claim`, { method: 'POST', body: { invitation } }),
+    claim: (study, participant, invitation, consent) =>
+      answer(`${of(study, participant)}/claim`, { method: 'POST', body: { invitation, consent } }),
     async send(study, participant, token, records) {
       const path = `${of(study, participant)}/records`;
       return (await answer<{ acknowledged: string[] }>(path, { method: 'POST', token, body: { records } }))

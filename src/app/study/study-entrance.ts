@@ -104,6 +104,10 @@ export class StudyEntrance {
           this.#askWho(study, phrases, complaint);
           return null;
         }
+        if (taken === 'changed') {
+          this.#options.page.address.reload();
+          return null;
+        }
         if ('why' in taken) {
           return `${sentence(reasonFor(taken.why, phrases))} ${contact ?? phrases.say('askExperimenter')}`;
         }

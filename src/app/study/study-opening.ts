@@ -25,11 +25,14 @@ export type Opened =
   | {
       readonly kind: 'new';
       readonly study: PublicStudy;
-      /** Takes the place by its invitation and begins; `uninvited`: it was another invitation; `why`: what was thrown instead. */
+      /**
+       * Takes the place by its invitation and begins; `uninvited`: it was another invitation; `changed`: the text has changed since it was read;
+       * `why`: what was thrown instead.
+       */
       agree(
         choices: ConsentChoices,
         invitation: string,
-      ): Promise<ParticipantSession | 'uninvited' | { readonly why: unknown }>;
+      ): Promise<ParticipantSession | 'uninvited' | 'changed' | { readonly why: unknown }>;
     };
 
 /**
@@ -105,8 +108,9 @@ export async function openSession(place: Place, opening: OpeningOptions): Promis
     study,
     async agree(choices, invitation) {
       const { motion, language } = choices;
+      const { version } = study.consent;
       try {
-        const claimed = startSession(await client.claim(id, participant, invitation), id, participant);
+        const claimed = startSession(await client.claim(id, participant, invitation, version), id, participant);
         const begun = claimed.progress.motion !== null;
         const nothing = { records: [], motion: [] };
         const session = createParticipantSession(begun ? withChoices(claimed, choices) : claimed, nothing, options);
@@ -115,11 +119,11 @@ export async function openSession(place: Place, opening: OpeningOptions): Promis
           if (claimed.progress.motion && !motion) session.apply({ type: 'remark', text: noMotionHere });
           return session;
         }
-        const { version } = study.consent;
         const said = session.apply({ type: 'consent', motion, version, ...(language !== null && { language }) });
         return said === null ? session : { why: new Error(said) };
       } catch (error) {
         if (error instanceof ServerRefusal && error.field === 'invitation') return 'uninvited';
+        if (error instanceof ServerRefusal && error.field === 'consent') return 'changed';
         if (error instanceof ServerRefusal && error.status === 409)
           return { why: new PhrasedError('entrance.taken', { participant }) };
         return { why: error };

@@ -40,7 +40,8 @@ async function invited() {
   const group = scheduleFor(paperPlan(), 'P01').groups.ball?.members as readonly string[];
   const client = createParticipantClient(origin);
   const come = async (participant: string) => {
-    const { token } = await client.claim('paper', participant, invitationOf(participant));
+    const { version } = paperPlan().consent;
+    const { token } = await client.claim('paper', participant, invitationOf(participant), version);
     const { connect, avatars } = await assignedSeat(() => client.seat('paper', participant, token, trial), clock);
     expect(avatars).toBeNull();
     const connection = connect(visitor('what the page says', { avatar: 'a'.repeat(43) }), clock.now());

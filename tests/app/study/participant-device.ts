@@ -32,7 +32,7 @@ export async function device(
     onChange: () => undefined,
   });
   const vault = await openStudyVault(name);
-  const claim = await client.claim('paper', 'P01', invitation);
+  const claim = await client.claim('paper', 'P01', invitation, plan.consent.version);
   const first = createParticipantSession(
     startSession(claim, 'paper', 'P01'),
     { records: [], motion: [] },

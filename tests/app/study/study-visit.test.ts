@@ -34,6 +34,22 @@ describe('the entrance', () => {
     expect(server.store.overview('paper', 1e9)[0]?.claimed).toBe(false);
   });
 
+  test('a text that was changed while it was read is read anew, and the place stays free', async () => {
+    const server = await studyServer();
+    const { plan, store } = server;
+    const tab = await browser(server).open();
+    store.claim('paper', 'P09', 1e9);
+    const changed = { ...plan, consent: { ...plan.consent, version: 'newer', paragraphs: ['Another text.'] } };
+    store.addStudy(changed, { simulated: false, at: 1e9, newVersion: true });
+    expect(await tab.display.asked('consent').agree({ motion: false, language: null })).toBeNull();
+    expect(await tab.wentTo).toBe('reload');
+    tab.close();
+    const again = await browser(server).open();
+    expect(again.display.asked('consent').study.consent.paragraphs).toEqual(['Another text.']);
+    expect(await again.display.asked('consent').agree({ motion: false, language: null })).toBeNull();
+    expect(store.overview('paper', 1e9)[0]).toMatchObject({ participant: 'P01', claimed: true });
+  });
+
   test.each(['participant', 'consent'] as const)(
     'who leaves at the first screen, when asked for %s, is thanked, and nothing is kept here or on the server',
     async (first) => {
