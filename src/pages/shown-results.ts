@@ -25,6 +25,7 @@ export interface ShownResults {
   readonly measures: StudyMeasures;
   /** Of a condition or a cohort. */
   labelOf(id: string): string;
+  /** With its id where participants read another task's title alike. */
   titleOf(task: string): string;
   nameOf(measure: Measured): string;
   /** The name of a file to save, without its ending. */
@@ -52,6 +53,11 @@ export function shownResults(study: ShownStudy): ShownResults {
   const versionPart = planVersion === undefined ? '' : `-version-${planVersion}`;
   const named = [...plan.conditions, ...(plan.cohorts ?? [])];
   const aboutOf = (one: Measured) => aboutIn(asked, one);
+  const titleOf = (task: string) => {
+    const title = taskTitle(plan, task);
+    const alike = plan.tasks.filter(({ id }) => taskTitle(plan, id) === title);
+    return alike.length > 1 ? `${title} (${task})` : title;
+  };
   const isScale = ({ asked: of }: Measured) =>
     asked.some(({ id, scales }) => id === of?.questionnaire && scales.some((scale) => scale.id === of.question));
   return {
@@ -59,10 +65,10 @@ export function shownResults(study: ShownStudy): ShownResults {
     asked,
     measures: measuresIn(records, plan),
     labelOf: (id) => named.find((one) => one.id === id)?.label ?? id,
-    titleOf: (task) => taskTitle(plan, task),
+    titleOf,
     nameOf: (one) => {
-      if (!one.asked) return `${taskTitle(plan, one.of)}, ${one.unit === 'percent' ? 'per cent' : 'points'}`;
-      return isScale(one) ? `${aboutOf(one)}, ${taskTitle(plan, one.asked.task)}` : `${one.of} ${aboutOf(one)}`;
+      if (!one.asked) return `${titleOf(one.of)}, ${one.unit === 'percent' ? 'per cent' : 'points'}`;
+      return isScale(one) ? `${aboutOf(one)}, ${titleOf(one.asked.task)}` : `${one.of} ${aboutOf(one)}`;
     },
     fileOf: (name) => `${simulated ? 'SIMULATED-' : ''}${plan.id}${versionPart}-${name}`,
     factsOf: (family) => ({ family, simulated, aboutOf, isPlanned: (one) => isPlanned(one, plan) }),

@@ -1,0 +1,28 @@
+import { expect, test } from 'vitest';
+import { modelsWith, simulateStudy } from '../../src/core/rehearsal/simulate-study';
+import { compareConditions } from '../../src/core/study/compare-conditions';
+import { checkedPlan, type StudyTask } from '../../src/core/study/plan';
+import { scaleCharts } from '../../src/pages/comparison-figures';
+import { shownResults } from '../../src/pages/shown-results';
+import { latencyPlan } from '../core/study/studies';
+
+test('two tasks that participants read alike stand side by side in a figure, each with its id', () => {
+  const [task] = latencyPlan().tasks as [StudyTask];
+  const { planned: _, ...unplanned } = latencyPlan({ participants: 6, tasks: [task, { ...task, id: 'archery-far' }] });
+  const plan = checkedPlan(unplanned);
+  const records = simulateStudy(plan, modelsWith(plan, { answers: {}, scores: {} }), 5, 1e9).flatMap(
+    (one) => one.records,
+  );
+  const results = shownResults({ plan, simulated: true, records });
+  const { scales, points } = results.measures;
+  const compared = (measures: typeof scales) => compareConditions(measures, ['late-200', 'late-0']).comparisons;
+  const charts = scaleCharts({
+    results,
+    labels: { first: '200 ms', second: '0 ms' },
+    ...{ answers: [], scales: compared(scales), points: [], percent: [], planned: [] },
+  });
+  for (const { comparisons, nameOf } of charts) {
+    expect(comparisons.map(nameOf)).toEqual(['Archery (archery)', 'Archery (archery-far)']);
+  }
+  expect(points.map(results.nameOf)).toEqual(['Archery (archery), points', 'Archery (archery-far), points']);
+});
