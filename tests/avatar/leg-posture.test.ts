@@ -1,8 +1,10 @@
 import { describe, expect, test } from 'vitest';
 import { LegPosture } from '../../src/avatar/legs/leg-posture';
 import type { GaitPoints } from '../../src/core/estimation/gait-features';
+import { wrapAngle } from '../../src/core/math/angle';
 import { fromAxisAngle, multiply, rotate } from '../../src/core/math/quat';
 import { add, distance, up, type Vec3, vec3 } from '../../src/core/math/vec3';
+import { yawOf } from '../../src/core/tracking/heading';
 import { eyeHeight, proportions, standing, walking } from './walking-person';
 
 const rateHz = 72;
@@ -99,5 +101,38 @@ describe('legs', () => {
     const jumps = places.slice(1).filter((place, i) => distance(place, places[i]!) > 0.05);
     expect(jumps).toHaveLength(1);
     expect(distance(places.at(-1)!, vec3(3, 0.08, 2))).toBeLessThan(0.4);
+  });
+
+  test.each([
+    ['a push of the stick', 72, Math.PI / 6],
+    ['a push of the stick, drawn slowly', 30, -Math.PI / 6],
+    ['a recentring', 72, Math.PI / 2],
+    ['a recentring after a pause', 4, 3],
+  ])('come along at once when %s turns the person where they stand', (_, hz, yaw) => {
+    const posture = new LegPosture(proportions, eyeHeight);
+    const around = turned(standing, yaw, vec3(0, 0, 0));
+    for (let frame = 0; frame <= 2 * hz; frame++) posture.update(standing(0), 1 / hz);
+    const stood = { left: { ...posture.legs.left.ankle }, right: { ...posture.legs.right.ankle } };
+    posture.update(around(0), 1 / hz);
+    const turn = fromAxisAngle(up, yaw);
+    for (const side of ['left', 'right'] as const) {
+      const { ankle, foot } = posture.legs[side];
+      expect(distance(ankle, rotate(turn, stood[side]))).toBeLessThan(0.02);
+      expect(ankle.y).toBeCloseTo(proportions.ankleHeight, 3);
+      expect(Math.abs(wrapAngle(yawOf(foot) - yaw))).toBeLessThan(0.5);
+    }
+  });
+
+  test('of a person who spins as fast as people do step round: on the floor they stand still', () => {
+    const yaw = (time: number) => (time < 1 ? 6 * time * time : 12 * time - 6);
+    const places: Vec3[] = [];
+    feetAfter(
+      (time) => turned(standing, yaw(time), vec3(0, 0, 0))(0),
+      3,
+      ({ legs }) => places.push({ ...legs.left.ankle }),
+    );
+    const onFloor = ({ y }: Vec3) => y < proportions.ankleHeight + 1e-3;
+    const slid = places.slice(1).filter((place, i) => onFloor(place) && distance(place, places[i]!) > 0.01);
+    expect(slid).toHaveLength(0);
   });
 });

@@ -2,6 +2,7 @@ import { sideSign } from '../../core/body/skeleton';
 import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../../core/body/two-bone-ik';
 import { Gait } from '../../core/estimation/gait';
 import { type GaitPoints, yawOfHips } from '../../core/estimation/gait-features';
+import { wrapAngle } from '../../core/math/angle';
 import { fromAxes, fromAxisAngle, type MutableQuat, multiply, type Quat, quat, rotate } from '../../core/math/quat';
 import type { Side } from '../../core/math/side';
 import {
@@ -21,6 +22,7 @@ import {
   type Vec3,
   vec3,
 } from '../../core/math/vec3';
+import { yawOf } from '../../core/tracking/heading';
 import { createStepping, type Foot, type Stepping } from './stepping';
 
 /** What legs need of a body that stands, facing −Z [m]. */
@@ -55,6 +57,11 @@ interface MutableLegPose extends LegPose {
 const longestReach = 0.999;
 /** Hips go no further in one frame, in leg lengths. */
 const longestWay = 0.5;
+/** Head and hips of a person do not both turn faster than this about the vertical [rad/s], nor further between two frames that lie far apart [rad]. */
+const fastestTurn = 14;
+const furthestTurn = Math.PI / 2;
+/** Time stamps that shake tell of shorter frames than there are [s]. */
+const shortestFrame = 1 / 60;
 
 const makeLeg = (): MutableLegPose => ({
   hip: vec3(0, 0, 0),
@@ -95,6 +102,8 @@ export class LegPosture {
   private readonly own = { left: makeLeg(), right: makeLeg() };
   private readonly stance = { ankleHeight: 0, legLength: 0 };
   private readonly lastHips = vec3(0, 0, 0);
+  private lastHipsYaw = 0;
+  private lastHeadYaw = 0;
   private seconds = 0;
 
   /** eyeHeight [m]: of the person, in whose units the gait is told. */
@@ -116,22 +125,35 @@ export class LegPosture {
 
   /** Stands or steps under the hips of a body, floor frame. */
   update(points: GaitPoints, deltaSeconds: number): void {
-    const { stance, proportions, lastHips, gait } = this;
+    const { stance, proportions, gait } = this;
     const { hips } = points;
+    const hipsYaw = yawOfHips(hips.orientation);
     stance.ankleHeight = proportions.ankleHeight;
     stance.legLength = proportions.upper + proportions.lower;
-    // Hips that jump were moved by the device or the wearer: feet come along at once.
-    const x = hips.position.x - lastHips.x;
-    const z = hips.position.z - lastHips.z;
-    if (Math.sqrt(x * x + z * z) > longestWay * stance.legLength) this.standUp();
-    copyVec3(hips.position, lastHips);
+    if (this.wasCarried(points, hipsYaw, deltaSeconds)) this.standUp();
     this.seconds += deltaSeconds;
     gait.update(points, this.eyeHeight, this.seconds);
     const feet = this.stepping.update(gait.feet, stance, deltaSeconds);
-    fromAxisAngle(up, yawOfHips(hips.orientation), level);
+    fromAxisAngle(up, hipsYaw, level);
     rotate(level, forward, levelForward);
     this.place('left', hips.position, feet.left);
     this.place('right', hips.position, feet.right);
+  }
+
+  /** Whether a body jumped since the frame before, as one that the device or the wearer moves or turns: feet come along at once. */
+  private wasCarried({ hips, head }: GaitPoints, hipsYaw: number, deltaSeconds: number): boolean {
+    const { lastHips, lastHipsYaw, lastHeadYaw } = this;
+    const headYaw = yawOf(head.orientation);
+    const x = hips.position.x - lastHips.x;
+    const z = hips.position.z - lastHips.z;
+    const hipsTurn = Math.abs(wrapAngle(hipsYaw - lastHipsYaw));
+    const headTurn = Math.abs(wrapAngle(headYaw - lastHeadYaw));
+    copyVec3(hips.position, lastHips);
+    this.lastHipsYaw = hipsYaw;
+    this.lastHeadYaw = headYaw;
+    const mostTurn = Math.min(fastestTurn * Math.max(deltaSeconds, shortestFrame), furthestTurn);
+    // Of head and hips one alone may leap where its heading is hardly defined.
+    return Math.sqrt(x * x + z * z) > longestWay * this.stance.legLength || Math.min(hipsTurn, headTurn) > mostTurn;
   }
 
   private standUp(): void {
