@@ -71,6 +71,14 @@ describe('a body', () => {
     expect(body.calibration.eyeHeight).toBeCloseTo(1.7, 2);
   });
 
+  test('of a wearer who sits at first, or holds the headset, is as tall as they stand up, and no taller on a box', async () => {
+    const { body, told } = await observed({ estimator: 'ik' });
+    for (let frame = 0; frame < 120; frame++) body.update(standing(frame / 60, 1.2));
+    for (let frame = 120; frame < 300; frame++) body.update(standing(frame / 60, 1.78));
+    for (let frame = 300; frame < 480; frame++) body.update(standing(frame / 60, 1.95));
+    expect(told.filter((line) => line.startsWith('calibrated'))).toEqual(['calibrated 1.78 stood-taller']);
+  });
+
   test('takes no height from a headset that is not tracked yet, nor from the moments around', async () => {
     const { body, told } = await observed({ estimator: 'ik', grows: false });
     const guessed = (time: number): TrackingFrame => {

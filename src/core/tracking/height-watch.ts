@@ -1,4 +1,10 @@
-import { type Calibration, calibrationComplaint, withEyeHeight } from '../body/calibration';
+import {
+  type Calibration,
+  calibrationComplaint,
+  defaultCalibration,
+  eyeHeightRange,
+  withEyeHeight,
+} from '../body/calibration';
 import { skeletonFromCalibration } from '../body/skeleton';
 import { fromAxisAngle, rotate } from '../math/quat';
 import { right, zero } from '../math/vec3';
@@ -38,8 +44,9 @@ interface CalmStand {
 
 export function createHeightWatch(): HeightWatch {
   let current: Calibration | null = null;
-  /** The eye height [m] before anything grew. */
+  /** The eye height [m] before anything grew, and the one above which a wearer stands on something. */
   let measured = 0;
+  let highest = 0;
   /** From the skull's pivot to the eyes, in the frame of a headset whose wearer looks straight ahead. */
   let eyesInHeadset = zero;
   /** How far [m] they are above that pivot then. */
@@ -49,6 +56,8 @@ export function createHeightWatch(): HeightWatch {
   function take(calibration: Calibration): void {
     current = calibration;
     measured = calibration.eyeHeight;
+    // Of a wearer who has the average body, sitting since the headset was put on, no height is known that would say so.
+    highest = calibration === defaultCalibration ? eyeHeightRange.max : measured * (1 + mostGrowth);
     const { eyesInHead } = skeletonFromCalibration(calibration);
     eyesInHeadset = rotate(fromAxisAngle(right, -(calibration.gazePitch ?? 0)), eyesInHead);
     levelRise = eyesInHead.y;
@@ -65,16 +74,14 @@ export function createHeightWatch(): HeightWatch {
       if (calibration !== current) take(calibration);
       const height = levelHeight(head);
       const zone = calibration.eyeHeight > measured ? grownDeadZone : deadZone;
-      const proves =
-        head.tracking === 'tracked' &&
-        height > calibration.eyeHeight * (1 + zone) &&
-        height <= measured * (1 + mostGrowth);
+      const proves = head.tracking === 'tracked' && height > calibration.eyeHeight * (1 + zone) && height <= highest;
       stand = proves ? prolonged(stand, time, height) : null;
       if (!stand || time - stand.since < provingSeconds) return null;
       const grown = withEyeHeight(calibration, (stand.lowest + stand.highest) / 2);
       stand = null;
       if (calibrationComplaint(grown) !== null) return null;
-      current = grown;
+      if (calibration === defaultCalibration) take(grown);
+      else current = grown;
       return grown;
     },
     reset() {
