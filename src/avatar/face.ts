@@ -3,6 +3,7 @@ import {
   type VRMExpressionPresetName,
   VRMLookAt,
   VRMLookAtBoneApplier,
+  VRMLookAtExpressionApplier,
   VRMLookAtRangeMap,
 } from '@pixiv/three-vrm';
 import type { BufferGeometry, Mesh } from 'three';
@@ -197,5 +198,6 @@ export class Face {
     gaze.yaw = leaps ? 0 : yaw;
     gaze.pitch = leaps ? 0 : pitch;
     gaze.update(deltaSeconds);
+    if (gaze.applier instanceof VRMLookAtExpressionApplier) gaze.applier.expressions.update();
   }
 }

@@ -134,6 +134,40 @@ describe('eyes', () => {
     expect(eyeYaw(body)).toBeCloseTo(0, 3);
   });
 
+  test('that a file moves by shapes hold what they look at and leap as eyes on bones do, not with the next blink', async () => {
+    const range = { inputMaxValue: 90, outputScale: 1 };
+    const bytes = changed(
+      (json) => {
+        const vrm = json.extensions.VRMC_vrm as unknown as Record<string, unknown>;
+        const bind = (index: number) => ({ morphTargetBinds: [{ node: 53, index, weight: 1 }] });
+        vrm.expressions = { preset: { lookLeft: bind(0), lookRight: bind(1) } };
+        vrm.lookAt = {
+          ...{ type: 'expression', offsetFromHeadBone: [0, 0.06, 0], rangeMapHorizontalInner: range },
+          ...{ rangeMapHorizontalOuter: range, rangeMapVerticalDown: range, rangeMapVerticalUp: range },
+        };
+      },
+      undefined,
+      readFileSync(new URL('../../public/avatars/woman.vrm', import.meta.url)),
+    );
+    const { vrm } = await parseAvatar(bytes, 'painted-eyes.vrm');
+    const avatar = createAvatar({ name: 'painted-eyes.vrm', vrm, nodeIndices: new Map() });
+    avatar.fitTo(defaultCalibration);
+    const lookRight = () => {
+      const shapes: number[] = [];
+      avatar.object.traverse((node) => {
+        const { morphTargetInfluences } = node as Mesh;
+        if (morphTargetInfluences) shapes.push(morphTargetInfluences[1]!);
+      });
+      return Math.max(...shapes);
+    };
+    const degree = Math.PI / 180;
+    let time = stand(avatar, 0, 0.1);
+    time = stand(avatar, time, 0.1, { aside: 0, yaw: 8 * degree });
+    expect(lookRight()).toBeCloseTo(8 / 90, 3);
+    stand(avatar, time, 0.1, { aside: 0, yaw: 20 * degree });
+    expect(lookRight()).toBeCloseTo(0, 3);
+  });
+
   test('blink now and then, and are open most of the time', async () => {
     const { loaded, avatar } = await opened();
     let blinks = 0;
