@@ -5,6 +5,7 @@ import { createPreferenceStore } from '../../src/app/shell/preferences';
 import { createAvatar } from '../../src/avatar/avatar';
 import { gltfFaults } from '../../src/avatar/file/validate-gltf';
 import type { BoneMap, BoneName } from '../../src/avatar/humanoid/bone-names';
+import { boneNode } from '../../src/avatar/humanoid/humanoid';
 import { withNamedBones } from '../../src/avatar/humanoid/name-bones';
 import { UnknownBones } from '../../src/avatar/humanoid/unknown-bones';
 import { type LoadedAvatar, parseAvatar } from '../../src/avatar/load-avatar';
@@ -14,6 +15,7 @@ import { distance, type Vec3 } from '../../src/core/math/vec3';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import { poseOf } from '../core/estimation/drawn';
 import { builtRig } from './built-rig';
+import { changed } from './glb';
 
 /** Names that no program gives: each bone's backwards. */
 const backwards = (bone: string): string => [...bone].reverse().join('');
@@ -83,6 +85,30 @@ describe('a file whose bones’ names tell no body', () => {
     const own = posed(await parseAvatar(builtRig({ nameOf: backwards }), 'person.glb', { bones }));
     expectSame(seen.head, own.head);
     expectSame(seen.leftHand, own.leftHand);
+  });
+
+  test('may call something else as it calls a bone: the map means the bone, for the wearer and for those who have no map', async () => {
+    const file = changed(
+      (json) => {
+        const [scene] = json.scenes as { nodes: number[] }[];
+        json.nodes.push({ name: backwards('head'), translation: [0, 0.3, 0] });
+        scene!.nodes.unshift(json.nodes.length - 1);
+        // First in the list as well as in the scene.
+        json.nodes.unshift(json.nodes.pop()!);
+        const shift = (node: number) => (node === json.nodes.length - 1 ? 0 : node + 1);
+        for (const each of json.nodes) if (each.children) each.children = each.children.map(shift);
+        for (const skin of json.skins) skin.joints = skin.joints.map(shift);
+        scene!.nodes = scene!.nodes.map(shift);
+      },
+      undefined,
+      new Uint8Array(builtRig({ nameOf: backwards })),
+    );
+    const own = await parseAvatar(file, 'person.glb', { bones });
+    const seen = await parseAvatar(await withNamedBones(file, bones), 'person.glb');
+    for (const { vrm } of [own, seen]) expect(boneNode(vrm, 'head')).toHaveProperty('isBone', true);
+    const { height } = createAvatar(await parseAvatar(builtRig({ nameOf: backwards }), 'person.glb', { bones }));
+    expect(createAvatar(own).height).toBeCloseTo(height, 9);
+    expect(createAvatar(seen).height).toBeCloseTo(height, 9);
   });
 
   test('cannot be named after what is not in it, nor can anything that is no GLB', async () => {

@@ -63,9 +63,12 @@ function knownBones(scene: Group, name: string): { readonly bones: BoneMap; read
   );
 }
 
-/** The nodes that a map names. Throws where one is not in the file. */
+/** The nodes that a map names, of several of one name one that carries skin. Throws where one is not in the file. */
 function mappedBones(scene: Group, bones: BoneMap, name: string): Map<string, Object3D> {
-  const nodes = nodesByName(scene, () => true);
+  const skinned = skinBones(scene);
+  // A mesh may be called as the bone that moves it.
+  const nodes = nodesByName(scene, (node) => skinned.has(node));
+  for (const [called, node] of nodesByName(scene, () => true)) if (!nodes.has(called)) nodes.set(called, node);
   // What three.js made of a name counts as well: it is what pages print.
   scene.traverse((node) => {
     if (!nodes.has(node.name)) nodes.set(node.name, node);

@@ -5,6 +5,7 @@ import { type BoneMap, boneNames } from './bone-names';
 interface NamedNodes {
   [field: string]: unknown;
   nodes?: { name?: string }[];
+  skins?: { joints: number[] }[];
 }
 
 const plain = (name: string): string => name.toLowerCase().replace(/[^a-z0-9]/g, '');
@@ -19,8 +20,10 @@ export async function withNamedBones(bytes: ArrayBuffer, bones: BoneMap): Promis
   if (!chunks) throw new Error('no GLB file');
   const json = JSON.parse(chunks.json) as NamedNodes;
   const nodes = json.nodes ?? [];
+  const joints = new Set(json.skins?.flatMap((skin) => skin.joints));
   const mapped = Object.entries(bones).map(([bone, called]) => {
-    const node = nodes.find(({ name }) => name === called);
+    const named = nodes.filter(({ name }) => name === called);
+    const node = named.find((each) => joints.has(nodes.indexOf(each))) ?? named[0];
     if (!node) throw new Error(`bones.${bone}: no node is called “${called}”`);
     return { bone, node };
   });
