@@ -46,11 +46,18 @@ async function opened(body: Calibration = defaultCalibration): Promise<{ loaded:
   return { loaded, avatar };
 }
 
-/** Stands for so long with the head this far aside [m] and turned by so much [rad]; frames at 72 Hz. */
-function stand(avatar: Avatar, from: number, seconds: number, place = { aside: 0, yaw: 0 }, body = defaultCalibration) {
+/** Stands for so long with the head this far aside [m] and turned by so much [rad]. */
+function stand(
+  avatar: Avatar,
+  from: number,
+  seconds: number,
+  place = { aside: 0, yaw: 0 },
+  body = defaultCalibration,
+  rateHz = 72,
+) {
   const ik = createIk(body);
   let time = from;
-  for (; time < from + seconds; time += 1 / 72) {
+  for (; time < from + seconds; time += 1 / rateHz) {
     const head = {
       position: { x: place.aside, y: body.eyeHeight, z: 0 },
       orientation: place.yaw === 0 ? identity : fromAxisAngle(up, place.yaw),
@@ -84,6 +91,17 @@ describe('hair', () => {
       stand(large.avatar, time, seconds, { aside: 0, yaw: 0.6 }, giant);
       expect(strandOf(small.avatar).angleTo(strandOf(large.avatar))).toBeLessThan(0.03);
     }
+  });
+
+  test('falls as fast in 20 frames a second as in 144', async () => {
+    const fallen = async (rateHz: number): Promise<number> => {
+      const { avatar } = await opened();
+      stand(avatar, 0, 0.155, undefined, defaultCalibration, rateHz);
+      return strandOf(avatar).angleTo(new Quaternion());
+    };
+    const [slow, usual, fast] = [await fallen(20), await fallen(72), await fallen(144)];
+    expect(slow / fast).toBeCloseTo(1, 3);
+    expect(usual / fast).toBeCloseTo(1, 3);
   });
 
   test('swings when its wearer steps aside, and does not when the floor is moved under the wearer', async () => {

@@ -5,6 +5,8 @@ import type { Vec3 } from '../../core/math/vec3';
 
 /** Hair and skirts are moved so often [s]: what they hang on moves in every frame, and they with it. */
 const stepSeconds = 1 / 30;
+/** In one frame so often at most, one more being left for the next: slower pages have slower hair, and after a pause it falls no further. */
+const mostSteps = 2;
 /** VRM's drag is a share of each step, and files are made for 60 steps a second. */
 const authoredSteps = 60;
 /** A head that is this far from where it was in the world a frame ago [m, rad] has been carried, not moved: recentred, teleported. */
@@ -79,11 +81,11 @@ export class Springs {
       springs.reset();
       return;
     }
-    this.#due += deltaSeconds;
-    if (this.#due < stepSeconds) return;
-    // A pause of the page is one step: hair falls no further for it.
-    this.#due = Math.min(this.#due - stepSeconds, stepSeconds);
-    springs.update(stepSeconds);
+    this.#due = Math.min(this.#due + deltaSeconds, (mostSteps + 1) * stepSeconds);
+    for (let step = 0; step < mostSteps && this.#due >= stepSeconds; step++) {
+      this.#due -= stepSeconds;
+      springs.update(stepSeconds);
+    }
   }
 
   /** Whether the head went further since the last frame than heads go. */
