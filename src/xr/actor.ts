@@ -6,6 +6,8 @@ import type { TrackingFrame } from '../core/tracking/tracking-frame';
 export interface Actor {
   /** Where head and hands of this performance are at a time [s] on any clock that runs on. */
   frameAt(time: number): TrackingFrame;
+  /** The same where it stands and waits. */
+  standAt(time: number): TrackingFrame;
   /** The body that performs. */
   calibrate(calibration: Calibration): void;
 }
@@ -19,6 +21,7 @@ export function createActor(): Actor {
       began ??= time;
       return { ...actorFrame(time - began, body), time };
     },
+    standAt: (time) => ({ ...actorFrame(0, body), time }),
     calibrate(calibration) {
       body = calibration;
     },

@@ -15,12 +15,12 @@ export interface TrackingSourceOptions {
   readonly headset: Pick<Headset, 'worn' | 'emulator' | 'read' | 'buttons'>;
   readonly recorder: Pick<Recorder, 'sample' | 'person' | 'giveWay'>;
   readonly body: Pick<BareBody, 'wearerCalibration'>;
-  readonly actor: Pick<Actor, 'frameAt'>;
+  readonly actor: Pick<Actor, 'frameAt' | 'standAt'>;
   readonly activities: Pick<Activities, 'begin' | 'act' | 'watched'>;
   readonly study: Pick<PageStudy, 'idle'>;
 }
 
-/** Who moves the body: a session, a replay, a built-in player, the actor, or the emulator outside of a session. */
+/** Who moves the body: a session, a replay, a built-in player, the actor, or the emulator outside of a session; or no one. */
 export class TrackingSource {
   readonly #options: TrackingSourceOptions;
   #buttons: Buttons = nothingPressed;
@@ -70,11 +70,12 @@ export class TrackingSource {
   }
 
   #readDesktop(time: number): TrackingFrame | null {
-    const { recorder, activities, settings, headset } = this.#options;
+    const { recorder, activities, settings, headset, actor } = this.#options;
     const replayed = recorder.sample(time);
     if (replayed) return replayed;
     if (activities.watched()) return null;
-    if (!settings.actor && headset.emulator) return headset.emulator.read(time);
+    // Before a real headset is put on, and while the emulated one loads, no one moves: the body stands there.
+    if (!settings.actor) return headset.emulator?.read(time) ?? actor.standAt(time);
     const performed = this.#perform(time);
     this.#buttons = performed.buttons;
     return performed.frame;

@@ -8,6 +8,7 @@ import { nothingPressed } from '../../../src/core/games/button-presses';
 import { actorFrame } from '../../../src/core/tracking/actor-motion';
 import { BareBody } from '../../../src/lib/bare-body';
 import { ReplayedBody } from '../../../src/lib/replayed-body';
+import { createActor } from '../../../src/xr/actor';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 
@@ -30,7 +31,7 @@ function worn() {
     },
     recorder,
     body,
-    actor: { frameAt: (time) => actorFrame(time, defaultCalibration) },
+    actor: createActor(),
     activities: { begin: () => undefined, act: () => null, watched: () => null },
     study: { idle: false },
   });
@@ -40,6 +41,30 @@ function worn() {
   };
   return { recorder, wristAt };
 }
+
+test('with the actor off before a real headset is put on, nobody moves: the body stands there', () => {
+  const asked: number[] = [];
+  const source = new TrackingSource({
+    settings: { actor: false },
+    headset: { worn: false, emulator: null, buttons: nothingPressed, read: () => null },
+    recorder: new Recorder(),
+    body: { wearerCalibration: defaultCalibration },
+    actor: createActor(),
+    activities: {
+      begin: () => undefined,
+      watched: () => null,
+      act(time) {
+        asked.push(time);
+        return null;
+      },
+    },
+    study: { idle: false },
+  });
+  const [earlier, later] = [source.read(10, undefined), source.read(13, undefined)];
+  expect(later).toEqual({ ...earlier, time: 13 });
+  expect(later?.head.position.y).toBeCloseTo(defaultCalibration.eyeHeight, 1);
+  expect(asked).toEqual([]);
+});
 
 test('a replay that arrives paused while a headset is worn does not hold its wearer still', () => {
   const { recorder, wristAt } = worn();

@@ -1,11 +1,21 @@
 import { withForearm } from '../../../core/body/calibration';
 import type { TrackingFrame } from '../../../core/tracking/tracking-frame';
+import type { BareBody } from '../../../lib/bare-body';
 import { type CalibrationDialog, type CalibrationStep, createCalibrationDialog } from '../../../ui/calibration-dialog';
 import { type CalibrationGuide, createCalibrationGuide } from '../../../ui/calibration-guide';
+import type { Notices } from '../../../ui/notices';
 import { Emitter } from '../emitter';
-import type { ControlledParts } from './controlled-parts';
+import type { Headset } from '../headset';
+import type { Settings } from '../settings';
+import type { Wearer } from '../wearer';
 
-export type MeasuringOptions = Pick<ControlledParts, 'body' | 'headset' | 'settings' | 'notices' | 'wearer'>;
+export interface MeasuringOptions {
+  readonly body: Pick<BareBody, 'wearerCalibration'>;
+  readonly headset: Pick<Headset, 'worn' | 'emulator'>;
+  readonly settings: Pick<Settings, 'actor'>;
+  readonly notices: Pick<Notices, 'show'>;
+  readonly wearer: Pick<Wearer, 'calibrateForGood'>;
+}
 
 /** The guided calibration of this page: told by a dialog on the desktop, by the menu in the headset. */
 export class Measuring {
@@ -40,7 +50,8 @@ export class Measuring {
   /** Measures the wearer, or says what is missing for that. */
   start(): void {
     const { headset, settings, notices } = this.#options;
-    if (headset.worn || !settings.actor) this.begin();
+    // Else nothing that is tracked is the user: the actor moves, or no one does.
+    if (headset.worn || (!settings.actor && headset.emulator)) this.begin();
     else notices.show('info', 'This measures the wearer of the headset: enter VR first, or type your measures.');
   }
 

@@ -69,7 +69,7 @@ function recordingActions(options: PanelActionsOptions): RecordingActions {
     record() {
       const driven = headset.emulator || !headset.worn ? 'emulated headset' : 'headset';
       recorder.record({
-        device: !headset.worn && settings.actor ? 'actor' : driven,
+        device: !headset.worn && (settings.actor || !headset.emulator) ? 'actor' : driven,
         rateHz: timing.summary().rateHz,
         calibration: body.wearerCalibration,
       });

@@ -144,7 +144,7 @@ export class PlayControls {
 
   #shooter(): Shooter {
     const { settings, headset } = this.#options;
-    if (headset.worn || (!settings.actor && headset.emulator)) return 'headset';
+    if (headset.worn || !settings.actor) return 'headset';
     return settings.mouse ? 'mouse' : 'actor';
   }
 }
