@@ -1,6 +1,13 @@
 import { beforeEach, describe, expect, test, vi } from 'vitest';
 import { Measuring } from '../../../src/app/shell/controls/measuring';
+import { TrackingSource } from '../../../src/app/shell/tracking-source';
+import { Recorder } from '../../../src/app/studio/recorder';
 import { type Calibration, defaultCalibration } from '../../../src/core/body/calibration';
+import { nothingPressed } from '../../../src/core/games/button-presses';
+import type { TrackedPose } from '../../../src/core/math/pose';
+import { vec3 } from '../../../src/core/math/vec3';
+import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import { createActor } from '../../../src/xr/actor';
 import type { Emulator } from '../../../src/xr/emulator';
 
 /** As much of an element as the dialog needs. */
@@ -22,18 +29,59 @@ class Element extends EventTarget {
 
 beforeEach(() => vi.stubGlobal('document', { createElement: () => new Element(), body: new Element() }));
 
+const tracked = (x: number, y: number, z: number): TrackedPose => ({
+  position: vec3(x, y, z),
+  orientation: { x: 0, y: 0, z: 0, w: 1 },
+  tracking: 'tracked',
+});
+
+/** A person with eyes this high [m] in the posture of the guided calibration. */
+const standing = (time: number, eyeHeight: number): TrackingFrame => ({
+  time,
+  head: tracked(0, eyeHeight, 0),
+  leftHand: tracked(-0.11 * eyeHeight, 0.81 * eyeHeight, -0.35 * eyeHeight),
+  rightHand: tracked(0.11 * eyeHeight, 0.81 * eyeHeight, -0.35 * eyeHeight),
+});
+
+/** An emulated headset that its user holds as a person of 1.6 m at the eyes stands. */
+const emulatedHeadset = { read: (time) => standing(time, 1.6) } as Emulator;
+
 /** A page at a desk whose user may be measured; what is told and remembered is written down. */
 function page({ actor = false, emulator = null as Emulator | null } = {}) {
   const told: string[] = [];
   const remembered: Calibration[] = [];
+  const recorder = new Recorder();
+  const settings = { actor };
+  const headset = { worn: false, emulator, buttons: nothingPressed, read: () => null };
+  const body = { wearerCalibration: defaultCalibration };
   const measuring = new Measuring({
-    settings: { actor },
-    headset: { worn: false, emulator },
-    body: { wearerCalibration: defaultCalibration },
+    ...{ settings, headset, body, recorder },
     wearer: { calibrateForGood: (calibration) => void remembered.push(calibration) },
     notices: { show: (_, text) => void told.push(text) },
   });
-  return { measuring, told, remembered };
+  const source = new TrackingSource({
+    ...{ settings, headset, body, recorder },
+    actor: createActor(),
+    activities: { begin: () => undefined, act: () => null, watched: () => null },
+    study: { idle: false },
+  });
+  let now = 0;
+  return {
+    ...{ measuring, told, remembered, recorder, settings },
+    /** So many seconds of the page at 60 frames a second. */
+    pass(seconds: number) {
+      for (let frame = 0; frame < 60 * seconds; frame++) {
+        now += 1 / 60;
+        measuring.observe(source.read(now, undefined)!);
+      }
+    },
+    /** Replays a person of 1.9 m at the eyes. */
+    replay() {
+      const frames = [0, 1, 2, 3, 4, 5, 6, 7].map((time) => standing(time, 1.9));
+      recorder.take('tall.json', { device: 'a test', rateHz: 1, calibration: null, frames });
+      recorder.replay();
+    },
+  };
 }
 
 describe('calibrating at a desk', () => {
@@ -45,13 +93,50 @@ describe('calibrating at a desk', () => {
   });
 
   test('begins where the user moves the emulated headset, and not where the actor does', () => {
-    const emulator = {} as Emulator;
-    const user = page({ emulator });
+    const user = page({ emulator: emulatedHeadset });
     user.measuring.start();
-    expect(user.measuring.step?.kind).toBe('countdown');
-    const watching = page({ actor: true, emulator });
+    user.pass(8);
+    expect(user.measuring.step?.kind).toBe('done');
+    expect(user.remembered.map(({ eyeHeight }) => eyeHeight)).toEqual([expect.closeTo(1.6, 2)]);
+    const watching = page({ actor: true, emulator: emulatedHeadset });
     watching.measuring.start();
     expect(watching.measuring.step).toBeNull();
     expect(watching.told).toHaveLength(1);
+  });
+
+  test('during a replay measures no one: the person in the recording is not the user', () => {
+    const { measuring, told, remembered, pass, replay } = page({ emulator: emulatedHeadset });
+    replay();
+    measuring.start();
+    pass(8);
+    expect(remembered).toEqual([]);
+    expect(measuring.step).toBeNull();
+    expect(told).toEqual([expect.stringContaining('stop the replay first')]);
+  });
+
+  test('ends with a sentence where a replay, or the actor, takes over while it measures', () => {
+    const interrupted = page({ emulator: emulatedHeadset });
+    interrupted.measuring.start();
+    interrupted.pass(2);
+    interrupted.replay();
+    interrupted.pass(8);
+    expect(interrupted.remembered).toEqual([]);
+    expect(interrupted.measuring.step).toBeNull();
+    expect(interrupted.told).toEqual([expect.stringContaining('stop the replay first')]);
+    const left = page({ emulator: emulatedHeadset });
+    left.measuring.start();
+    left.pass(2);
+    left.settings.actor = true;
+    left.pass(8);
+    expect([left.remembered, left.measuring.step, left.told.length]).toEqual([[], null, 1]);
+  });
+
+  test('that is over stays on the screen while a recording replays', () => {
+    const { measuring, told, pass, replay } = page({ emulator: emulatedHeadset });
+    measuring.start();
+    pass(8);
+    replay();
+    pass(1);
+    expect([measuring.step?.kind, told]).toEqual(['done', []]);
   });
 });

@@ -4,6 +4,7 @@ import type { BareBody } from '../../../lib/bare-body';
 import { type CalibrationDialog, type CalibrationStep, createCalibrationDialog } from '../../../ui/calibration-dialog';
 import { type CalibrationGuide, createCalibrationGuide } from '../../../ui/calibration-guide';
 import type { Notices } from '../../../ui/notices';
+import type { Recorder } from '../../studio/recorder';
 import { Emitter } from '../emitter';
 import type { Headset } from '../headset';
 import type { Settings } from '../settings';
@@ -13,6 +14,7 @@ export interface MeasuringOptions {
   readonly body: Pick<BareBody, 'wearerCalibration'>;
   readonly headset: Pick<Headset, 'worn' | 'emulator'>;
   readonly settings: Pick<Settings, 'actor'>;
+  readonly recorder: Pick<Recorder, 'mode'>;
   readonly notices: Pick<Notices, 'show'>;
   readonly wearer: Pick<Wearer, 'calibrateForGood'>;
 }
@@ -31,7 +33,7 @@ export class Measuring {
     this.#options = options;
     this.#dialog = createCalibrationDialog(
       () => this.cancel(),
-      () => this.begin(),
+      () => this.start(),
     );
     this.#guide = createCalibrationGuide({
       onStep: (step) => this.#show(step),
@@ -49,10 +51,9 @@ export class Measuring {
 
   /** Measures the wearer, or says what is missing for that. */
   start(): void {
-    const { headset, settings, notices } = this.#options;
-    // Else nothing that is tracked is the user: the actor moves, or no one does.
-    if (headset.worn || (!settings.actor && headset.emulator)) this.begin();
-    else notices.show('info', 'This measures the wearer of the headset: enter VR first, or type your measures.');
+    const missing = this.#missing();
+    if (missing) this.#options.notices.show('info', missing);
+    else this.begin();
   }
 
   begin(): void {
@@ -65,7 +66,25 @@ export class Measuring {
 
   /** Every tracked frame, measured or not. */
   observe(frame: TrackingFrame): void {
+    const underWay = this.#step?.kind === 'countdown' || this.#step?.kind === 'measuring';
+    const missing = underWay ? this.#missing() : null;
+    if (missing) {
+      this.#options.notices.show('info', missing);
+      this.cancel();
+    }
     this.#guide.observe(frame);
+  }
+
+  /** What is missing for what is tracked to be the user, in a sentence; null: nothing. */
+  #missing(): string | null {
+    const { headset, settings, recorder } = this.#options;
+    if (headset.worn) return null;
+    // The actor moves, or no one does.
+    if (settings.actor || !headset.emulator)
+      return 'This measures the wearer of the headset: enter VR first, or type your measures.';
+    if (recorder.mode === 'replaying')
+      return 'This measures you, not the person in a recording: stop the replay first, or type your measures.';
+    return null;
   }
 
   #show(step: CalibrationStep | null): void {
