@@ -40,6 +40,19 @@ test('motion capture is shown with its truth, and methods are compared on the sa
   expect((await probe(page)).recorder.mode).toBe('idle');
 });
 
+test('motion capture leaves a recording that is being made, and says so @full', async ({ page, complaints }) => {
+  complaints.allow(/could not be shown/);
+  await open(page, 'emulate&quality=low&estimator=ik&actor=off');
+  await page.getByRole('tab', { name: 'Recording' }).click();
+  await page.getByRole('button', { name: 'Record', exact: true }).click();
+  await expect.poll(async () => (await probe(page)).recorder.frames).toBeGreaterThan(0);
+  await choose(page, filesOf(acclaim!));
+  await expect(page.getByRole('alert')).toContainText('could not be shown: a recording is being made; stop it first');
+  expect((await probe(page)).recorder.mode).toBe('recording');
+  await expect(card(page)).toBeHidden();
+  await page.getByRole('button', { name: 'Stop', exact: true }).click();
+});
+
 test('a link leads to the same second, method and body beside it', async ({ page }) => {
   for (const [name, text] of Object.entries(leaping!.files))
     await page.route(`**/clips/${name}`, (route) => route.fulfill({ body: text, contentType: 'text/plain' }));

@@ -23,6 +23,7 @@ import type { TruthPlace } from './truth-places';
 /** The page's replay, which brings a recording's frames to its body. */
 export interface Replay extends MovingReplay {
   readonly duration: number;
+  /** Throws a sentence where another recording must not be lost to this one. */
   begin(name: string, recording: Replayable): void;
   seek(seconds: number): void;
   setPaused(on: boolean): void;
@@ -230,15 +231,16 @@ export class MocapView {
     const index = clips[outlook.clip ?? longest] ? (outlook.clip ?? longest) : longest;
     const clip = clips[index]!;
     const recording = recordingOf(clip);
-    this.close();
     const { replay, networks } = this.#options;
+    // Where it throws, what is shown stays.
+    replay.begin(`${clip.name}.json`, recording);
+    this.close();
     const truth = new Truth(clip);
     const means = new ClipMeans(recording, truth, networks);
     this.#opened = {
       ...{ name, addresses, clips, index, recording, truth, means },
       meter: new ErrorMeter(clip.calibration),
     };
-    replay.begin(`${clip.name}.json`, recording);
     this.#placeTruth(outlook.truth ?? this.#truthPlace);
     if (outlook.beside) this.#compare(outlook.beside);
     if (outlook.at !== undefined) {

@@ -171,7 +171,7 @@ export class Recorder {
     if (this.#mode === 'replaying') this.#seconds = Math.max(0, Math.min(this.duration, seconds));
   }
 
-  /** Takes a recording from the text of a file; throws a sentence when it is none, or one of no person. */
+  /** Takes a recording from the text of a file; throws a sentence when it is none, or one of no person, and while another is being made. */
   open(name: string, text: string): Replayable {
     const recording = parseRecording(text);
     const complaint = recording.calibration && calibrationComplaint(recording.calibration);
@@ -180,8 +180,9 @@ export class Recorder {
     return recording;
   }
 
-  /** Takes a recording; the one at hand is forgotten. */
+  /** Takes a recording; the one at hand is forgotten. Throws a sentence while another is being made. */
   take(name: string, recording: Replayable): void {
+    if (this.#mode === 'recording') throw new Error('a recording is being made; stop it first');
     this.stop();
     this.#recording = recording;
     this.#name = name;

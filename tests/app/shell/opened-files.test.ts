@@ -106,6 +106,21 @@ describe('a dropped file', () => {
     expect(recorder.mode).toBe('replaying');
   });
 
+  test('that is a recording leaves one that is being made as it is, and a sentence says so', async () => {
+    const { files: page, notices, recorder } = files();
+    recorder.record({ device: 'a test', rateHz: 72, calibration: person });
+    recorder.observe(frameAt(1));
+    await page.open(recordingFile());
+    recorder.observe(frameAt(2));
+    expect(notices).toEqual([
+      { level: 'error', text: 'walk.json could not be replayed: a recording is being made; stop it first' },
+    ]);
+    recorder.stop();
+    expect([recorder.name, recorder.duration]).toEqual(['recording-1.json', 1]);
+    await page.open(recordingFile());
+    expect([recorder.name, recorder.mode]).toEqual(['walk.json', 'replaying']);
+  });
+
   test('of any other name is opened as an avatar, and its name is told when it stands there', async () => {
     const { files: page, notices, opened, recorder } = files();
     const file = new File(['glTF'], 'robot.vrm');
