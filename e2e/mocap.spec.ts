@@ -1,7 +1,7 @@
 import { rmSync, writeFileSync } from 'node:fs';
 import { goldenMocap } from '../tests/core/mocap/golden-mocap';
 import { card, choose, errors } from './mocap-card';
-import { expect, keepPicture, open, probe, test } from './page-fixture';
+import { expect, keepPicture, load, open, probe, test } from './page-fixture';
 
 const [acclaim, , leaping, folded] = goldenMocap;
 const filesOf = ({ files }: { readonly files: Readonly<Record<string, string>> }) =>
@@ -51,6 +51,17 @@ test('motion capture leaves a recording that is being made, and says so @full', 
   expect((await probe(page)).recorder.mode).toBe('recording');
   await expect(card(page)).toBeHidden();
   await page.getByRole('button', { name: 'Stop', exact: true }).click();
+});
+
+test('a method that is chosen beside motion capture is remembered, as one that is chosen in the panel @full', async ({
+  page,
+}) => {
+  await open(page, 'emulate&quality=low&estimator=ik&actor=off');
+  await choose(page, filesOf(acclaim!));
+  await card(page).getByLabel('Method').selectOption('hands-only');
+  await expect.poll(async () => (await probe(page)).estimator).toBe('hands-only');
+  await load(page, 'emulate&quality=low&actor=off');
+  expect((await probe(page)).estimator).toBe('hands-only');
 });
 
 test('a link leads to the same second, method and body beside it', async ({ page }) => {

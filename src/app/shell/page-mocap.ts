@@ -12,6 +12,7 @@ import type { Notices } from '../../ui/notices';
 import type { MocapView, Outlook, Replay } from '../mocap/mocap-view';
 import type { Recorder } from '../studio/recorder';
 import { estimatorTexts } from './estimator-texts';
+import type { PreferenceStore } from './preferences';
 import type { Settings } from './settings';
 import { fetchOwnAvatar } from './shown-avatar';
 
@@ -21,6 +22,7 @@ export interface PageMocapOptions {
   readonly settings: Pick<Settings, 'ownBody' | 'palette'>;
   readonly body: Pick<BareBody, 'wanted' | 'choose' | 'jumped'>;
   readonly networks: BareBodyOptions['networks'];
+  readonly store: Pick<PreferenceStore, 'remember'>;
   readonly notices: Pick<Notices, 'show'>;
   /** Brings what an object needs to the graphics device before it is seen. */
   prepare(object: Object3D): Promise<void>;
@@ -76,7 +78,7 @@ export class PageMocap {
   }
 
   #build(View: typeof MocapView): MocapView {
-    const { scene, body, networks, notices, prepare, onChange } = this.#options;
+    const { scene, body, networks, store, notices, prepare, onChange } = this.#options;
     return new View({
       ...{ scene, networks, labels, prepare },
       region: document.body,
@@ -86,6 +88,7 @@ export class PageMocap {
           return body.wanted;
         },
         choose(estimator) {
+          store.remember({ estimator });
           void body.choose(estimator);
           onChange();
         },

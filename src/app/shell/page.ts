@@ -161,7 +161,10 @@ export function createPage(options: PageOptions) {
   const { scene } = stage.studio;
   const onChange = visit.changes.emit;
   const onCovered = () => controls.layOut();
-  const mocap = new PageMocap({ scene, recorder, settings, body, networks, notices, prepare, onChange, onCovered });
+  const mocap = new PageMocap({
+    ...{ scene, recorder, settings, store, body, networks, notices, prepare },
+    ...{ onChange, onCovered },
+  });
   const controls = new Controls({
     ...{ switches, settings, writer, store, notices, onChange, mocap },
     ...{ timing, difference, stage, recorder, headset, avatar, activities, body, networks, wearer, study, server },
