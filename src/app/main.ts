@@ -38,11 +38,13 @@ async function showFirstBody({ avatarShown, frame }: Page, loading: PageLoading)
 }
 
 /** Goes where the address asks, and only there begins what it asks for: who arrives in a game leaves a replay and the controls behind. */
-async function goWhereAsked({ activities, controls, mocap }: Page, { switches }: Visit): Promise<void> {
+async function goWhereAsked({ activities, controls, mocap, recorder }: Page, { switches }: Visit): Promise<void> {
+  // Before anything that the user opens meanwhile.
+  const [replay, motion] = [recorder.ask(), recorder.ask()];
   await activities.goTo(switches.play);
   if (switches.panel) controls.setPanelOpen(true);
-  if (switches.replay) void controls.openRecording(switches.replay);
-  if (switches.mocap) void mocap.open(switches.mocap.addresses, switches.mocap);
+  if (switches.replay) void controls.openRecording(switches.replay, replay);
+  if (switches.mocap) void mocap.open(switches.mocap.addresses, switches.mocap, motion);
 }
 
 /** Takes part in the study that the address asks for, if it does. */

@@ -23,8 +23,8 @@ import type { TruthPlace } from './truth-places';
 /** The page's replay, which brings a recording's frames to its body. */
 export interface Replay extends MovingReplay {
   readonly duration: number;
-  /** Throws a sentence where another recording must not be lost to this one. */
-  begin(name: string, recording: Replayable): void;
+  /** Throws a sentence where another recording must not be lost to this one. `asked`: its place among the wishes; absent: the newest. */
+  begin(name: string, recording: Replayable, asked?: number): void;
   seek(seconds: number): void;
   setPaused(on: boolean): void;
   stop(): void;
@@ -101,7 +101,7 @@ export class MocapView {
   }
 
   /** Reads files of this device or addresses, and shows their motion; a map of a skeleton alone is taken for the files before. Never rejects: faults are told, and what is shown stays. */
-  async open(given: readonly MocapFile[], outlook: Outlook = {}): Promise<void> {
+  async open(given: readonly MocapFile[], outlook: Outlook = {}, asked?: number): Promise<void> {
     const { tell } = this.#options;
     // A map that comes alone is of the motion that came before it.
     const sources = given.every(isMap) ? [...this.#asked.filter((file) => !isMap(file)), ...given] : given;
@@ -120,7 +120,7 @@ export class MocapView {
       signal.throwIfAborted();
       const addresses = sources.every((source) => typeof source === 'string') ? sources : null;
       const motion = nameOf(files.motion);
-      this.#show(motion, prepared, addresses, outlook);
+      this.#show(motion, prepared, addresses, outlook, asked);
       for (const note of prepared.notes) tell('info', `${motion}: ${note}.`);
       if (others.length > 0) tell('warning', `One motion is shown at a time: ${others.join(', ')} was not opened.`);
     } catch (error) {
@@ -226,14 +226,20 @@ export class MocapView {
     };
   }
 
-  #show(name: string, { clips }: Pick<PreparedMocap, 'clips'>, addresses: Opened['addresses'], outlook: Outlook): void {
+  #show(
+    name: string,
+    { clips }: Pick<PreparedMocap, 'clips'>,
+    addresses: Opened['addresses'],
+    outlook: Outlook,
+    asked?: number,
+  ): void {
     const longest = clips.reduce((best, { frameCount }, i) => (frameCount > clips[best]!.frameCount ? i : best), 0);
     const index = clips[outlook.clip ?? longest] ? (outlook.clip ?? longest) : longest;
     const clip = clips[index]!;
     const recording = recordingOf(clip);
     const { replay, networks } = this.#options;
     // Where it throws, what is shown stays.
-    replay.begin(`${clip.name}.json`, recording);
+    replay.begin(`${clip.name}.json`, recording, asked);
     this.close();
     const truth = new Truth(clip);
     const means = new ClipMeans(recording, truth, networks);

@@ -45,8 +45,15 @@ export class PageMocap {
     this.#options = options;
   }
 
-  /** Shows the motion of files of this device, or of what addresses answer. Never rejects: faults become notices. */
-  async open(sources: readonly (File | string)[], outlook: Outlook = {}): Promise<void> {
+  /**
+   * Shows the motion of files of this device, or of what addresses answer. `asked`: the recorder's place for this wish. Never rejects: faults
+   * become notices.
+   */
+  async open(
+    sources: readonly (File | string)[],
+    outlook: Outlook = {},
+    asked = this.#options.recorder.ask(),
+  ): Promise<void> {
     try {
       const { MocapView } = await import('../mocap/mocap-view');
       this.#view ??= this.#build(MocapView);
@@ -54,7 +61,7 @@ export class PageMocap {
       const reason = firstLine(reasonOf(error));
       this.#options.notices.show('error', `What shows motion capture could not be loaded: ${reason}`);
     }
-    await this.#view?.open(sources, outlook);
+    await this.#view?.open(sources, outlook, asked);
   }
 
   /** What its card covers of the window; null: it is not shown. */
@@ -131,9 +138,9 @@ export class PageMocap {
       get duration() {
         return recorder.duration;
       },
-      begin(name, recording) {
+      begin(name, recording, asked) {
         changed(() => {
-          recorder.take(name, recording);
+          recorder.take(name, recording, asked);
           recorder.replay();
         });
       },

@@ -35,6 +35,9 @@ export class Recorder {
   #paused = false;
   /** Recordings made so far. */
   #count = 0;
+  /** Recordings asked for so far, and which of them is at hand or being made. */
+  #asked = 0;
+  #newest = 0;
   readonly #onEnd: () => void;
 
   /** `onEnd` hears of a recording that is full and of a replay that is over: no one has stopped them. */
@@ -91,6 +94,7 @@ export class Recorder {
   /** A new recording; the one at hand is forgotten. */
   record(source: RecordingSource): void {
     this.stop();
+    this.#newest = this.ask();
     this.#about = source;
     this.#recording = null;
     this.#name = null;
@@ -171,19 +175,27 @@ export class Recorder {
     if (this.#mode === 'replaying') this.#seconds = Math.max(0, Math.min(this.duration, seconds));
   }
 
-  /** Takes a recording from the text of a file; throws a sentence when it is none, or one of no person, and while another is being made. */
-  open(name: string, text: string): Replayable {
+  /** Takes a recording from the text of a file; throws a sentence when it is none, or one of no person, and where `take` does. */
+  open(name: string, text: string, asked = this.ask()): Replayable {
     const recording = parseRecording(text);
     const complaint = recording.calibration && calibrationComplaint(recording.calibration);
     if (complaint) throw new Error(complaint);
-    this.take(name, recording);
+    this.take(name, recording, asked);
     return recording;
   }
 
-  /** Takes a recording; the one at hand is forgotten. Throws a sentence while another is being made. */
-  take(name: string, recording: Replayable): void {
+  /** The place of a wish for a recording among all of them: what it brings may take a while, and comes too late for a newer one. */
+  ask(): number {
+    this.#asked += 1;
+    return this.#asked;
+  }
+
+  /** Takes a recording; the one at hand is forgotten. Throws a sentence while another is being made, and where a newer wish has brought one. */
+  take(name: string, recording: Replayable, asked = this.ask()): void {
     if (this.#mode === 'recording') throw new Error('a recording is being made; stop it first');
+    if (asked < this.#newest) throw new Error('a newer recording is at hand');
     this.stop();
+    this.#newest = asked;
     this.#recording = recording;
     this.#name = name;
   }

@@ -37,6 +37,18 @@ function largeFile(name: string, megabytes: number) {
   return { file, asked };
 }
 
+/** A recording whose bytes come when `arrive` is called. */
+function slowRecording(name: string) {
+  const file = recordingFile(name);
+  let arrive = (): void => undefined;
+  const arrival = new Promise<void>((resolve) => {
+    arrive = resolve;
+  });
+  const bytes = file.arrayBuffer();
+  Object.defineProperty(file, 'arrayBuffer', { value: () => arrival.then(() => bytes) });
+  return { file, arrive };
+}
+
 /** The files of a page, with its real recorder; what they do to body and avatar is written down. */
 function files() {
   const notices: Notice[] = [];
@@ -119,6 +131,29 @@ describe('a dropped file', () => {
     expect([recorder.name, recorder.duration]).toEqual(['recording-1.json', 1]);
     await page.open(recordingFile());
     expect([recorder.name, recorder.mode]).toEqual(['walk.json', 'replaying']);
+  });
+
+  test('that is read for longer than a recording opened after it comes too late, and a sentence says so', async () => {
+    const { files: page, notices, recorder } = files();
+    const { file, arrive } = slowRecording('slow.json');
+    const slow = page.openRecording(file);
+    await page.open(recordingFile('quick.json'));
+    arrive();
+    await slow;
+    expect([recorder.name, recorder.mode]).toEqual(['quick.json', 'replaying']);
+    expect(notices).toEqual([
+      { level: 'error', text: 'slow.json could not be replayed: a newer recording is at hand' },
+    ]);
+  });
+
+  test('that was opened before another is replayed where that is no recording', async () => {
+    const { files: page, recorder } = files();
+    const { file, arrive } = slowRecording('slow.json');
+    const slow = page.open(file);
+    await page.open(new File(['{"frames": 3}'], 'broken.json'));
+    arrive();
+    await slow;
+    expect([recorder.name, recorder.mode]).toEqual(['slow.json', 'replaying']);
   });
 
   test('of any other name is opened as an avatar, and its name is told when it stands there', async () => {

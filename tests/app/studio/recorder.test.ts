@@ -94,6 +94,19 @@ describe('the recorder', () => {
     expect(recorder.sample(51)?.head.position.x).toBeCloseTo(0.5, 6);
   });
 
+  test('what was asked for before a recording was made comes too late, and leaves it', () => {
+    const recorder = new Recorder();
+    const asked = recorder.ask();
+    recorder.record(source);
+    for (const time of [1, 2]) recorder.observe(frameAt(time));
+    recorder.stop();
+    const other = recorded(0, 1).recording!;
+    expect(() => recorder.take('slow.json', other, asked)).toThrow('a newer recording is at hand');
+    expect(recorder.name).toBe('recording-1.json');
+    recorder.take('new.json', other, recorder.ask());
+    expect(recorder.name).toBe('new.json');
+  });
+
   test('its file is read back to the bit', () => {
     const recorder = recorded(1 / 3, 1);
     const file = recorder.file();

@@ -102,9 +102,9 @@ export class Controls {
     this.#inHeadset.point();
   }
 
-  /** Replays a file of this device, or what an address answers. */
-  openRecording(source: string | File): Promise<void> {
-    return this.#files.openRecording(source);
+  /** Replays a file of this device, or what an address answers. `asked`: the recorder's place for this wish. */
+  openRecording(source: string | File, asked: number): Promise<void> {
+    return this.#files.openRecording(source, asked);
   }
 
   /** What changes by itself: frame times, a replay's progress, a round. */

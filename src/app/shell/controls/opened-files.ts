@@ -13,7 +13,7 @@ const recordingFile: FileKind = { what: 'a recording', megabytes: 100 };
 
 export interface OpenedFilesOptions {
   readonly avatar: Pick<ShownAvatar, 'open' | 'openOwn' | 'giveBones' | 'name'>;
-  readonly recorder: Pick<Recorder, 'open' | 'replay'>;
+  readonly recorder: Pick<Recorder, 'ask' | 'open' | 'replay'>;
   readonly notices: Pick<Notices, 'show'>;
   readonly body: Pick<BareBody, 'jumped'>;
   readonly mocap: Pick<PageMocap, 'open'>;
@@ -43,9 +43,10 @@ export class OpenedFiles {
 
   /** A file by its ending: a recording or a map of a skeleton, else an avatar. Never rejects: what goes wrong becomes a notice. */
   async open(file: File): Promise<void> {
+    const asked = this.#options.recorder.ask();
     if (!isJson(file)) await this.openAvatar(file);
     else if (file.size <= largestMap && isSkeletonMap(await file.text())) await this.#options.mocap.open([file]);
-    else await this.openRecording(file);
+    else await this.openRecording(file, asked);
   }
 
   async openAvatar(source: string | File): Promise<void> {
@@ -67,12 +68,15 @@ export class OpenedFiles {
     void this.#options.avatar.openOwn();
   }
 
-  /** Replays what the file keeps, with the body of the person in it. Never rejects: what goes wrong becomes a notice. */
-  async openRecording(source: string | File): Promise<void> {
+  /**
+   * Replays what the file keeps, with the body of the person in it. `asked`: the recorder's place for this wish. Never rejects: what goes wrong
+   * becomes a notice.
+   */
+  async openRecording(source: string | File, asked = this.#options.recorder.ask()): Promise<void> {
     const { recorder, notices } = this.#options;
     const name = nameOf(source);
     try {
-      recorder.open(name, new TextDecoder().decode(await readLimited(source, recordingFile)));
+      recorder.open(name, new TextDecoder().decode(await readLimited(source, recordingFile)), asked);
       this.replay();
     } catch (error) {
       const reason = firstLine(reasonOf(error)).replace(`${name}: `, '');
