@@ -138,6 +138,8 @@ export class Activities {
   }
 
   #leave(): void {
+    // Who comes back begins a new round.
+    if (this.name !== 'studio') this.#seed += 1;
     this.#letSoundSleep();
     this.#archery?.dispose();
     this.#archery = null;

@@ -209,6 +209,17 @@ describe('a round', () => {
     expect(layout()).not.toEqual(begun);
   });
 
+  test('of a player who has left the range and comes back is a new one: its layout is the next', async () => {
+    const [left, stayed] = await Promise.all([range(), range()]);
+    const first = left.layout();
+    expect(first).toEqual(stayed.layout());
+    await left.activities.goTo('studio');
+    await left.activities.goTo('archery');
+    stayed.activities.restartRound();
+    expect(left.layout()).not.toEqual(first);
+    expect(left.layout()).toEqual(stayed.layout());
+  });
+
   test('is aimed by the mouse where it was chosen; the camera turns with it everywhere else', async () => {
     const { activities, seen } = await opened;
     expect(seen).toMatchObject({ aims: false, orbit: true });
