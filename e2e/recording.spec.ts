@@ -96,3 +96,24 @@ test('a recording in the address is replayed on the range too, whichever of them
   await expect(page.getByRole('button', { name: 'Archery' })).toHaveAttribute('aria-pressed', 'true');
   await expect.poll(async () => (await probe(page)).recorder.mode).toBe('replaying');
 });
+
+test('a recording that replays on the range leaves the bow to the mouse, and to the built-in archer, on request @full', async ({
+  page,
+}) => {
+  await recordTheActor(page);
+  const { bytes: body } = await downloaded(page, 'Download');
+  await page.route('**/walk.json', (route) => route.fulfill({ body, contentType: 'application/json' }));
+  await open(page, 'play=archery&replay=walk.json&quality=low&estimator=ik&panel=on');
+  const [shoot, watch] = ['Shoot with the mouse', 'Watch'].map((name) => page.getByRole('button', { name }));
+  const mode = async () => (await probe(page)).recorder.mode;
+  for (const choice of [shoot!, watch!]) {
+    await expect.poll(mode).toBe('replaying');
+    await expect(shoot!).toBeVisible();
+    await expect(watch!).toBeVisible();
+    await choice.click();
+    expect(await mode()).toBe('idle');
+    await expect(choice).toBeHidden();
+    await page.getByRole('tab', { name: 'Recording' }).click();
+    await page.getByRole('button', { name: 'Replay', exact: true }).click();
+  }
+});

@@ -15,11 +15,12 @@ import type { Pulse } from '../../xr/haptics';
 import type { ArcheryActivity } from '../archery/archery-activity';
 import type { Performance } from '../archery/archery-play';
 import type { BallActivity } from '../ball/ball-activity';
+import type { Recorder } from '../studio/recorder';
 import type { TaskPlace } from '../study/task-runner';
 import type { Games } from './games';
 import type { Headset } from './headset';
 import type { PageStudy } from './page-study';
-import type { ActivityName, Shooter } from './play-bar';
+import type { ActivityName } from './play-bar';
 import type { Settings, SettingsWriter } from './settings';
 import type { Stage, Watched } from './stage';
 import { wakeSound } from './wake-sound';
@@ -44,6 +45,7 @@ export interface ActivitiesOptions {
   };
   readonly mouse: MouseAim;
   readonly headset: Pick<Headset, 'worn'>;
+  readonly recorder: Pick<Recorder, 'giveWay'>;
   readonly body: Pick<BareBody, 'calibration'>;
   readonly study: Pick<PageStudy, 'joined' | 'idle' | 'paused'>;
   /** The colours of a seat for the own body; null: the user's own. */
@@ -196,8 +198,9 @@ export class Activities {
     if (game) this.#letSoundSleep = wakeSound(game.sound, on, notices);
   }
 
-  /** The mouse or the actor plays, where no headset is worn. */
-  chooseShooter(shooter: Shooter): void {
+  /** The mouse or the actor plays, where no headset is worn. A replay would hold the body that shoots: it is over. */
+  chooseShooter(shooter: 'mouse' | 'actor'): void {
+    this.#options.recorder.giveWay();
     this.#options.writer.change({ actor: true, mouse: shooter === 'mouse' });
     this.#steerByMouse();
     this.restartRound();

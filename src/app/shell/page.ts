@@ -126,6 +126,7 @@ function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof c
     stage,
     mouse,
     headset,
+    recorder,
     body,
     study,
     wear: (palette) => avatar.wear(palette),

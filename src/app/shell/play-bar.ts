@@ -7,8 +7,8 @@ import { type BallBarActions, type BallBarState, createBallBar } from '../ball/b
 export const activityNames = ['studio', 'archery', 'ball'] as const;
 export type ActivityName = (typeof activityNames)[number];
 
-/** Who shoots on the desktop: the built-in archer, the mouse, or the person who holds the (emulated) headset. */
-export type Shooter = 'actor' | 'mouse' | 'headset';
+/** Who shoots on the desktop: the built-in archer, the mouse, the person who holds the (emulated) headset, or no one while a recording replays. */
+export type Shooter = 'actor' | 'mouse' | 'headset' | 'recording';
 
 /** A round as the bar shows it. */
 export interface RoundState {
@@ -39,7 +39,7 @@ export interface PlayState {
 export interface PlayActions {
   goTo(activity: ActivityName): void;
   restart(): void;
-  chooseShooter(shooter: Shooter): void;
+  chooseShooter(shooter: 'mouse' | 'actor'): void;
   setBowSide(side: 'left' | 'right'): void;
   setOneHanded(on: boolean): void;
   setEveryHitCounts(on: boolean): void;

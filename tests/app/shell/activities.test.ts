@@ -8,6 +8,7 @@ import { SessionChanges, type SessionChangesOptions } from '../../../src/app/she
 import { createSettings, type LastingSettings, SettingsWriter } from '../../../src/app/shell/settings';
 import { createArcheryRunner } from '../../../src/app/shell/study-archery';
 import { readSwitches } from '../../../src/app/shell/switches';
+import { TrackingSource } from '../../../src/app/shell/tracking-source';
 import { Recorder } from '../../../src/app/studio/recorder';
 import type { StudyRun } from '../../../src/app/study/study-run';
 import { defaultCalibration } from '../../../src/core/body/calibration';
@@ -21,6 +22,7 @@ import { ServerPresence } from '../../../src/net/server-presence';
 import type { SceneName } from '../../../src/scene/desktop-view';
 import type { Surroundings } from '../../../src/scene/surroundings';
 import type { Notice } from '../../../src/ui/notices';
+import { createActor } from '../../../src/xr/actor';
 import { posed } from '../../core/games/archery/bowman';
 import { drawNowhere } from './drawing-in-node';
 
@@ -77,11 +79,12 @@ function page() {
       seen.aims = on;
     },
   };
-  const headset = { worn: false, emulator: null };
+  const headset = { worn: false, emulator: null, buttons: nothingPressed, read: () => null };
+  const recorder = new Recorder();
   const study = new PageStudy();
   const common = { settings, stage, mouse, headset, body: { calibration: defaultCalibration } };
   const activities = new Activities({
-    ...{ ...common, writer, study, seed: 5 },
+    ...{ ...common, writer, recorder, study, seed: 5 },
     games: new PageGames({
       ...{ ...common, switches, quality: 'low', clock: createPageClock(() => 0), onCaption: () => undefined },
       server: new ServerPresence('http://127.0.0.1:9', () => undefined),
@@ -94,7 +97,13 @@ function page() {
     onArrival: () => undefined,
     onChange: () => undefined,
   });
-  return { activities, settings, headset, study, seen, places, notices, kept };
+  const source = new TrackingSource({
+    ...{ settings, headset, recorder, activities, study },
+    body: { wearerCalibration: defaultCalibration },
+    actor: createActor(),
+  });
+  const tracked = (time: number) => source.read(time, undefined);
+  return { activities, settings, headset, study, seen, places, notices, kept, recorder, tracked };
 }
 
 /** The same, on the range. */
@@ -207,6 +216,20 @@ describe('a round', () => {
     const begun = layout();
     activities.rule({ bowSide: 'left' });
     expect(layout()).not.toEqual(begun);
+  });
+
+  test('is shot by whom the user chooses, where a recording replays there too', async () => {
+    const { activities, recorder, tracked } = await range();
+    const ofRecording = wearer(1, 1.9);
+    const recording = { device: 'a test', rateHz: 60, calibration: null, frames: [ofRecording, wearer(2, 1.9)] };
+    for (const shooter of ['mouse', 'actor'] as const) {
+      recorder.take('tall.json', recording);
+      recorder.replay();
+      expect(tracked(10)?.head).toEqual(ofRecording.head);
+      activities.chooseShooter(shooter);
+      expect(tracked(10.1)?.head.position.y).toBeLessThan(1.75);
+      expect([recorder.mode, recorder.name]).toEqual(['idle', 'tall.json']);
+    }
   });
 
   test('of a player who has left the range and comes back is a new one: its layout is the next', async () => {

@@ -6,7 +6,7 @@ import type { ControlledParts } from './controlled-parts';
 
 export type PlayControlsOptions = Pick<
   ControlledParts,
-  'switches' | 'settings' | 'writer' | 'notices' | 'headset' | 'activities' | 'study' | 'server'
+  'switches' | 'settings' | 'writer' | 'notices' | 'headset' | 'recorder' | 'activities' | 'study' | 'server'
 >;
 
 /** Of an address that has just opened a room for others. */
@@ -143,7 +143,8 @@ export class PlayControls {
   }
 
   #shooter(): Shooter {
-    const { settings, headset } = this.#options;
+    const { settings, headset, recorder } = this.#options;
+    if (!headset.worn && recorder.mode === 'replaying') return 'recording';
     if (headset.worn || !settings.actor) return 'headset';
     return settings.mouse ? 'mouse' : 'actor';
   }
