@@ -1,3 +1,4 @@
+import type { Page } from '@playwright/test';
 import { validateBytes } from 'gltf-validator';
 import { readBvh } from '../src/core/motion/read-bvh';
 import { finishWork } from '../src/core/motion/work';
@@ -86,12 +87,17 @@ test('a recording becomes files for other programs, drawn by the chosen method @
   await expect(page.getByRole('alert')).toContainText('recording-1 could not be exported');
 });
 
-test('a recording in the address is replayed on the range too, whichever of them comes first @full', async ({
-  page,
-}) => {
+/** A recording of the actor is at the address walk.json from now on. */
+async function serveTheActor(page: Page): Promise<void> {
   await recordTheActor(page);
   const { bytes: body } = await downloaded(page, 'Download');
   await page.route('**/walk.json', (route) => route.fulfill({ body, contentType: 'application/json' }));
+}
+
+test('a recording in the address is replayed on the range too, whichever of them comes first @full', async ({
+  page,
+}) => {
+  await serveTheActor(page);
   await open(page, 'play=archery&replay=walk.json&panel=off&quality=low&estimator=ik');
   await expect(page.getByRole('button', { name: 'Archery' })).toHaveAttribute('aria-pressed', 'true');
   await expect.poll(async () => (await probe(page)).recorder.mode).toBe('replaying');
@@ -100,9 +106,7 @@ test('a recording in the address is replayed on the range too, whichever of them
 test('a recording that replays on the range leaves the bow to the mouse, and to the built-in archer, on request @full', async ({
   page,
 }) => {
-  await recordTheActor(page);
-  const { bytes: body } = await downloaded(page, 'Download');
-  await page.route('**/walk.json', (route) => route.fulfill({ body, contentType: 'application/json' }));
+  await serveTheActor(page);
   await open(page, 'play=archery&replay=walk.json&quality=low&estimator=ik&panel=on');
   const [shoot, watch] = ['Shoot with the mouse', 'Watch'].map((name) => page.getByRole('button', { name }));
   const mode = async () => (await probe(page)).recorder.mode;

@@ -44,6 +44,7 @@ export class StudyDeletion {
   delete(study: string, participant: string, reason: Receipt['reason'], at: number): Receipt {
     const { database, plans, places, records, motion, commands } = this.#parts;
     const receipt = database.transaction(() => {
+      // Refuses a participant whom there is not.
       places.get(study, participant);
       const invitation = this.#invitationAfter(study, reason);
       const recordCount = records.delete(study, participant);

@@ -52,8 +52,7 @@ function stand(
   from: number,
   seconds: number,
   place = { aside: 0, yaw: 0 },
-  body = defaultCalibration,
-  rateHz = 72,
+  { body = defaultCalibration, rateHz = 72 } = {},
 ) {
   const ik = createIk(body);
   let time = from;
@@ -80,15 +79,15 @@ describe('hair', () => {
       { eyeHeight: 2.05, armSpan: 2.0 },
     ];
     const [small, large] = [await opened(child), await opened(giant)];
-    stand(small.avatar, 0, 3, undefined, child);
-    stand(large.avatar, 0, 3, undefined, giant);
+    stand(small.avatar, 0, 3, undefined, { body: child });
+    stand(large.avatar, 0, 3, undefined, { body: giant });
     const [a, b] = [strandOf(small.avatar), strandOf(large.avatar)];
     expect(a.angleTo(new Quaternion())).toBeGreaterThan(0.1);
     expect(a.angleTo(b)).toBeLessThan(0.02);
     for (const time of [3, 3.1, 3.2]) {
       const seconds = 0.1;
-      stand(small.avatar, time, seconds, { aside: 0, yaw: 0.6 }, child);
-      stand(large.avatar, time, seconds, { aside: 0, yaw: 0.6 }, giant);
+      stand(small.avatar, time, seconds, { aside: 0, yaw: 0.6 }, { body: child });
+      stand(large.avatar, time, seconds, { aside: 0, yaw: 0.6 }, { body: giant });
       expect(strandOf(small.avatar).angleTo(strandOf(large.avatar))).toBeLessThan(0.03);
     }
   });
@@ -96,7 +95,7 @@ describe('hair', () => {
   test('falls as fast in 20 frames a second as in 144', async () => {
     const fallen = async (rateHz: number): Promise<number> => {
       const { avatar } = await opened();
-      stand(avatar, 0, 0.155, undefined, defaultCalibration, rateHz);
+      stand(avatar, 0, 0.155, undefined, { rateHz });
       return strandOf(avatar).angleTo(new Quaternion());
     };
     const [slow, usual, fast] = [await fallen(20), await fallen(72), await fallen(144)];

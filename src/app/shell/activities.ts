@@ -20,7 +20,7 @@ import type { TaskPlace } from '../study/task-runner';
 import type { Games } from './games';
 import type { Headset } from './headset';
 import type { PageStudy } from './page-study';
-import type { ActivityName } from './play-bar';
+import type { ActivityName, ChosenShooter } from './play-bar';
 import type { Settings, SettingsWriter } from './settings';
 import type { Stage, Watched } from './stage';
 import { wakeSound } from './wake-sound';
@@ -199,7 +199,7 @@ export class Activities {
   }
 
   /** The mouse or the actor plays, where no headset is worn. A replay would hold the body that shoots: it is over. */
-  chooseShooter(shooter: 'mouse' | 'actor'): void {
+  chooseShooter(shooter: ChosenShooter): void {
     this.#options.recorder.giveWay();
     this.#options.writer.change({ actor: true, mouse: shooter === 'mouse' });
     this.#steerByMouse();

@@ -7,8 +7,11 @@ import { type BallBarActions, type BallBarState, createBallBar } from '../ball/b
 export const activityNames = ['studio', 'archery', 'ball'] as const;
 export type ActivityName = (typeof activityNames)[number];
 
-/** Who shoots on the desktop: the built-in archer, the mouse, the person who holds the (emulated) headset, or no one while a recording replays. */
-export type Shooter = 'actor' | 'mouse' | 'headset' | 'recording';
+/** Who may be chosen to shoot on the desktop: the built-in archer or the mouse. */
+export type ChosenShooter = 'actor' | 'mouse';
+
+/** Who shoots there: one of these, the person who holds the (emulated) headset, or no one while a recording replays. */
+export type Shooter = ChosenShooter | 'headset' | 'recording';
 
 /** A round as the bar shows it. */
 export interface RoundState {
@@ -39,7 +42,7 @@ export interface PlayState {
 export interface PlayActions {
   goTo(activity: ActivityName): void;
   restart(): void;
-  chooseShooter(shooter: 'mouse' | 'actor'): void;
+  chooseShooter(shooter: ChosenShooter): void;
   setBowSide(side: 'left' | 'right'): void;
   setOneHanded(on: boolean): void;
   setEveryHitCounts(on: boolean): void;

@@ -281,7 +281,7 @@ describe('a player who takes the headset off', () => {
     };
   }
 
-  test('at full draw shoots no arrow: it is back in the quiver, whatever the hands do that come next', async () => {
+  test('at full draw shoots no arrow: it is back in the quiver before other hands move the bow', async () => {
     const { activities, enter, leave } = await worn();
     enter();
     const pressed = { left: allReleased, right: { ...allReleased, trigger: 1 } };

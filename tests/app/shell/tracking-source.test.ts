@@ -42,7 +42,7 @@ function worn() {
   return { recorder, wristAt };
 }
 
-test('with the actor off before a real headset is put on, nobody moves: the body stands there', () => {
+test('with the actor off before a real headset is put on, the body stands still', () => {
   const asked: number[] = [];
   const source = new TrackingSource({
     settings: { actor: false },
