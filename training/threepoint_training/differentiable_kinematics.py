@@ -73,6 +73,7 @@ class DifferentiableKinematics:
         # Of shoulders at rest, their middle from the neck's base.
         left, right = (self.rest[f"{side}Shoulder"] + self.rest[f"{side}UpperArm"] for side in ("left", "right"))
         self.shoulders_from_neck = (left + right) / 2 - self.rest["neck"]
+        self.shoulder_width = (right - left)[0]
 
     def __call__(self, corrections: Tensor, inputs: Tensor, config: FittingConfig = LOSS) -> Tensor:
         """The corrections [N, 6, 3] of IK's joints that remain after torso and arm fitting; inputs [N, T·46 + 38]: of the network."""
@@ -103,10 +104,10 @@ class DifferentiableKinematics:
 
     def fit_torso(self, given: _FittingInput, config: FittingConfig) -> tuple[Trunk, Tensor]:
         """The trunk and the shoulders [N, 2, 3], leaning after hands that the arms alone do not reach, or would have to be straight to."""
-        targets = given.estimated[:, 2:4]
+        leans = torch.zeros_like(given.estimated[:, 2:4])
         # How far clavicles and neck go beyond anatomy [share of the way to their extremes].
-        extremity = torch.zeros_like(targets[..., :1])
-        trunk, shoulders = self._place_trunk(given, targets, extremity)
+        extremity = torch.zeros_like(leans[..., :1])
+        trunk, shoulders = self._place_trunk(given, leans, extremity)
         reach = config.reach * given.arm
         soft = _softened(_length(given.wrists - shoulders), reach)
         for number in range(config.reach_passes):
@@ -114,23 +115,27 @@ class DifferentiableKinematics:
             wanted = soft if number < REACH["anatomicalPasses"] else reach
             missing = (_length(to_wrist) - wanted).clamp_min(0.0)
             missing = torch.where(missing > config.least_missing, missing, 0.0)
-            targets = targets + _unit(to_wrist) * missing * TORSO["reachOvershoot"]
+            leans = leans + _unit(to_wrist) * missing * TORSO["reachOvershoot"]
+            leans = leans * (reach / _length(leans)).clamp_max(1.0)
             if number >= REACH["anatomicalPasses"]:
                 extremity = (extremity + missing / (REACH["extremeReach"] * reach)).clamp_max(1.0)
-            placed = self._place_trunk(given, targets, extremity)
+            placed = self._place_trunk(given, leans, extremity)
             if config.reach_passes > 1:
                 placed = _chosen((missing > 0.0).any(dim=1), placed, (trunk, shoulders))
             trunk, shoulders = placed
         return trunk, shoulders
 
-    def _place_trunk(self, given: _FittingInput, targets: Tensor, extremity: Tensor) -> tuple[Trunk, Tensor]:
-        """Chest joint, hips and shoulders on their bones below the head, as nearly as limits allow where shoulders are wanted [N, 2, 3].
+    def _place_trunk(self, given: _FittingInput, leans: Tensor, extremity: Tensor) -> tuple[Trunk, Tensor]:
+        """Chest joint, hips and shoulders on their bones below the head, for estimated shoulders that lean by these offsets [N, 2, 3].
 
+        Leans in opposite directions turn the shoulder line; what pulls the shoulders together or apart is left to the clavicles.
         extremity: of each side, how far on the way from anatomical limits to extreme ones [N, 2, 1].
         """
         estimated, head_joint = given.estimated, given.head_joint
+        targets = estimated[:, 2:4] + leans
         middle = targets.mean(1)
-        line = _unit(targets[:, 1] - targets[:, 0])
+        estimated_line = _unit(estimated[:, 3] - estimated[:, 2])
+        line = _unit(estimated_line * self.shoulder_width + _across(leans[:, 1] - leans[:, 0], estimated_line))
         rough = self._aligned(self.thorax, middle - estimated[:, 4], line)
         implied_neck = middle - rough @ self.shoulders_from_neck
         neck_bone = self.rest["head"]

@@ -27,6 +27,7 @@ import {
   lerp,
   type MutableVec3,
   normalise,
+  reject,
   right,
   scale,
   setVec3,
@@ -72,9 +73,8 @@ export interface FitTorsoState {
   /** False before the first frame. */
   known: boolean;
   readonly pose: TorsoPose;
-  /** From the left to the right shoulder, unit, floor frame: of this frame, and of the one before. */
+  /** From the left to the right estimated shoulder, unit, floor frame. */
   readonly shoulderLine: MutableVec3;
-  readonly lineBefore: MutableVec3;
   /** From the chest joint to the hips, unit, floor frame. */
   readonly towardsHips: MutableVec3;
   readonly lean: Readonly<Record<Side, Lean>>;
@@ -97,7 +97,6 @@ export const makeFitTorsoState = (): FitTorsoState => ({
     shoulders: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
   },
   shoulderLine: vec3(1, 0, 0),
-  lineBefore: vec3(1, 0, 0),
   towardsHips: vec3(0, -1, 0),
   lean: { left: makeLean(), right: makeLean() },
 });
@@ -153,14 +152,17 @@ interface TorsoInput {
 interface PlacedThorax {
   /** From the chest joint to the neck, unit. */
   readonly up: MutableVec3;
+  /** From the left to the right shoulder as the thorax faces, unit. */
+  readonly line: MutableVec3;
   /** By how much the neck was moved onto its length from the head, the part of it that chest joint and hips follow. */
   readonly moved: MutableVec3;
 }
 
-const thorax: PlacedThorax = { up: vec3(0, 0, 0), moved: vec3(0, 0, 0) };
+const thorax: PlacedThorax = { up: vec3(0, 0, 0), line: vec3(0, 0, 0), moved: vec3(0, 0, 0) };
 /** Where the shoulders are to be, floor frame. */
 const shoulderTargets: Readonly<Record<Side, MutableVec3>> = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
 const headingRight = vec3(0, 0, 0);
+const lineBefore = vec3(0, 0, 0);
 const roughUp = vec3(0, 0, 0);
 const shoulderMiddle = vec3(0, 0, 0);
 /** The neck's base that the wanted shoulders hang from, before it is brought onto the neck's length from the head. */
@@ -189,41 +191,34 @@ export function fitTorso(
   setVec3(headingRight, Math.cos(frame.heading.yaw), 0, -Math.sin(frame.heading.yaw));
   beginLean(lean.left);
   beginLean(lean.right);
+  followShoulderLine(state, joints, bones, deltaSeconds);
   for (let pass = 0; pass <= anatomicalPasses + extremePasses; pass++) {
-    add(joints.leftUpperArm, lean.left.wanted, shoulderTargets.left);
-    add(joints.rightUpperArm, lean.right.wanted, shoulderTargets.right);
-    placeThorax(state, input, shoulderTargets, thorax);
+    placeThorax(state, input, lean.left.wanted, lean.right.wanted, thorax);
     const pulledLeft = leanFurther(lean.left, pose.shoulders.left, frame.leftHand, bones.reach, pass);
     const pulledRight = leanFurther(lean.right, pose.shoulders.right, frame.rightHand, bones.reach, pass);
     if (!pulledLeft && !pulledRight) break;
   }
   const leansLeft = followLean(lean.left, frame.leftHand, state.known, deltaSeconds);
   const leansRight = followLean(lean.right, frame.rightHand, state.known, deltaSeconds);
-  if (!leansLeft || !leansRight) {
-    add(joints.leftUpperArm, lean.left.offset, shoulderTargets.left);
-    add(joints.rightUpperArm, lean.right.offset, shoulderTargets.right);
-    placeThorax(state, input, shoulderTargets, thorax);
-  }
+  if (!leansLeft || !leansRight) placeThorax(state, input, lean.left.offset, lean.right.offset, thorax);
   placeSpine(state, input, thorax);
-  copyVec3(state.shoulderLine, state.lineBefore);
   state.known = true;
   return pose;
 }
 
 /**
- * Writes the shoulders' line: never faster than `turnSpeed`, and slowly where the shoulders are estimated close together. Idempotent within
- * a frame: always starts from `lineBefore`.
+ * Follows the line through the estimated shoulders: never faster than `turnSpeed`, and slowly where they are estimated close together.
+ * Reads no lean, so that the line of a still frame settles whatever the hands ask of the trunk.
  */
 function followShoulderLine(
-  state: FitTorsoState,
-  targets: Readonly<Record<Side, Vec3>>,
+  { shoulderLine: line, known }: FitTorsoState,
+  { leftUpperArm, rightUpperArm }: JointPositions,
   { shoulderWidth }: TorsoBones,
   deltaSeconds: number,
 ): void {
-  const { shoulderLine: line, lineBefore: before, known } = state;
-  subtract(targets.right, targets.left, a);
-  const apart = length(a);
-  normalise(a, known ? before : headingRight, line);
+  const before = copyVec3(known ? line : headingRight, lineBefore);
+  const apart = length(subtract(rightUpperArm, leftUpperArm, line));
+  normalise(line, before, line);
   if (!known) return;
   const confidence = smoothstep(undefinedLine, definedLine, apart / shoulderWidth);
   const share = smoothingFactor(shoulderLineHalfLife * (1 - confidence), deltaSeconds);
@@ -244,21 +239,28 @@ function turnTowards(wanted: MutableVec3, before: Vec3, share: number, most: num
 const limitOf = (joint: 'clavicleSwing' | 'neckBend', extremity: number): number =>
   torsoLimits[joint] + extremity * (extremeLimits[joint] - torsoLimits[joint]);
 
-/** Neck, chest joint, the upper chest's rotation and the shoulders, from where the shoulders are to be. */
+/**
+ * Neck, chest joint, the upper chest's rotation and the shoulders, for estimated shoulders that lean by these offsets [m]. Leans in opposite
+ * directions turn the shoulder line by less than a right angle; what pulls the shoulders together or apart is left to the clavicles.
+ */
 function placeThorax(
   state: FitTorsoState,
-  { joints, frame, bones, deltaSeconds }: TorsoInput,
-  targets: Readonly<Record<Side, Vec3>>,
-  { up: thoraxUp, moved }: PlacedThorax,
+  { joints, frame, bones }: TorsoInput,
+  leftLean: Vec3,
+  rightLean: Vec3,
+  { up: thoraxUp, line, moved }: PlacedThorax,
 ): void {
   const { pose, shoulderLine, lean } = state;
   const neckBend = limitOf('neckBend', Math.max(lean.left.extremity, lean.right.extremity));
   const { upperChest } = pose.rotations;
-  followShoulderLine(state, targets, bones, deltaSeconds);
-  lerp(targets.left, targets.right, 0.5, shoulderMiddle);
+  add(joints.leftUpperArm, leftLean, shoulderTargets.left);
+  add(joints.rightUpperArm, rightLean, shoulderTargets.right);
+  lerp(shoulderTargets.left, shoulderTargets.right, 0.5, shoulderMiddle);
+  reject(subtract(rightLean, leftLean, line), shoulderLine, line);
+  normalise(addScaled(line, shoulderLine, bones.shoulderWidth, line), shoulderLine, line);
 
   normalise(subtract(shoulderMiddle, joints.chest, roughUp), up, roughUp);
-  const roughChest = alignDirections(bones.thorax, roughUp, shoulderLine, rotation);
+  const roughChest = alignDirections(bones.thorax, roughUp, line, rotation);
   subtract(shoulderMiddle, rotate(roughChest, bones.shouldersFromNeck, a), impliedNeck);
   rotate(roughChest, bones.neck.main, neckAtRest);
   limitAngle(rotationBetween(neckAtRest, subtract(frame.headJoint, impliedNeck, a), swing), neckBend, swing);
@@ -271,9 +273,9 @@ function placeThorax(
   subtract(pose.neck, add(joints.chest, moved, a), thoraxUp);
   normalise(thoraxUp, roughUp, thoraxUp);
   addScaled(pose.neck, thoraxUp, -bones.thoraxLength, pose.chest);
-  alignDirections(bones.thorax, thoraxUp, shoulderLine, upperChest);
-  placeShoulder('left', pose, bones, targets.left, limitOf('clavicleSwing', lean.left.extremity));
-  placeShoulder('right', pose, bones, targets.right, limitOf('clavicleSwing', lean.right.extremity));
+  alignDirections(bones.thorax, thoraxUp, line, upperChest);
+  placeShoulder('left', pose, bones, shoulderTargets.left, limitOf('clavicleSwing', lean.left.extremity));
+  placeShoulder('right', pose, bones, shoulderTargets.right, limitOf('clavicleSwing', lean.right.extremity));
 }
 
 /** A shoulder on its clavicle, which swings towards its target. */
@@ -295,20 +297,20 @@ function placeShoulder(
 function placeSpine(
   state: FitTorsoState,
   { joints, frame, bones, deltaSeconds }: TorsoInput,
-  { up: thoraxUp, moved }: PlacedThorax,
+  { up: thoraxUp, line, moved }: PlacedThorax,
 ): void {
-  const { pose, shoulderLine } = state;
+  const { pose } = state;
   const { head, headJoint } = frame;
   const { hips, chest, neck, rotations } = pose;
   hangHips(state, add(joints.hips, moved, a), frame.bodyTurn, bones.lowerBackLength, deltaSeconds);
   const lowerBackUp = normalise(subtract(chest, hips, a), up, a);
-  const pelvisLine = normalise(lerp(shoulderLine, headingRight, torsoLimits.pelvisToHead, b), shoulderLine, b);
+  const pelvisLine = normalise(lerp(line, headingRight, torsoLimits.pelvisToHead, b), line, b);
   alignDirections(bones.lowerBack, lowerBackUp, pelvisLine, rotations.hips);
-  lerp(pelvisLine, shoulderLine, spineToShoulders, c);
+  lerp(pelvisLine, line, spineToShoulders, c);
   alignDirections(bones.lowerBack, lowerBackUp, c, rotations.spine);
-  lerp(pelvisLine, shoulderLine, torsoLimits.chestToShoulders, c);
+  lerp(pelvisLine, line, torsoLimits.chestToShoulders, c);
   alignDirections(bones.thorax, thoraxUp, c, rotations.chest);
-  lerp(shoulderLine, rotate(head.orientation, right, a), 0.5, c);
+  lerp(line, rotate(head.orientation, right, a), 0.5, c);
   alignDirections(bones.neck, subtract(headJoint, neck, a), c, rotations.neck);
 }
 

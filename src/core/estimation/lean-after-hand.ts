@@ -18,8 +18,6 @@ import limits from './kinematic-limits.json';
 
 const { anatomicalPasses, extremeReach } = limits.reach;
 
-/** Bound [m] on a lean that is still catching up; a lean that reaches its hand ends before, at the limits of clavicle and neck. */
-const furthestLean = 0.6;
 /** A trunk leans after a hand that comes back, and straightens after one that is lost, at most this fast [m/s]. */
 const leanSpeed = 0.6;
 
@@ -57,7 +55,7 @@ export function beginLean(lean: Lean): void {
 
 /**
  * Adds to the lean until the wrist distance is the soft reach (first `anatomicalPasses`) or the full reach (later passes, which also
- * raise `extremity`). Returns false when nothing is missing, or the hand is sinking.
+ * raise `extremity`), within one arm's reach. Returns false when nothing is missing, or the hand is sinking.
  *
  * reach: the arm's [m]; pass: how often this frame has leaned already.
  */
@@ -75,6 +73,8 @@ export function leanFurther(
   if (missing <= 1e-5) return false;
   if (pass >= anatomicalPasses) lean.extremity = Math.min(1, lean.extremity + missing / (extremeReach * reach));
   addScaled(lean.wanted, normalise(towards, undefined, towards), missing * limits.torso.reachOvershoot, lean.wanted);
+  const leant = length(lean.wanted);
+  if (leant > reach) scale(lean.wanted, reach / leant, lean.wanted);
   return true;
 }
 
@@ -95,9 +95,6 @@ export function followLean(
     copyVec3(wanted, offset);
     return true;
   }
-  const leant = length(offset);
-  if (leant > furthestLean) scale(offset, furthestLean / leant, offset);
-  const far = distance(wanted, offset);
-  lerp(offset, wanted, Math.min(1, most / far), offset);
+  lerp(offset, wanted, most / distance(wanted, offset), offset);
   return false;
 }
