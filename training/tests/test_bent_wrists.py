@@ -11,7 +11,7 @@ CORPUS = generate_corpus(people=1, clips=3, frames=90, seed=12)
 
 
 def inputs(condition, corpus=CORPUS):
-    return held_out(corpus, ("001",), (0.0,), condition=condition).inputs
+    return held_out(corpus, ("002",), (0.0,), condition=condition).inputs
 
 
 def test_a_wrist_that_is_bent_too_far_is_not_believed():

@@ -42,13 +42,13 @@ def test_a_tracker_that_is_turned_sees_the_tilt_that_undoes_it():
 
 
 def test_what_is_measured_of_a_clip_comes_from_the_others():
-    forearms = hand_tilt.ForearmMeans(CORPUS, ("001",))
-    clips = CORPUS.clips_of({"001"})
+    forearms = hand_tilt.ForearmMeans(CORPUS, ("002",))
+    clips = CORPUS.clips_of({"002"})
     rotations = CORPUS.rotations.copy()
     rotations[CORPUS.clip_slice(clips[0])] = quaternion.multiply(
         rotations[CORPUS.clip_slice(clips[0])].astype(np.float64), quaternion.from_rotation_vector(np.array([0.6, 0.0, 0.0]))
     )
-    changed = hand_tilt.ForearmMeans(replace(CORPUS, rotations=rotations), ("001",))
+    changed = hand_tilt.ForearmMeans(replace(CORPUS, rotations=rotations), ("002",))
     np.testing.assert_array_equal(changed.elsewhere(clips[0]), forearms.elsewhere(clips[0]))
     assert np.abs(changed.elsewhere(clips[1]) - forearms.elsewhere(clips[1])).max() > 0.1
 
@@ -87,7 +87,7 @@ def test_ik_of_turned_hands_is_fitted_beside_that_of_hands_as_they_come():
 
 def test_a_fit_sees_hands_of_both_kinds():
     """Proportions are the page's; half of the frames have hands that are turned by their tilts."""
-    frames = fit_ik.sample(worn_off(CORPUS, [0.5, 0.0, 0.0], [0.5, 0.0, 0.0]), ("001",), load_proportions(), None, 1, mirrored=False)
+    frames = fit_ik.sample(worn_off(CORPUS, [0.5, 0.0, 0.0], [0.5, 0.0, 0.0]), ("002",), load_proportions(), None, 1, mirrored=False)
     turned = frames.body.hands_turned.all(axis=1)
     np.testing.assert_array_equal(turned, frames.body.hands_turned.any(axis=1))
     assert turned.mean() == pytest.approx(0.5, abs=0.01)

@@ -42,12 +42,12 @@ def test_people_are_held_out_alone_or_in_groups(count, groups):
 
 
 def test_evaluation_only_subjects_have_rows_of_their_own_and_are_trained_on_by_none(monkeypatch):
-    person = CORPUS.people["003"]
-    others = {name: each for name, each in CORPUS.people.items() if name != "003"}
+    person = CORPUS.people["004"]
+    others = {name: each for name, each in CORPUS.people.items() if name != "004"}
     corpus = replace(
         CORPUS,
         people=others | {"901": replace(person, name="901")},
-        clip_people=tuple("901" if name == "003" else name for name in CORPUS.clip_people),
+        clip_people=tuple("901" if name == "004" else name for name in CORPUS.clip_people),
     )
     trained_on = []
     train = train_learned.train
@@ -58,24 +58,24 @@ def test_evaluation_only_subjects_have_rows_of_their_own_and_are_trained_on_by_n
 
     monkeypatch.setattr(train_learned, "train", watched)
     rows = leave_one_out.main(corpus, train_learned.TrainLearnedConfig(width=8, batch=32, steps=2), QUICK)
-    assert [row[0] for row in rows.people] == ["001", "002", "all alike", "901", "another laboratory, all alike"]
+    assert [row[0] for row in rows.people] == ["002", "003", "all alike", "901", "another laboratory, all alike"]
     by_hands = {name: cells for name, *cells in rows.hands}
     elsewhere = {name: cells for name, *cells in rows.people}["901"]
     assert list(by_hands) == [f"{whose}{told}" for whose in ("", "another laboratory: ") for told in leave_one_out.HANDS]
     assert float(by_hands[f"another laboratory: {leave_one_out.MEASURED}"][0]) == pytest.approx(float(elsewhere[0]), rel=0.1)
     assert any(name.startswith("another laboratory: ") for name, *_ in rows.postures)
-    assert trained_on == [("002",), ("001",), ("001", "002")]
+    assert trained_on == [("003",), ("002",), ("002", "003")]
 
 
 def test_postures_count_people_alike_and_distances_part_all_frames():
     """Two people, one with ten times the frames; who has more motion weighs no more."""
-    names = ("001", "002")
+    names = ("002", "003")
 
     def person(frames, of_ik, ours, furthest):
         errors = (np.full((frames, 6), value) for value in (of_ik, ours))
         return leave_one_out.HeldOutPerson(*errors, {"crouching": np.arange(frames) < frames // 2}, np.linspace(0, furthest, frames))
 
-    found = {"001": person(40, 4.0, 2.0, furthest=1.0), "002": person(400, 8.0, 8.0, furthest=4.0)}
+    found = {"002": person(40, 4.0, 2.0, furthest=1.0), "003": person(400, 8.0, 8.0, furthest=4.0)}
     corpus = replace(CORPUS, people={name: CORPUS.people[name] for name in names})
     crouching, *distances = leave_one_out.tables(corpus, found).postures
     assert crouching == ["crouching", "50.0 %", "6.00", "5.00", "0.83", "0.83"]
@@ -85,7 +85,7 @@ def test_postures_count_people_alike_and_distances_part_all_frames():
 
 
 def test_frames_are_told_apart_by_what_their_features_say():
-    crouching = train_learned.held_out(CORPUS, ("001",), (0.0,)).inputs[:1].repeat(3, axis=0)
+    crouching = train_learned.held_out(CORPUS, ("002",), (0.0,)).inputs[:1].repeat(3, axis=0)
     crouching[:, 0] = 0.5, 1.0, 1.0
     # The right hand, up from the headset; then a head that looks at the floor.
     crouching[:, 17] = -0.5, 0.4, -0.5

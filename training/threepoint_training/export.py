@@ -18,7 +18,7 @@ from .features import FEATURES
 from .flat_weights import flat_file
 from .quantise import quantise_weights, run
 from .residual import OUTPUTS
-from .splits import evaluation_only
+from .splits import evaluation_only, in_lockbox
 
 OPSET = 17
 # What onnxruntime's WASM may differ from its native build: sums in another order.
@@ -39,8 +39,9 @@ class Provenance:
     learning_curve: dict[str, list[float]] | None = None
 
     def __post_init__(self) -> None:
-        if unwanted := evaluation_only(self.people):
-            raise ValueError(f"{', '.join(unwanted)}: evaluation-only subjects (splits.py) are never trained on; no such network is written")
+        for unwanted, why in ((evaluation_only(self.people), "evaluation-only"), (in_lockbox(self.people), "in the lockbox")):
+            if unwanted:
+                raise ValueError(f"{', '.join(unwanted)}: {why} (splits.py), never trained on; no such network is written")
 
 
 def to_onnx(network: torch.nn.Module, example: NDArray[np.float32], input_name: str, output_name: str) -> onnx.ModelProto:

@@ -65,13 +65,13 @@ def generate_clip(random: np.random.Generator, frames: int, person: Person) -> t
 
 
 def generate_corpus(people: int, clips: int, frames: int, seed: int) -> PreparedCorpus:
-    """A small corpus of that many generated people, clips of each and frames of each clip."""
+    """A small corpus of that many generated people, clips of each and frames of each clip; named from 002, for 001 is in the lockbox."""
     random = np.random.default_rng(seed)
     crowd = {}
     positions, rotations, names, owners, starts = [], [], [], [], [0]
     for number in range(people):
         eye_height = random.uniform(1.45, 1.75)
-        person = Person(f"{number + 1:03d}", eye_height, eye_height * random.uniform(0.93, 1.0))
+        person = Person(f"{number + 2:03d}", eye_height, eye_height * random.uniform(0.93, 1.0))
         crowd[person.name] = person
         for clip in range(clips):
             clip_positions, clip_rotations = generate_clip(random, frames, person)
