@@ -9,7 +9,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from . import hand_tilt, mirror, quaternion
+from . import hand_tilt, mirror, posture_rarity, quaternion
 from .chest_features import chest_features
 from .complete_hands import carry_with_head, complete_hands
 from .features import frame_features
@@ -30,11 +30,13 @@ FRAME_RATE = 60
 
 @dataclass(frozen=True)
 class BalanceConfig:
-    """How often the frames of a person are drawn: each in proportion to (frames of that person)^-people, `varied` times as often where that person
-    was asked for many things (`splits.VARIED`)."""
+    """How often a frame is drawn: in proportion to (frames of its person)^-people · (frames of its posture's cluster)^-postures, and `varied`
+    times as often where that person was asked for many things (`splits.VARIED`)."""
 
     people: float = 0.5
     varied: float = 2.0
+    postures: float = 0.0
+    clusters: int = 200
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,8 @@ class AugmentConfig:
     # how much [rad].
     mistaken_hands: float = 0.05
     mistaken_turn: float = np.radians(40.0)
+    # Whether the network's hand axes are those that trackers report; else they are turned by the hand's tilt, as those of IK always are.
+    recorded_hands: bool = False
     # Share of wearers who typed how long their forearm is, and by how much they err [m].
     typed_forearms: float = 0.5
     forearm_error: float = FOREARM_ERROR
@@ -118,11 +122,20 @@ class BodyParts:
         self.forearm_shares = np.stack(
             [np.linalg.norm(arm[:, 2] - arm[:, 1], axis=-1) / length for arm, length in zip(self.arms, self.arm_length, strict=True)], axis=1
         )
-        # Of every frame for its trunk, then of every left and every right arm.
-        owners = (self.person, np.tile(self.person, 2))
         favour = np.where(np.isin(self.people, VARIED), balance.varied, 1.0)
-        weights = (np.bincount(each)[each].astype(np.float64) ** -balance.people * favour[each] for each in owners)
-        self._cumulative_trunks, self._cumulative_arms = (np.cumsum(each) / each.sum() for each in weights)
+        weights = posture_rarity.frequency(self.person) ** -balance.people * favour[self.person]
+        if balance.postures > 0:
+            weights *= posture_rarity.frequency(posture_rarity.cluster(self._postures(), balance.clusters)) ** -balance.postures
+        self._cumulative_trunks, self._cumulative_arms = (np.cumsum(each) / each.sum() for each in (weights, np.tile(weights, 2)))
+
+    def _postures(self) -> Array:
+        """The posture [F, 16] of each frame, numbers of about equal spread: elbows and wrists from the neck in the chest frame, in arm lengths; the
+        room's up in the chest frame; the head's height, in half eye heights."""
+        arms = [arm[:, 1:] / length[:, None, None] for arm, length in zip(self.arms, self.arm_length, strict=True)]
+        up = np.broadcast_to([0.0, 1.0, 0.0], (len(self.chest), 3))
+        lean = quaternion.rotate(quaternion.conjugate(self.chest), up)
+        height = self.torso[:, TORSO.index("head"), 1] / self.sizes[:, 0]
+        return np.concatenate([*(arm.reshape(len(arm), -1) for arm in arms), lean, 2 * height[:, None]], axis=1)
 
     def draw_trunks(self, random: np.random.Generator, count: int) -> NDArray[np.int64]:
         """Frames [N] to take trunks from, people balanced."""
@@ -312,7 +325,15 @@ def _with_noise(positions: Array, rotations: Array, trackers: TrackerConfig, ran
     return positions + random.normal(size=positions.shape) * trackers.position_noise, quaternion.multiply(rotations, jitter)
 
 
-def _window_at(age: int, bodies: _Bodies, tracking: _Tracking, calibrated: Body, noisy: Callable[[Array, Array], tuple[Array, Array]]) -> _Reported:
+def _window_at(
+    age: int,
+    bodies: _Bodies,
+    tracking: _Tracking,
+    calibrated: Body,
+    noisy: Callable[[Array, Array], tuple[Array, Array]],
+    *,
+    recorded_hands: bool,
+) -> _Reported:
     """The frames `age` frames before the newest; noisy(positions, rotations): what trackers that are there report.
 
     Lost hands are where they were seen last, carried along with the headset, as `complete_hands` wants them.
@@ -328,7 +349,7 @@ def _window_at(age: int, bodies: _Bodies, tracking: _Tracking, calibrated: Body,
             place[:, column], turn[:, column], (place[:, 0], turn[:, 0]), (positions[lost, 0], rotations[lost, 0])
         )
     positions, rotations = complete_hands(positions, rotations, unseen / FRAME_RATE, calibrated.eye_height[:, 0], calibrated.arm[:, 0])
-    vector, _ = frame_features(positions, rotations, calibrated, unseen == 0)
+    vector, _ = frame_features(positions, rotations, calibrated, unseen == 0, recorded_hands=recorded_hands)
     return _Reported(positions, rotations, vector)
 
 
@@ -343,7 +364,9 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
     def noisy(positions: Array, rotations: Array) -> tuple[Array, Array]:
         return _with_noise(positions, rotations, config.trackers, random)
 
-    window = {age: _window_at(age, bodies, tracking, calibrated, noisy) for age in config.window_frames}
+    window = {
+        age: _window_at(age, bodies, tracking, calibrated, noisy, recorded_hands=config.recorded_hands) for age in config.window_frames
+    }
     newest, truth = window[0], bodies.truth()
     truth = tracking.images(truth, mirror.joints(truth))
     targets = residual(truth, newest.positions, newest.rotations, calibrated, newest.vector)

@@ -110,11 +110,16 @@ _TRACKERS = TrackerConfig()
 
 
 def held_out(
-    corpus: PreparedCorpus, people: tuple[str, ...], window_seconds: tuple[float, ...], condition: Condition = Condition()
+    corpus: PreparedCorpus,
+    people: tuple[str, ...],
+    window_seconds: tuple[float, ...],
+    condition: Condition = Condition(),
+    *,
+    recorded_hands: bool = False,
 ) -> HeldOut:
     """All frames of these people as trackers report them under this condition, with the calibration that they would have.
 
-    Hand tilts are measured on the true forearms of the same person's other clips (of a single clip: on its own), with the calibration's error.
+    recorded_hands: as the network that is tested was trained (`AugmentConfig`). Hand tilts are measured on the true forearms of the same person's other clips (of a single clip: on its own), with the calibration's error.
     """
     forearms = hand_tilt.ForearmMeans(corpus, people)
     rows = []
@@ -126,7 +131,7 @@ def held_out(
             told = _told_tilts(forearms.elsewhere(clip), wearer, name, condition)
             turned = notice_hand_tilts.with_noticed_hands(body, tracked.positions, tracked.rotations, seconds, told=told, seen=tracked.seen)
             count = len(tracked.times)
-            rows.append((*_rows(tracked, turned, window_seconds), np.full(count, body.eye_height), np.full(count, name), np.full(count, clip)))
+            rows.append((*_rows(tracked, turned, window_seconds, recorded_hands), np.full(count, body.eye_height), np.full(count, name), np.full(count, clip)))
     return HeldOut(*(np.concatenate(column) for column in zip(*rows, strict=True)))
 
 
@@ -185,9 +190,11 @@ def _disturb(corpus: PreparedCorpus, clip: int, wearer: Wearer, body: Body, cond
     return _Tracked(positions, rotations, ~lost, truth, np.arange(count) / corpus.rate_hz)
 
 
-def _rows(tracked: _Tracked, body: Body, window_seconds: tuple[float, ...]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+def _rows(
+    tracked: _Tracked, body: Body, window_seconds: tuple[float, ...], recorded_hands: bool
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Inputs [F, T·46 + 38] and targets [F, 18] of a clip."""
-    vector, _ = frame_features(tracked.positions, tracked.rotations, body, tracked.seen)
+    vector, _ = frame_features(tracked.positions, tracked.rotations, body, tracked.seen, recorded_hands=recorded_hands)
     inputs = network_input(vector, tracked.times, window_seconds)
     targets = residual(tracked.truth, tracked.positions, tracked.rotations, body, vector)
     return inputs.astype(np.float32), targets.astype(np.float32)
