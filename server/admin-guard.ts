@@ -1,8 +1,8 @@
 import { createHash, timingSafeEqual } from 'node:crypto';
 import type { IncomingMessage } from 'node:http';
 import type { Logger } from 'pino';
+import { type AuthThrottle, createAuthThrottle, TooManyGuesses } from './auth-throttle';
 import { clientAddress } from './client-address';
-import { createGuessLimits, type GuessLimits, TooManyGuesses } from './guess-limits';
 import { HttpError } from './http/answer';
 import type { RelayConfiguration } from './relay-configuration';
 
@@ -11,11 +11,11 @@ const digest = (text: string): Buffer => createHash('sha256').update(text).diges
 /** Knows the holder of the admin's token, and limits how often an address may guess it. */
 export class AdminGuard {
   readonly #configuration: RelayConfiguration;
-  readonly #guesses: GuessLimits;
+  readonly #throttle: AuthThrottle;
 
   constructor(configuration: RelayConfiguration, log: Logger) {
     this.#configuration = configuration;
-    this.#guesses = createGuessLimits((guess) => log.warn(guess, 'wrong token of an admin'));
+    this.#throttle = createAuthThrottle((guess) => log.warn(guess, 'wrong token of an admin'));
   }
 
   /** Whether the request brings the token; throws the answer 429 after too many wrong ones. */
@@ -25,7 +25,7 @@ export class AdminGuard {
     if (adminToken === null || secret === undefined) return false;
     const guess = { what: 'token', address: clientAddress(request, trustProxy), of: null, secret } as const;
     try {
-      return await this.#guesses.attempt(guess, () => timingSafeEqual(digest(secret), digest(adminToken)));
+      return await this.#throttle.attempt(guess, () => timingSafeEqual(digest(secret), digest(adminToken)));
     } catch (error) {
       if (!(error instanceof TooManyGuesses)) throw error;
       throw new HttpError(429, error.message, { headers: { 'retry-after': String(error.retryAfterSeconds) } });

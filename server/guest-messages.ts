@@ -1,9 +1,9 @@
 import type { Logger } from 'pino';
 import { type ClientMessage, clientMessageFrom, protocolVersion } from '../src/core/protocol/messages';
-import type { Budget } from './budget';
 import { dismiss, type Guest } from './guest';
 import type { HostedRooms } from './hosted-rooms';
 import type { RelayMetrics } from './relay-metrics';
+import type { TokenBucket } from './token-bucket';
 
 export interface GuestMessagesOptions {
   readonly rooms: HostedRooms;
@@ -14,8 +14,8 @@ export interface GuestMessagesOptions {
 }
 
 const badMessagesAllowed = 3;
-/** What a budget refused may be this much in a row before it counts as an attack. */
-const mostOverdrawn = 60;
+/** More refused messages in a row than this count as an attack. */
+const mostRefusedInARow = 60;
 
 /** A guest who would join with another version of the protocol: a page from before an update, left open. */
 const isOtherVersion = (value: unknown): boolean => {
@@ -23,12 +23,12 @@ const isOtherVersion = (value: unknown): boolean => {
   return type === 'join' && typeof version === 'number' && version !== protocolVersion;
 };
 
-/** What pages tell each other about their voices has a budget of its own. */
+/** Signals between pages about their voices have a token bucket of their own. */
 const isSignal = (value: unknown): boolean => ((value ?? {}) as { readonly type?: unknown }).type === 'signal';
 
 /**
- * What guests say, on its way to their rooms: what is well formed and within its budget is passed on, and a guest who keeps sending
- * anything else is disconnected.
+ * Passes the messages of guests to their rooms where they are well formed and within their limit. A guest that keeps sending anything else is
+ * disconnected.
  */
 export class GuestMessages {
   readonly #options: GuestMessagesOptions;
@@ -108,9 +108,9 @@ export class GuestMessages {
   }
 
   /** Whether this message is still within what a client may send. */
-  #isWithin(guest: Guest, budget: Budget, at: number): boolean {
-    if (budget.spend(at)) return true;
-    if (budget.overdrawn > mostOverdrawn) this.kick(guest, 'misbehaved', 'budget');
+  #isWithin(guest: Guest, bucket: TokenBucket, at: number): boolean {
+    if (bucket.take(at)) return true;
+    if (bucket.refusedInARow > mostRefusedInARow) this.kick(guest, 'misbehaved', 'budget');
     return false;
   }
 

@@ -5,11 +5,11 @@ import { frameLength, writeFrame } from '../src/core/protocol/pose-frame';
 import { messageEvent } from '../src/core/protocol/small-frames';
 import type { HostedGame } from '../src/core/room/match-policy';
 import type { FreshPose } from '../src/core/room/room-outlet';
-import { type Budget, createBudget } from './budget';
 import type { RelayConfiguration } from './relay-configuration';
 import type { RelayCounts } from './relay-metrics';
 import { hangUp } from './relay-transport';
 import type { RoomPass } from './room-tokens';
+import { createTokenBucket, type TokenBucket } from './token-bucket';
 
 /** A connection with a pass, before and after it joins its room. */
 export interface Guest {
@@ -20,10 +20,10 @@ export interface Guest {
   readonly pass: RoomPass;
   /** [s] */
   readonly connectedAt: number;
-  readonly poses: Budget;
-  readonly events: Budget;
+  readonly poses: TokenBucket;
+  readonly events: TokenBucket;
   /** Of pages that set up their voices with each other. */
-  readonly signals: Budget;
+  readonly signals: TokenBucket;
   joined: boolean;
   badMessages: number;
   /** The last time that the connection could take a frame [s]. */
@@ -51,9 +51,9 @@ export const createGuest = (
   wire: socket.conn.request.socket,
   pass: socket.data.pass,
   connectedAt: now,
-  poses: createBudget(posesPerSecond),
-  events: createBudget(eventsPerSecond, 2 * eventsPerSecond),
-  signals: createBudget(signalsPerSecond, signalsAtOnce),
+  poses: createTokenBucket(posesPerSecond),
+  events: createTokenBucket(eventsPerSecond, 2 * eventsPerSecond),
+  signals: createTokenBucket(signalsPerSecond, signalsAtOnce),
   joined: false,
   badMessages: 0,
   writableAt: now,

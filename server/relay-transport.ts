@@ -7,15 +7,15 @@ import type { Logger } from 'pino';
 import { Server, type Socket } from 'socket.io';
 import { longestMessage } from '../src/core/protocol/messages';
 import { relayParser } from '../src/core/protocol/small-frames';
-import { createBudget } from './budget';
 import { clientAddress } from './client-address';
-import { createTally } from './door';
+import { createSlotCounter } from './connection-limiter';
 import { HttpError, refusal, sendRawAnswer } from './http/answer';
 import { targetOf } from './http/target';
 import type { RelayConfiguration } from './relay-configuration';
 import type { RelayMetrics } from './relay-metrics';
 import { type ReceivingWebSocket, takeShortMessages } from './short-messages';
 import { createSitePolicy } from './site-policy';
+import { createTokenBucket } from './token-bucket';
 import { handshakeMs } from './web-server';
 
 /** Where the relay is found on its server. */
@@ -107,10 +107,10 @@ function divert(conn: Socket['conn'], take: () => boolean, listener: (bytes: Uin
  * none is, and `end` is called once. `now`: seconds, monotonic.
  */
 function createFloodWatch(now: () => number, end: () => void): () => boolean {
-  const budget = createBudget(framesPerSecond);
+  const bucket = createTokenBucket(framesPerSecond);
   let floods = false;
   return () => {
-    if (floods || budget.spend(now())) return !floods;
+    if (floods || bucket.take(now())) return !floods;
     floods = true;
     // What came before is still on its way through socket.io, which lets a tick pass for each packet.
     setImmediate(end);
@@ -123,7 +123,7 @@ export function createRelayTransport(
   configuration: RelayConfiguration,
   { log, metrics, now }: { readonly log: Logger; readonly metrics: RelayMetrics; readonly now: () => number },
 ): RelayTransport {
-  const addresses = createTally(configuration.connectionsPerAddress);
+  const addresses = createSlotCounter(configuration.connectionsPerAddress);
   const site = createSitePolicy(configuration);
   const engine = new Engine({
     transports: ['websocket'],
@@ -167,7 +167,7 @@ export function createRelayTransport(
       log.warn({ origin: request.headers.origin, host: request.headers.host }, 'origin refused');
       return new HttpError(stranger.status, stranger.message);
     }
-    if (!addresses.take(clientAddress(request, configuration.trustProxy))) {
+    if (!addresses.acquire(clientAddress(request, configuration.trustProxy))) {
       metrics.kicked('connections');
       return new HttpError(429, `an address has at most ${configuration.connectionsPerAddress} connections here`);
     }
@@ -189,7 +189,7 @@ export function createRelayTransport(
         return true;
       }
       const address = clientAddress(request, configuration.trustProxy);
-      socket.once('close', () => addresses.give(address));
+      socket.once('close', () => addresses.release(address));
       engine.handleUpgrade(request as never, socket, head);
       return true;
     },

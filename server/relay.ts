@@ -4,7 +4,7 @@ import { dirname } from 'node:path';
 import { type Logger, pino } from 'pino';
 import { AvatarRoutes } from './avatar-routes';
 import { AvatarStore } from './avatar-store';
-import type { Door } from './door';
+import type { ConnectionLimiter } from './connection-limiter';
 import type { Service } from './http/router';
 import { connectRedis, connectRedisPatiently, createOwnLobby, createRedisLobby } from './lobby';
 import { LobbyHall } from './lobby-hall';
@@ -56,11 +56,11 @@ function connectFleet({ redisUrl }: RelayConfiguration, log: Logger) {
   };
 }
 
-/** Starts a relay; `secret` signs the tokens, `door` counts the connections of its server, `kinds` are the games of its rooms. */
+/** Starts a relay; `secret` signs the tokens, `connectionLimiter` counts the connections of its server, `kinds` are the games of its rooms. */
 export function createRelay(
   configuration: RelayConfiguration,
   secret: string,
-  door: Door,
+  connectionLimiter: ConnectionLimiter,
   kinds: RoomKinds = shippedRoomKinds(configuration),
 ): Relay {
   const log = pino({ level: configuration.logLevel, base: { node: process.pid } });
@@ -70,8 +70,8 @@ export function createRelay(
   const census = (): RelayCensus => ({
     ...host.census,
     sockets: transport.sockets,
-    connections: door.open,
-    refusedConnections: door.refused,
+    connections: connectionLimiter.open,
+    refusedConnections: connectionLimiter.refused,
     avatars: avatars.count,
     avatarBytes: avatars.bytes,
   });

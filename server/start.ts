@@ -1,5 +1,5 @@
 import type { Credentials } from './certificate';
-import { createDoor } from './door';
+import { createConnectionLimiter } from './connection-limiter';
 import { createRouter, type Route } from './http/router';
 import { createPageHandler } from './page';
 import { createRelay } from './relay';
@@ -51,15 +51,18 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
     trustProxy: relaying.trustProxy,
     log,
   });
-  const door = createDoor({ perAddress: relaying.connectionsPerAddress, behindProxy: relaying.trustProxy });
-  const relay = createRelay(relaying, options.secret, door);
+  const connectionLimiter = createConnectionLimiter({
+    perAddress: relaying.connectionsPerAddress,
+    behindProxy: relaying.trustProxy,
+  });
+  const relay = createRelay(relaying, options.secret, connectionLimiter);
   const services = [relay.service, studies.service];
   const server = await serve(createRouter(services, page, createSitePolicy(relaying)), {
     host,
     port,
     ...(credentials && { credentials }),
     upgrade: relay.upgrade,
-    door,
+    connectionLimiter,
   }).catch(async (error: unknown) => {
     // Their timers would keep the process from ending.
     await relay.close();

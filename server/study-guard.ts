@@ -1,8 +1,8 @@
 import { createHash, timingSafeEqual } from 'node:crypto';
 import type { IncomingMessage } from 'node:http';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
+import { createAuthThrottle, TooManyGuesses, type WrongGuess } from './auth-throttle';
 import { clientAddress, networkOf } from './client-address';
-import { createGuessLimits, TooManyGuesses, type WrongGuess } from './guess-limits';
 import { HttpError } from './http/answer';
 import { normalisedCode } from './study-schema';
 import type { StudyStore } from './study-store';
@@ -81,13 +81,13 @@ function createOpenPlaces(): <T>(address: string, claim: () => T) => Promise<T> 
 export function createStudyGuard(options: StudyGuardOptions): StudyGuard {
   const { store, experimenterToken, trustProxy, onWrongGuess } = options;
   const experimenterDigest = experimenterToken === null ? null : digest(experimenterToken);
-  const guesses = createGuessLimits(onWrongGuess);
+  const throttle = createAuthThrottle(onWrongGuess);
   const spendingOpenPlace = createOpenPlaces();
   const addressOf = (request: IncomingMessage) => clientAddress(request, trustProxy);
 
-  async function attempt(guess: Parameters<typeof guesses.attempt>[0], isRight: () => boolean): Promise<boolean> {
+  async function attempt(guess: Parameters<typeof throttle.attempt>[0], isRight: () => boolean): Promise<boolean> {
     try {
-      return await guesses.attempt(guess, isRight);
+      return await throttle.attempt(guess, isRight);
     } catch (error) {
       if (!(error instanceof TooManyGuesses)) throw error;
       throw tooMany(error.message, error.retryAfterSeconds);

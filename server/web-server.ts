@@ -9,7 +9,7 @@ import { createServer as createHttpsServer } from 'node:https';
 import { createServer as createNetServer, type Server as NetServer, type Socket } from 'node:net';
 import type { Duplex } from 'node:stream';
 import type { Credentials } from './certificate';
-import type { Door } from './door';
+import type { ConnectionLimiter } from './connection-limiter';
 import { HttpError, refusal, sendAnswer, sendRawAnswer } from './http/answer';
 import { targetOf } from './http/target';
 import { listenOnFreePort } from './listen';
@@ -29,8 +29,8 @@ export interface ServeOptions {
   readonly port: number;
   readonly credentials?: Credentials;
   readonly upgrade?: UpgradeListener;
-  /** Whom to let in; without one, all. */
-  readonly door?: Door;
+  /** Limits the connections of each address; every connection is accepted without it. */
+  readonly connectionLimiter?: ConnectionLimiter;
   /** A connection on which nothing moves for so long [ms], an answer that is not read included, is ended; WebSockets have their own pings. */
   readonly silenceMs?: number;
 }
@@ -151,7 +151,7 @@ const limits = {
 /** Serves on the port or the next free one: HTTP, or with credentials HTTPS (and HTTP only as a redirect to it). */
 export async function serve(
   listener: RequestListener,
-  { host, port, credentials, upgrade = () => false, door, silenceMs = 30_000 }: ServeOptions,
+  { host, port, credentials, upgrade = () => false, connectionLimiter, silenceMs = 30_000 }: ServeOptions,
 ): Promise<WebServer> {
   const requests: HttpServer = credentials
     ? createHttpsServer({ ...credentials, ...limits, handshakeTimeout: handshakeMs })
@@ -167,7 +167,7 @@ export async function serve(
   }
   const sockets = new Set<Socket>();
   entrance.prependListener('connection', (socket: Socket) => {
-    if (door?.admit(socket) === false) return;
+    if (connectionLimiter?.admit(socket) === false) return;
     sockets.add(socket);
     socket.once('close', () => sockets.delete(socket));
   });

@@ -1,5 +1,5 @@
 // The relay as it ships, in a process of its own; beside the ball game it hosts one with room for sixteen.
-import { createDoor } from '../../server/door';
+import { createConnectionLimiter } from '../../server/connection-limiter';
 import { createRouter, noPage } from '../../server/http/router';
 import { createRelay } from '../../server/relay';
 import { relayConfigurationFrom } from '../../server/relay-configuration';
@@ -14,14 +14,17 @@ const tell = (answer: RelayAnswer): void => {
 };
 
 const configuration = relayConfigurationFrom(process.env);
-const door = createDoor({ perAddress: configuration.connectionsPerAddress, behindProxy: configuration.trustProxy });
+const connectionLimiter = createConnectionLimiter({
+  perAddress: configuration.connectionsPerAddress,
+  behindProxy: configuration.trustProxy,
+});
 const kinds = new Map([...shippedRoomKinds(configuration), [countingKind, () => countingPolicy(mostSeats)]]);
-const relay = createRelay(configuration, configuration.secret ?? '', door, kinds);
+const relay = createRelay(configuration, configuration.secret ?? '', connectionLimiter, kinds);
 const server = await serve(createRouter([relay.service], noPage), {
   host: '127.0.0.1',
   port: 0,
   upgrade: relay.upgrade,
-  door,
+  connectionLimiter,
 });
 process.on('message', () => {
   const { user, system } = process.cpuUsage();

@@ -228,13 +228,13 @@ export const attackRows = {
     inject: 'A body of 200 MB, announced or in chunks, for a page or a route that takes none or little',
     sees: 'The refusal is heard, and the connection ends instead of reading on',
     target: 'no more than the buffers of the system and 1 MiB',
-    tests: ['tests/server/door.test.ts'],
+    tests: ['tests/server/connection-limiter.test.ts'],
   },
   connections: {
     inject: '1,500 silent TCP connections and WebSockets from one address, its limit 1,000',
     sees: 'All are counted in health and metrics; those beyond the limit are ended at once, the others at the deadline of 5 s',
     target: '0 open after the deadline; health of other addresses at most 5 ms later (p95)',
-    tests: ['tests/server/door.test.ts'],
+    tests: ['tests/server/connection-limiter.test.ts'],
   },
   'avatar-store': {
     inject:
@@ -280,7 +280,7 @@ export const attackRows = {
       '3000 guesses of the experimenter’s token, of withdrawal codes and of invitations, one after the other and all at once',
     sees: 'Five are looked at, then one after 1, 2, 4 … seconds; the log has who guessed and never what',
     target: '10 of 3000 looked at, at most',
-    tests: ['tests/server/study-entry.test.ts', 'tests/server/guess-limits.test.ts'],
+    tests: ['tests/server/study-entry.test.ts', 'tests/server/auth-throttle.test.ts'],
   },
   access: {
     inject:

@@ -3,7 +3,7 @@ import { readFileSync } from 'node:fs';
 import { request as httpRequest, type OutgoingHttpHeaders, type RequestListener } from 'node:http';
 import { join } from 'node:path';
 import { afterAll, beforeAll, describe, expect, onTestFinished, test } from 'vitest';
-import { createDoor } from '../../server/door';
+import { createConnectionLimiter } from '../../server/connection-limiter';
 import { createRouter } from '../../server/http/router';
 import { createRelay } from '../../server/relay';
 import { relayConfigurationFrom } from '../../server/relay-configuration';
@@ -56,8 +56,8 @@ async function wholeServer() {
     THREEPOINT_ADMIN_TOKEN: adminToken,
   };
   const configuration = relayConfigurationFrom(environment);
-  const door = createDoor({ perAddress: 100, behindProxy: true });
-  const relay = createRelay(configuration, testSecret, door);
+  const connectionLimiter = createConnectionLimiter({ perAddress: 100, behindProxy: true });
+  const relay = createRelay(configuration, testSecret, connectionLimiter);
   const studies = createStudyRoutes({
     store,
     experimenterToken: experimenter,
@@ -73,7 +73,7 @@ async function wholeServer() {
     host: '127.0.0.1',
     port: 0,
     upgrade: relay.upgrade,
-    door,
+    connectionLimiter,
   });
   onTestFinished(async () => {
     await relay.close();

@@ -87,7 +87,9 @@ test('nothing that carries poses can write to a disk: relay, sockets, rooms and 
   const core = new URL('../../src/core/', import.meta.url);
   const carriers = [
     ...readdirSync(server)
-      .filter((file) => /^(relay|socket-host|guest|hosted-rooms|tick|lobby|budget|room-tokens|room-kinds)/.test(file))
+      .filter((file) =>
+        /^(relay|socket-host|guest|hosted-rooms|tick|lobby|token-bucket|room-tokens|room-kinds)/.test(file),
+      )
       .map((file) => new URL(file, server)),
     ...['room', 'match-policies', 'protocol'].flatMap((folder) =>
       readdirSync(new URL(`${folder}/`, core)).map((file) => new URL(`${folder}/${file}`, core)),

@@ -1,5 +1,5 @@
 import { io, type Socket } from 'socket.io-client';
-import { createDoor } from '../../server/door';
+import { createConnectionLimiter } from '../../server/connection-limiter';
 import { createRouter, noPage } from '../../server/http/router';
 import { createRelay } from '../../server/relay';
 import { relayConfigurationFrom } from '../../server/relay-configuration';
@@ -29,14 +29,17 @@ export const testSecret = 'tests-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gAzE4uV7iO';
 /** A relay of this process on a free port of loopback. */
 export async function startRelay(environment: Record<string, string> = {}, port = 0) {
   const configuration = relayConfigurationFrom({ THREEPOINT_LOG_LEVEL: 'silent', ...environment });
-  const door = createDoor({ perAddress: configuration.connectionsPerAddress, behindProxy: configuration.trustProxy });
+  const connectionLimiter = createConnectionLimiter({
+    perAddress: configuration.connectionsPerAddress,
+    behindProxy: configuration.trustProxy,
+  });
   const kinds = new Map([...shippedRoomKinds(configuration), [countingKind, () => countingPolicy(mostSeats)]]);
-  const relay = createRelay(configuration, configuration.secret ?? testSecret, door, kinds);
+  const relay = createRelay(configuration, configuration.secret ?? testSecret, connectionLimiter, kinds);
   const server = await serve(createRouter([relay.service], noPage), {
     host: '127.0.0.1',
     port,
     upgrade: relay.upgrade,
-    door,
+    connectionLimiter,
   });
   return {
     relay,

@@ -1,6 +1,6 @@
 import { join } from 'node:path';
 import { expect, onTestFinished } from 'vitest';
-import type { WrongGuess } from '../../server/guess-limits';
+import type { WrongGuess } from '../../server/auth-throttle';
 import { createRouter, noPage } from '../../server/http/router';
 import { createRoomTokens } from '../../server/room-tokens';
 import { SharedFlush } from '../../server/shared-flush';

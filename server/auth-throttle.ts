@@ -2,16 +2,16 @@ import { createHash } from 'node:crypto';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
 import { networkOf } from './client-address';
 
-/** What a guess is of: a token that opens a server, a code that deletes, an invitation that takes a place. */
+/** The kind of a secret: a token opens a server, a withdrawal code deletes, an invitation takes a place. */
 export type Guessed = 'token' | 'withdrawal code' | 'invitation';
 
-/** A wrong guess as the log may have it: everything but the guess. */
+/** A wrong guess for the log: everything but the secret that was sent. */
 export interface WrongGuess {
   readonly what: Guessed;
   readonly address: string;
-  /** The study; null: the server itself. */
+  /** The study that the secret is for; null: the server itself. */
   readonly of: string | null;
-  /** Wrong ones of this address within the hour. */
+  /** Wrong guesses from this address within the hour. */
   readonly failures: number;
 }
 
@@ -19,11 +19,11 @@ export interface Guess {
   readonly what: Guessed;
   readonly address: string;
   readonly of: string | null;
-  /** What was sent, with what it is to open. */
+  /** The secret that was sent, with the name of what it opens. */
   readonly secret: string;
 }
 
-/** So many wrong guesses came already that this one was not even looked at. */
+/** Refuses a guess unchecked, because too many before it were wrong. */
 export class TooManyGuesses extends Error {
   readonly retryAfterSeconds: number;
 
@@ -33,23 +33,22 @@ export class TooManyGuesses extends Error {
   }
 }
 
-/** Lets secrets be tried, and ever more slowly the more of them were wrong. */
-export interface GuessLimits {
+/** Limits how often secrets may be tried: the delay grows with the number of wrong guesses. */
+export interface AuthThrottle {
   /**
-   * Asks `isRight` where another guess may be made from this address and at this study; throws TooManyGuesses where it may not.
-   * `isRight` answers at once; where it throws, nothing was guessed. A wrong secret that is repeated is one guess; one that was right before
-   * waits for no one.
+   * Calls `isRight` where this address and this study have a guess left; throws TooManyGuesses otherwise. `isRight` is synchronous; where it
+   * throws, no guess is counted. A repeated wrong secret counts once. A secret that was right before is never delayed.
    */
   attempt(guess: Guess, isRight: () => boolean): Promise<boolean>;
 }
 
-/** Failures are remembered for this long [s]. */
+/** Failures are kept for this long [s]. */
 const memorySeconds = 3600;
-/** A secret that opened something from an address goes on being looked at from there for so long [s]. */
+/** A secret that was right from an address is checked without delay from there for this long [s]. */
 const trustSeconds = 12 * 3600;
-/** Wrong guesses without delay, then the delay doubles from a second up to a limit [s]. */
+/** Wrong guesses without a delay; after them the delay doubles from one second up to a limit [s]. */
 const addressLimits = { free: 5, longestDelay: 900 } as const;
-/** Of all addresses together; its delay stays short, or a stranger could keep the study's own people out. */
+/** The limits of all addresses together. Its delay stays short, or a stranger could keep the study's own people out. */
 const studyLimits = { free: 20, longestDelay: 60 } as const;
 
 const digestOf = ({ what, of, secret, address }: Guess): string =>
@@ -57,12 +56,12 @@ const digestOf = ({ what, of, secret, address }: Guess): string =>
     .update(JSON.stringify([what, of, secret, address]))
     .digest('base64url');
 
-/** Counts the wrong guesses of a key and says how long it has to wait; taking a guess and counting it are one step. */
+/** Counts the wrong guesses of a key and returns its delay; taking a guess and counting it are one step. */
 function createDelay({ free, longestDelay }: { readonly free: number; readonly longestDelay: number }) {
   const failures = new RateLimiterMemory({ points: free, duration: memorySeconds });
   const turns = new RateLimiterMemory({ points: 1, duration: 1 });
   return {
-    /** Counts one; a number: it may not be made for so many seconds. */
+    /** Counts a guess; resolves to null, or to the seconds to wait before it may be made. */
     async take(key: string): Promise<number | null> {
       const { consumedPoints } = await failures.penalty(key);
       if (consumedPoints <= free) return null;
@@ -81,7 +80,8 @@ function createDelay({ free, longestDelay }: { readonly free: number; readonly l
   };
 }
 
-export function createGuessLimits(onWrong: (guess: WrongGuess) => void): GuessLimits {
+/** Creates a throttle in memory; `onWrong` is called once for each different wrong secret. */
+export function createAuthThrottle(onWrong: (guess: WrongGuess) => void): AuthThrottle {
   const byAddress = createDelay(addressLimits);
   const byStudy = createDelay(studyLimits);
   const right = new RateLimiterMemory({ points: 1, duration: trustSeconds });

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
+import { createAuthThrottle, TooManyGuesses, type WrongGuess } from '../../server/auth-throttle';
 import { networkOf } from '../../server/client-address';
-import { createGuessLimits, TooManyGuesses, type WrongGuess } from '../../server/guess-limits';
 
 beforeEach(() => {
   vi.useFakeTimers();
@@ -9,10 +9,10 @@ afterEach(() => {
   vi.useRealTimers();
 });
 
-/** A door that one secret opens, and what came of guesses: true, false, or the seconds to wait. */
-function door(secret = 'the right one') {
+/** A throttle around one secret. `guess` resolves to true, to false, or to the seconds to wait. */
+function throttled(secret = 'the right one') {
   const wrong: WrongGuess[] = [];
-  const limits = createGuessLimits((guess) => wrong.push(guess));
+  const limits = createAuthThrottle((guess) => wrong.push(guess));
   let lookedAt = 0;
   const guess = async (
     said: string,
@@ -34,7 +34,7 @@ function door(secret = 'the right one') {
 
 describe('guesses from one address', () => {
   test('that could not be looked at count for nothing: a right code waits for no one once the fault is over', async () => {
-    const limits = createGuessLimits(() => undefined);
+    const limits = createAuthThrottle(() => undefined);
     const guess = { what: 'withdrawal code', address: '203.0.113.7', of: 'paper', secret: 'the right one' } as const;
     const full = () => {
       throw new Error('the disk is full');
@@ -44,7 +44,7 @@ describe('guesses from one address', () => {
   });
 
   test('are looked at five times, then after 1, 2, 4 … seconds', async () => {
-    const { guess } = door();
+    const { guess } = throttled();
     for (let i = 0; i < 5; i++) expect(await guess(`wrong ${i}`)).toBe(false);
     const delays: number[] = [];
     for (let i = 5; i < 12; i++) {
@@ -56,7 +56,7 @@ describe('guesses from one address', () => {
   });
 
   test('do not wait longer because of guesses made too early: what was not looked at does not count', async () => {
-    const { guess } = door();
+    const { guess } = throttled();
     for (let i = 0; i < 6; i++) await guess(`wrong ${i}`);
     for (let i = 0; i < 500; i++) expect(await guess(`more ${i}`)).toBe(1);
     vi.advanceTimersByTime(1000);
@@ -64,28 +64,28 @@ describe('guesses from one address', () => {
   });
 
   test('are counted when they come all at once, too', async () => {
-    const { guess, lookedAt } = door();
+    const { guess, lookedAt } = throttled();
     const answers = await Promise.all(Array.from({ length: 3000 }, (_, i) => guess(`wrong ${i}`)));
     expect(lookedAt()).toBe(6);
     expect(answers.filter((answer) => answer === false)).toHaveLength(6);
   });
 
   test('that are right are forgotten as guesses', async () => {
-    const { guess } = door();
+    const { guess } = throttled();
     for (let i = 0; i < 5; i++) await guess(`wrong ${i}`);
     expect(await guess('the right one')).toBe(true);
     for (let i = 5; i < 10; i++) expect(await guess(`wrong ${i}`)).toBe(false);
   });
 
   test('that repeat themselves are one guess: a page whose place was released goes on asking', async () => {
-    const { guess, lookedAt } = door();
+    const { guess, lookedAt } = throttled();
     for (let i = 0; i < 100; i++) expect(await guess('the old token')).toBe(false);
     expect(lookedAt()).toBe(1);
     expect(await guess('the right one')).toBe(true);
   });
 
   test('do not shut out a person whose secret was right before, at the same address', async () => {
-    const { guess } = door();
+    const { guess } = throttled();
     expect(await guess('the right one')).toBe(true);
     for (let i = 0; i < 50; i++) await guess(`wrong ${i}`);
     expect(await guess('wrong again')).toBe(1);
@@ -95,7 +95,7 @@ describe('guesses from one address', () => {
 
 describe('guesses from many addresses', () => {
   test('at one study wait for each other, a minute at most; other studies do not', async () => {
-    const { guess, lookedAt } = door();
+    const { guess, lookedAt } = throttled();
     const answers: (boolean | number)[] = [];
     for (let i = 0; i < 3000; i++) answers.push(await guess(`wrong ${i}`, `198.51.${i >> 8}.${i & 255}`));
     expect(lookedAt()).toBe(21);
@@ -115,7 +115,7 @@ describe('guesses from many addresses', () => {
 });
 
 test('the log is told where guesses come from and how many, not what was guessed', async () => {
-  const { guess, wrong } = door();
+  const { guess, wrong } = throttled();
   await guess('my dog’s name', '203.0.113.9');
   expect(wrong).toEqual([{ what: 'withdrawal code', address: '203.0.113.9', of: 'paper', failures: 1 }]);
 });

@@ -3,7 +3,7 @@ import { connect, type Socket } from 'node:net';
 import { connect as connectTls } from 'node:tls';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { certificateFor } from '../../server/certificate';
-import { createDoor } from '../../server/door';
+import { createConnectionLimiter } from '../../server/connection-limiter';
 import { noPage } from '../../server/http/router';
 import { createPageHandler } from '../../server/page';
 import { serve } from '../../server/web-server';
@@ -198,14 +198,14 @@ test('a connection that does not say what it wants is ended at the deadline: tol
 });
 
 test('an answer that is not read is not kept for ever', { tags: ['full'] }, async () => {
-  const door = createDoor({ perAddress: 8, behindProxy: false });
+  const connectionLimiter = createConnectionLimiter({ perAddress: 8, behindProxy: false });
   const page = createPageHandler(directoryWith({ 'index.html': Buffer.alloc(32e6) }));
-  const server = await serve(page, { host: '127.0.0.1', port: 0, door, silenceMs: 500 });
+  const server = await serve(page, { host: '127.0.0.1', port: 0, connectionLimiter, silenceMs: 500 });
   onTestFinished(() => server.close());
   const { socket } = raw(server.port, 'GET / HTTP/1.1\r\nHost: a\r\n\r\n');
   socket.pause();
-  await expect.poll(() => door.open).toBe(1);
-  await expect.poll(() => door.open, { timeout: 15_000 }).toBe(0);
+  await expect.poll(() => connectionLimiter.open).toBe(1);
+  await expect.poll(() => connectionLimiter.open, { timeout: 15_000 }).toBe(0);
 });
 
 test.each([

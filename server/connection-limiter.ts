@@ -1,0 +1,65 @@
+import type { Socket } from 'node:net';
+
+/** Counts the open connections, and limits those of one address. */
+export interface ConnectionLimiter {
+  /** Open connections, silent ones included. */
+  readonly open: number;
+  /** Connections refused since the start because their address had too many. */
+  readonly refused: number;
+  /** Counts a connection until it closes. Destroys it and returns false where its address has reached the limit. */
+  admit(socket: Socket): boolean;
+}
+
+export interface ConnectionLimiterOptions {
+  /** Open connections allowed for one address. */
+  readonly perAddress: number;
+  /** Connections come from a proxy, which limits its own clients: nothing is refused here. */
+  readonly behindProxy: boolean;
+}
+
+/** Counts slots in use by key, `most` for each; keys without any are dropped. */
+export function createSlotCounter(most: number): { acquire(key: string): boolean; release(key: string): void } {
+  const counts = new Map<string, number>();
+  return {
+    acquire(key) {
+      const count = counts.get(key) ?? 0;
+      if (count >= most) return false;
+      counts.set(key, count + 1);
+      return true;
+    },
+    release(key) {
+      const count = (counts.get(key) ?? 0) - 1;
+      if (count > 0) counts.set(key, count);
+      else counts.delete(key);
+    },
+  };
+}
+
+export function createConnectionLimiter({ perAddress, behindProxy }: ConnectionLimiterOptions): ConnectionLimiter {
+  const addresses = createSlotCounter(behindProxy ? Number.POSITIVE_INFINITY : perAddress);
+  let open = 0;
+  let refused = 0;
+  return {
+    get open() {
+      return open;
+    },
+    get refused() {
+      return refused;
+    },
+    admit(socket) {
+      const address = socket.remoteAddress;
+      // A connection that its client has closed before it was accepted has no address any more.
+      if (address === undefined || !addresses.acquire(address)) {
+        if (address !== undefined) refused += 1;
+        socket.on('error', () => undefined).destroy();
+        return false;
+      }
+      open += 1;
+      socket.once('close', () => {
+        open -= 1;
+        addresses.release(address);
+      });
+      return true;
+    },
+  };
+}
