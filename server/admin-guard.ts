@@ -2,7 +2,7 @@ import { createHash, timingSafeEqual } from 'node:crypto';
 import type { IncomingMessage } from 'node:http';
 import type { Logger } from 'pino';
 import { type AuthThrottle, createAuthThrottle, TooManyGuesses } from './auth-throttle';
-import { clientAddress } from './client-address';
+import { clientAddressOf } from './client-address';
 import { HttpError } from './http/answer';
 import type { RelayConfiguration } from './relay-configuration';
 
@@ -23,7 +23,7 @@ export class AdminGuard {
     const { adminToken, trustProxy } = this.#configuration;
     const secret = /^Bearer (\S{1,256})$/.exec(request.headers.authorization ?? '')?.[1];
     if (adminToken === null || secret === undefined) return false;
-    const guess = { what: 'token', address: clientAddress(request, trustProxy), of: null, secret } as const;
+    const guess = { what: 'token', address: clientAddressOf(request, trustProxy), of: null, secret } as const;
     try {
       return await this.#throttle.attempt(guess, () => timingSafeEqual(digest(secret), digest(adminToken)));
     } catch (error) {

@@ -1,6 +1,6 @@
 import { createHash } from 'node:crypto';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
-import { networkOf } from './client-address';
+import type { ClientAddress } from './client-address';
 
 /** The kind of a secret: a token opens a server, a withdrawal code deletes, an invitation takes a place. */
 export type Guessed = 'token' | 'withdrawal code' | 'invitation';
@@ -17,7 +17,7 @@ export interface WrongGuess {
 
 export interface Guess {
   readonly what: Guessed;
-  readonly address: string;
+  readonly address: ClientAddress;
   readonly of: string | null;
   /** The secret that was sent, with the name of what it opens. */
   readonly secret: string;
@@ -51,9 +51,9 @@ const addressLimits = { free: 5, longestDelay: 900 } as const;
 /** The limits of all addresses together. Its delay stays short, or a stranger could keep the study's own people out. */
 const studyLimits = { free: 20, longestDelay: 60 } as const;
 
-const digestOf = ({ what, of, secret, address }: Guess): string =>
+const digestOf = ({ what, of, secret, address: { network } }: Guess): string =>
   createHash('sha256')
-    .update(JSON.stringify([what, of, secret, address]))
+    .update(JSON.stringify([what, of, secret, network]))
     .digest('base64url');
 
 /** Counts the wrong guesses of a key and returns its delay; taking a guess and counting it are one step. */
@@ -89,32 +89,32 @@ export function createAuthThrottle(onWrong: (guess: WrongGuess) => void): AuthTh
 
   return {
     async attempt(guess, isRight) {
-      const { what, of } = guess;
-      const address = networkOf(guess.address);
-      const digest = digestOf({ ...guess, address });
+      const { what, of, address } = guess;
+      const { network } = address;
+      const digest = digestOf(guess);
       if ((await right.get(digest)) !== null) return isRight();
       if ((await wrong.get(digest)) !== null) return false;
       const study = JSON.stringify([what, of]);
-      const wait = await byAddress.take(address);
+      const wait = await byAddress.take(network);
       if (wait !== null) throw new TooManyGuesses(what, wait);
       const studyWait = await byStudy.take(study);
       if (studyWait !== null) {
-        await byAddress.giveBack(address);
+        await byAddress.giveBack(network);
         throw new TooManyGuesses(what, studyWait);
       }
       let opens: boolean;
       try {
         opens = isRight();
       } catch (error) {
-        await Promise.all([byAddress.giveBack(address), byStudy.giveBack(study)]);
+        await Promise.all([byAddress.giveBack(network), byStudy.giveBack(study)]);
         throw error;
       }
       if (opens) {
-        await Promise.all([byAddress.forget(address), byStudy.giveBack(study), right.set(digest, 1, trustSeconds)]);
+        await Promise.all([byAddress.forget(network), byStudy.giveBack(study), right.set(digest, 1, trustSeconds)]);
         return true;
       }
       await wrong.set(digest, 1, memorySeconds);
-      onWrong({ what, address: guess.address, of, failures: await byAddress.count(address) });
+      onWrong({ what, address: address.text, of, failures: await byAddress.count(network) });
       return false;
     },
   };

@@ -3,7 +3,7 @@ import type { IncomingMessage } from 'node:http';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
 import { avatarHash, mostAvatarBytes } from '../src/core/protocol/worn-avatar';
 import type { AvatarOwner, AvatarStore, Reservation } from './avatar-store';
-import { clientAddress, networkOf } from './client-address';
+import { clientAddressOf } from './client-address';
 import { guestPassOf } from './guest-pass';
 import { type Answer, done, HttpError, json } from './http/answer';
 import { readBody } from './http/body';
@@ -89,9 +89,9 @@ export class AvatarRoutes {
     if ((request.headers['content-type'] ?? '').toLowerCase() !== glb) throw new HttpError(415, `send ${glb}`);
     const length = lengthOf(request);
     await this.#spend(this.#uploads, identity, 'upload');
-    const address = networkOf(clientAddress(request, this.#options.configuration.trustProxy));
-    await this.#spend(this.#uploadsFrom, address, 'upload');
-    const reserved = this.#reserve({ room, identity, address }, length);
+    const { network } = clientAddressOf(request, this.#options.configuration.trustProxy);
+    await this.#spend(this.#uploadsFrom, network, 'upload');
+    const reserved = this.#reserve({ room, identity, address: network }, length);
     try {
       reserved.keep(hash, await this.#receive(request, length, hash));
       return done;

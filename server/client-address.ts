@@ -1,34 +1,58 @@
 import type { IncomingMessage } from 'node:http';
+import { BlockList, isIP, isIPv4, SocketAddress } from 'node:net';
+import { HttpError } from './http/answer';
 
-/** Where a request comes from: what the proxy in front says if there is one that we believe, else the other end of the connection. */
-export function clientAddress({ headers, socket }: IncomingMessage, trustProxy: boolean): string {
-  const forwarded = headers['x-forwarded-for'];
-  // The last one is what our own proxy saw; those before it anybody may have made up.
-  const last = trustProxy
-    ? String(forwarded ?? '')
-        .split(',')
-        .at(-1)
-        ?.trim()
-    : '';
-  return last || (socket.remoteAddress ?? 'unknown');
+/** The address of a client in its one normal form, whatever its connection or a proxy wrote. Every limit of the server counts `network`. */
+export interface ClientAddress {
+  /** An IPv4 address, IPv4-mapped IPv6 included, or an IPv6 address in its shortest form without a zone. */
+  readonly text: string;
+  /** The IPv4 address, or the /64 of the IPv6 address: one subscriber has at least a /64 to draw addresses from. */
+  readonly network: string;
+  /** The client is a program on this machine. */
+  readonly isLoopback: boolean;
 }
 
-/** This machine itself. */
-export const isLoopback = (address: string): boolean => /^(::ffff:)?127\.|^::1$/.test(address);
+/** An address as proxies write it: IPv6 in brackets with or without a port, IPv4 with a port. */
+const enclosed = /^\[([^[\]]+)\](?::(\d{1,5}))?$/;
+const ipv4WithPort = /^([\d.]+):(\d{1,5})$/;
+const highestPort = 65535;
 
-/** What is counted as one address: an IPv4 address, or the /64 that one IPv6 line has to itself. */
-export function networkOf(address: string): string {
-  const plain = address.replace(/^::ffff:(?=\d+\.)/, '').replace(/%.*$/, '');
-  if (!plain.includes(':')) return plain;
-  const [head = '', tail] = plain.split('::');
-  const before = head === '' ? [] : head.split(':');
-  const after = tail ? tail.split(':') : [];
-  const groups =
-    tail === undefined
-      ? before
-      : [...before, ...Array(Math.max(0, 8 - before.length - after.length)).fill('0'), ...after];
-  return `${groups
-    .slice(0, 4)
-    .map((group) => group.replace(/^0+(?=.)/, '').toLowerCase())
-    .join(':')}::/64`;
+const loopback = new BlockList();
+loopback.addSubnet('127.0.0.0', 8);
+loopback.addAddress('::1', 'ipv6');
+
+const shortestForm = (address: string): string => new SocketAddress({ address, family: 'ipv6' }).address;
+
+/** The /64 of an IPv6 address in its shortest form. */
+function networkOf(ipv6: string): string {
+  const [before = [], after = []] = ipv6.split('::').map((half) => half.split(':').filter(Boolean));
+  const groups = [...before, ...Array<string>(8 - before.length - after.length).fill('0'), ...after];
+  return `${shortestForm(`${groups.slice(0, 4).join(':')}::`)}/64`;
+}
+
+/** Returns the normalised address, or null where the text is no IP address. Ports, brackets and zones are dropped. */
+export function parseClientAddress(text: string): ClientAddress | null {
+  const [, address = text, port = '0'] = enclosed.exec(text) ?? ipv4WithPort.exec(text) ?? [];
+  if (isIP(address) === 0 || Number(port) > highestPort) return null;
+  const ipv6 = isIPv4(address) ? `::ffff:${address}` : shortestForm(address.replace(/%.*$/, ''));
+  const ipv4 = ipv6.replace(/^::ffff:/, '');
+  if (isIPv4(ipv4)) return { text: ipv4, network: ipv4, isLoopback: loopback.check(ipv4) };
+  return { text: ipv6, network: networkOf(ipv6), isLoopback: loopback.check(ipv6, 'ipv6') };
+}
+
+/**
+ * Returns the address of the client behind a request: with a trusted proxy in front the last entry of X-Forwarded-For, which that proxy
+ * wrote, else the other end of the connection. Throws an HttpError 400 where that is no address.
+ */
+export function clientAddressOf({ headers, socket }: IncomingMessage, trustProxy: boolean): ClientAddress {
+  const forwarded = trustProxy ? headers['x-forwarded-for'] : undefined;
+  if (forwarded !== undefined) {
+    const last = String(forwarded).split(',').at(-1)?.trim() ?? '';
+    const address = parseClientAddress(last);
+    if (address) return address;
+    throw new HttpError(400, 'the last entry of X-Forwarded-For is no IP address; correct the proxy in front');
+  }
+  const address = parseClientAddress(socket.remoteAddress ?? '');
+  if (!address) throw new HttpError(400, 'the connection of this request is closed');
+  return address;
 }

@@ -1,4 +1,5 @@
 import type { Socket } from 'node:net';
+import { parseClientAddress } from './client-address';
 
 /** Counts the open connections, and limits those of one address. */
 export interface ConnectionLimiter {
@@ -47,17 +48,17 @@ export function createConnectionLimiter({ perAddress, behindProxy }: ConnectionL
       return refused;
     },
     admit(socket) {
-      const address = socket.remoteAddress;
       // A connection that its client has closed before it was accepted has no address any more.
-      if (address === undefined || !addresses.acquire(address)) {
-        if (address !== undefined) refused += 1;
+      const network = parseClientAddress(socket.remoteAddress ?? '')?.network;
+      if (network === undefined || !addresses.acquire(network)) {
+        if (network !== undefined) refused += 1;
         socket.on('error', () => undefined).destroy();
         return false;
       }
       open += 1;
       socket.once('close', () => {
         open -= 1;
-        addresses.release(address);
+        addresses.release(network);
       });
       return true;
     },

@@ -1,7 +1,7 @@
 import type { IncomingMessage } from 'node:http';
 import type { Redis } from 'ioredis';
 import { type RateLimiterAbstract, RateLimiterMemory, RateLimiterRedis, RateLimiterRes } from 'rate-limiter-flexible';
-import { clientAddress, isLoopback } from './client-address';
+import { clientAddressOf } from './client-address';
 import { HttpError } from './http/answer';
 import type { RelayConfiguration } from './relay-configuration';
 import type { RelayMetrics } from './relay-metrics';
@@ -9,13 +9,13 @@ import type { RelayMetrics } from './relay-metrics';
 export interface JoinLimitsOptions {
   readonly configuration: RelayConfiguration;
   readonly metrics: RelayMetrics;
-  /** Where a fleet counts; null: this process is alone. */
+  /** Holds the counts of a fleet; null: this process is alone. */
   readonly redis: Redis | null;
 }
 
 const joinsPerMinuteHere = 120;
 
-/** How many new people may come from one address a minute; more from this machine itself. */
+/** Limits the new players of one address per minute; the limit of this machine itself is higher. */
 export class JoinLimits {
   readonly #options: JoinLimitsOptions;
   readonly #elsewhere: RateLimiterAbstract;
@@ -28,12 +28,12 @@ export class JoinLimits {
     this.#here = this.#limiter(Math.max(joinsPerMinuteHere, joinsPerMinute), 'threepoint:joins-here');
   }
 
-  /** Counts one more person from the address of this request; throws the answer 429 where there have been too many. */
+  /** Counts one more player from the address of this request; throws an HttpError 429 where the limit is reached. */
   async spend(request: IncomingMessage): Promise<void> {
     const { configuration, metrics } = this.#options;
-    const address = clientAddress(request, configuration.trustProxy);
+    const { network, isLoopback } = clientAddressOf(request, configuration.trustProxy);
     try {
-      await (isLoopback(address) ? this.#here : this.#elsewhere).consume(address);
+      await (isLoopback ? this.#here : this.#elsewhere).consume(network);
     } catch (error) {
       if (!(error instanceof RateLimiterRes)) throw error;
       metrics.refused('token', 'joins');

@@ -58,7 +58,7 @@ export const relayEnvironment = `Environment of the relay (docs/relay.md):
   THREEPOINT_AVATAR_MEGABYTES   of avatars that people show each other, in memory; default 256, 0: none
   THREEPOINT_AVATARS_FROM       https:// address of a folder that has more of them, each named by its SHA-256 as base64url
 ${voiceEnvironment}
-  THREEPOINT_TRUST_PROXY        1: a proxy stands in front and tells the clients' addresses; default 0
+  THREEPOINT_TRUST_PROXY        1: a proxy in front appends the clients' addresses to X-Forwarded-For; default 0
   THREEPOINT_REDIS_URL          redis://HOST:PORT of the lobby that several processes share
   THREEPOINT_ADMIN_TOKEN        lets its holder end rooms; 128 bits or more
   THREEPOINT_HOST               address to listen on behind a proxy, as 0.0.0.0; default 127.0.0.1

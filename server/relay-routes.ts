@@ -7,7 +7,7 @@ import { roomTerms } from '../src/core/protocol/messages';
 import { checked } from '../src/core/study/validation';
 import { AdminGuard } from './admin-guard';
 import type { AvatarRoutes } from './avatar-routes';
-import { isLoopback } from './client-address';
+import { clientAddressOf } from './client-address';
 import type { RoomListing } from './hosted-rooms';
 import { type Answer, HttpError, json } from './http/answer';
 import { type Call, jsonOf, type Route, type Service } from './http/router';
@@ -73,9 +73,9 @@ const waitingOrder = { ready: 0, over: 1, running: 2 } as const;
 const byWelcome = (a: RoomListing, b: RoomListing): number =>
   waitingOrder[a.phase] - waitingOrder[b.phase] || b.players - a.players || a.room.localeCompare(b.room);
 
-/** Asked for on the machine itself, not through a proxy. */
-const isOnThisMachine = ({ headers, socket }: IncomingMessage): boolean =>
-  isLoopback(socket.remoteAddress ?? '') && headers['x-forwarded-for'] === undefined;
+/** Whether a program on this machine sent the request, and no proxy. */
+const isOnThisMachine = (request: IncomingMessage): boolean =>
+  clientAddressOf(request, false).isLoopback && request.headers['x-forwarded-for'] === undefined;
 
 /**
  * Who may call a route of the relay: all pages of our origins, the holder of the admin's token, programs on this machine; guest: the holder of a

@@ -7,7 +7,7 @@ import type { Logger } from 'pino';
 import { Server, type Socket } from 'socket.io';
 import { longestMessage } from '../src/core/protocol/messages';
 import { relayParser } from '../src/core/protocol/small-frames';
-import { clientAddress } from './client-address';
+import { type ClientAddress, clientAddressOf } from './client-address';
 import { createSlotCounter } from './connection-limiter';
 import { HttpError, refusal, sendRawAnswer } from './http/answer';
 import { targetOf } from './http/target';
@@ -158,20 +158,22 @@ export function createRelayTransport(
     conn.once('close', () => destroySoon(raw));
   });
 
-  function refusalOf(request: IncomingMessage, query: URLSearchParams): HttpError | null {
+  /** Takes a place for a WebSocket of the client's address, or throws an HttpError that says why it is refused. */
+  function admit(request: IncomingMessage, query: URLSearchParams): ClientAddress {
     const complaint = complaintAbout(request, query);
-    if (complaint) return complaint;
+    if (complaint) throw complaint;
     const stranger = site.refusalOfHost(request) ?? site.refusalOfOrigin(request);
     if (stranger) {
       metrics.kicked('origin');
       log.warn({ origin: request.headers.origin, host: request.headers.host }, 'origin refused');
-      return new HttpError(stranger.status, stranger.message);
+      throw new HttpError(stranger.status, stranger.message);
     }
-    if (!addresses.acquire(clientAddress(request, configuration.trustProxy))) {
+    const address = clientAddressOf(request, configuration.trustProxy);
+    if (!addresses.acquire(address.network)) {
       metrics.kicked('connections');
-      return new HttpError(429, `an address has at most ${configuration.connectionsPerAddress} connections here`);
+      throw new HttpError(429, `an address has at most ${configuration.connectionsPerAddress} connections here`);
     }
-    return null;
+    return address;
   }
 
   return {
@@ -183,13 +185,14 @@ export function createRelayTransport(
     upgrade(request, socket, head) {
       const target = targetOf(request.url);
       if (!target || target.path.replace(/\/$/, '') !== relayPath) return false;
-      const refused = refusalOf(request, target.query);
-      if (refused) {
-        sendRawAnswer(socket, refusal(refused));
+      try {
+        const { network } = admit(request, target.query);
+        socket.once('close', () => addresses.release(network));
+      } catch (error) {
+        if (!(error instanceof HttpError)) throw error;
+        sendRawAnswer(socket, refusal(error));
         return true;
       }
-      const address = clientAddress(request, configuration.trustProxy);
-      socket.once('close', () => addresses.release(address));
       engine.handleUpgrade(request as never, socket, head);
       return true;
     },

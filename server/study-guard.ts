@@ -2,7 +2,7 @@ import { createHash, timingSafeEqual } from 'node:crypto';
 import type { IncomingMessage } from 'node:http';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
 import { createAuthThrottle, TooManyGuesses, type WrongGuess } from './auth-throttle';
-import { clientAddress, networkOf } from './client-address';
+import { clientAddressOf } from './client-address';
 import { HttpError } from './http/answer';
 import { normalisedCode } from './study-schema';
 import type { StudyStore } from './study-store';
@@ -53,7 +53,7 @@ const tooMany = (message: string, seconds: number) =>
   new HttpError(429, message, { headers: { 'retry-after': String(seconds) } });
 
 /** Counts the places of open studies that each network takes: runs what takes one, and gives it back to the network where that throws. */
-function createOpenPlaces(): <T>(address: string, claim: () => T) => Promise<T> {
+function createOpenPlaces(): <T>(network: string, claim: () => T) => Promise<T> {
   const taken = new RateLimiterMemory({ points: openPlacesPerHour, duration: 3600 });
 
   async function spend(network: string): Promise<void> {
@@ -66,8 +66,7 @@ function createOpenPlaces(): <T>(address: string, claim: () => T) => Promise<T> 
     }
   }
 
-  return async (address, claim) => {
-    const network = networkOf(address);
+  return async (network, claim) => {
     await spend(network);
     try {
       return claim();
@@ -83,7 +82,7 @@ export function createStudyGuard(options: StudyGuardOptions): StudyGuard {
   const experimenterDigest = experimenterToken === null ? null : digest(experimenterToken);
   const throttle = createAuthThrottle(onWrongGuess);
   const spendingOpenPlace = createOpenPlaces();
-  const addressOf = (request: IncomingMessage) => clientAddress(request, trustProxy);
+  const addressOf = (request: IncomingMessage) => clientAddressOf(request, trustProxy);
 
   async function attempt(guess: Parameters<typeof throttle.attempt>[0], isRight: () => boolean): Promise<boolean> {
     try {
@@ -129,7 +128,7 @@ export function createStudyGuard(options: StudyGuardOptions): StudyGuard {
         store.invites(study, participant, invitation),
       );
       if (!right) throw new HttpError(403, `this is not the invitation of ${participant}`, { field: 'invitation' });
-      return plan.entry === 'open' ? spendingOpenPlace(addressOf(request), claim) : claim();
+      return plan.entry === 'open' ? spendingOpenPlace(addressOf(request).network, claim) : claim();
     },
     async withdrawing({ request, study }, code, withdraw) {
       store.study(study);

@@ -11,7 +11,7 @@ import type { Duplex } from 'node:stream';
 import type { Credentials } from './certificate';
 import type { ConnectionLimiter } from './connection-limiter';
 import { HttpError, refusal, sendAnswer, sendRawAnswer } from './http/answer';
-import { targetOf } from './http/target';
+import { complaintAboutHost, targetOf } from './http/target';
 import { listenOnFreePort } from './listen';
 
 /** A page being served. */
@@ -74,8 +74,9 @@ function answerAll(server: HttpServer, listener: RequestListener, upgrade: Upgra
     // A connection that ends while its answer is on the way is no fault of ours.
     request.on('error', () => undefined);
     response.on('error', () => undefined);
-    if (request.headers.host === undefined && request.httpVersion === '1.1') {
-      sendAnswer(request, response, refusal(new HttpError(400, 'a request names its host')));
+    const complaint = complaintAboutHost(request);
+    if (complaint !== null) {
+      sendAnswer(request, response, refusal(new HttpError(400, complaint)));
       return;
     }
     listener(request, response);
@@ -93,6 +94,11 @@ function answerAll(server: HttpServer, listener: RequestListener, upgrade: Upgra
   });
   server.on('upgrade', (request: IncomingMessage, socket: Duplex, head: Buffer) => {
     socket.on('error', () => socket.destroy());
+    const complaint = complaintAboutHost(request);
+    if (complaint !== null) {
+      sendRawAnswer(socket, refusal(new HttpError(400, complaint)));
+      return;
+    }
     if (upgrade(request, socket, head)) return;
     if (head.length > 0) {
       sendRawAnswer(socket, refusal(new HttpError(400, 'there is nothing to upgrade to at this address')));

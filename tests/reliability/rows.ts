@@ -236,6 +236,13 @@ export const attackRows = {
     target: '0 open after the deadline; health of other addresses at most 5 ms later (p95)',
     tests: ['tests/server/connection-limiter.test.ts'],
   },
+  'client-addresses': {
+    inject:
+      'Joins, WebSockets and guesses of one client under ever new addresses: a whole /64, ports, brackets, mapped and other spellings behind a proxy',
+    sees: 'Every limit counts them as one client; a forwarded value that is no address, two Host lines and a target of another authority get 400',
+    target: '5 of 40 joins, 256 of 300 WebSockets, at most 7 of 40 wrong tokens checked',
+    tests: ['tests/server/client-address.test.ts'],
+  },
   'avatar-store': {
     inject:
       'The store of avatars: filled by seats in several rooms, by uploads without an end, with what is no avatar or another one than its name says',

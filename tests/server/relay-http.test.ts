@@ -1,6 +1,6 @@
 import { SignJWT } from 'jose';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
-import { clientAddress } from '../../server/client-address';
+import { clientAddressOf } from '../../server/client-address';
 import { relayConfigurationFrom } from '../../server/relay-configuration';
 import { createRoomTokens } from '../../server/room-tokens';
 import { type RunningRelay, rawGuest, rawSocket, startRelay, testSecret, tokenFor, until } from './running-relay';
@@ -120,8 +120,8 @@ describe('the relay over HTTP', () => {
 
   test('believes the proxy about addresses only when told to', () => {
     const request = { headers: { 'x-forwarded-for': 'made up, 203.0.113.9' }, socket: { remoteAddress: '10.0.0.1' } };
-    expect(clientAddress(request as never, true)).toBe('203.0.113.9');
-    expect(clientAddress(request as never, false)).toBe('10.0.0.1');
+    expect(clientAddressOf(request as never, true).text).toBe('203.0.113.9');
+    expect(clientAddressOf(request as never, false).text).toBe('10.0.0.1');
   });
 
   test('finds a room with a free seat, and otherwise names a new one', async () => {
