@@ -40,6 +40,14 @@ describe.each(files)('%s', (file) => {
     expect(lint(text(`${folder}/${file}`).replace(/runs-on: .*/, 'runs-on: a-dream'), 'broken.yml')).not.toEqual([]);
   });
 
+  test('uses actions by the hash of a commit, with its version beside it', () => {
+    const lines = text(`${folder}/${file}`)
+      .split('\n')
+      .filter((line) => /^\s*(- )?uses:/.test(line));
+    expect(lines.length).toBeGreaterThan(0);
+    for (const line of lines) expect(line).toMatch(/uses: [\w-]+\/[\w-]+@[0-9a-f]{40} # v\d+\.\d+\.\d+$/);
+  });
+
   test('asks npm for scripts that there are', () => {
     const { scripts } = JSON.parse(text('package.json')) as { scripts: Record<string, string> };
     const asked = commands(file).flatMap((command) =>
