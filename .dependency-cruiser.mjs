@@ -251,6 +251,15 @@ export default {
       to: { couldNotResolve: true },
     },
     {
+      name: 'shipped-packages-are-no-tools',
+      comment:
+        'A package that runs in the page or in the server is installed by npm ci --omit=dev, and audited. Type packages are exempt, and so are the ' +
+        'loaders by which threads run from source: the built server has none (scripts/build-server.mjs).',
+      severity: 'error',
+      from: { path: '^(src|server)/', pathNot: '^server/[^/]+-worker\\.mjs$' },
+      to: { dependencyTypes: ['npm-dev'], dependencyTypesNot: ['type-only'], pathNot: packagePath('@types/[^/]+') },
+    },
+    {
       name: 'packages-are-declared',
       comment: 'A package that is there only because another brought it along disappears with the next update.',
       severity: 'error',
