@@ -17,6 +17,14 @@ interface Service {
   readonly depends_on?: readonly string[];
   readonly volumes?: readonly string[];
   readonly ports?: readonly string[];
+  readonly read_only?: boolean;
+  readonly user?: string;
+  readonly tmpfs?: readonly string[];
+  readonly cap_drop?: readonly string[];
+  readonly cap_add?: readonly string[];
+  readonly security_opt?: readonly string[];
+  readonly mem_limit?: string;
+  readonly pids_limit?: number;
 }
 
 const compose = parse(textOf('compose.yaml'), { merge: true }) as {
@@ -110,7 +118,40 @@ describe('compose.yaml', () => {
   });
 });
 
-test('the image keeps out what people have told in confidence, and its user may write where studies go', () => {
+describe.each(Object.entries(compose.services))('the service %s', (name, found) => {
+  test('has no privileges, a read-only file system, and bounds of memory and processes', () => {
+    expect(found).toMatchObject({ read_only: true, cap_drop: ['ALL'], security_opt: ['no-new-privileges:true'] });
+    expect(found.mem_limit).toMatch(/^\d+[mg]$/);
+    expect(found.pids_limit).toBeGreaterThan(0);
+    expect(found.tmpfs).toContain('/tmp');
+    // The TURN server's program has the capability as an attribute of its file, and starts with it alone.
+    expect(found.cap_add).toEqual(name === 'turn' ? ['NET_BIND_SERVICE'] : undefined);
+  });
+});
+
+/** Images whose digest is established by whoever deploys them, as docs/scaling.md says. */
+const pinnedOnTheSpot = ['haproxy:2.8-bookworm', 'coturn/coturn:4.6-debian'];
+
+test('base images are pinned by digest; docs/scaling.md says how the others are', () => {
+  const images = [
+    ...[...dockerfile.matchAll(/^FROM (\S+)/gm)].map(([, image]) => image ?? ''),
+    ...Object.values(compose.services).flatMap(({ image, build }) => (build ? [] : image)),
+  ];
+  const unpinned = images.filter((image) => !/^[\w/.-]+:[\w.-]+@sha256:[0-9a-f]{64}$/.test(image));
+  expect(unpinned).toEqual(pinnedOnTheSpot);
+  const documented = readFileSync(new URL('../../docs/scaling.md', import.meta.url), 'utf8');
+  for (const image of pinnedOnTheSpot) expect(documented).toContain(image);
+});
+
+test('the image has built JavaScript and no tool of development', () => {
+  const [packages = '', image = ''] = dockerfile.split('\nFROM ').slice(-2);
+  expect(packages).toContain('RUN npm ci --omit=dev');
+  expect(image).not.toMatch(/^RUN npm|tsx|^COPY \. /m);
+  expect(image).toContain('COPY --from=packages /threepoint ./');
+  expect(image).toContain('CMD ["node", "--enable-source-maps", "server/main.mjs"]');
+});
+
+test('the image keeps out the data of participants, and its user may write where studies go', () => {
   const ignored = textOf('Dockerfile.dockerignore').split('\n');
   for (const path of ['study-data', '.cache', 'node_modules', '.git']) expect(ignored).toContain(path);
   expect(dockerfile).toMatch(/chown node:node \/studies/);

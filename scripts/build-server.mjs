@@ -1,0 +1,71 @@
+// Builds the server into JavaScript, for machines without the tools that run it from its sources: node dist-server/main.mjs. Its packages stay
+// outside (npm ci --omit=dev). The page is a build of its own (npm run build).
+import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { parseArgs } from 'node:util';
+import { rolldown } from 'rolldown';
+import { main, root, SetupError } from './run-command.mjs';
+
+/** The server reads package.json, dist/ and study-data/ beside its own folder, which a build replaces as server/ does. */
+const usualOut = 'dist-server';
+const thread = '-worker.mjs';
+
+/**
+ * Returns the entry of the process and those of its threads by name. From source a thread begins with NAME-worker.mjs, which loads NAME-work.ts
+ * through a loader for TypeScript; in the build NAME-worker.mjs is NAME-work.ts itself.
+ */
+function entries() {
+  const threads = readdirSync(join(root, 'server')).filter((file) => file.endsWith(thread));
+  return Object.fromEntries([
+    ['main', join(root, 'server/main.ts')],
+    ...threads.map((file) => {
+      const work = join(root, 'server', file.replace(thread, '-work.ts'));
+      if (!existsSync(work)) throw new SetupError(`server/${file} needs a ${work.slice(root.length + 1)} to load.`);
+      return [file.replace(/\.mjs$/, ''), work];
+    }),
+  ]);
+}
+
+/**
+ * Bundles the server's own files into `out`; packages and Node's modules are imported where it runs. The package.json beside them names those
+ * packages alone, so that npm prune removes those of the page.
+ */
+export async function buildServer(out) {
+  const { name, version, type, dependencies } = JSON.parse(readFileSync(join(root, 'package.json'), 'utf8'));
+  const packageOf = (id) => Object.keys(dependencies).find((known) => id === known || id.startsWith(`${known}/`));
+  const bundle = await rolldown({
+    input: entries(),
+    cwd: root,
+    platform: 'node',
+    external: (id) => id.startsWith('node:') || packageOf(id) !== undefined,
+    tsconfig: join(root, 'tsconfig.json'),
+  });
+  rmSync(out, { recursive: true, force: true });
+  mkdirSync(out, { recursive: true });
+  const { output } = await bundle.write({
+    dir: out,
+    format: 'es',
+    sourcemap: true,
+    entryFileNames: '[name].mjs',
+    chunkFileNames: '[name].mjs',
+  });
+  await bundle.close();
+  const foreign = output.flatMap(({ moduleIds = [] }) => moduleIds).filter((id) => id.includes('node_modules'));
+  if (foreign.length > 0) {
+    throw new SetupError(`The server imports packages that package.json does not have: ${foreign.join(', ')}`);
+  }
+  const imported = new Set(
+    output.flatMap(({ imports = [], dynamicImports = [] }) => [...imports, ...dynamicImports]).map(packageOf),
+  );
+  const own = Object.fromEntries(Object.entries(dependencies).filter(([known]) => imported.has(known)));
+  const manifest = { name, version, type, private: true, dependencies: own };
+  writeFileSync(join(out, 'package.json'), `${JSON.stringify(manifest, null, 2)}\n`);
+  cpSync(join(root, 'server/study-analysis'), join(out, 'study-analysis'), { recursive: true });
+}
+
+if (import.meta.url === pathToFileURL(process.argv[1]).href)
+  await main(() => {
+    const { values } = parseArgs({ options: { out: { type: 'string', default: usualOut } } });
+    return buildServer(resolve(root, values.out));
+  });
