@@ -3,18 +3,24 @@ import { defineConfig, type Plugin } from 'vite';
 import { contentSecurityPolicy } from './server/security-headers.ts';
 
 /**
+ * Sources from which the page may read files that are named by address: those of `npm run build -- --files-from`, else any over https:. Where a
+ * server of ours sends the page, its header narrows them further (THREEPOINT_FILES_FROM).
+ */
+const filesFrom = process.env.THREEPOINT_BUILD_FILES_FROM?.split(',').filter(Boolean) ?? ['https:'];
+
+/**
  * Says the server's policy in the pages themselves, for hosts that send no headers of ours. Without frame-ancestors, which browsers read in
  * a header alone. Pages under development have none: the development server's own scripts would break it.
  */
 const policyInPages: Plugin = {
   name: 'policy-in-pages',
   apply: 'build',
-  transformIndexHtml: () => [
+  transformIndexHtml: (_html, { path }) => [
     {
       tag: 'meta',
       attrs: {
         'http-equiv': 'Content-Security-Policy',
-        content: contentSecurityPolicy.replace(/; frame-ancestors [^;]*/, ''),
+        content: contentSecurityPolicy(path === '/index.html' ? filesFrom : []).replace(/; frame-ancestors [^;]*/, ''),
       },
       injectTo: 'head-prepend',
     },

@@ -1,7 +1,9 @@
 import { EventEmitter, once } from 'node:events';
 import { changed, mannequin } from '../tests/avatar/glb';
 import { measured } from '../tests/reliability/measured';
-import { expect, joint, keepPicture, open, probe, test } from './page-fixture';
+import { serveElsewhere } from './elsewhere-server';
+import { expect, freshTest, joint, keepPicture, open, probe, test } from './page-fixture';
+import { serveStudies } from './study-server';
 
 test.use({ viewport: { width: 800, height: 500 } });
 
@@ -111,3 +113,39 @@ test('our own body stands there until the avatar of the address has arrived; the
   await page.getByRole('button', { name: 'Back to ours' }).click();
   await expect.poll(async () => (await probe(page)).avatar.name).toBe('Mannequin');
 });
+
+freshTest(
+  'an avatar of another server is read where the server lists it, and not asked for where it does not @full',
+  async ({ browser }) => {
+    const elsewhere = await serveElsewhere(mannequin(), 'other.vrm');
+    const context = await browser.newContext({ ignoreHTTPSErrors: true, serviceWorkers: 'block' });
+    /** The name of the avatar that stands there, once the page has opened the other one or has said why not. */
+    async function shownBy(settings: Record<string, string>): Promise<string> {
+      const server = await serveStudies(settings);
+      const page = await context.newPage();
+      try {
+        await page.goto(`${server.origin}/?quality=low&estimator=ik&avatar=${elsewhere.folder}other.vrm`);
+        await joint(page, 'hips');
+        const shown = await page.waitForFunction(() => {
+          const { avatar, notices } = window.threepoint!.probe();
+          const [said] = notices.filter(({ level }) => level === 'error');
+          return said?.text ?? (avatar.name === 'Mannequin' ? null : avatar.name);
+        });
+        return (await shown.jsonValue()) ?? '';
+      } finally {
+        await page.close();
+        await server.close();
+      }
+    }
+    try {
+      expect(await shownBy({})).toContain('THREEPOINT_FILES_FROM');
+      expect(elsewhere.asked).toEqual([]);
+      expect(await shownBy({ THREEPOINT_FILES_FROM: elsewhere.origin })).toContain('other.vrm');
+      expect(elsewhere.asked).toEqual(['GET /avatars/other.vrm']);
+      measured('policy', { 'requests to a server that is not listed': 0 });
+    } finally {
+      await context.close();
+      await elsewhere.close();
+    }
+  },
+);

@@ -1,14 +1,9 @@
 import { fork } from 'node:child_process';
 import { createHash, randomBytes } from 'node:crypto';
 import { once } from 'node:events';
-import { mkdtempSync, rmSync } from 'node:fs';
-import { createServer } from 'node:https';
-import type { AddressInfo } from 'node:net';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { certificateFor } from '../server/certificate';
 import { changed, type GltfJson } from '../tests/avatar/glb';
+import { serveElsewhere } from './elsewhere-server';
 import type { GuestAnswer, GuestOrder } from './guest-process';
 import { expect, freshTest, joinedRoom, joint, keepPicture, probe, test } from './page-fixture';
 import { serveStudies } from './study-server';
@@ -206,34 +201,12 @@ freshTest(
   },
 );
 
-/** Another server with one avatar, at an address that the pages of others may ask; `asked` fills with what it was asked for. */
-async function serveElsewhere(file: ArrayBuffer) {
-  const folder = mkdtempSync(join(tmpdir(), 'threepoint-elsewhere-'));
-  const asked: string[] = [];
-  const server = createServer(await certificateFor([], folder, new Date()), ({ method, url, headers }, response) => {
-    asked.push(`${method} ${url}${headers.authorization ?? ''}`);
-    const found = url === `/avatars/${hashOf(file)}`;
-    response.writeHead(found ? 200 : 404, { 'access-control-allow-origin': '*', 'content-type': 'model/gltf-binary' });
-    response.end(found && method === 'GET' ? Buffer.from(file) : undefined);
-  });
-  await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
-  return {
-    folder: `https://127.0.0.1:${(server.address() as AddressInfo).port}/avatars/`,
-    asked,
-    async close() {
-      server.closeAllConnections();
-      await new Promise((resolve) => server.close(resolve));
-      rmSync(folder, { recursive: true, force: true });
-    },
-  };
-}
-
 freshTest(
   'an avatar of a server that ours names is seen by the others, and stored nowhere else @realtime',
   async ({ browser }) => {
     test.setTimeout(240_000);
     const file = blue();
-    const elsewhere = await serveElsewhere(file);
+    const elsewhere = await serveElsewhere(file, hashOf(file));
     const server = await serveStudies({ THREEPOINT_AVATARS_FROM: elsewhere.folder, THREEPOINT_AVATAR_MEGABYTES: '0' });
     const context = await browser.newContext({
       baseURL: server.origin,

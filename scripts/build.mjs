@@ -25,8 +25,8 @@ const sources = [
 ];
 const stampFile = '.source-hash';
 
-/** Where the built page lies when nothing else is asked for, and where it may be served from: any folder. */
-const usual = { base: './', out: join(root, 'dist') };
+/** The build's defaults: where the page lies, where it may be served from (any folder), and from where it may read files (its host's header decides). */
+const usual = { base: './', out: join(root, 'dist'), filesFrom: null };
 
 /** Text and machine code shrink; pictures and quantised weights do not. */
 const compressible = /\.(html|js|css|json|svg|wasm|txt|vrm|glb|webmanifest)$/;
@@ -39,23 +39,29 @@ function filesUnder(path) {
     .flatMap((name) => filesUnder(join(path, name)));
 }
 
-/** What `npm run build -- …` asks for: the folder that the page is served from, and where its files go. A SetupError says what is wrong with it. */
+/** Returns the options of `npm run build -- …`. A SetupError says what is wrong with them. */
 export function buildOptions(args) {
   let values;
   try {
-    ({ values } = parseArgs({ args, options: { base: { type: 'string' }, out: { type: 'string' } } }));
+    ({ values } = parseArgs({
+      args,
+      options: { base: { type: 'string' }, out: { type: 'string' }, 'files-from': { type: 'string' } },
+    }));
   } catch (error) {
     throw new SetupError(
-      `${error.message} npm run build takes --base (a folder such as /threepoint/) and --out (a directory).`,
+      `${error.message} npm run build takes --base (a folder such as /threepoint/), --out (a directory) and --files-from (origins, with commas between).`,
     );
   }
-  const { base = usual.base, out } = values;
+  const { base = usual.base, out, 'files-from': filesFrom = usual.filesFrom } = values;
+  const strange = filesFrom?.split(',').find((origin) => origin && !/^https:\/\/[\w.-]+(:\d+)?$/.test(origin));
+  if (strange)
+    throw new SetupError(`--files-from ${strange}: expected origins such as https://example.org, or "" for none.`);
   if (!/^(\.\/|\/([\w~-][\w.~-]*\/)*)$/.test(base)) {
     throw new SetupError(
       `--base ${base || '""'}: expected the path of a folder with a slash at either end, such as /threepoint/, or ./ for a page that runs from any folder.`,
     );
   }
-  return { base, out: out === undefined ? usual.out : emptied(out) };
+  return { base, out: out === undefined ? usual.out : emptied(out), filesFrom };
 }
 
 /** A directory that a build may empty: a new one, an empty one, or that of a build before. */
@@ -68,8 +74,8 @@ function emptied(out) {
   return directory;
 }
 
-function sourceHash(base) {
-  const hash = createHash('sha256').update(`${base}\0`);
+function sourceHash({ base, filesFrom }) {
+  const hash = createHash('sha256').update(`${base}\0${filesFrom}\0`);
   for (const file of sources.flatMap((source) => filesUnder(join(root, source)))) {
     hash
       .update(`${relative(root, file)}\0`)
@@ -96,11 +102,16 @@ async function precompress(directory) {
   );
 }
 
-/** Builds the page from the sources, whether or not it is stale. */
-export async function build({ base, out } = usual) {
-  const hash = sourceHash(base);
+/**
+ * Builds the page from the sources, whether or not it is stale.
+ * @param {{ base: string, out: string, filesFrom?: string | null }} options
+ */
+export async function build({ base, out, filesFrom = usual.filesFrom } = usual) {
+  const hash = sourceHash({ base, filesFrom });
   const vite = ['node_modules/vite/bin/vite.js', 'build', '--logLevel', 'warn'];
-  const { code } = await run(process.execPath, [...vite, '--base', base, '--outDir', out, '--emptyOutDir']);
+  const { code } = await run(process.execPath, [...vite, '--base', base, '--outDir', out, '--emptyOutDir'], {
+    env: filesFrom === null ? {} : { THREEPOINT_BUILD_FILES_FROM: filesFrom },
+  });
   if (code !== 0) throw new SetupError(`The build failed with exit code ${code}; its messages are above.`);
   await buildServiceWorker(out);
   await precompress(out);
@@ -110,7 +121,7 @@ export async function build({ base, out } = usual) {
 /** Builds dist/ when it was not built from exactly these sources. */
 export async function buildWhenStale() {
   const stamp = join(usual.out, stampFile);
-  if (existsSync(stamp) && readFileSync(stamp, 'utf8') === sourceHash(usual.base)) return;
+  if (existsSync(stamp) && readFileSync(stamp, 'utf8') === sourceHash(usual)) return;
   const start = performance.now();
   console.log('Building the page ...');
   await build();

@@ -4,7 +4,7 @@ import type { IncomingMessage, RequestListener } from 'node:http';
 import { extname, join } from 'node:path';
 import { type Answer, plain, sendAnswer } from './http/answer';
 import { targetOf } from './http/target';
-import { permissionsPolicy } from './security-headers';
+import { contentSecurityPolicy, permissionsPolicy } from './security-headers';
 
 const contentTypes: Readonly<Record<string, string>> = {
   '.html': 'text/html; charset=utf-8',
@@ -60,7 +60,14 @@ function filesBelow(directory: string, prefix = ''): string[] {
   });
 }
 
-function load(directory: string, microphone: boolean): ReadonlyMap<string, ServedFile> {
+export interface PageOptions {
+  /** The page may use the microphone. */
+  readonly microphone?: boolean;
+  /** Origins of other servers from which the page may read files that are named by address. */
+  readonly filesFrom?: readonly string[];
+}
+
+function load(directory: string, { microphone = false, filesFrom = [] }: PageOptions): ReadonlyMap<string, ServedFile> {
   const paths = new Set(filesBelow(directory));
   const files = new Map<string, ServedFile>();
   for (const path of paths) {
@@ -71,8 +78,11 @@ function load(directory: string, microphone: boolean): ReadonlyMap<string, Serve
       // Vite names what is in assets/ by its content; everything else keeps its name when it changes.
       'cache-control': path.startsWith('/assets/') ? 'public, max-age=31536000, immutable' : 'no-cache',
       vary: 'accept-encoding',
-      // The page where people talk to each other, and no other file.
-      ...(microphone && path === '/index.html' && { 'permissions-policy': permissionsPolicy(true) }),
+      // The page where people talk to each other and open files by address, and no other file.
+      ...(path === '/index.html' && {
+        'permissions-policy': permissionsPolicy(microphone),
+        'content-security-policy': contentSecurityPolicy(filesFrom),
+      }),
     };
     const compressed = new Map<string, Encoded>();
     for (const { name, suffix } of encodings) {
@@ -98,14 +108,13 @@ function accepts(header: string | undefined, encoding: string): boolean {
 
 /**
  * Serves a built page from memory: the files are read once, so that a request touches no disk, no path leads out of the
- * directory, and a rebuild under a running server breaks no download. `microphone`: the page itself may use it. Throws where there is no
- * index.html.
+ * directory, and a rebuild under a running server breaks no download. Throws where there is no index.html.
  */
-export function createPageHandler(directory: string, { microphone = false } = {}): RequestListener {
+export function createPageHandler(directory: string, options: PageOptions = {}): RequestListener {
   if (!existsSync(join(directory, 'index.html'))) {
     throw new Error(`${directory} holds no index.html: build the page first (npm run build)`);
   }
-  const files = load(directory, microphone);
+  const files = load(directory, options);
 
   function answerTo({ method, url, headers: asked }: IncomingMessage): Answer {
     if (method !== 'GET' && method !== 'HEAD') {

@@ -25,6 +25,8 @@ export interface RelayConfiguration {
   readonly avatarMegabytes: number;
   /** The folder of another server that has avatars by the same names, with a slash at its end; null: there is none. */
   readonly avatarsFrom: string | null;
+  /** Origins from which the page may read files that are named by address: avatars, recordings, motion capture. */
+  readonly filesFrom: readonly string[];
   /** null: people in a room cannot talk to each other. */
   readonly voices: VoiceConfiguration | null;
   /** Believe what a proxy in front says of a client's address. */
@@ -57,6 +59,8 @@ export const relayEnvironment = `Environment of the relay (docs/relay.md):
   THREEPOINT_BALL_SECONDS       length of a round of the ball game; default 90
   THREEPOINT_AVATAR_MEGABYTES   of avatars that people show each other, in memory; default 256, 0: none
   THREEPOINT_AVATARS_FROM       https:// address of a folder that has more of them, each named by its SHA-256 as base64url
+  THREEPOINT_FILES_FROM         https:// origins, with commas between, from which the page may read avatars, recordings and motion capture
+                                that are named by address; default: its own server alone
 ${voiceEnvironment}
   THREEPOINT_TRUST_PROXY        1: a proxy in front appends the clients' addresses to X-Forwarded-For; default 0
   THREEPOINT_REDIS_URL          redis://HOST:PORT of the lobby that several processes share
@@ -76,16 +80,16 @@ function numberFrom(environment: Environment, name: string, fallback: number, mi
   return value;
 }
 
-function originsFrom(text: string | undefined): readonly string[] {
-  return (text ?? '')
+function originsFrom(environment: Environment, name: string, scheme: RegExp): readonly string[] {
+  return (environment[name] ?? '')
     .split(',')
     .map((part) => part.trim())
     .filter(Boolean)
     .map((part) => {
       const url = URL.canParse(part) ? new URL(part) : null;
-      if (!url || url.origin === 'null' || (part !== url.origin && part !== `${url.origin}/`)) {
+      if (!url || !scheme.test(url.protocol) || (part !== url.origin && part !== `${url.origin}/`)) {
         throw new ConfigurationError(
-          `The environment variable THREEPOINT_ORIGINS must hold origins as https://example.org, not "${part}".`,
+          `The environment variable ${name} must hold origins as https://example.org, not "${part}".`,
         );
       }
       return url.origin;
@@ -162,7 +166,7 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
     Math.round(number(name, fallback, min, max));
   return {
     secret,
-    origins: originsFrom(environment.THREEPOINT_ORIGINS),
+    origins: originsFrom(environment, 'THREEPOINT_ORIGINS', /^https?:$/),
     hosts: hostsFrom(environment.THREEPOINT_HOSTS),
     tickHz: number('THREEPOINT_TICK_HZ', 60, 20, 120),
     posesPerSecond: whole('THREEPOINT_POSES_PER_SECOND', 40, 1, 200),
@@ -174,6 +178,7 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
     ballSeconds: number('THREEPOINT_BALL_SECONDS', 90, 1, 3600),
     avatarMegabytes: whole('THREEPOINT_AVATAR_MEGABYTES', 256, 0, 65_536),
     avatarsFrom: folderFrom(environment.THREEPOINT_AVATARS_FROM),
+    filesFrom: originsFrom(environment, 'THREEPOINT_FILES_FROM', /^https:$/),
     voices: voiceConfigurationFrom(environment),
     trustProxy: whole('THREEPOINT_TRUST_PROXY', 0, 0, 1) === 1,
     redisUrl,

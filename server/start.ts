@@ -41,7 +41,10 @@ export interface RunningServer {
 export async function startServer(options: StartOptions): Promise<RunningServer> {
   const { relay: relaying, host, port, credentials, log } = options;
   const now = () => Date.now() / 1000;
-  const page = createPageHandler(options.pageDirectory, { microphone: relaying.voices !== null });
+  const page = createPageHandler(options.pageDirectory, {
+    microphone: relaying.voices !== null,
+    filesFrom: [...relaying.filesFrom, ...(relaying.avatarsFrom ? [new URL(relaying.avatarsFrom).origin] : [])],
+  });
   const studies = openStudyService({
     directory: options.studyDirectory,
     token: options.experimenterToken,

@@ -42,6 +42,13 @@ function readFile(file: File, kind: FileKind): Promise<ArrayBuffer> {
 const tooLarge = (name: string, { what, megabytes }: FileKind): Error =>
   new Error(`${name}: more than ${megabytes} MB; ${what} may have that at most`);
 
+/** Browsers do not say which of the two refused: the policy of the page's own server, or the other server. */
+const otherServerHint =
+  '. Files of another server need its permission (CORS) and that of this page (THREEPOINT_FILES_FROM). Save the file and open it from this device';
+
+const isOfOtherServer = (url: string): boolean =>
+  URL.canParse(url) && new URL(url).origin !== globalThis.location?.origin;
+
 async function download(
   url: string,
   kind: FileKind,
@@ -52,7 +59,8 @@ async function download(
   const aborting = new AbortController();
   signal?.addEventListener('abort', () => aborting.abort());
   const response = await fetch(url, { signal: aborting.signal, headers }).catch((error: unknown) => {
-    throw new PassingFault(`${name}: could not be fetched (${firstLine(reasonOf(error))})`);
+    const why = isOfOtherServer(url) ? otherServerHint : '';
+    throw new PassingFault(`${name}: could not be fetched (${firstLine(reasonOf(error))})${why}`);
   });
   /** Ends the answer, so that nothing more of it comes. */
   const refuse = (error: Error): never => {

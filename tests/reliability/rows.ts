@@ -179,10 +179,11 @@ export const faultRows = {
 /** Promises 4 to 8: of the page, of names, of avatars and of what is kept. */
 export const promiseRows = {
   policy: {
-    inject: 'Promise 4: scripts of other origins, inline scripts, `eval`, `new Function`',
-    sees: 'Nothing of it runs; every asset is our own',
+    inject:
+      'Promise 4: scripts of other origins, inline scripts, `eval`, `new Function`; a file named by the address of a server that is not listed',
+    sees: 'Nothing of it runs and nothing is asked for; every asset is our own',
     target: '0 run; 0 requests elsewhere',
-    tests: ['tests/server/page.test.ts', 'e2e/faults.spec.ts'],
+    tests: ['tests/server/page.test.ts', 'e2e/faults.spec.ts', 'e2e/avatar-address.spec.ts'],
   },
   isolation: {
     inject: 'Promise 5: Permissions-Policy; the page with and without cross-origin isolation',

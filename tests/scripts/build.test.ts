@@ -6,7 +6,7 @@ import { directoryWith } from '../temporary-directory';
 
 describe('npm run build', () => {
   test('makes a page for any folder, in dist/', () => {
-    expect(buildOptions([])).toEqual({ base: './', out: join(root, 'dist') });
+    expect(buildOptions([])).toEqual({ base: './', out: join(root, 'dist'), filesFrom: null });
   });
 
   test.each(['./', '/', '/threepoint/', '/~ann/bodies/v1.2/'])('makes one for the folder %s', (base) => {

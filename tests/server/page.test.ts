@@ -159,6 +159,27 @@ test('every answer, errors included, says what the page may do', async () => {
   }
 });
 
+test('the page alone may read files of other servers, and only of those that are named', async () => {
+  const files = directoryWith({ 'index.html': 'page', 'results.html': 'results', 'assets/a.js': '1' });
+  const connections = async (filesFrom?: readonly string[]) => {
+    const server = await serve(createPageHandler(files, { ...(filesFrom && { filesFrom }) }), {
+      host: '127.0.0.1',
+      port: 0,
+    });
+    onTestFinished(() => server.close());
+    const asked = ['/', '/results', '/assets/a.js', '/missing'].map((path) =>
+      ask(`http://127.0.0.1:${server.port}`, path),
+    );
+    return (await Promise.all(asked)).map(
+      ({ headers }) => /connect-src ([^;]*)/.exec(String(headers['content-security-policy']))?.[1],
+    );
+  };
+  const own = "'self' data: blob:";
+  expect(await connections()).toEqual([own, own, own, own]);
+  const named = ['https://avatars.example', 'https://files.example:8443'];
+  expect(await connections(named)).toEqual([`${own} ${named.join(' ')}`, own, own, own]);
+});
+
 test('the microphone is for the page itself alone, and only where its people can talk', async () => {
   const files = directoryWith({ 'index.html': 'page', 'results.html': 'results', 'assets/a.js': '1' });
   const policies = async (microphone: boolean) => {
