@@ -1,6 +1,7 @@
 import { pageElement } from '../ui/element';
 import { createEnterButton, type EnterButton } from '../ui/enter-button';
 import { createNotices } from '../ui/notices';
+import { allowOwnScripts } from '../ui/own-scripts';
 import { createFrameLoop } from './shell/frame-loop';
 import type { Headset } from './shell/headset';
 import { joinStudy } from './shell/join-study';
@@ -64,6 +65,7 @@ function keepForLater({ kept }: Page, { switches }: Visit): void {
 
 /** Builds the page and opens it; resolves when everything has loaded. */
 async function start(): Promise<void> {
+  allowOwnScripts();
   const notices = createNotices(pageElement('notices', HTMLElement));
   tellOfFaults(notices);
   const loading = new PageLoading();
