@@ -225,6 +225,13 @@ export const attackRows = {
     target: '0 without an answer, 0 faults, health within 50 ms',
     tests: ['tests/server/any-request.test.ts'],
   },
+  'any-packet': {
+    inject:
+      '100,000 WebSocket frames by a grammar (2,000 by day), from strangers, listeners of the lobby, guests and seated players',
+    sees: 'What is no packet ends its own connection; the process lives, others are answered',
+    target: '0 processes ended; another player is answered after each batch',
+    tests: ['tests/server/any-packet.test.ts', 'tests/core/protocol/messages.test.ts'],
+  },
   'unwanted-bodies': {
     inject: 'A body of 200 MB, announced or in chunks, for a page or a route that takes none or little',
     sees: 'The refusal is heard, and the connection ends instead of reading on',

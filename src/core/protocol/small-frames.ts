@@ -20,6 +20,7 @@ export const frameEvent = 'frame';
 export const messageEvent = 'message';
 
 const eventType = 2;
+const acknowledgementType = 3;
 
 type Listener = (packet: SocketPacket) => void;
 
@@ -30,15 +31,43 @@ function encodeText({ type, nsp, data, id }: SocketPacket): string {
   return `${type}${JSON.stringify(parts)}`;
 }
 
+/** Names of events that socket.io or Node's emitter raise themselves: a packet that carries one would run their listeners. */
+const reservedEvents: ReadonlySet<unknown> = new Set([
+  ...['connect', 'connect_error', 'disconnect', 'disconnecting'],
+  ...['error', 'newListener', 'removeListener'],
+]);
+
+const isObject = (value: unknown): boolean => typeof value === 'object' && value !== null && !Array.isArray(value);
+const isEvent = (value: unknown): boolean =>
+  Array.isArray(value) && typeof value[0] === 'string' && !reservedEvents.has(value[0]);
+
+/**
+ * Whether a packet of each type may carry this, by its digit. socket.io reads a packet without looking at what is in it, because its own parser
+ * refuses everything else: a parser that lets more through can end the process.
+ */
+const mayCarry: readonly ((data: unknown) => boolean)[] = [
+  (data) => data === undefined || isObject(data),
+  (data) => data === undefined,
+  isEvent,
+  Array.isArray,
+  (data) => typeof data === 'string' || isObject(data),
+];
+
+/** Whether a packet of this type may have this number: an acknowledgement must, an event may. */
+const mayHaveId = (type: number, id: unknown): boolean => {
+  if (id === undefined) return type !== acknowledgementType;
+  const isNumbered = type === eventType || type === acknowledgementType;
+  return isNumbered && Number.isSafeInteger(id) && (id as number) >= 0;
+};
+
 function decodeText(text: string): SocketPacket {
   const type = text.charCodeAt(0) - 48;
   const parts: unknown = JSON.parse(text.slice(1));
-  if (!(type >= 0 && type <= 4) || !Array.isArray(parts) || parts.length > 3) throw new Error('no packet');
+  if (!Array.isArray(parts) || parts.length > 3) throw new Error('no packet');
   const [nsp, data, id] = parts as [unknown, unknown, unknown];
   if (typeof nsp !== 'string' || nsp.length > 60) throw new Error('no namespace');
-  if (id !== undefined && !(Number.isSafeInteger(id) && (id as number) >= 0)) throw new Error('no id');
-  if (type === eventType && !(Array.isArray(data) && typeof data[0] === 'string')) throw new Error('no event');
-  if (type === 3 && !Array.isArray(data)) throw new Error('no acknowledgement');
+  if (!mayCarry[type]?.(data)) throw new Error('no packet of socket.io carries this');
+  if (!mayHaveId(type, id)) throw new Error('no id');
   return { type, nsp, data, ...(id !== undefined && { id: id as number }) };
 }
 

@@ -17,6 +17,7 @@ import { poseVersion } from '../../../src/core/protocol/pose-packet';
 import { pageParser, relayParser, type SocketPacket } from '../../../src/core/protocol/small-frames';
 import { longestDescription, mostCandidates } from '../../../src/core/protocol/voice-messages';
 import { ownAvatarOf, ownBodies, plainAvatar, skinTones } from '../../../src/core/protocol/worn-avatar';
+import { noPackets } from './no-packets';
 
 const fileHash = createHash('sha256').update('a bear').digest('base64url');
 
@@ -226,5 +227,10 @@ describe('the parser of small frames', () => {
     ]) {
       expect(() => decoder.add(text), text).toThrow();
     }
+  });
+
+  test('a packet carries what socket.io reads of its type, and nothing else', () => {
+    const decoder = new relayParser.Decoder();
+    for (const text of noPackets) expect(() => decoder.add(text), text).toThrow();
   });
 });

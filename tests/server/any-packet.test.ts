@@ -1,0 +1,115 @@
+import { setTimeout as after } from 'node:timers/promises';
+import fc from 'fast-check';
+import { expect, onTestFinished, test } from 'vitest';
+import { WebSocket } from 'ws';
+import { createRoomTokens } from '../../server/room-tokens';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { ballKind } from '../../src/core/protocol/ball-messages';
+import { protocolVersion } from '../../src/core/protocol/messages';
+import { plainAvatar } from '../../src/core/protocol/worn-avatar';
+import { noPackets } from '../core/protocol/no-packets';
+import { isNightly } from '../nightly';
+import { measured } from '../reliability/measured';
+import { isAlive } from './child-process';
+import { conversations, type WireFrame } from './packets';
+import { forkRelay } from './relay-child';
+import { rawGuest, testSecret, until } from './running-relay';
+
+const atOnce = 20;
+const wanted = isNightly ? 100_000 : 2000;
+const tokens = createRoomTokens(testSecret, () => Date.now() / 1000);
+
+const joining = JSON.stringify({
+  type: 'join',
+  version: protocolVersion,
+  name: '<img src=x onerror=alert(1)>',
+  calibration: defaultCalibration,
+  spectate: false,
+  bot: false,
+  seat: null,
+  avatar: plainAvatar,
+  voice: { session: 'session-one', muted: false },
+});
+
+/** As far as a client comes before it sends anything but what it should. */
+const stages = ['stranger', 'lobby', 'guest', 'seated'] as const;
+
+/** Opens a WebSocket, comes as far as `stage`, sends these frames, and resolves once it is over. */
+async function converse(url: string, stage: (typeof stages)[number], frames: readonly WireFrame[]): Promise<void> {
+  const socket = new WebSocket(`${url.replace('http', 'ws')}/relay/?EIO=4&transport=websocket`);
+  // A connection that the relay ends while frames are on their way is no fault.
+  socket.on('error', () => undefined);
+  const closed = new Promise<void>((resolve) => socket.once('close', () => resolve()));
+  const arrived = new Promise<void>((resolve) => {
+    socket.on('message', async (received: Buffer) => {
+      const said = received.toString();
+      if (said.startsWith('0')) {
+        if (stage === 'stranger') resolve();
+        else if (stage === 'lobby') socket.send('40["/lobby"]');
+        else socket.send(`40["/",{"token":"${await tokens.issue('hostile', ballKind)}"}]`);
+      } else if (said.startsWith('40')) {
+        if (stage === 'seated') socket.send(`42["/",["message",${joining}]]`);
+        else resolve();
+      } else if (said.includes('"welcome"')) resolve();
+    });
+  });
+  await Promise.race([arrived, closed]);
+  for (const frame of frames) socket.send(frame);
+  // The answer to this comes after all that the relay has to say to the frames, if it has not ended the connection.
+  socket.ping();
+  await Promise.race([new Promise((resolve) => socket.once('pong', resolve)), closed, after(5000)]);
+  socket.close();
+  await Promise.race([closed, after(1000)]);
+  socket.terminate();
+}
+
+test('what is no packet ends the connection that sends it, and nothing else', async () => {
+  const relay = await forkRelay();
+  onTestFinished(() => relay.kill());
+  const witness = await rawGuest(relay.url, 'hostile');
+  onTestFinished(() => void witness.socket.disconnect());
+  for (const packet of noPackets) {
+    await Promise.all(stages.map((stage) => converse(relay.url, stage, [`4${packet}`])));
+    expect(isAlive(relay.child), packet).toBe(true);
+  }
+  witness.say({ type: 'ping', sent: 0 });
+  await until('the answer to another', () => witness.heard.some(({ type }) => type === 'pong'));
+  expect(witness.closedAt).toBeNull();
+});
+
+test('the relay keeps running and answers the others, whatever a client sends over its WebSocket', {
+  tags: ['full'],
+  timeout: 1_800_000,
+}, async () => {
+  // Budgets would keep most of it from the rooms.
+  const relay = await forkRelay({ THREEPOINT_EVENTS_PER_SECOND: '200', THREEPOINT_POSES_PER_SECOND: '200' });
+  onTestFinished(() => relay.kill());
+  const witness = await rawGuest(relay.url, 'hostile');
+  onTestFinished(() => void witness.socket.disconnect());
+  const pongs = () => witness.heard.filter(({ type }) => type === 'pong').length;
+  const waits: number[] = [];
+  let sent = 0;
+  let talks = 0;
+  for (let seed = 0; sent < wanted; seed++) {
+    const batch = fc.sample(conversations, { numRuns: atOnce, seed });
+    await Promise.all(batch.map((frames, i) => converse(relay.url, stages[i % stages.length]!, frames)));
+    sent += batch.reduce((sum, frames) => sum + frames.length, 0);
+    talks += batch.length;
+    expect(isAlive(relay.child), `seed ${seed}`).toBe(true);
+    const before = pongs();
+    const asked = performance.now();
+    witness.say({ type: 'ping', sent: seed });
+    await until(`the answer to another, after seed ${seed}`, () => pongs() > before || witness.closedAt !== null);
+    expect(witness.closedAt, `seed ${seed}: ${JSON.stringify(witness.heard.at(-1))}`).toBeNull();
+    waits.push(performance.now() - asked);
+    witness.heard.length = 0;
+  }
+  const census = async () => (await (await fetch(`${relay.url}/healthz`)).json()) as { readonly sockets: number };
+  await expect.poll(async () => (await census()).sockets, { timeout: 30_000 }).toBe(1);
+  measured('any-packet', {
+    frames: sent,
+    connections: talks,
+    'processes ended': isAlive(relay.child) ? 0 : 1,
+    'longest wait of another for an answer [ms]': Math.max(...waits),
+  });
+});
