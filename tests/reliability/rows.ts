@@ -232,6 +232,13 @@ export const attackRows = {
     target: '0 processes ended; another player is answered after each batch',
     tests: ['tests/server/any-packet.test.ts', 'tests/core/protocol/messages.test.ts'],
   },
+  'hostile-player': {
+    inject:
+      'A seated player who is everywhere at once (false times, a new anchor in every packet), and who changes body, voice, measures and seat with every message',
+    sees: 'Others see a head that goes no faster than heads do, and a few changes of a seat; the last one is what they end with',
+    target: '20 m/s, and one leap a second; half a change a second of each seat, after eight',
+    tests: ['tests/core/room/hostile-player.test.ts'],
+  },
   'unwanted-bodies': {
     inject: 'A body of 200 MB, announced or in chunks, for a page or a route that takes none or little',
     sees: 'The refusal is heard, and the connection ends instead of reading on',

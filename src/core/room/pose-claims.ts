@@ -1,6 +1,7 @@
 import { copyVec3, distance, setVec3, vec3 } from '../math/vec3';
 import { packetSecondsBetween } from '../protocol/packet-time';
 import type { PointsPacket } from '../protocol/pose-packet';
+import { TokenBucket } from './token-bucket';
 
 /** A player's pose is forgotten this long after it was sent [s]: movements identify people. With a tick to spare of 2 s. */
 export const poseMemory = 1.9;
@@ -12,6 +13,11 @@ const headTolerance = 0.1;
 const mostFresh = 16;
 /** What was refused for its speed is believed after this [s]: a device that lost its place has found it again. */
 const disbeliefSeconds = 1;
+/** A packet may give itself a time this far ahead of the room's clock [s]: the sender knows that clock up to half a round trip. */
+const mostAhead = 0.25;
+/** How often a space may be re-anchored, on average a second and at once: by snap turns, recentring and a change of devices. */
+const jumpsPerSecond = 1;
+const jumpsAtOnce = 4;
 
 /** What one seat claims of its poses, and what of that is believed. Times are the room clock's [s]. */
 export class PoseClaims {
@@ -24,6 +30,7 @@ export class PoseClaims {
   readonly #head = vec3(0, 0, 0);
   #isHeadKnown = false;
   #fresh: Uint8Array[] = [];
+  readonly #jumps = new TokenBucket(jumpsPerSecond, jumpsAtOnce);
 
   constructor(time: number) {
     this.#heardAt = time;
@@ -53,13 +60,15 @@ export class PoseClaims {
 
   /** Takes a packet in, and keeps its bytes until they are passed on, unless it is older than the newest one or its head is further from there than a person gets. */
   take(packet: PointsPacket, bytes: Uint8Array, time: number): 'believed' | 'old' | 'too-fast' {
-    const packetTime = time + packetSecondsBetween(time * 1000, packet.timeMs);
+    // A time from the future would be credit for a leap.
+    const packetTime = time + Math.min(packetSecondsBetween(time * 1000, packet.timeMs), mostAhead);
     const { position } = packet.pose.head;
     if (time - this.#heardAt <= disbeliefSeconds && this.#packetTime !== null) {
       const elapsed = packetTime - this.#packetTime;
       if (elapsed <= 0) return 'old';
       const reachable = headTolerance + fastestHead * elapsed;
-      if (this.#isHeadKnown && !packet.jump && distance(position, this.#head) > reachable) return 'too-fast';
+      const leaps = this.#isHeadKnown && distance(position, this.#head) > reachable;
+      if (leaps && !(packet.jump && this.#jumps.take(time))) return 'too-fast';
     }
     this.#packetTime = packetTime;
     copyVec3(position, this.#head);

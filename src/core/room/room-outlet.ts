@@ -9,6 +9,7 @@ export type ClientId = string;
 export type RoomReason =
   | 'too-fast'
   | 'occupied'
+  | 'too-often'
   | 'no-seat'
   | 'not-joined'
   | 'joined-already'

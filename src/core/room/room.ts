@@ -5,9 +5,11 @@ import type { PointsPacket } from '../protocol/pose-packet';
 import { plainAvatar, type WornAvatar } from '../protocol/worn-avatar';
 import { MatchClock } from './match-clock';
 import type { HostedGame, MatchPolicy } from './match-policy';
+import { sendEvents } from './room-events';
 import type { ClientId, RoomOutlet, RoomReason, RoomRefusal } from './room-outlet';
 import { RoomVoices } from './room-voices';
-import { type Client, type SeatCensus, Seats } from './seats';
+import { SeatNews } from './seat-news';
+import { allowedMoves, type Client, type SeatCensus, Seats } from './seats';
 
 export interface RoomOptions {
   readonly id: string;
@@ -49,22 +51,26 @@ export class Room<Game extends HostedGame> {
   readonly #seats: Seats;
   readonly #voices: RoomVoices;
   readonly #match: MatchClock<Game>;
+  readonly #news: SeatNews;
+  /** The newest time that the host has given [s]. */
+  #time = 0;
 
   constructor(policy: MatchPolicy<Game>, options: RoomOptions, outlet: RoomOutlet<Game>) {
     this.options = options;
     this.#policy = policy;
     this.#outlet = outlet;
     this.#match = new MatchClock(policy, {
-      happened: (events) => this.#sendEvents(events),
+      happened: this.#happened,
       paused: () => this.#broadcastClock('paused'),
       shifted: () => this.#broadcastClock('match-start'),
       restarted: () => outlet.broadcast({ type: 'match', match: this.#snapshot(), matchStart: this.#match.matchStart }),
       stepped: (actions) => outlet.stepped?.(actions),
     });
     this.#seats = new Seats(policy.seats, {
-      changed: (seat) => this.#broadcastSeat(seat),
+      changed: (seat) => this.#news.changed(seat, this.#time),
       act: (action) => this.#match.add(action),
     });
+    this.#news = new SeatNews(policy.seats, (seat) => this.#broadcastSeat(seat));
     this.#voices = new RoomVoices(this.#seats, options.voices === true, outlet);
   }
 
@@ -96,6 +102,7 @@ export class Room<Game extends HostedGame> {
 
   /** A new connection of a person whose identity the host has made sure of. Replaces an older one of theirs and takes their held seat. */
   join(client: ClientId, identity: string, joining: Joining, time: number): void {
+    this.#time = time;
     this.#match.begin(time);
     if (this.#clients.has(client)) {
       this.#refuse(client, 'message', 'joined-already');
@@ -105,7 +112,7 @@ export class Room<Game extends HostedGame> {
     const { name, calibration, bot, spectate } = joining;
     const avatar = this.options.assigned ? plainAvatar : joining.avatar;
     const voice = spectate ? null : this.#voices.admitted(identity, joining.voice);
-    const known: Client = { identity, name, bot, calibration, avatar, voice };
+    const known: Client = { identity, name, bot, calibration, avatar, voice, moves: allowedMoves() };
     this.#clients.set(client, known);
     const held = this.#seats.heldBy(identity);
     if (held !== null && !spectate) this.#seats.retake(held, client, known, time);
@@ -120,6 +127,7 @@ export class Room<Game extends HostedGame> {
 
   /** The connection is lost; the seat is held for 30 s. */
   disconnect(client: ClientId, time: number): void {
+    this.#time = time;
     const index = this.#seats.indexOf(client);
     if (!this.#clients.delete(client)) return;
     if (index !== null) {
@@ -134,6 +142,7 @@ export class Room<Game extends HostedGame> {
 
   /** bad: an action that is none of this game's. A message that asks for more than the client may have is taken, and refused. */
   onMessage(client: ClientId, message: Exclude<ClientMessage, { type: 'join' }>, time: number): 'taken' | 'bad' {
+    this.#time = time;
     const known = this.#clients.get(client);
     if (!known) {
       this.#refuse(client, 'message', 'not-joined');
@@ -160,7 +169,7 @@ export class Room<Game extends HostedGame> {
 
   /** Time alone changes nothing here: no match runs and no one is waited for. Until something comes, ticks are in vain. */
   get isStill(): boolean {
-    return this.#match.isStill && this.#seats.areStill;
+    return this.#match.isStill && this.#seats.areStill && this.#news.isComplete;
   }
 
   /** So long after a tick the next is of use, unless a message comes [s]. */
@@ -171,7 +180,9 @@ export class Room<Game extends HostedGame> {
   /** Steps the match as far as `time`, and says what happened. */
   tick(time: number): void {
     this.#match.begin(time);
+    this.#time = time;
     this.#seats.watch(time);
+    this.#news.tick(time);
     this.#match.step(time, this.#seats.wantPause);
   }
 
@@ -245,7 +256,7 @@ export class Room<Game extends HostedGame> {
     if (!action) return 'bad';
     const player = this.#seats.indexOf(client);
     if (player === null) this.#refuse(client, 'action', 'no-seat');
-    else if (this.paused) this.#sendEvents([this.#policy.refusalInPause(player, action)]);
+    else if (this.paused) this.#happened([this.#policy.refusalInPause(player, action)]);
     else this.#match.add({ ...action, player });
     return 'taken';
   }
@@ -290,9 +301,9 @@ export class Room<Game extends HostedGame> {
   #sit(client: ClientId, known: Client, wish: number | null, time: number): void {
     const index = this.#seats.indexOf(client);
     if (wish === index) return;
-    const occupied = wish !== null && !this.#seats.isFreeFor(wish, known.bot);
-    if (this.options.assigned || occupied) {
-      this.#refuse(client, 'sit', this.options.assigned ? 'assigned' : 'occupied');
+    const refusal = this.options.assigned ? 'assigned' : this.#seats.refusalOf(wish, known, time);
+    if (refusal) {
+      this.#refuse(client, 'sit', refusal);
       return;
     }
     if (index !== null) this.#vacate(index);
@@ -327,7 +338,7 @@ export class Room<Game extends HostedGame> {
 
   #vacate(index: number): void {
     this.#seats.vacate(index);
-    this.#broadcastSeat(index);
+    this.#news.changed(index, this.#time);
   }
 
   #dismiss(client: ClientId, reason: 'left' | 'replaced' | 'yielded'): void {
@@ -377,18 +388,8 @@ export class Room<Game extends HostedGame> {
     this.#outlet.broadcast(type === 'paused' ? { type, at: pausedAt, matchStart } : { type, matchStart });
   }
 
-  /** What happened goes to all, a refusal to the one whom it concerns. */
-  #sendEvents(events: readonly Game['event'][]): void {
-    const shared = events.filter((event) => !this.#policy.refusalOf(event));
-    if (shared.length > 0) this.#outlet.broadcast({ type: 'events', events: shared });
-    for (const event of events) {
-      const refusal = this.#policy.refusalOf(event);
-      const client = refusal && this.#seats.at(refusal.player)?.client;
-      if (!refusal || !client) continue;
-      this.#outlet.send(client, { type: 'events', events: [event] });
-      this.#outlet.refused({ client, seat: refusal.player, what: 'action', reason: refusal.reason });
-    }
-  }
+  readonly #happened = (events: readonly Game['event'][]): void =>
+    sendEvents(events, { policy: this.#policy, seats: this.#seats, outlet: this.#outlet });
 
   #refuse(client: ClientId, what: RoomRefusal['what'], reason: RoomReason): void {
     this.#outlet.refused({ client, seat: this.#seats.indexOf(client), what, reason });

@@ -5,11 +5,19 @@ import type { WornAvatar } from '../protocol/worn-avatar';
 import type { SeatAction } from '../tracking/seat-action';
 import { PoseClaims } from './pose-claims';
 import type { ClientId, FreshPose } from './room-outlet';
+import { TokenBucket } from './token-bucket';
 
 /** Seats are held this long after a connection is lost [s]. */
 export const seatHoldSeconds = 30;
 /** A player who is silent or without connection for this long [s] is away; without connection they leave the match as well. */
 export const awayAfter = 2.5;
+
+/** Moves to other seats, on average a second and at once: each takes a player out of the match and brings another in. */
+const movesPerSecond = 0.5;
+const movesAtOnce = 4;
+
+/** The moves that a client may make who has joined just now. */
+export const allowedMoves = (): TokenBucket => new TokenBucket(movesPerSecond, movesAtOnce);
 
 /** A client who has joined. */
 export interface Client {
@@ -20,6 +28,8 @@ export interface Client {
   calibration: Calibration;
   avatar: WornAvatar;
   voice: Voice | null;
+  /** Limits how often the client changes seats. */
+  readonly moves: TokenBucket;
 }
 
 /** One seat that is taken, with what its player told of themselves. */
@@ -131,6 +141,12 @@ export class Seats {
     if (index >= this.count) return false;
     const seat = this.#seats[index];
     return !seat || (seat.bot && !bot);
+  }
+
+  /** Why a client may not move to this seat, or among those who watch (null) at this time [s]; null: they may, and one move is spent. */
+  refusalOf(wish: number | null, { bot, moves }: Client, time: number): 'occupied' | 'too-often' | null {
+    if (wish !== null && !this.isFreeFor(wish, bot)) return 'occupied';
+    return moves.take(time) ? null : 'too-often';
   }
 
   /** A seat for a client who asks for this one or for any; null: none. People take a bot's seat where no other is free. */

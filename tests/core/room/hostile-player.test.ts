@@ -1,0 +1,122 @@
+import { describe, expect, test } from 'vitest';
+import { distance, type Vec3, vec3 } from '../../../src/core/math/vec3';
+import type { ClientMessage } from '../../../src/core/protocol/messages';
+import { packetMs } from '../../../src/core/protocol/packet-time';
+import { decodePoints } from '../../../src/core/protocol/pose-codec';
+import { decodeFrame } from '../../../src/core/protocol/pose-frame';
+import { fastestHead } from '../../../src/core/room/pose-claims';
+import { measured } from '../../reliability/measured';
+import { poseOf } from './posed-head';
+import { toldRoom } from './told-room';
+
+type SeatMessage = Exclude<ClientMessage, { type: 'join' }>;
+
+/** What the packet with this number, sent at this time [s], says of itself; null: none is sent. */
+type Claim = (i: number, time: number) => { readonly timeMs: number; readonly jump: boolean } | null;
+
+/** Speed [m/s] of a head as others see it, whose player sends forty packets a second from alternating ends of the room. */
+function seenSpeed(claim: Claim): number {
+  const told = toldRoom();
+  told.join('ann');
+  const seconds = 60;
+  for (let i = 0; i < 40 * seconds; i++) {
+    told.tick(1 / 40);
+    const claimed = claim(i, told.time);
+    if (!claimed) continue;
+    const { timeMs, jump } = claimed;
+    told.room.onPose('ann', poseOf({ head: vec3(i % 2 ? 7 : -7, 1.6, 0), timeMs: packetMs(timeMs), jump }), told.time);
+    told.room.sendPoses();
+  }
+  let way = 0;
+  let last: Vec3 | null = null;
+  for (const frame of told.frames) {
+    for (const { bytes } of decodeFrame(frame) ?? []) {
+      const { x, y, z } = decodePoints(bytes)!.pose.head.position;
+      const at = vec3(x, y, z);
+      if (last) way += distance(last, at);
+      last = at;
+    }
+  }
+  return way / seconds;
+}
+
+describe('a seated player who is everywhere at once', () => {
+  test.each<[string, Claim]>([
+    ['true times', (_, time) => ({ timeMs: time * 1000, jump: false })],
+    ['times far ahead', (_, time) => ({ timeMs: time * 1000 + 8000, jump: false })],
+    [
+      'times that run ahead, and a second of silence',
+      (i, time) => (i % 52 < 11 ? { timeMs: time * 1000 + (i % 52) * 735, jump: false } : null),
+    ],
+    ['a new anchor in every packet', (_, time) => ({ timeMs: time * 1000, jump: true })],
+  ])('is seen to go no faster than a head does, with %s', (what, claim) => {
+    const speed = seenSpeed(claim);
+    measured('hostile-player', { [`head, ${what} [m/s]`]: speed });
+    // A leap between the ends of the room is let through about once a second.
+    expect(speed).toBeLessThan(fastestHead + 14 * 1.2);
+  });
+});
+
+/** What others are sent of a seat. */
+const seatMessages = (told: ReturnType<typeof toldRoom>, seat: number) =>
+  told.said.flatMap(({ message }) => (message.type === 'seat' && message.seat === seat ? [message] : []));
+
+describe('a seated player who changes with every message', () => {
+  const hash = (i: number) => String(i).padStart(43, '0');
+  const session = (i: number) => `session-${i}`;
+  const changes: readonly [string, (i: number) => SeatMessage][] = [
+    ['bodies', (i) => ({ type: 'wear', avatar: hash(i) })],
+    ['voices', (i) => ({ type: 'voice', voice: { session: session(i), muted: i % 2 === 0 } })],
+    ['measures', (i) => ({ type: 'calibration', calibration: { eyeHeight: 1 + (i % 1000) / 1000, armSpan: 1.5 } })],
+    ['presences', (i) => ({ type: 'away', away: i % 2 === 0 })],
+  ];
+  const attackSeconds = 10;
+  const perSecond = 1000;
+
+  test.each(changes)('is seen in a few of a thousand %s a second, and at the end as they are', (what, change) => {
+    const told = toldRoom({ voices: true });
+    told.join('ann');
+    told.join('ben');
+    told.said.length = 0;
+    for (let i = 0; i < attackSeconds * perSecond; i++) {
+      told.room.onMessage('ann', change(i), told.time);
+      told.tick(1 / perSecond);
+    }
+    const sent = seatMessages(told, 0).length;
+    measured('hostile-player', { [`${what} sent on, of ${attackSeconds * perSecond} in ${attackSeconds} s`]: sent });
+    expect(sent).toBeLessThanOrEqual(8 + attackSeconds / 2 + 1);
+    expect(told.room.isStill).toBe(false);
+    told.pass(2.1);
+    const { seats } = told.join('cal');
+    expect(seatMessages(told, 0).at(-1)?.info).toEqual(seats[0]);
+  });
+
+  test('is seated elsewhere a few times, and each attempt beyond is refused', () => {
+    const told = toldRoom();
+    told.join('ann');
+    told.join('ben', { seat: 2 });
+    told.said.length = 0;
+    const attempts = attackSeconds * perSecond;
+    for (let i = 0; i < attempts; i++) {
+      told.room.onMessage('ann', { type: 'sit', seat: i % 2 === 0 ? 1 : 0 }, told.time);
+      told.tick(1 / perSecond);
+    }
+    const moves = told.said.filter(({ message }) => message.type === 'seated').length;
+    measured('hostile-player', { [`moves of ${attempts} in ${attackSeconds} s`]: moves });
+    expect(moves).toBeLessThanOrEqual(4 + attackSeconds / 2 + 1);
+    expect(told.refusals.filter(({ reason }) => reason === 'too-often').length).toBeGreaterThan(attempts / 3);
+    expect(told.room.census).toMatchObject({ players: 2, free: 1 });
+    expect(told.said.length).toBeLessThan(150);
+  });
+
+  test('takes nothing from the changes of another seat', () => {
+    const told = toldRoom();
+    told.join('ann');
+    told.join('ben');
+    for (let i = 0; i < 100; i++) told.room.onMessage('ann', { type: 'wear', avatar: hash(i) }, told.time);
+    told.said.length = 0;
+    told.room.onMessage('ben', { type: 'wear', avatar: 'woman' }, told.time);
+    expect(seatMessages(told, 1)).toHaveLength(1);
+    expect(seatMessages(told, 0)).toHaveLength(0);
+  });
+});
