@@ -9,6 +9,7 @@ import type { RelayConfiguration } from './relay-configuration';
 import type { RelayCounts } from './relay-metrics';
 import { hangUp } from './relay-transport';
 import type { RoomPass } from './room-tokens';
+import { mostBytesWaiting } from './slow-readers';
 import { createTokenBucket, type TokenBucket } from './token-bucket';
 
 /** A connection with a pass, before and after it joins its room. */
@@ -26,19 +27,12 @@ export interface Guest {
   readonly signals: TokenBucket;
   joined: boolean;
   badMessages: number;
-  /** The last time that the connection could take a frame [s]. */
-  writableAt: number;
   ended: boolean;
 }
 
 /** Two pages that connect need a dozen signals, and begin anew after a lost network; a page may have five others to connect to. */
 const signalsPerSecond = 20;
 const signalsAtOnce = 80;
-/** A connection that could take no frame for this long [s], or has this many packets waiting, is too slow. */
-const slowSeconds = 5;
-const mostWaiting = 256;
-/** A connection may have so many bytes waiting and still be sent poses: one that encrypts takes a moment for each write. */
-const mostBytesWaiting = 4096;
 
 /** `now`: seconds, monotonic. */
 export const createGuest = (
@@ -56,7 +50,6 @@ export const createGuest = (
   signals: createTokenBucket(signalsPerSecond, signalsAtOnce),
   joined: false,
   badMessages: 0,
-  writableAt: now,
   ended: false,
 });
 
@@ -70,18 +63,6 @@ export function dismiss(guest: Guest, reason: Farewell): void {
   guest.ended = true;
   tell(guest, { type: 'farewell', reason });
   hangUp(guest.socket);
-}
-
-/** Packets that wait for the connection to take them. */
-const packetsWaiting = (conn: Socket['conn']): number =>
-  // reason: private in the types, yet the only count there is: the socket's own buffer shows 16 KiB at most.
-  (conn as unknown as { readonly writeBuffer: readonly unknown[] }).writeBuffer.length;
-
-/** Whether this guest reads too slowly to take part; asked again and again, `now` in seconds. */
-export function isSlow(guest: Guest, now: number): boolean {
-  const { conn } = guest.socket;
-  if (conn.transport.writable && guest.wire.writableLength <= mostBytesWaiting) guest.writableAt = now;
-  return now - guest.writableAt > slowSeconds || packetsWaiting(conn) > mostWaiting;
 }
 
 /** The packets of all seats but one as a binary WebSocket message, unmasked, ready for the wire; null: there are none. */

@@ -1,6 +1,6 @@
 import { createAdapter } from '@socket.io/redis-adapter';
 import type { Redis } from 'ioredis';
-import type { Server } from 'socket.io';
+import type { Server, Socket } from 'socket.io';
 import { Adapter } from 'socket.io-adapter';
 import type { RoomListing } from './hosted-rooms';
 import type { Lobby } from './lobby';
@@ -44,7 +44,14 @@ export class LobbyHall {
     const { io, lobby, channel, endRoom } = options;
     if (channel) shareNamespace(io, channel);
     this.#hall = io.of(lobbyNamespace);
+    // A list is a thousand times as long as the question for it.
+    const answered = new WeakSet<Socket['conn']>();
     this.#hall.on('connection', (socket) => {
+      if (answered.has(socket.conn)) {
+        socket.disconnect(true);
+        return;
+      }
+      answered.add(socket.conn);
       void lobby.list().then((all) => socket.emit('rooms', all));
       socket.onAny(() => socket.disconnect(true));
     });

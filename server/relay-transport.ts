@@ -15,17 +15,21 @@ import type { RelayConfiguration } from './relay-configuration';
 import type { RelayMetrics } from './relay-metrics';
 import { type ReceivingWebSocket, takeShortMessages } from './short-messages';
 import { createSitePolicy } from './site-policy';
+import { SlowReaders } from './slow-readers';
 import { createTokenBucket } from './token-bucket';
 import { handshakeMs } from './web-server';
 
 /** Where the relay is found on its server. */
 export const relayPath = '/relay';
 
+/** Why the transport ends a connection that harms others: it sent more than `framesPerSecond`, or reads too slowly. */
+export type WireFault = 'flood' | 'slow';
+
 /** What is heard of a connection below socket.io. */
 export interface WireListener {
   onPose(bytes: Uint8Array): void;
-  /** More came than `framesPerSecond`: no more is heard, and the connection ends after this. */
-  onFlood(): void;
+  /** No more is heard, and the connection ends after this. */
+  onFault(fault: WireFault): void;
 }
 
 /**
@@ -34,7 +38,6 @@ export interface WireListener {
  * network for 5 s at once.
  */
 const framesPerSecond = 300;
-
 /** WebSockets below the rooms: who may open one, and how all of them end. */
 export interface RelayTransport {
   readonly io: Server;
@@ -137,19 +140,22 @@ export function createRelayTransport(
   const io = new Server({ serveClient: false, connectTimeout: handshakeMs, parser: relayParser });
   io.bind(engine);
   const listeners = new WeakMap<Socket['conn'], WireListener>();
+  function end(conn: Socket['conn'], fault: WireFault): void {
+    const listener = listeners.get(conn);
+    if (listener) listener.onFault(fault);
+    else {
+      metrics.kicked(fault);
+      log.warn({ because: fault }, 'a connection without a place was ended');
+    }
+    // A guest who has left the rooms may still have the connection.
+    conn.close();
+    destroySoon(conn.request.socket);
+  }
+  const slowReaders = new SlowReaders(now, (conn) => end(conn, 'slow'));
   engine.on('connection', (conn: Socket['conn']) => {
     const raw = conn.request.socket;
-    const take = createFloodWatch(now, () => {
-      const listener = listeners.get(conn);
-      if (listener) listener.onFlood();
-      else {
-        metrics.kicked('flood');
-        log.warn('a connection without a place flooded the relay');
-      }
-      // A guest who has left the rooms may still have the connection.
-      conn.close();
-      destroySoon(raw);
-    });
+    slowReaders.watch(conn);
+    const take = createFloodWatch(now, () => end(conn, 'flood'));
     divert(conn, take, (bytes) => {
       const listener = listeners.get(conn);
       if (listener) listener.onPose(bytes);
@@ -197,6 +203,7 @@ export function createRelayTransport(
       return true;
     },
     close() {
+      slowReaders.stop();
       io.disconnectSockets(true);
       engine.close();
     },

@@ -4,7 +4,7 @@ import type { Server, Socket } from 'socket.io';
 import { messageEvent } from '../src/core/protocol/small-frames';
 import type { HostedGame } from '../src/core/room/match-policy';
 import type { Room } from '../src/core/room/room';
-import { createGuest, dismiss, type Guest, isSlow } from './guest';
+import { createGuest, dismiss, type Guest } from './guest';
 import { GuestMessages } from './guest-messages';
 import { createHostedRooms, type RoomListing } from './hosted-rooms';
 import type { RelayConfiguration } from './relay-configuration';
@@ -39,7 +39,7 @@ export interface SocketHost {
 
 /** A guest who has not joined a room this long after connecting is disconnected [s]. */
 const joinPatience = 5;
-/** Guests who do harm, and rooms that are empty, are looked for this often [ms]. */
+/** Guests who join nothing, and rooms that are empty, are looked for this often [ms]. */
 const sweepMs = 1000;
 /** Connections a minute that one person may make. */
 const connectsPerMinute = 30;
@@ -97,7 +97,7 @@ export function createSocketHost({ io, listen, close }: RelayTransport, options:
     guests.add(guest);
     listen(socket, {
       onPose: (bytes) => messages.onPose(guest, bytes),
-      onFlood: () => messages.kick(guest, 'misbehaved', 'flood'),
+      onFault: (fault) => messages.kick(guest, fault === 'slow' ? 'slow' : 'misbehaved', fault),
     });
     socket.on(messageEvent, (value: unknown) => messages.onMessage(guest, value));
     socket.onAny((event: string) => {
@@ -114,9 +114,8 @@ export function createSocketHost({ io, listen, close }: RelayTransport, options:
   const sweeping = setInterval(() => {
     const at = now();
     for (const guest of guests) {
-      if (guest.ended) continue;
-      if (isSlow(guest, at)) messages.kick(guest, 'slow', 'slow');
-      else if (!guest.joined && at - guest.connectedAt > joinPatience) messages.kick(guest, 'misbehaved', 'no-join');
+      const waitsToJoin = !guest.ended && !guest.joined;
+      if (waitsToJoin && at - guest.connectedAt > joinPatience) messages.kick(guest, 'misbehaved', 'no-join');
     }
     rooms.sweep(at);
   }, sweepMs);

@@ -1,5 +1,6 @@
 import { expect, onTestFinished, test } from 'vitest';
 import { WebSocket } from 'ws';
+import { lobbyNamespace } from '../../server/lobby-hall';
 import { rawGuest, startRelay, until } from './running-relay';
 
 /** More than any connection may send at once, by far. */
@@ -63,4 +64,43 @@ test('a guest who has left the rooms and floods the relay is thrown out too', as
   engine.write('1["/"]');
   for (let i = 0; i < frames; i++) engine.write('3["/",[],1]');
   await until('the end of the flood', () => guest.closedAt !== null, 5);
+});
+
+/** What a fleet with some hundred rooms sends of them. */
+const longList = Array.from({ length: 600 }, (_, i) => ({ room: `a-room-of-the-fleet-${i}`, kind: 'ball', free: 3 }));
+
+test('a listener of the lobby who answers pings and reads nothing is thrown out', async () => {
+  const relay = await startRelay();
+  onTestFinished(() => relay.close());
+  const guest = await rawGuest(relay.url, 'beside');
+  onTestFinished(() => void guest.socket.disconnect());
+  const socket = await stranger(relay.url);
+  socket.pause();
+  const answering = setInterval(() => socket.send('3'), 500);
+  onTestFinished(() => clearInterval(answering));
+  const hall = relay.relay.host.io.of(lobbyNamespace);
+  const changing = setInterval(() => hall.local.emit('node', { node: 'one', rooms: longList }), 5);
+  onTestFinished(() => clearInterval(changing));
+  await until('the end of the one who reads nothing', () => relay.relay.census.sockets === 1, 15);
+  expect(guest.closedAt).toBeNull();
+  expect(await (await fetch(`${relay.url}/metrics`)).text()).toContain('threepoint_kicks_total{reason="slow"} 1');
+});
+
+test('a connection is sent the list of rooms once: who asks for it again is thrown out', async () => {
+  const relay = await startRelay();
+  onTestFinished(() => relay.close());
+  const socket = await stranger(relay.url);
+  const ended = new Promise((resolve) => socket.once('close', resolve));
+  socket.send('41["/lobby"]');
+  // The pong comes after the relay has taken in that the lobby was left.
+  socket.ping();
+  await new Promise((resolve) => socket.once('pong', resolve));
+  const lists: string[] = [];
+  socket.on('message', (received: Buffer) => lists.push(received.toString()));
+  const asked = performance.now();
+  socket.send('40["/lobby"]');
+  await ended;
+  // A connection that says nothing is ended after seven seconds: this was not.
+  expect(performance.now() - asked).toBeLessThan(3000);
+  expect(lists.filter((text) => text.includes('"rooms"'))).toEqual([]);
 });
