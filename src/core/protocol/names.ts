@@ -10,16 +10,24 @@ const utf8Bytes = (character: string): number => {
   return code < 0x10000 ? 3 : 4;
 };
 
+/** Control characters, unassigned ones, those that turn the direction of writing, and those that draw nothing: fillers, selectors, U+2800. */
+const unseen = /[\p{Cc}\p{Cf}\p{Cs}\p{Co}\p{Cn}\p{Default_Ignorable_Code_Point}\u2800]/gu;
+/** Marks beyond the third on a letter: no language needs more, and heaps of them cover other text. */
+const heapedMarks = /(?<=\p{M}{3})\p{M}+/gu;
+const leadingMarks = /^[\p{M} ]+/u;
+
 /**
- * What a person calls themselves as plain text: no control characters, nothing that turns the direction of writing or cannot be
- * seen, single spaces, at most 20 characters. Empty where nothing is left.
+ * A participant's name as plain text: no control characters, nothing that turns the direction of writing or cannot be seen, three marks on a
+ * letter, single spaces, at most 20 characters. Empty where nothing is left.
  */
 export function cleanName(name: string): string {
   const visible = name
-    .normalize('NFC')
     .replace(/[\s\p{Zl}\p{Zp}]+/gu, ' ')
-    .replace(/[\p{Cc}\p{Cf}\p{Cs}\p{Co}\p{Cn}]/gu, '')
+    .replace(unseen, '')
+    .normalize('NFC')
+    .replace(heapedMarks, '')
     .replace(/ +/g, ' ')
+    .replace(leadingMarks, '')
     .trim();
   let kept = '';
   let bytes = 0;

@@ -158,8 +158,27 @@ describe('control messages', () => {
         expect(Buffer.byteLength(name)).toBeLessThanOrEqual(40);
         expect(name).toBe(name.trim());
         expect(cleanName(name)).toBe(name);
+        // Every character stands on a line of its own height.
+        expect(name).not.toMatch(/^\p{M}|\p{M}{4}/u);
       }),
     );
+  });
+
+  test.each([
+    ['Hangul fillers', '\u3164\u115f\u1160\uffa0'],
+    ['an empty Braille cell', '\u2800'],
+    ['joiners and selectors', '\u034f\u180b\ufe0f\u{e0100}'],
+    ['marks without a letter', '\u0301 \u0301'],
+  ])('a name of %s alone is none, and among letters they are left out', (_, odd) => {
+    expect(cleanName(odd)).toBe('');
+    expect(cleanName(`${odd}Ann${odd.replace(/\u0301/g, '')}`)).toBe('Ann');
+  });
+
+  test('marks are not heaped on a letter', () => {
+    expect(cleanName(`Z${'\u0335'.repeat(15)}a`)).toBe(`Z${'\u0335'.repeat(3)}a`);
+    // Three are more than a language needs.
+    expect(cleanName('हिन्दी')).toBe('हिन्दी');
+    expect(cleanName('Nguyễn')).toBe('Nguyễn');
   });
 });
 
