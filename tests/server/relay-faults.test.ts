@@ -13,9 +13,8 @@ import { collectGarbage } from '../collect-garbage';
 import { fists, holding, opening, releaseOf, visitor } from '../net/people';
 import { isNightly } from '../nightly';
 import { percentile, tell } from '../tell';
-import { expectPromised } from './promised-time';
 import { forkRelay } from './relay-child';
-import { arrive, pause, poseBytes, rawGuest, seconds, startRelay, testSecret, tokenFor, until } from './running-relay';
+import { arrive, poseBytes, rawGuest, seconds, startRelay, testSecret, tokenFor, until } from './running-relay';
 import { createSlowWay } from './slow-way';
 
 const endings: (() => unknown)[] = [];
@@ -48,13 +47,14 @@ async function threePlay(urls: readonly string[], room = 'game') {
   return people;
 }
 
-test('the relay is killed in the middle of a game and restarted after 3 s: all players are back, the round is marked void', async () => {
+test('the relay is killed in the middle of a game and restarted when all have tried again: all are back, the round is marked void', async () => {
   const relay = await relayApart();
   const people = await threePlay([relay.url]);
   const seats = people.map(({ seat }) => seat);
   await relay.kill();
-  await until('all to notice', () => people.every(({ connection }) => connection.status.phase === 'reconnecting'));
-  await pause(3);
+  await until('all to have tried again', () =>
+    people.every(({ connection: { status } }) => status.reason === 'unreachable' && status.attempt > 1),
+  );
   const again = await relayApart({}, relay.port);
   const restarted = performance.now();
   const back: number[] = [];
@@ -66,7 +66,7 @@ test('the relay is killed in the middle of a game and restarted after 3 s: all p
   );
   await until('the news', () => people.every(({ news }) => news.includes('voided')));
   tell('relay killed', { 'rejoined after [s]': percentile(back, 0.95), port: again.port });
-  expectPromised(percentile(back, 0.95), 5);
+  expect(percentile(back, 0.95)).toBeLessThan(5);
   expect(people.map(({ seat }) => seat)).toEqual(seats);
   expect(people.map(({ connection }) => connection.room?.voided)).toEqual([1, 1, 1]);
   expect(people.map(({ match }) => match.phase)).toEqual(['ready', 'ready', 'ready']);
@@ -89,6 +89,7 @@ test('100 ms ± 30 ms with 2 % of losses: a thrower behind it plays on', async (
   // What this machine itself holds up says nothing about the way: a frame that comes late, and a second after it, are counted apart.
   const stalls: number[] = [];
   const held: number[] = [];
+  const calmFrames = () => held.reduce((sum, stalled) => sum + 1 - stalled, 0);
   const frozen = people.map(() => new Map<number, { freezes: number; counted: number }>());
   people.forEach((someone, i) => {
     let last: number | null = null;
@@ -107,7 +108,8 @@ test('100 ms ± 30 ms with 2 % of losses: a thrower behind it plays on', async (
       }
     });
   });
-  await pause(lasting);
+  // A machine that is busy with something else is watched for longer, until it has been calm for so many frames.
+  await until('frames without a stall', () => calmFrames() >= 60 * lasting, 10 * lasting + 30);
   const [behind, near, nearToo] = [0, 1, 2] as const;
   const seatOf = (index: number) => people[index]!.seat;
   const freezes = (watcher: number, watched: number) => frozen[watcher]?.get(seatOf(watched));
@@ -120,28 +122,26 @@ test('100 ms ± 30 ms with 2 % of losses: a thrower behind it plays on', async (
     'machine busy [%]': 100 * busy,
     'delay of playback [ms]': 1000 * (watching[behind]?.report(seatOf(near))?.delay ?? 0),
   });
-  // A machine that is busier than this tells nothing.
-  expectPromised(busy, 0.9);
   // Less than one a minute, and one that a run may end with.
-  for (const pair of pairs) expect(pair?.counted).toBeLessThanOrEqual(1 + (lasting / 60) * (1 - busy));
+  for (const pair of pairs) expect(pair?.counted).toBeLessThanOrEqual(1 + lasting / 60);
   expect(people[0]?.connection.status.phase).toBe('joined');
 });
 
-test('a connection that is gone for 5 s comes back to its seat with one snapshot, within a second', async () => {
+test('a connection that is gone until its player has left the match comes back to its seat with one snapshot, within a second', async () => {
   const server = await relayHere();
   const way = ending(await createSlowWay(server.port), ({ close }) => close());
   const [ann, ben] = await threePlay([way.url, server.url]);
   const { seat } = ann!;
   const welcomes = ann!.news.filter((word) => word === 'welcome').length;
   way.cut();
-  await pause(5);
+  await until('the player to have left the match', () => ben!.match.players[seat]?.present === false);
   expect(ben!.connection.room?.seats[seat]?.presence).toBe('gone');
   way.reopen();
   await until('being back', () => ann!.connection.status.phase === 'joined');
   const resync = performance.now() - (way.acceptedAt ?? 0);
   await until('the others to see it', () => ben!.connection.room?.seats[seat]?.presence === 'here');
-  tell('5 s without connection', { 'resync [ms]': resync });
-  expectPromised(resync, 1000);
+  tell('a while without connection', { 'resync [ms]': resync });
+  expect(resync).toBeLessThan(1000);
   expect(ann!.seat).toBe(seat);
   expect(ann!.connection.room?.match?.phase).toBe('running');
   await until('the snapshot', () => ann!.news.filter((word) => word === 'welcome').length > welcomes);
@@ -188,9 +188,9 @@ test('500 clients reconnect at once', async () => {
     'max [ms]': lagMaxMs,
     "an idle process's p99 [ms]": machine.lagP99Ms,
   });
-  expectPromised(took, 15);
+  expect(took).toBeLessThan(15);
   // 100 ms are the promise. Where an idle process waits too, five hundred clients share its cores: then much more.
-  expectPromised(lagP99Ms, 100 + 20 * Math.max(0, machine.lagP99Ms - 10));
+  expect(lagP99Ms).toBeLessThan(100 + 20 * Math.max(0, machine.lagP99Ms - 10));
 }, 120_000);
 
 /** A player in a room of sixteen seats who sends thirty poses a second, and when they heard of others. */
@@ -253,7 +253,7 @@ test('a reader that stalls is kicked within 10 s, and the others do not notice',
   const before = await relay.measure();
   stalled.pause();
   const start = seconds();
-  for (const { gaps } of movers) gaps.length = 0;
+  const calm = movers.flatMap(({ gaps }) => gaps.splice(0));
   await until('the kick', () => slowSeat()?.info?.[4] === 2, 30);
   const kicked = seconds() - start;
   const after = await relay.measure();
@@ -265,10 +265,11 @@ test('a reader that stalls is kicked within 10 s, and the others do not notice',
     "its process's memory grew by [MB]": (after.rssBytes - before.rssBytes) / 2 ** 20,
     "others' frames p95 apart [ms]": percentile(gaps, 0.95),
   });
-  expectPromised(kicked, 10);
+  expect(kicked).toBeLessThan(10);
   // What is held for the stalled one is promised; a young process's memory grows by itself.
   expect(grown).toBeLessThan(5);
-  expectPromised(percentile(gaps, 0.95), 100);
+  // 100 ms, or three times what they were apart before on a machine that is busy.
+  expect(percentile(gaps, 0.95)).toBeLessThan(Math.max(100, 3 * percentile(calm, 0.95)));
 });
 
 describe('abuse', () => {
@@ -318,8 +319,8 @@ describe('abuse', () => {
     stormy.push(...watcher.gaps, ...other.gaps);
     const slower = percentile(stormy, 0.95) - percentile(calm, 0.95);
     tell('abuse ended after', { ...figures, "others' p95 later by [ms]": slower });
-    for (const time of Object.values(figures)) expectPromised(time, 1000);
-    expectPromised(slower, 40);
+    for (const [attack, time] of Object.entries(figures)) expect(time, attack).toBeLessThan(1000);
+    expect(slower).toBeLessThan(Math.max(40, percentile(calm, 0.95)));
     expect(watcher.closedAt).toBeNull();
   });
 
