@@ -239,6 +239,13 @@ export const attackRows = {
     target: '20 m/s, and one leap a second; half a change a second of each seat, after eight',
     tests: ['tests/core/room/hostile-player.test.ts'],
   },
+  'voice-signals': {
+    inject:
+      'A seated player signals a video, a channel of data, a second voice, control bytes or an address that belongs to no part to the page of another',
+    sees: 'Neither room nor page takes it: no browser is given more than one voice, and none fails at it',
+    target: '0 passed on; messages to the voices of another room 0',
+    tests: ['tests/core/protocol/messages.test.ts', 'tests/server/voices.test.ts'],
+  },
   'unwanted-bodies': {
     inject: 'A body of 200 MB, announced or in chunks, for a page or a route that takes none or little',
     sees: 'The refusal is heard, and the connection ends instead of reading on',

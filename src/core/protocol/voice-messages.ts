@@ -22,20 +22,36 @@ export const unpackVoice = (packed: PackedVoice): Voice | null =>
 export const longestDescription = 3200;
 export const mostCandidates = 8;
 
-/** One address at which a page may be reached; as RTCIceCandidateInit has it. */
-const candidate = v.strictObject({
-  candidate: v.pipe(v.string(), v.maxLength(300)),
-  sdpMid: v.nullable(v.pipe(v.string(), v.maxLength(16))),
-  sdpMLineIndex: v.nullable(v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(7))),
-  usernameFragment: v.nullable(v.pipe(v.string(), v.maxLength(256))),
-});
+/** Text as browsers write it into a signal: one line, or with ends of lines. */
+const line = /^[\x20-\x7e]*$/;
+const lines = /^[\x20-\x7e\t\r\n]*$/;
 
-/** What two pages tell each other to set up the connection between them: what it is to carry, or where they may be reached. */
+/** Whether a description is of a voice and of nothing else: no video, no channel of data, no second voice. */
+const isOneVoice = (sdp: string): boolean => {
+  const [first, ...more] = sdp.split(/[\r\n]+/).filter((text) => text.startsWith('m='));
+  return more.length === 0 && (first === undefined || first.startsWith('m=audio '));
+};
+
+/** One address at which a page may be reached; as RTCIceCandidateInit has it, which belongs to a part of the description. */
+const candidate = v.pipe(
+  v.strictObject({
+    candidate: v.pipe(v.string(), v.maxLength(300), v.regex(line)),
+    sdpMid: v.nullable(v.pipe(v.string(), v.maxLength(16), v.regex(line))),
+    sdpMLineIndex: v.nullable(v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(7))),
+    usernameFragment: v.nullable(v.pipe(v.string(), v.maxLength(256), v.regex(line))),
+  }),
+  v.check(({ sdpMid, sdpMLineIndex }) => sdpMid !== null || sdpMLineIndex !== null),
+);
+
+/**
+ * What two pages tell each other to set up the connection between them: what it is to carry, or where they may be reached. A browser takes more
+ * than a voice, and fails with a fault of the page at what belongs to no part: the room passes neither on, and no page reads it.
+ */
 const signalBody = v.union([
   v.strictObject({
     description: v.strictObject({
       type: v.picklist(['offer', 'answer']),
-      sdp: v.pipe(v.string(), v.maxLength(longestDescription)),
+      sdp: v.pipe(v.string(), v.maxLength(longestDescription), v.regex(lines), v.check(isOneVoice)),
     }),
   }),
   v.strictObject({ candidates: v.pipe(v.array(candidate), v.minLength(1), v.maxLength(mostCandidates)) }),

@@ -17,6 +17,7 @@ import { poseVersion } from '../../../src/core/protocol/pose-packet';
 import { pageParser, relayParser, type SocketPacket } from '../../../src/core/protocol/small-frames';
 import { longestDescription, mostCandidates } from '../../../src/core/protocol/voice-messages';
 import { ownAvatarOf, ownBodies, plainAvatar, skinTones } from '../../../src/core/protocol/worn-avatar';
+import { measured } from '../../reliability/measured';
 import { noPackets } from './no-packets';
 
 const fileHash = createHash('sha256').update('a bear').digest('base64url');
@@ -32,7 +33,8 @@ const join = {
   avatar: plainAvatar,
   voice: null,
 };
-const signal = { type: 'signal', to: 'bens-page', body: { description: { type: 'offer', sdp: 'v=0' } } };
+const sdp = 'v=0\r\no=- 1 2 IN IP4 127.0.0.1\r\nm=audio 9 UDP/TLS/RTP/SAVPF 111\r\na=mid:0\r\n';
+const signal = { type: 'signal', to: 'bens-page', body: { description: { type: 'offer', sdp } } };
 const address = { candidate: '', sdpMid: '0', sdpMLineIndex: 0, usernameFragment: null };
 const throwing = {
   type: 'throw',
@@ -111,6 +113,31 @@ describe('control messages', () => {
     ['action number zero', { type: 'action', action: { ...throwing, sequence: 0 } }],
   ])('%s is refused', (_what, message) => {
     expect(readInBallRoom(message)).toBeNull();
+  });
+
+  test('a signal that is more than a voice, or breaks a browser, is passed on by no room and read by no page', () => {
+    const descriptions = [
+      ['a video', 'v=0\r\nm=video 9 UDP/TLS/RTP/SAVPF 96\r\n'],
+      ['a channel of data', 'v=0\r\nm=application 9 UDP/DTLS/SCTP webrtc-datachannel\r\n'],
+      ['two voices', 'v=0\r\nm=audio 9 RTP/SAVPF 111\r\nm=audio 9 RTP/SAVPF 111\r\n'],
+      ['a video behind an old end of line', 'v=0\rm=video 9 RTP/SAVPF 96\r'],
+      ['control characters', 'v=0\r\ns=\u0000\u001b[2J\r\n'],
+      ['half a character', 'v=0\r\ns=\ud800\r\n'],
+    ].map(([what, odd]) => ({ what, body: { description: { type: 'offer', sdp: odd } } }));
+    const addresses = [
+      ['belongs to no part', { ...address, sdpMid: null, sdpMLineIndex: null }],
+      ['has two lines', { ...address, candidate: 'a\r\nm=video' }],
+      ['is of a part called by a control character', { ...address, sdpMid: '\u0000' }],
+      ['has a name that is half a character', { ...address, usernameFragment: '\udc00' }],
+    ].map(([what, odd]) => ({ what, body: { candidates: [odd] } }));
+    let refused = 0;
+    for (const { what, body } of [...descriptions, ...addresses]) {
+      expect(clientMessageFrom({ ...signal, body }), `${what}`).toBeNull();
+      expect(ballRoomMessageFrom({ type: 'signal', from: 'bens-page', body }), `${what}`).toBeNull();
+      refused += 1;
+    }
+    expect(ballRoomMessageFrom({ type: 'signal', from: 'bens-page', body: signal.body })).not.toBeNull();
+    measured('voice-signals', { 'signals refused': `${refused} of ${descriptions.length + addresses.length}` });
   });
 
   test('no value at all makes a reader throw', () => {
