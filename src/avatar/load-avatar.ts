@@ -4,6 +4,7 @@ import { type GLTF, GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js'
 import { reasonOf } from '../core/errors/reasons';
 import type { Decoders } from './decoders/decoder-set';
 import type { CheckedAvatar } from './file/check-avatar';
+import { validExpressionBinds } from './file/expression-binds';
 import { chunksOf } from './file/glb-chunks';
 import { inspectAvatar } from './file/inspect-avatar';
 import { makeGeometryPlain } from './file/plain-geometry';
@@ -47,6 +48,7 @@ export async function parseChecked(
 ): Promise<LoadedAvatar> {
   const loader = new GLTFLoader();
   for (const extension of packed) await decoders[extension]?.(loader);
+  loader.register(validExpressionBinds);
   loader.register((parser) => new VRMLoaderPlugin(parser));
   const chunks = chunksOf(new Uint8Array(bytes))!;
   loader.register(viewsOfFile(chunks.binary, file));

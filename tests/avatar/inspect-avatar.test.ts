@@ -160,6 +160,16 @@ const attempts: readonly (readonly [string, () => ArrayBuffer, RegExp])[] = [
       }),
     /no VRM or GLB file/,
   ],
+  [
+    'a description without an end to its depth',
+    () =>
+      changed((json) => {
+        let deep: unknown[] = [];
+        for (let i = 0; i < 500; i++) deep = [deep];
+        json.extras = deep;
+      }),
+    /person\.vrm: no VRM or GLB file \(is nested deeper than 64 levels\)/,
+  ],
 ];
 
 let refused = 0;

@@ -239,6 +239,12 @@ export const attackRows = {
     target: '20 m/s, and one leap a second; half a change a second of each seat, after eight',
     tests: ['tests/core/room/hostile-player.test.ts'],
   },
+  'mutated-avatars': {
+    inject: '100,000 files of avatars with bits, lengths and values of their description changed (3,000 by day)',
+    sees: 'A sentence that names the file, from the check or from the reader, or a body of finite numbers',
+    target: '0 exceptions without a sentence, 0 numbers that are none',
+    tests: ['tests/avatar/mutated-files.test.ts', 'tests/avatar/inspect-avatar.test.ts'],
+  },
   'voice-signals': {
     inject:
       'A seated player signals a video, a channel of data, a second voice, control bytes or an address that belongs to no part to the page of another',

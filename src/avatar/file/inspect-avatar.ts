@@ -88,13 +88,23 @@ const isFbx = (bytes: Uint8Array, name: string): boolean =>
 const fbxAdvice =
   'is an FBX file, which this page does not read; Blender makes a GLB of it: File › Import › FBX, then File › Export › glTF 2.0 (.glb)';
 
-/** Every address in the file: each value that is called `uri`, at any depth, extensions included. */
-function urisIn(value: unknown): string[] {
-  if (Array.isArray(value)) return value.flatMap(urisIn);
-  if (value === null || typeof value !== 'object') return [];
-  return Object.entries(value).flatMap(([key, inner]) =>
-    key === 'uri' && typeof inner === 'string' ? [inner] : urisIn(inner),
-  );
+/** No description of a body is nested this deep; a reader that follows one that is runs out of stack. */
+const deepestNesting = 64;
+
+/** Every address in the file: each value that is called `uri`, at any depth, extensions included. Throws where there is no end to the depth. */
+function urisIn(json: unknown): string[] {
+  const uris: string[] = [];
+  const waiting: { readonly value: unknown; readonly depth: number }[] = [{ value: json, depth: 0 }];
+  for (let next = waiting.pop(); next; next = waiting.pop()) {
+    const { value, depth } = next;
+    if (typeof value !== 'object' || value === null) continue;
+    if (depth > deepestNesting) throw new Error(`is nested deeper than ${deepestNesting} levels`);
+    for (const [key, inner] of Object.entries(value)) {
+      if (key === 'uri' && typeof inner === 'string') uris.push(inner);
+      waiting.push({ value: inner, depth: depth + 1 });
+    }
+  }
+  return uris;
 }
 
 /**
@@ -117,13 +127,15 @@ export function inspectAvatar(
   if (!chunks) throw new Error(`${name}: no VRM or GLB file (it does not begin as one, or is cut short)`);
   limit('MB of description', chunks.json.length / 2 ** 20, limits.megabytes * mostJson);
   let json: unknown;
+  let uris: readonly string[];
   try {
     json = JSON.parse(chunks.json);
+    uris = urisIn(json);
   } catch (error) {
     throw new Error(`${name}: no VRM or GLB file (${reasonOf(error)})`);
   }
-  for (const uri of urisIn(json)) {
-    const shown = uri.slice(0, 60);
+  if (uris.length > 0) {
+    const shown = uris[0]!.slice(0, 60);
     throw new Error(`${name}: refers to something outside the file (${shown}); an avatar must hold everything itself`);
   }
   const parsed = v.safeParse(gltf, json);

@@ -1,0 +1,135 @@
+import type { Object3D } from 'three';
+import { expect, onTestFinished, test, vi } from 'vitest';
+import { checkAvatar } from '../../src/avatar/file/check-avatar';
+import { seenAvatarLimits } from '../../src/avatar/file/inspect-avatar';
+import { parseChecked } from '../../src/avatar/load-avatar';
+import { randomNumbers } from '../../src/core/math/random';
+import { isNightly } from '../nightly';
+import { measured } from '../reliability/measured';
+import { builtRig } from './built-rig';
+import { changed, type GltfJson, glbOf, mannequin, partsOf } from './glb';
+import { vroid } from './rig-namings';
+import { smallOldVrm, smallVrm } from './small-vrms';
+
+const name = 'person.vrm';
+const files = isNightly ? 100_000 : 3000;
+
+const picture = Buffer.alloc(64);
+picture.write('\x89PNG\r\n\x1a\n', 0, 'latin1');
+picture.write('IHDR', 12, 'latin1');
+picture.writeUInt32BE(64, 16);
+picture.writeUInt32BE(64, 20);
+
+/** The small rig's file, with a picture that nothing shows. */
+const pictured = changed(
+  (json, binaryLength) => {
+    json.bufferViews.push({ buffer: 0, byteOffset: binaryLength, byteLength: picture.length });
+    json.images = [{ bufferView: json.bufferViews.length - 1, mimeType: 'image/png' }];
+  },
+  picture,
+  new Uint8Array(builtRig({ nameOf: vroid })),
+);
+/** Small files mostly: of a large one the Khronos validator reads every number. */
+const originals: readonly ArrayBuffer[] = [
+  ...[builtRig({ nameOf: vroid }), pictured],
+  ...[smallVrm, smallVrm, smallVrm, smallVrm, smallOldVrm, smallOldVrm, smallOldVrm],
+  mannequin(),
+];
+
+const oddValues: readonly unknown[] = [
+  ...[null, true, '', '__proto__', [], {}, [[]], [null], -1, 0, 0.5, 1e9, 2 ** 31, 2 ** 53, 1e308, -1e-320],
+  ...['VEC3', 'MAT4', 5120, 5126, 'data:,', 'KHR_draco_mesh_compression', { toString: null }],
+];
+
+/** The objects and lists of a value, at any depth. */
+function containersIn(value: unknown): (Record<string, unknown> | unknown[])[] {
+  if (typeof value !== 'object' || value === null) return [];
+  return [value as Record<string, unknown>, ...Object.values(value).flatMap(containersIn)];
+}
+
+/** Ways to spoil a file. */
+function spoilers(chance: () => number) {
+  const below = (end: number) => Math.floor(chance() * end);
+  const oneOf = <T>(values: readonly T[]): T => values[below(values.length)]!;
+  const copyOf = (file: ArrayBuffer) => new Uint8Array(file.slice(0));
+  const lengthOfJson = (bytes: Uint8Array) => new DataView(bytes.buffer).getUint32(12, true);
+
+  function withBytes(file: ArrayBuffer, from: number, to: number): ArrayBuffer {
+    const bytes = copyOf(file);
+    for (let i = 1 + below(4); i > 0; i--) bytes[from + below(to - from)]! ^= 1 << below(8);
+    return bytes.buffer;
+  }
+  function spoilJson(json: GltfJson): void {
+    // Half of the time what the extensions say, which the Khronos validator does not read.
+    const inside = chance() < 0.5 ? containersIn(json.extensions) : [];
+    const container = oneOf(inside.length > 0 ? inside : containersIn(json)) as Record<string, unknown>;
+    const keys = Object.keys(container);
+    const key = keys.length > 0 ? oneOf(keys) : 'extras';
+    const way = below(4);
+    if (way === 0) delete container[key];
+    else if (way === 1) container[key] = structuredClone(oneOf(containersIn(json)));
+    else if (way === 2 && typeof container[key] === 'number') container[key] = container[key] + below(200) - 100;
+    else container[key] = structuredClone(oneOf(oddValues));
+  }
+  const ways: readonly ((file: ArrayBuffer) => ArrayBuffer)[] = [
+    (file) => withBytes(file, 0, 28),
+    (file) => withBytes(file, 20, 20 + lengthOfJson(copyOf(file))),
+    (file) => withBytes(file, 20 + lengthOfJson(copyOf(file)), file.byteLength),
+    (file) => file.slice(0, below(file.byteLength)),
+    ...Array.from({ length: 6 }, () => (file: ArrayBuffer) => {
+      const { json, binary } = partsOf(new Uint8Array(file));
+      for (let i = 1 + below(3); i > 0; i--) spoilJson(json);
+      return glbOf(json, binary);
+    }),
+  ];
+  return () => oneOf(ways)(oneOf(originals));
+}
+
+const isFinitePlace = (node: Object3D): boolean => {
+  node.updateMatrix();
+  return [...node.matrix.elements].every(Number.isFinite);
+};
+
+test.each([
+  ['VRM 1.0', smallVrm],
+  ['VRM 0.x', smallOldVrm],
+])('a small %s is read', async (_, file) => {
+  const { vrm } = await parseChecked(await checkAvatar(file, { name, unpacked: [] }), name);
+  expect(vrm.humanoid.getRawBoneNode('head')).not.toBeNull();
+});
+
+test('files of avatars, spoiled, are refused in a sentence or read as a body of finite numbers, each in a moment', {
+  tags: ['full'],
+  timeout: 3_600_000,
+}, async () => {
+  // The reader warns of what it passes over.
+  vi.spyOn(console, 'warn').mockReturnValue(undefined);
+  onTestFinished(() => void vi.restoreAllMocks());
+  const spoil = spoilers(randomNumbers(20261126));
+  const counts = { refused: 0, 'refused by the reader': 0, read: 0 };
+  let longest = 0;
+  for (let i = 0; i < files; i++) {
+    const bytes = spoil();
+    const started = performance.now();
+    const checked = await checkAvatar(bytes, { name, unpacked: [], limits: seenAvatarLimits }).catch(
+      (error: Error) => error,
+    );
+    longest = Math.max(longest, performance.now() - started);
+    if (checked instanceof Error) {
+      expect(checked.message, `file ${i}`).toMatch(/^person\.vrm: /);
+      counts.refused += 1;
+      continue;
+    }
+    const read = await parseChecked(checked, name).catch((error: Error) => error);
+    if (read instanceof Error) {
+      expect(read.message, `file ${i}: ${read.stack}`).toMatch(/^person\.vrm: /);
+      counts['refused by the reader'] += 1;
+      continue;
+    }
+    counts.read += 1;
+    read.vrm.scene.traverse((node) => expect(isFinitePlace(node), `file ${i}: ${node.name}`).toBe(true));
+  }
+  measured('mutated-avatars', { files, ...counts, 'longest check of one [ms]': longest });
+  expect(counts.refused).toBeGreaterThan(files / 10);
+  expect(counts.read).toBeGreaterThan(files / 50);
+});
