@@ -239,6 +239,17 @@ export const attackRows = {
     target: '20 m/s, and one leap a second; half a change a second of each seat, after eight',
     tests: ['tests/core/room/hostile-player.test.ts'],
   },
+  'mutated-poses': {
+    inject:
+      '1,000,000 valid pose packets with bits, bytes and lengths changed (50,000 by day), from the three seats of a room',
+    sees: 'Each reaches the others whole or not at all; every body is made of finite numbers, for the least and greatest measures',
+    target: '0 exceptions, 0 frames that no page can read, 0 joints that are no number',
+    tests: [
+      'tests/core/room/mutated-poses.test.ts',
+      'tests/core/room/room-faults.test.ts',
+      'tests/core/protocol/pose-codec.test.ts',
+    ],
+  },
   'mutated-avatars': {
     inject: '100,000 files of avatars with bits, lengths and values of their description changed (3,000 by day)',
     sees: 'A sentence that names the file, from the check or from the reader, or a body of finite numbers',

@@ -1,0 +1,127 @@
+import fc from 'fast-check';
+import { expect, test } from 'vitest';
+import type { Calibration } from '../../../src/core/body/calibration';
+import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
+import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
+import { randomNumbers } from '../../../src/core/math/random';
+import { distance } from '../../../src/core/math/vec3';
+import { packetMs } from '../../../src/core/protocol/packet-time';
+import { decodePose, encodePose } from '../../../src/core/protocol/pose-codec';
+import { decodeFrame } from '../../../src/core/protocol/pose-frame';
+import { isNightly } from '../../nightly';
+import { measured } from '../../reliability/measured';
+import { seed } from '../arbitraries';
+import { numbersIn } from '../numbers-in';
+import { packetOf, senders } from '../protocol/sent-bodies';
+import { toldRoom } from './told-room';
+
+/** Bodies of the least and greatest measures that a message may carry. */
+const extremes: readonly Calibration[] = [
+  { eyeHeight: 0.5, armSpan: 0.5 },
+  { eyeHeight: 0.5, armSpan: 3, forearm: 1 },
+  { eyeHeight: 3, armSpan: 0.5, forearm: 0.05 },
+  { eyeHeight: 3, armSpan: 3, forearm: 1 },
+];
+const clients = ['ann', 'ben', 'cal'];
+
+/** The longest way from the head to a joint of a body [m]; NaN where a number of the packet is none. */
+function reachOf(bytes: Uint8Array, calibration: Calibration): number {
+  const skeleton = skeletonFromCalibration(calibration);
+  const packet = decodePose(bytes, skeleton);
+  if (!packet || !numbersIn(packet).every(Number.isFinite)) return Number.NaN;
+  const { head, body } = packet.pose;
+  if (!body) return 0;
+  const joints = Object.values(forwardKinematics(skeleton, body));
+  return Math.max(...joints.map(({ position }) => distance(position, head.position)));
+}
+
+/** Valid packets of bodies in all situations, and the ways to change them. */
+async function mutations(chance: () => number) {
+  const below = (end: number) => Math.floor(chance() * end);
+  const valid: Uint8Array[] = [];
+  for (const sender of fc.sample(senders, { seed, numRuns: 120 })) {
+    const { packet, skeleton } = await packetOf(sender);
+    for (const body of [packet.pose.body, null]) {
+      valid.push(encodePose({ ...packet, pose: { ...packet.pose, body } }, skeleton)!);
+    }
+  }
+  const some = () => Uint8Array.from(valid[below(valid.length)]!);
+  const ways: readonly (() => Uint8Array)[] = [
+    // A bit to four, anywhere; in the head of the packet, which says how long it is; bytes; cut off; put together from two.
+    () => flipped(some(), () => below(40 * 8)),
+    () => flipped(some(), () => below(13)),
+    () => some().map((byte) => (chance() < 0.05 ? below(256) : byte)),
+    () => some().slice(0, below(65)),
+    () => Uint8Array.from([...some(), ...some().slice(0, below(40))]).slice(0, 64),
+  ];
+  function flipped(bytes: Uint8Array, bit: () => number): Uint8Array {
+    for (let flips = 1 + below(4); flips > 0; flips--) {
+      const at = bit();
+      bytes[(at >> 3) % bytes.length]! ^= 0x80 >> (at & 7);
+    }
+    return bytes;
+  }
+  return { next: () => ways[below(ways.length)]!(), below };
+}
+
+/** Writes a time [ms] into a packet, from its bit 13 on (docs/protocol.md), so that its age is not what keeps it from the room. */
+function setTime(bytes: Uint8Array, timeMs: number): void {
+  for (let bit = 0; bit < 14; bit++) {
+    const at = 13 + bit;
+    if (at >> 3 >= bytes.length) return;
+    const mask = 0x80 >> (at & 7);
+    if ((timeMs >> (13 - bit)) & 1) bytes[at >> 3]! |= mask;
+    else bytes[at >> 3]! &= ~mask;
+  }
+}
+
+test('valid pose packets, changed, reach others whole or not at all, as bodies of finite size', {
+  tags: ['full'],
+  timeout: 1_800_000,
+}, async () => {
+  const packets = isNightly ? 1_000_000 : 50_000;
+  const chance = randomNumbers(20261126);
+  const { next, below } = await mutations(chance);
+  const told = toldRoom();
+  told.begin();
+  told.frames.length = 0;
+  const counts = { taken: 0, ignored: 0, bad: 0 };
+  let seen = 0;
+  let furthest = 0;
+  const readFrames = () => {
+    for (const frame of told.frames.splice(0)) {
+      const poses = decodeFrame(frame);
+      if (!poses) throw new Error(`no page can read the frame ${frame}`);
+      seen += poses.length;
+      for (const pose of poses) {
+        for (const calibration of extremes) furthest = Math.max(furthest, reachOf(pose.bytes, calibration));
+        if (Number.isNaN(furthest)) throw new Error(`a body that is no number, from ${pose.bytes}`);
+      }
+    }
+  };
+  for (let i = 0; i < packets; i++) {
+    const bytes = next();
+    setTime(bytes, packetMs(told.time * 1000));
+    counts[told.room.onPose(clients[below(3)]!, bytes, told.time)] += 1;
+    // Nothing is compared with a pose from more than a second ago: most packets would be leaps otherwise.
+    if (i % 3 === 2) told.tick(1.05);
+    if (i % 300 < 3) told.pass(1 / 60);
+    readFrames();
+    told.said.length = 0;
+    told.refusals.length = 0;
+    told.log.length = 0;
+  }
+  told.tick();
+  readFrames();
+  expect(seen).toBe(counts.taken);
+  expect(numbersIn(told.room.match).every(Number.isFinite)).toBe(true);
+  measured('mutated-poses', {
+    packets,
+    'read as poses': counts.taken + counts.ignored,
+    'passed on': seen,
+    'frames that no page can read': 0,
+    'furthest joint from its head, for the greatest measures [m]': furthest,
+  });
+  expect(counts.taken).toBeGreaterThan(packets / 20);
+  expect(furthest).toBeLessThan(8);
+});
