@@ -1,6 +1,9 @@
 import { expect, onTestFinished, test } from 'vitest';
 import { WebSocket } from 'ws';
 import { lobbyNamespace } from '../../server/lobby-hall';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { protocolVersion } from '../../src/core/protocol/messages';
+import { plainAvatar } from '../../src/core/protocol/worn-avatar';
 import { rawGuest, startRelay, until } from './running-relay';
 
 /** More than any connection may send at once, by far. */
@@ -46,6 +49,10 @@ test.each<[what: string, send: (socket: WebSocket) => void]>([
   },
 );
 
+/** What a guest has been told of the second seat. */
+const seatsOf = (heard: Awaited<ReturnType<typeof rawGuest>>['heard']) =>
+  heard.flatMap((message) => (message.type === 'seat' && message.seat === 1 && message.info ? [message.info] : []));
+
 test('a guest whose packets are none that the rooms count is told that it misbehaves', async () => {
   const relay = await startRelay();
   onTestFinished(() => relay.close());
@@ -54,6 +61,23 @@ test('a guest whose packets are none that the rooms count is told that it misbeh
   for (let i = 0; i < frames; i++) engine.write('3["/",[],1]');
   await until('the end of the flood', () => guest.closedAt !== null, 5);
   expect(guest.heard.at(-1)).toEqual({ type: 'farewell', reason: 'misbehaved' });
+});
+
+test('a guest who joins a thousand times a second under other names is thrown out, and the others know the first one', async () => {
+  const relay = await startRelay();
+  onTestFinished(() => relay.close());
+  const witness = await rawGuest(relay.url, 'names');
+  onTestFinished(() => void witness.socket.disconnect());
+  const guest = await rawGuest(relay.url, 'names');
+  const join = { type: 'join', version: protocolVersion, calibration: defaultCalibration, spectate: false, bot: false };
+  const started = performance.now();
+  for (let i = 0; i < 250; i++)
+    guest.say({ ...join, name: `<b>${i}</b>`, seat: null, avatar: plainAvatar, voice: null });
+  await until('the end of the one with many names', () => guest.closedAt !== null, 5);
+  expect(performance.now() - started).toBeLessThan(1000);
+  expect(guest.heard.at(-1)).toEqual({ type: 'farewell', reason: 'misbehaved' });
+  await until('the witness to know', () => seatsOf(witness.heard).at(-1)?.[4] === 2);
+  expect(new Set(seatsOf(witness.heard).map(([name]) => name))).toEqual(new Set(['raw']));
 });
 
 test('a guest who has left the rooms and floods the relay is thrown out too', async () => {
