@@ -12,6 +12,8 @@ export interface Meeting {
   readonly room: number;
   /** Poses that each avatar sends per second. */
   readonly hz: number;
+  /** Everyone is ready for a round of an hour, which runs as long as they are there. */
+  readonly plays?: boolean;
 }
 
 /** To the clients, again and again: play in this many rooms, others who have come before are silent, and say how it went. */

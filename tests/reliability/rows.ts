@@ -256,6 +256,13 @@ export const attackRows = {
     target: '0 exceptions without a sentence, 0 numbers that are none',
     tests: ['tests/avatar/mutated-files.test.ts', 'tests/avatar/inspect-avatar.test.ts'],
   },
+  crowd: {
+    inject:
+      'Two hundred rooms of three play the ball game for ten minutes (20 rooms for 5 s by day); then all players are gone at once',
+    sees: 'Rooms are stepped on time, poses arrive, and nothing is kept of them once the held seats have run out',
+    target: 'event loop p99 20 ms where the machine is idle; memory held back within 5 %',
+    tests: ['tests/server/crowded-rooms.test.ts'],
+  },
   'voice-signals': {
     inject:
       'A seated player signals a video, a channel of data, a second voice, control bytes or an address that belongs to no part to the page of another',
