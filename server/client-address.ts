@@ -42,17 +42,20 @@ export function parseClientAddress(text: string): ClientAddress | null {
 
 /**
  * Returns the address of the client behind a request: with a trusted proxy in front the last entry of X-Forwarded-For, which that proxy
- * wrote, else the other end of the connection. Throws an HttpError 400 where that is no address.
+ * wrote, else the other end of the connection. Null where that is no address, or where the connection is closed.
  */
-export function clientAddressOf({ headers, socket }: IncomingMessage, trustProxy: boolean): ClientAddress {
+export function findClientAddress({ headers, socket }: IncomingMessage, trustProxy: boolean): ClientAddress | null {
   const forwarded = trustProxy ? headers['x-forwarded-for'] : undefined;
-  if (forwarded !== undefined) {
-    const last = String(forwarded).split(',').at(-1)?.trim() ?? '';
-    const address = parseClientAddress(last);
-    if (address) return address;
-    throw new HttpError(400, 'the last entry of X-Forwarded-For is no IP address; correct the proxy in front');
-  }
-  const address = parseClientAddress(socket.remoteAddress ?? '');
-  if (!address) throw new HttpError(400, 'the connection of this request is closed');
-  return address;
+  if (forwarded === undefined) return parseClientAddress(socket.remoteAddress ?? '');
+  return parseClientAddress(String(forwarded).split(',').at(-1)?.trim() ?? '');
 }
+
+/** Returns the address for a limit that counts it. Throws an HttpError 400 where there is none. */
+export function requiredAddress(address: ClientAddress | null): ClientAddress {
+  if (address) return address;
+  throw new HttpError(400, 'the last entry of X-Forwarded-For is no IP address; correct the proxy in front');
+}
+
+/** Returns the address of the client behind a request, for a limit that counts it. Throws an HttpError 400 where there is none. */
+export const clientAddressOf = (request: IncomingMessage, trustProxy: boolean): ClientAddress =>
+  requiredAddress(findClientAddress(request, trustProxy));

@@ -4,10 +4,8 @@ import { createRouter, type Route } from './http/router';
 import { createPageHandler } from './page';
 import { createRelay } from './relay';
 import type { RelayConfiguration } from './relay-configuration';
-import { createRoomTokens } from './room-tokens';
 import { createSitePolicy } from './site-policy';
 import { softwareIn } from './software';
-import { createStudySeats } from './study-seats';
 import { openStudyService } from './study-service';
 import { serve } from './web-server';
 
@@ -45,12 +43,12 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
     microphone: relaying.voices !== null,
     filesFrom: [...relaying.filesFrom, ...(relaying.avatarsFrom ? [new URL(relaying.avatarsFrom).origin] : [])],
   });
-  const studies = openStudyService({
+  const studies = await openStudyService({
     directory: options.studyDirectory,
     token: options.experimenterToken,
     software: softwareIn(options.pageDirectory),
     now,
-    seats: createStudySeats(options.secret, createRoomTokens(options.secret, now)),
+    secret: options.secret,
     trustProxy: relaying.trustProxy,
     log,
   });
@@ -69,7 +67,7 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
   }).catch(async (error: unknown) => {
     // Their timers would keep the process from ending.
     await relay.close();
-    studies.close();
+    await studies.close();
     throw error;
   });
   return {
@@ -79,7 +77,7 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
     async close() {
       await relay.close();
       await server.close();
-      studies.close();
+      await studies.close();
     },
   };
 }

@@ -1,4 +1,4 @@
-// What a thread begins with is JavaScript: of a loader for TypeScript that the process was started with, threads know nothing in Node 20.
+// A thread begins with JavaScript: threads of Node 20 do not inherit a loader for TypeScript.
 import { register } from 'tsx/esm/api';
 
 register();

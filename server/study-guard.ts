@@ -1,8 +1,7 @@
 import { createHash, timingSafeEqual } from 'node:crypto';
-import type { IncomingMessage } from 'node:http';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
-import { createAuthThrottle, TooManyGuesses, type WrongGuess } from './auth-throttle';
-import { clientAddressOf } from './client-address';
+import { createAuthThrottle, type Guess, TooManyGuesses, type WrongGuess } from './auth-throttle';
+import { type ClientAddress, requiredAddress } from './client-address';
 import { HttpError } from './http/answer';
 import { normalisedCode } from './study-schema';
 import type { StudyStore } from './study-store';
@@ -17,13 +16,15 @@ export interface StudyGuardOptions {
   readonly store: StudyStore;
   /** The holder of this, sent as "Authorization: Bearer …", is an experimenter; null: no one is. */
   readonly experimenterToken: string | null;
-  readonly trustProxy: boolean;
   readonly onWrongGuess: (guess: WrongGuess) => void;
 }
 
-/** Whom a route concerns. */
-interface Concerned {
-  readonly request: IncomingMessage;
+/** Who sends a request, and the place that it concerns. */
+export interface Concerned {
+  /** What its header Authorization has as "Bearer …"; null: nothing. */
+  readonly token: string | null;
+  /** The client's address, which limits count; null: it is not known, and a limit refuses the request. */
+  readonly address: ClientAddress | null;
   readonly study: string;
   readonly participant: string;
 }
@@ -44,10 +45,6 @@ export interface StudyGuard {
 export const openPlacesPerHour = 6;
 
 const digest = (secret: string) => createHash('sha256').update(secret).digest();
-
-function bearerOf(request: IncomingMessage): string | null {
-  return /^Bearer ([\w~+/.-]{1,256}=*)$/.exec(request.headers.authorization ?? '')?.[1] ?? null;
-}
 
 const tooMany = (message: string, seconds: number) =>
   new HttpError(429, message, { headers: { 'retry-after': String(seconds) } });
@@ -78,34 +75,32 @@ function createOpenPlaces(): <T>(network: string, claim: () => T) => Promise<T> 
 }
 
 export function createStudyGuard(options: StudyGuardOptions): StudyGuard {
-  const { store, experimenterToken, trustProxy, onWrongGuess } = options;
+  const { store, experimenterToken, onWrongGuess } = options;
   const experimenterDigest = experimenterToken === null ? null : digest(experimenterToken);
   const throttle = createAuthThrottle(onWrongGuess);
   const spendingOpenPlace = createOpenPlaces();
-  const addressOf = (request: IncomingMessage) => clientAddressOf(request, trustProxy);
 
-  async function attempt(guess: Parameters<typeof throttle.attempt>[0], isRight: () => boolean): Promise<boolean> {
+  type Attempted = Omit<Guess, 'address'> & Pick<Concerned, 'address'>;
+
+  async function attempt({ address, ...guess }: Attempted, isRight: () => boolean): Promise<boolean> {
     try {
-      return await throttle.attempt(guess, isRight);
+      return await throttle.attempt({ ...guess, address: requiredAddress(address) }, isRight);
     } catch (error) {
       if (!(error instanceof TooManyGuesses)) throw error;
       throw tooMany(error.message, error.retryAfterSeconds);
     }
   }
 
-  async function isExperimenter(request: IncomingMessage): Promise<boolean> {
-    const token = bearerOf(request);
+  async function isExperimenter({ token, address }: Pick<Concerned, 'token' | 'address'>): Promise<boolean> {
     if (token === null) return false;
     return attempt(
-      { what: 'token', address: addressOf(request), of: null, secret: token },
+      { what: 'token', address, of: null, secret: token },
       () => experimenterDigest !== null && timingSafeEqual(digest(token), experimenterDigest),
     );
   }
 
-  const isParticipant = ({ request, study, participant }: Concerned) => {
-    const token = bearerOf(request);
-    return token !== null && store.holds(study, participant, token);
-  };
+  const isParticipant = ({ token, study, participant }: Concerned) =>
+    token !== null && store.places.holds(study, participant, token);
 
   return {
     isParticipant,
@@ -113,28 +108,28 @@ export function createStudyGuard(options: StudyGuardOptions): StudyGuard {
       if (access !== 'participant' && access !== 'experimenter') return;
       // Participants' tokens are 256 drawn bits: they are looked at however many guesses came from their address.
       if (access === 'participant' && isParticipant(concerned)) return;
-      if (await isExperimenter(concerned.request)) return;
+      if (await isExperimenter(concerned)) return;
       throw new HttpError(401, 'this needs the token of the participant or of an experimenter');
     },
-    async claiming({ request, study, participant }, invitation, claim) {
-      const { plan } = store.study(study);
-      if (bearerOf(request) !== null && (await isExperimenter(request))) return claim();
+    async claiming({ token, address, study, participant }, invitation, claim) {
+      const { plan } = store.plans.get(study);
+      if (await isExperimenter({ token, address })) return claim();
       if (invitation === undefined) {
         const why = `${participant} is taken by invitation: it stands in the link of the participant`;
         throw new HttpError(403, why, { field: 'invitation' });
       }
       const secret = `${participant} ${normalisedCode(invitation)}`;
-      const right = await attempt({ what: 'invitation', address: addressOf(request), of: study, secret }, () =>
-        store.invites(study, participant, invitation),
+      const right = await attempt({ what: 'invitation', address, of: study, secret }, () =>
+        store.places.invites(study, participant, invitation),
       );
       if (!right) throw new HttpError(403, `this is not the invitation of ${participant}`, { field: 'invitation' });
-      return plan.entry === 'open' ? spendingOpenPlace(addressOf(request).network, claim) : claim();
+      return plan.entry === 'open' ? spendingOpenPlace(requiredAddress(address).network, claim) : claim();
     },
-    async withdrawing({ request, study }, code, withdraw) {
-      store.study(study);
+    async withdrawing({ address, study }, code, withdraw) {
+      store.plans.get(study);
       let result: ReturnType<typeof withdraw> = null;
       const secret = normalisedCode(code);
-      await attempt({ what: 'withdrawal code', address: addressOf(request), of: study, secret }, () => {
+      await attempt({ what: 'withdrawal code', address, of: study, secret }, () => {
         result = withdraw();
         return result !== null;
       });

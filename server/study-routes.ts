@@ -1,4 +1,3 @@
-import type { IncomingMessage } from 'node:http';
 import * as v from 'valibot';
 import { wearerIn } from '../src/core/study/known-wearer';
 import { checkedPlan, languagesOf, type StudyPlan, studyTitle } from '../src/core/study/plan';
@@ -13,13 +12,20 @@ import {
   ValidationError,
 } from '../src/core/study/validation';
 import { parseRecording } from '../src/core/tracking/recording';
+import type { ClientAddress } from './client-address';
 import { type Answer, done, HttpError, json } from './http/answer';
-import { type Call, jsonOf, type Route, type Service } from './http/router';
+import { jsonOf, refusalOf as knownRefusalOf, type Route, textOf } from './http/router';
 import type { Software } from './software';
 import { StoreRefusal } from './study-database';
 import { exportName } from './study-export';
-import { createExporter } from './study-export-thread';
-import { createStudyGuard, type StudyAccess, type StudyGuard, type StudyGuardOptions } from './study-guard';
+import type { Exporter } from './study-export-thread';
+import {
+  type Concerned,
+  createStudyGuard,
+  type StudyAccess,
+  type StudyGuard,
+  type StudyGuardOptions,
+} from './study-guard';
 import type { StudySeats } from './study-seats';
 import type { StudyStore } from './study-store';
 
@@ -28,10 +34,7 @@ export interface StudyRoutesOptions extends StudyGuardOptions {
   readonly seats: StudySeats;
   /** What serves the studies: exports say it. */
   readonly software: Software;
-  /** Seconds since 1970. */
-  readonly now: () => number;
-  /** Told of faults of ours; the participant hears only that there was one. */
-  readonly onFault: (error: unknown) => void;
+  readonly makeZip: Exporter;
 }
 
 /** Longest bodies [bytes]. */
@@ -40,16 +43,48 @@ export const mostRecordsAtOnce = 200;
 
 const prefix = '/api/studies';
 
-interface StudyCall extends Call {
-  /** From the address: the study and, where the route has one, the participant; else empty. */
-  readonly study: string;
-  readonly participant: string;
+/** A request to a route of the studies, as it crosses from the thread of the sockets to that of the database. */
+export interface StudyRequest {
+  /** When it came: seconds since 1970. */
+  readonly at: number;
+  readonly token: string | null;
+  readonly address: ClientAddress | null;
+  /** What the address has for the route's ":names"; not yet checked. */
+  readonly names: Readonly<Record<string, string>>;
+  /** What follows the "?". */
+  readonly query: string;
 }
 
-const namesOf = ({ names }: Pick<Call, 'names'>) => ({
+/** A request whose names are checked: the study and, where the route has one, the participant; else empty. */
+interface StudyCall extends Concerned {
+  readonly at: number;
+  readonly query: URLSearchParams;
+  readonly body: Uint8Array<ArrayBuffer>;
+}
+
+export interface StudyRoute extends Omit<Route<StudyAccess>, 'handle'> {
+  /** Its answer waits until what it changed is on the disk. */
+  readonly changes: boolean;
+  /** Its answer takes as long as it takes. */
+  readonly isPatient: boolean;
+  handle(call: StudyCall): Answer | Promise<Answer>;
+}
+
+/** All below /api/studies. A participant's token opens nothing but that participant. */
+export interface StudyRoutes {
+  readonly routes: readonly StudyRoute[];
+  /** Throws an HttpError where this request may not; asked before the body is read. */
+  admit(route: StudyRoute, request: StudyRequest): Promise<void>;
+  handle(route: StudyRoute, request: StudyRequest, body: Uint8Array<ArrayBuffer>): Answer | Promise<Answer>;
+}
+
+const concerned = ({ token, address, names }: StudyRequest): Concerned => ({
+  ...{ token, address },
   study: names.study === undefined ? '' : checked(identifier, names.study),
   participant: names.participant === undefined ? '' : checked(participantId, names.participant),
 });
+
+type Handle = StudyRoute['handle'];
 
 /** One line of the table: its path is below the prefix, its body JSON of at most so many bytes. */
 const route = (
@@ -57,13 +92,11 @@ const route = (
   path: string,
   access: StudyAccess,
   bodyLimit: number,
-  handle: (call: StudyCall) => Answer | Promise<Answer>,
-): Route<StudyAccess> => ({
-  method,
-  path: `${prefix}${path}`,
-  access,
-  bodyLimit,
-  handle: (call) => handle({ ...call, ...namesOf(call) }),
+  handle: Handle,
+): StudyRoute => ({
+  ...{ method, path: `${prefix}${path}`, access, bodyLimit, handle },
+  changes: method !== 'GET',
+  isPatient: false,
 });
 
 const batchSchema = v.object({
@@ -110,18 +143,22 @@ const publicPlan = (plan: StudyPlan, simulated: boolean) => {
   return { id, title, consent, languages: languagesOf(plan), phrases, simulated, contact: remote?.contact ?? null };
 };
 
-const statusOfRefusal = { unknown: 404, conflict: 409, begun: 409, forbidden: 403, full: 507 } as const;
+const statusOfRefusal = {
+  ...{ unknown: 404, conflict: 409, begun: 409, forbidden: 403, locked: 503, busy: 503, full: 507, lost: 507 },
+} as const satisfies Readonly<Record<StoreRefusal['reason'], number>>;
+
+/** What a page waits before it asks again where the database is locked or busy [s]. */
+export const retryAfterSeconds = 5;
 
 interface TableOptions {
   readonly store: StudyStore;
-  readonly now: () => number;
   readonly guard: StudyGuard;
   readonly seats: StudySeats;
   readonly software: Software;
-  readonly makeZip: ReturnType<typeof createExporter>;
+  readonly makeZip: Exporter;
 }
 
-type Exporting = Pick<TableOptions, 'store' | 'now' | 'software' | 'makeZip'>;
+type Exporting = Pick<TableOptions, 'store' | 'software' | 'makeZip'>;
 
 /** The version of the plan that is asked for; undefined: the newest. */
 function versionIn(query: URLSearchParams): number | undefined {
@@ -135,60 +172,49 @@ const ofVersion = <Row extends { readonly participant: string }>(rows: readonly 
   return rows.filter(({ participant }) => participants.includes(participant));
 };
 
-function refusalOf({ reason, message }: StoreRefusal): HttpError {
-  return new HttpError(statusOfRefusal[reason], message, { field: reason === 'begun' ? 'newVersion' : null });
+/** What an error is to the other side; null: a fault of the server. */
+export function refusalOf(error: unknown): HttpError | null {
+  if (!(error instanceof StoreRefusal)) return knownRefusalOf(error);
+  const { reason, message } = error;
+  return new HttpError(statusOfRefusal[reason], message, {
+    field: reason === 'begun' ? 'newVersion' : null,
+    headers: statusOfRefusal[reason] === 503 ? { 'retry-after': String(retryAfterSeconds) } : {},
+  });
 }
 
 interface ExportAsked {
+  readonly at: number;
   readonly study: string;
   readonly participant?: string;
   readonly version?: number | undefined;
 }
 
-/** Resolves with what the other side waits for. Nothing moves on its connection meanwhile, which would be ended as a silent one. */
-async function awaited<T>({ socket }: IncomingMessage, answer: Promise<T>): Promise<T> {
-  const silenceMs = socket.timeout ?? 0;
-  socket.setTimeout(0);
-  try {
-    return await answer;
-  } finally {
-    socket.setTimeout(silenceMs);
-  }
-}
-
-async function exportOf(
-  { store, now, software: exportedBy, makeZip }: Exporting,
-  { request }: StudyCall,
-  { study, participant, version: asked }: ExportAsked,
-): Promise<Answer> {
-  const info = store.study(study, asked);
-  const plan = participant === undefined ? info.plan : store.planFor(study, participant);
-  const { simulated, createdAt, retentionUntil, versions, version } = info;
-  const software = { exportedBy, served: store.softwareSince(createdAt) };
-  const about = {
-    ...{ plan, simulated, at: now(), retentionUntil, software },
-    ...(participant === undefined && versions.length > 1 && { planVersion: version }),
-  };
-  const zip = makeZip(() => {
-    const records = store.records(study, participant);
-    const motion = store.motion(study, participant);
-    if (participant !== undefined) return { content: { ...about, records, motion }, participant };
-    return { content: { ...about, records: ofVersion(records, info), motion: ofVersion(motion, info) } };
-  });
-  const name = exportName(about, participant);
+async function exportOf({ store, software, makeZip }: Exporting, asked: ExportAsked): Promise<Answer> {
+  const { participant } = asked;
+  const info = store.plans.get(asked.study, asked.version);
+  const plan = participant === undefined ? info.plan : store.plans.planFor(asked.study, participant);
+  if (participant !== undefined) store.places.get(asked.study, participant);
+  const planVersion = participant === undefined && info.versions.length > 1 ? info.version : undefined;
+  const name = exportName({ plan, simulated: info.simulated, ...(planVersion && { planVersion }) }, participant);
   return {
     status: 200,
     headers: { 'content-type': 'application/zip', 'content-disposition': `attachment; filename="${name}.zip"` },
-    body: await awaited(request, zip),
+    body: await makeZip({ ...asked, version: info.version, software }),
   };
 }
 
+/** A route whose answer is an export. */
+const exporting = (path: string, access: StudyAccess, handle: Handle): StudyRoute => ({
+  ...route('GET', path, access, 0, handle),
+  isPatient: true,
+});
+
 /** What is of one study, and of the server as a whole. */
-function studyTable({ store, now, guard, software, makeZip }: TableOptions): Route<StudyAccess>[] {
+function studyTable({ store, guard, software, makeZip }: TableOptions): StudyRoute[] {
   return [
     route('GET', '', 'experimenter', 0, () =>
       json({
-        studies: store.studies().map(({ plan, versions: _, ...rest }) => {
+        studies: store.plans.all().map(({ plan, versions: _, ...rest }) => {
           const { id, participants } = plan;
           return { id, title: studyTitle(plan), participants, ...rest };
         }),
@@ -196,83 +222,88 @@ function studyTable({ store, now, guard, software, makeZip }: TableOptions): Rou
     ),
     route('POST', '', 'experimenter', bodyLimits.json, (call) => {
       const { plan, simulated, newVersion = false } = checked(newStudySchema, jsonOf(call));
-      return json(store.addStudy(checkedPlan(plan), { simulated, newVersion, at: now() }), 201);
+      return json(store.plans.add(checkedPlan(plan), { simulated, newVersion, at: call.at }), 201);
     }),
     // A participant who has begun reads the text of the version that is theirs.
     route('GET', '/:study', 'anyone', 0, ({ study, query }) => {
-      const { plan, simulated } = store.study(study);
+      const { plan, simulated } = store.plans.get(study);
       const participant = query.get('participant');
-      const read = participant === null ? plan : store.planFor(study, checked(participantId, participant));
+      const read = participant === null ? plan : store.plans.planFor(study, checked(participantId, participant));
       return json(publicPlan(read, simulated));
     }),
     route('DELETE', '/:study', 'experimenter', 0, ({ study }) => {
-      store.deleteSimulated(study);
+      store.deletion.deleteSimulated(study);
       return done;
     }),
     route('GET', '/:study/records', 'experimenter', 0, ({ study, query }) => {
-      const info = store.study(study, versionIn(query));
-      return json({ ...info, records: ofVersion(store.records(study), info) });
+      const info = store.plans.get(study, versionIn(query));
+      return json({ ...info, records: ofVersion(store.records.all(study), info) });
     }),
     route('GET', '/:study/receipts', 'experimenter', 0, ({ study }) => {
-      store.study(study);
-      return json({ receipts: store.receipts(study) });
+      store.plans.get(study);
+      return json({ receipts: store.deletion.receipts(study) });
     }),
-    route('GET', '/:study/export', 'experimenter', 0, (call) =>
-      exportOf({ store, now, software, makeZip }, call, { study: call.study, version: versionIn(call.query) }),
+    exporting('/:study/export', 'experimenter', ({ study, at, query }) =>
+      exportOf({ store, software, makeZip }, { at, study, version: versionIn(query) }),
     ),
-    route('GET', '/:study/participants', 'experimenter', 0, ({ study }) =>
-      json({ participants: store.overview(study, now()) }),
+    route('GET', '/:study/participants', 'experimenter', 0, ({ study, at }) =>
+      json({ participants: store.overview(study, at) }),
     ),
     route('POST', '/:study/withdraw', 'withdrawing', bodyLimits.json, async (call) => {
       const { code } = checked(withdrawalSchema, jsonOf(call));
-      return json(await guard.withdrawing(call, code, () => store.withdraw(call.study, code, now())));
+      return json(await guard.withdrawing(call, code, () => store.deletion.withdraw(call.study, code, call.at)));
     }),
   ];
 }
 
 /** What a device goes by that has taken a participant's place: a session that another device began goes on where that one was. */
-const sessionOf = ({ store, now }: Pick<TableOptions, 'store' | 'now'>, study: string, participant: string) => ({
-  plan: store.planFor(study, participant),
-  simulated: store.study(study).simulated,
-  progress: store.progress(study, participant, now()),
-  ...wearerIn(store.records(study, participant)),
+const sessionOf = ({ store }: Pick<TableOptions, 'store'>, { study, participant, at }: StudyCall) => ({
+  plan: store.plans.planFor(study, participant),
+  simulated: store.plans.get(study).simulated,
+  progress: store.places.progress(study, participant, at),
+  ...wearerIn(store.records.all(study, participant)),
 });
 
 /** `read`: version of the text that was consented to; undefined: not told. Throws where the plan shows another one, and the place stays free. */
 function takePlace(
-  { store, now }: Pick<TableOptions, 'store' | 'now'>,
-  { study, participant }: StudyCall,
+  { store }: Pick<TableOptions, 'store'>,
+  { study, participant, at }: StudyCall,
   read: string | undefined,
 ) {
-  const { version } = store.planFor(study, participant).consent;
+  const { version } = store.plans.planFor(study, participant).consent;
   if (read !== undefined && read !== version) {
     throw new HttpError(409, `consent was given to text ${read}, but the study shows ${version}`, { field: 'consent' });
   }
-  return store.claim(study, participant, now());
+  return store.places.claim(study, participant, at);
 }
 
+/** A route that signs: it takes a body and changes nothing. */
+const signing = (path: string, handle: Handle): StudyRoute => ({
+  ...route('POST', path, 'participant', bodyLimits.json, handle),
+  changes: false,
+});
+
 /** What is of one participant. */
-function participantTable({ store, now, guard, seats, software, makeZip }: TableOptions): Route<StudyAccess>[] {
+function participantTable({ store, guard, seats, software, makeZip }: TableOptions): StudyRoute[] {
   const own = '/:study/participants/:participant';
   return [
     route('POST', `${own}/claim`, 'invited', bodyLimits.json, async (call) => {
-      const { study, participant } = call;
       const { invitation, consent } = checked(claimSchema, jsonOf(call));
-      const claim = () => takePlace({ store, now }, call, consent);
+      const claim = () => takePlace({ store }, call, consent);
       const { token, withdrawalCode } = await guard.claiming(call, invitation, claim);
-      return json({ token, withdrawalCode, ...sessionOf({ store, now }, study, participant) }, 201);
+      return json({ token, withdrawalCode, ...sessionOf({ store }, call) }, 201);
     }),
     route('POST', `${own}/invitation`, 'experimenter', 0, ({ study, participant }) => {
-      store.reinvite(study, participant);
+      store.places.reinvite(study, participant);
       return done;
     }),
     route('POST', `${own}/release`, 'experimenter', 0, ({ study, participant }) => {
-      store.release(study, participant);
+      store.places.release(study, participant);
       return done;
     }),
     route('POST', `${own}/records`, 'participant', bodyLimits.json, (call) => {
       const { records } = checked(batchSchema, jsonOf(call));
-      const plan = store.planFor(call.study, call.participant);
+      const plan = store.plans.planFor(call.study, call.participant);
       const valid = records.map((record, index) => {
         try {
           return checkedRecord(record, plan);
@@ -281,84 +312,63 @@ function participantTable({ store, now, guard, seats, software, makeZip }: Table
           throw new ValidationError(`records[${index}]${error.field && `.${error.field}`}`, error.complaint);
         }
       });
-      return json({ acknowledged: store.storeRecords(call.study, call.participant, valid, now()) });
+      return json({ acknowledged: store.records.store(call.study, call.participant, valid, call.at) });
     }),
     route('GET', `${own}/records`, 'participant', 0, ({ study, participant }) =>
-      json({ records: store.records(study, participant) }),
+      json({ records: store.records.all(study, participant) }),
     ),
     route('PUT', `${own}/progress`, 'participant', bodyLimits.json, (call) => {
-      store.saveProgress(call.study, call.participant, jsonOf(call), now());
+      store.places.saveProgress(call.study, call.participant, jsonOf(call), call.at);
       return done;
     }),
-    route('GET', `${own}/progress`, 'participant', 0, ({ study, participant }) =>
-      json({ progress: store.progress(study, participant, now()) }),
+    route('GET', `${own}/progress`, 'participant', 0, ({ study, participant, at }) =>
+      json({ progress: store.places.progress(study, participant, at) }),
     ),
     route('GET', `${own}/commands`, 'participant', 0, ({ study, participant, query }) => {
       const { after } = checked(sinceSchema, { after: Number(query.get('after') ?? 0) });
-      return json({ commands: store.commands(study, participant, after) });
+      return json({ commands: store.commands.after(study, participant, after) });
     }),
     route('POST', `${own}/commands`, 'experimenter', bodyLimits.json, (call) => {
       const command = checked(commandSchema, jsonOf(call));
-      return json({ number: store.addCommand(call.study, call.participant, command, now()) }, 201);
+      return json({ number: store.commands.add(call.study, call.participant, command, call.at) }, 201);
     }),
     route('POST', `${own}/remarks`, 'experimenter', bodyLimits.json, (call) => {
       const remark = checked(remarkSchema, jsonOf(call));
-      return json({ id: store.addRemark(call.study, call.participant, remark.text, now()) }, 201);
+      return json({ id: store.records.addRemark(call.study, call.participant, remark.text, call.at) }, 201);
     }),
-    route('PUT', `${own}/motion`, 'participant', bodyLimits.motion, ({ study, participant, query, body }) => {
+    route('PUT', `${own}/motion`, 'participant', bodyLimits.motion, ({ study, participant, at, query, body }) => {
       const { trial } = checked(motionSchema, { trial: query.get('trial') });
+      const recording = textOf({ body });
       try {
-        parseRecording(body);
+        parseRecording(recording);
       } catch (error) {
         throw new HttpError(400, (error as Error).message);
       }
-      store.storeMotion(study, participant, trial, body, now());
+      store.motion.store(study, participant, trial, recording, at);
       return done;
     }),
-    route('POST', `${own}/seat`, 'participant', bodyLimits.json, async (call) => {
+    signing(`${own}/seat`, async (call) => {
       const trial = checked(seatSchema, jsonOf(call));
-      const plan = store.planFor(call.study, call.participant);
+      const plan = store.plans.planFor(call.study, call.participant);
       // Let in without being this participant: an experimenter, who watches.
       return json(await seats.sign(plan, call.participant, trial, !guard.isParticipant(call)));
     }),
-    route('GET', `${own}/export`, 'participant', 0, (call) =>
-      exportOf({ store, now, software, makeZip }, call, { study: call.study, participant: call.participant }),
+    exporting(`${own}/export`, 'participant', ({ study, participant, at }) =>
+      exportOf({ store, software, makeZip }, { at, study, participant }),
     ),
-    route('DELETE', own, 'experimenter', 0, ({ study, participant }) =>
-      json(store.deleteParticipant(study, participant, 'experimenter', now())),
+    route('DELETE', own, 'experimenter', 0, ({ study, participant, at }) =>
+      json(store.deletion.delete(study, participant, 'experimenter', at)),
     ),
   ];
 }
 
-/** The same route, whose answer waits until what it changed is on the disk. */
-const flushed = (store: StudyStore, changing: Route<StudyAccess>): Route<StudyAccess> => ({
-  ...changing,
-  async handle(call) {
-    const answer = await changing.handle(call);
-    await store.flushed();
-    return answer;
-  },
-});
-
-/** The study's part of the server: all below /api/studies. A participant's token opens nothing but that participant. */
-export function createStudyRoutes({
-  now,
-  onFault,
-  seats,
-  software,
-  ...guarded
-}: StudyRoutesOptions): Service<StudyAccess> {
+export function createStudyRoutes({ seats, software, makeZip, ...guarded }: StudyRoutesOptions): StudyRoutes {
   const guard = createStudyGuard(guarded);
-  const { store } = guarded;
-  const table = { store, now, guard, seats, software, makeZip: createExporter() };
-  const routes = [...studyTable(table), ...participantTable(table)];
+  const table = { store: guarded.store, guard, seats, software, makeZip };
   return {
-    routes: routes.map((one) => (one.method === 'GET' ? one : flushed(store, one))),
-    admit: ({ access }, { request, names }) => guard.admit(access, { request, ...namesOf({ names }) }),
-    refusalOf(error) {
-      if (error instanceof StoreRefusal) return refusalOf(error);
-      return null;
-    },
-    onFault,
+    routes: [...studyTable(table), ...participantTable(table)],
+    admit: async ({ access }, request) => guard.admit(access, concerned(request)),
+    handle: ({ handle }, request, body) =>
+      handle({ ...concerned(request), at: request.at, query: new URLSearchParams(request.query), body }),
   };
 }

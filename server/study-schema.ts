@@ -105,11 +105,28 @@ const migrations: readonly (string | ((database: DatabaseSyncInstance) => void))
   `,
 ];
 
-/** Brings a database up to date; throws where it is of a later version than this server. */
+/** Why a database cannot be used, as the rest of a sentence that begins with its file. */
+export class DatabaseProblem extends Error {}
+
+/** Brings a database up to date; throws a DatabaseProblem where it is damaged, of a later version than this server, or another program's. */
 export function migrate(database: DatabaseSyncInstance): void {
-  const version = (database.prepare('PRAGMA user_version').get() as { user_version: number }).user_version;
+  const read = (pragma: string) => Object.values(database.prepare(`PRAGMA ${pragma}`).get() as object)[0] as unknown;
+  const version = read('user_version') as number;
   if (version > migrations.length) {
-    throw new Error(`the study database has version ${version}; this server knows versions up to ${migrations.length}`);
+    throw new DatabaseProblem(
+      `has version ${version}, and this server knows versions up to ${migrations.length}: install the version of the ` +
+        'program that wrote it, or put an older copy of the file back.',
+    );
+  }
+  const { tables } = database.prepare('SELECT count(*) AS tables FROM sqlite_master').get() as { tables: number };
+  if (version === 0 && tables > 0) {
+    throw new DatabaseProblem('is the database of another program: name another folder with --studies.');
+  }
+  const damage = read('quick_check(1)');
+  if (damage !== 'ok') {
+    throw new DatabaseProblem(
+      `is damaged (${String(damage).replaceAll('\n', ' ')}): put a copy of it back, or read what can still be read by ".recover" of sqlite3.`,
+    );
   }
   for (let next = version; next < migrations.length; next++) {
     const migration = migrations[next] as (typeof migrations)[number];

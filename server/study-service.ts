@@ -1,100 +1,203 @@
-import { randomBytes } from 'node:crypto';
-import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
-import { join } from 'node:path';
-import { reasonOf } from '../src/core/errors/reasons';
-import type { WrongGuess } from './auth-throttle';
+import type { IncomingMessage } from 'node:http';
+import type { Worker } from 'node:worker_threads';
+import { findClientAddress } from './client-address';
 import { ConfigurationError } from './configuration';
-import type { Service } from './http/router';
-import { weaknessOf } from './secret-bits';
-import type { Software } from './software';
-import { createStudyRoutes } from './study-routes';
-import type { StudySeats } from './study-seats';
-import { openStudyStore } from './study-store';
+import { type Answer, HttpError } from './http/answer';
+import type { Call, Route, Service } from './http/router';
+import type { StudyDispatcher, StudyOutcome } from './study-dispatcher';
+import type { StudyAccess } from './study-guard';
+import { retryAfterSeconds, type StudyRequest, type StudyRoute } from './study-routes';
+import type { OpenedStudies, StudyThreadApi, StudyThreadOptions } from './study-thread-work';
+import { shortageOf, startThread, ThreadCalls, ThreadUnavailable } from './thread-calls';
 
-export interface StudyServiceOptions {
-  /** Where the database and a token of our own making lie; made where it is missing. */
-  readonly directory: string;
-  /** The experimenter's token; null: the one kept in the directory, drawn at the first start. */
-  readonly token: string | null;
-  /** What serves the studies now. */
-  readonly software: Software;
+export interface StudyServiceOptions extends StudyThreadOptions {
   /** Seconds since 1970. */
   readonly now: () => number;
-  /** Signs participants into the rooms of their trials. */
-  readonly seats: StudySeats;
   /** Believe what a proxy in front says of a client's address. */
   readonly trustProxy: boolean;
-  /** Told of faults, of wrong guesses and of deletions by the retention date, one line each. */
+  /** Receives faults, wrong guesses and deletions by the retention date, one line each. */
   readonly log: (line: string) => void;
 }
 
 export interface StudyService {
   readonly service: Service;
-  /** Where the token lies; null: it was given. */
+  /** Holds the token; null: it was given. */
   readonly tokenFile: string | null;
-  close(): void;
+  close(): Promise<void>;
 }
 
+/** Requests of two hundred participants while the disk hangs, with a recording each from a few of them. */
+const limits = { mostCalls: 1024, mostBytes: 64 * 2 ** 20, deadlineMs: 10_000 } as const;
+/** A thread that ended is started again so often at most [ms]. */
+const restartMs = 1000;
+/** How long the end of the server waits for a disk [ms]. */
+const closingMs = 5000;
 const hourMs = 3_600_000;
 
-/** As this server draws tokens, and has drawn them before. */
-const drawnToken = /^([\w-]{43}|[\w-]{32})$/;
+const unavailable = (message: string): HttpError =>
+  new HttpError(503, message, { headers: { 'retry-after': String(retryAfterSeconds) } });
 
-/** The token in this file; drawn and written, readable for its owner alone, where there is none. */
-function keptToken(file: string): string {
-  if (!existsSync(file)) writeFileSync(file, `${randomBytes(32).toString('base64url')}\n`, { mode: 0o600 });
-  const token = readFileSync(file, 'utf8').trim();
-  const weakness = drawnToken.test(token) ? null : weaknessOf(token);
-  if (weakness) throw new ConfigurationError(`The experimenter's token in ${file} ${weakness}`);
-  return token;
+const sentences = {
+  full: 'the studies have too many requests at once: nothing of this was stored. Send it again in a few seconds',
+  late: 'the database did not answer in time, and whether this was stored is not known: send it again',
+  ended: 'the studies were interrupted, and whether this was stored is not known: send it again',
+} as const;
+
+/** The thread of the studies; one that ends by a fault of its own, as for want of memory, is started again with the next request. */
+class StudyThread {
+  readonly #options: StudyServiceOptions;
+  #worker: Worker | null = null;
+  #calls: ThreadCalls<StudyThreadApi> | null = null;
+  #startedAt = Number.NEGATIVE_INFINITY;
+
+  constructor(options: StudyServiceOptions) {
+    this.#options = options;
+  }
+
+  /** Starts the thread; throws where it cannot open the folder. */
+  async open(): Promise<Exclude<OpenedStudies, { readonly problem: string }>> {
+    const { directory, token, software, secret, now, log } = this.#options;
+    this.#startedAt = performance.now();
+    const worker = startThread(new URL('./study-thread-worker.mjs', import.meta.url));
+    const calls = new ThreadCalls<StudyThreadApi>(worker, limits, log);
+    this.#worker = worker;
+    this.#calls = calls;
+    let shortage: string | null = null;
+    worker.on('error', (error) => {
+      shortage = shortageOf(error);
+      log(shortage === null ? `study, a fault: ${error.stack ?? error.message}` : `study: ${shortage}`);
+    });
+    worker.once('exit', () => {
+      if (this.#worker === worker) this.#worker = this.#calls = null;
+      calls.end();
+    });
+    const asked = [{ directory, token, software, secret }, now()] as const;
+    const opened = await calls.call('open', [...asked], { patient: true }).catch((error: unknown) => {
+      throw shortage === null ? error : new ConfigurationError(shortage);
+    });
+    if (!('problem' in opened)) return opened;
+    await worker.terminate();
+    throw new ConfigurationError(opened.problem);
+  }
+
+  /** A call of the thread; rejects with an HttpError 503 where it has no room, no answer in time, or has ended. */
+  async call<Name extends keyof StudyThreadApi>(
+    name: Name,
+    args: Parameters<StudyThreadApi[Name]>,
+    options?: { readonly patient: boolean },
+  ): Promise<Awaited<ReturnType<StudyThreadApi[Name]>>> {
+    try {
+      const calls = this.#calls ?? this.#restarted();
+      return await calls.call(name, args, options);
+    } catch (error) {
+      if (!(error instanceof ThreadUnavailable)) throw error;
+      throw unavailable(sentences[error.reason]);
+    }
+  }
+
+  /** Ends the thread once the database is closed, or its disk has hung for too long. */
+  async close(): Promise<void> {
+    const [worker, calls] = [this.#worker, this.#calls];
+    if (!worker || !calls) return;
+    const late = new Promise<void>((resolve) => setTimeout(resolve, closingMs).unref());
+    await Promise.race([calls.call('close', [], { patient: true }), late]);
+    this.#worker = this.#calls = null;
+    // A thread that the disk holds cannot be ended, and the process waits for it.
+    await Promise.race([worker.terminate(), late]);
+  }
+
+  #restarted(): ThreadCalls<StudyThreadApi> {
+    if (performance.now() - this.#startedAt < restartMs) throw new ThreadUnavailable('ended');
+    const { log } = this.#options;
+    log('study: the thread of the database ended; it starts again');
+    this.open().catch((error: unknown) => log(`study: the thread of the database did not start: ${String(error)}`));
+    if (!this.#calls) throw new ThreadUnavailable('ended');
+    return this.#calls;
+  }
 }
 
-const wrongGuess = ({ what, of, address, failures }: WrongGuess): string =>
-  `study: a wrong ${what}${of === null ? '' : ` for "${of}"`} came from ${address}, number ${failures} within the hour`;
+function bearerOf(request: IncomingMessage): string | null {
+  return /^Bearer ([\w~+/.-]{1,256}=*)$/.exec(request.headers.authorization ?? '')?.[1] ?? null;
+}
 
-/** The studies of this server: its database, its routes and, once an hour, what its retention dates demand. */
-export function openStudyService(options: StudyServiceOptions): StudyService {
-  const { directory, token, software, now, seats, trustProxy, log } = options;
-  mkdirSync(directory, { recursive: true, mode: 0o700 });
-  const tokenFile = token === null ? join(directory, 'experimenter-token') : null;
-  const experimenterToken = token ?? keptToken(tokenFile as string);
-  const store = openStudyStore(join(directory, 'studies.db'));
-  store.noteSoftware(software, now());
-  const service = createStudyRoutes({
-    store,
-    software,
-    experimenterToken,
-    now,
-    seats,
-    trustProxy,
-    onWrongGuess: (guess) => log(wrongGuess(guess)),
+/** Resolves with what the other side waits for. Nothing moves on its connection meanwhile, which would be ended as a silent one. */
+async function awaited<T>({ socket }: IncomingMessage, answer: Promise<T>): Promise<T> {
+  const silenceMs = socket.timeout ?? 0;
+  socket.setTimeout(0);
+  try {
+    return await answer;
+  } finally {
+    socket.setTimeout(silenceMs);
+  }
+}
+
+/** The answer of an outcome; throws where it is a refusal or a fault. */
+function answerOf(outcome: StudyOutcome): Answer {
+  if ('answer' in outcome) return outcome.answer;
+  if ('fault' in outcome) throw new Error(outcome.fault);
+  const { status, message, ...rest } = outcome.refused;
+  throw new HttpError(status, message, rest);
+}
+
+export interface ServiceOptions extends Pick<StudyServiceOptions, 'now' | 'trustProxy' | 'log'> {
+  readonly routes: readonly Omit<StudyRoute, 'handle'>[];
+  /** Runs the requests, in this thread or another one. */
+  readonly dispatcher: Pick<StudyDispatcher, 'admit' | 'handle'>;
+}
+
+/** The studies' part of the server: all below /api/studies. */
+export function createStudyService({ routes, dispatcher, now, trustProxy, log }: ServiceOptions): Service<StudyAccess> {
+  const requestOf = ({ request, names, query }: Omit<Call, 'body'>): StudyRequest => ({
+    ...{ at: now(), token: bearerOf(request), address: findClientAddress(request, trustProxy) },
+    ...{ names, query: query.toString() },
+  });
+  const table = routes.map((route, index): Route<StudyAccess> => {
+    const { method, path, access, bodyLimit } = route;
+    return {
+      ...{ method, path, access, bodyLimit },
+      async handle(call) {
+        const outcome = dispatcher.handle(index, requestOf(call), call.body);
+        return answerOf(await (route.isPatient ? awaited(call.request, outcome) : outcome));
+      },
+    };
+  });
+  return {
+    routes: table,
+    async admit(route, call) {
+      // Without a body there is nothing to keep out: it crosses once.
+      if (route.bodyLimit === 0) return;
+      answerOf(await dispatcher.admit(table.indexOf(route), requestOf(call)));
+    },
+    refusalOf: () => null,
     onFault: (error) =>
       log(`study, a fault: ${error instanceof Error ? (error.stack ?? error.message) : String(error)}`),
-  });
-  const again = 'which is tried again within the hour';
-  // A full disk or a locked database must not end a server that others use.
-  const expire = () => {
-    try {
-      const receipts = store.deleteExpired(now(), ({ study, participant }, error) => {
-        const failed = 'is past the retention date and could not be deleted';
-        log(`study "${study}": ${participant} ${failed}, ${again}: ${reasonOf(error)}`);
-      });
-      for (const { study, participant, records } of receipts) {
-        log(`study "${study}": ${participant} is past the retention date, ${records} records deleted`);
-      }
-    } catch (error) {
-      log(`study: who is past a retention date could not be read, ${again}: ${reasonOf(error)}`);
-    }
   };
-  expire();
+}
+
+/** Opens the studies of this server: their thread, their routes and, once an hour, what their retention dates demand. */
+export async function openStudyService(options: StudyServiceOptions): Promise<StudyService> {
+  const { now, trustProxy, log } = options;
+  const thread = new StudyThread(options);
+  const { routes, tokenFile } = await thread.open();
+  const expire = () =>
+    thread.call('expire', [now()], { patient: true }).catch((error: unknown) => log(`study: ${String(error)}`));
+  await expire();
   const timer = setInterval(expire, hourMs);
   timer.unref();
+  const service = createStudyService({
+    ...{ routes, now, trustProxy, log },
+    dispatcher: {
+      admit: (index, request) => thread.call('admit', [index, request]),
+      handle: (index, request, body) =>
+        thread.call('handle', [index, request, body], { patient: routes[index]?.isPatient ?? false }),
+    },
+  });
   return {
     service,
     tokenFile,
-    close() {
+    async close() {
       clearInterval(timer);
-      store.close();
+      await thread.close();
     },
   };
 }

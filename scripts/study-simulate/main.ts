@@ -84,16 +84,16 @@ function run(): void {
   mkdirSync(out, { recursive: true });
   const store = openStudyStore(join(out, 'SIMULATED-studies.db'));
   try {
-    const { retentionUntil } = store.addStudy(plan, { simulated: true, at: firstSession });
+    const { retentionUntil } = store.plans.add(plan, { simulated: true, at: firstSession });
     for (const { participant, records, progress } of simulated) {
-      store.claim(plan.id, participant, firstSession);
-      store.storeRecords(plan.id, participant, records, firstSession);
-      store.saveProgress(plan.id, participant, progress, firstSession);
+      store.places.claim(plan.id, participant, firstSession);
+      store.records.store(plan.id, participant, records, firstSession);
+      store.places.saveProgress(plan.id, participant, progress, firstSession);
     }
     const used = softwareIn(join(root, 'public'));
     const software = { exportedBy: used, served: [{ since: firstSession, ...used }] };
     const content = (participant?: string) => {
-      const records = store.records(plan.id, participant);
+      const records = store.records.all(plan.id, participant);
       return { plan, simulated: true, records, motion: [], at: firstSession, retentionUntil, software };
     };
     const all = content();

@@ -21,9 +21,15 @@ export async function readBody(request: IncomingMessage, limit: number, hear: (c
   });
 }
 
-/** The whole body as text. */
-export async function textBody(request: IncomingMessage, limit: number): Promise<string> {
+/** The whole body, in a buffer to itself: another thread can take it over. */
+export async function wholeBody(request: IncomingMessage, limit: number): Promise<Uint8Array<ArrayBuffer>> {
   const chunks: Buffer[] = [];
   await readBody(request, limit, (chunk) => chunks.push(chunk));
-  return Buffer.concat(chunks).toString('utf8');
+  const bytes = new Uint8Array(chunks.reduce((sum, { length }) => sum + length, 0));
+  let at = 0;
+  for (const chunk of chunks) {
+    bytes.set(chunk, at);
+    at += chunk.length;
+  }
+  return bytes;
 }

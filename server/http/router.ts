@@ -2,7 +2,7 @@ import type { IncomingMessage, RequestListener } from 'node:http';
 import { ValidationError } from '../../src/core/study/validation';
 import { createSitePolicy, type SitePolicy } from '../site-policy';
 import { type Answer, HttpError, json, refusal, sendAnswer } from './answer';
-import { textBody } from './body';
+import { wholeBody } from './body';
 import { targetOf } from './target';
 
 /** A request to a route, its body read. */
@@ -12,7 +12,7 @@ export interface Call {
   readonly names: Readonly<Record<string, string>>;
   readonly query: URLSearchParams;
   /** Empty for a route that takes none. */
-  readonly body: string;
+  readonly body: Uint8Array<ArrayBuffer>;
 }
 
 /** One line of a service's table. */
@@ -46,11 +46,14 @@ function depthExceeds(value: unknown, limit: number): boolean {
   return limit === 0 || Object.values(value).some((inner) => depthExceeds(inner, limit - 1));
 }
 
+/** The body as text. */
+export const textOf = ({ body }: Pick<Call, 'body'>): string => Buffer.from(body.buffer).toString('utf8');
+
 /** The body's JSON; an HttpError 400 where it is none, or nested beyond reason. */
-export function jsonOf({ body }: Call): unknown {
+export function jsonOf(call: Pick<Call, 'body'>): unknown {
   let value: unknown;
   try {
-    value = JSON.parse(body);
+    value = JSON.parse(textOf(call));
   } catch (error) {
     if (!(error instanceof SyntaxError)) throw error;
     throw new HttpError(400, `the body is no JSON: ${error.message}`);
@@ -59,7 +62,8 @@ export function jsonOf({ body }: Call): unknown {
   return value;
 }
 
-function refusalOf(error: unknown): HttpError | null {
+/** What an error is to the other side; null: a fault of the server. */
+export function refusalOf(error: unknown): HttpError | null {
   if (error instanceof ValidationError) return new HttpError(400, error.message, { field: error.field || null });
   return error instanceof HttpError ? error : null;
 }
@@ -78,11 +82,11 @@ function matcherOf<Access extends string>(service: Service<Access>, route: Route
     },
     async answer(call: Omit<Call, 'body'>): Promise<Answer> {
       await service.admit(route, call);
-      if (route.bodyLimit === 0) return route.handle({ ...call, body: '' });
+      if (route.bodyLimit === 0) return route.handle({ ...call, body: new Uint8Array() });
       if (!/^application\/json(;|$)/i.test(call.request.headers['content-type'] ?? '')) {
         throw new HttpError(415, 'send application/json');
       }
-      return route.handle({ ...call, body: await textBody(call.request, route.bodyLimit) });
+      return route.handle({ ...call, body: await wholeBody(call.request, route.bodyLimit) });
     },
     answerTo(error: unknown): Answer {
       const known = refusalOf(error) ?? service.refusalOf(error);

@@ -7,7 +7,7 @@ test('a study is begun as simulated with any name that a plan may have, and is c
   const { store } = await servedStudies();
   const title = { en: `Two ${'very '.repeat(21)}alike`, de: `Zwei ${'sehr '.repeat(21)}gleiche` };
   const plan = planToBegin(JSON.stringify({ ...examplePlan(), id: `two-${'a'.repeat(44)}`, title }), true);
-  store.addStudy(plan, { simulated: true, at: now });
+  store.plans.add(plan, { simulated: true, at: now });
   expect(plan.id).toBe(`two-${'a'.repeat(33)}-simulated`);
   expect(plan.title).toEqual({
     en: `SIMULATED: ${title.en}`.slice(0, 120),

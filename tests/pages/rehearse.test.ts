@@ -12,8 +12,8 @@ const effects = { answers: { 'late-200': -1.5 }, scores: {} };
 async function server() {
   const served = await servedStudies();
   const plan = latencyPlan({ participants: 6 });
-  served.store.addStudy(plan, { simulated: false, at: now });
-  served.store.claim('latency', 'P01', now);
+  served.store.plans.add(plan, { simulated: false, at: now });
+  served.store.places.claim('latency', 'P01', now);
   return { ...served, plan, client: createExperimenterClient(experimenter, served.origin) };
 }
 

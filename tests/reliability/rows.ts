@@ -302,6 +302,18 @@ export const attackRows = {
     target: '0 acknowledged and lost',
     tests: ['tests/server/study-routes.test.ts'],
   },
+  'study-lock': {
+    inject: 'Another program holds the lock of the studies’ database for 30 s (8 s by day)',
+    sees: 'Rooms go on; reads are answered, writes are refused with 503 and a time to try again',
+    target: 'delay of the event loop 20 ms at most (p99); 0 answered 408; 0 acknowledged and lost',
+    tests: ['tests/server/hung-database.test.ts'],
+  },
+  'study-disk': {
+    inject: 'The disk of the studies does not finish a flush for 30 s (12 s by day)',
+    sees: 'Rooms go on; reads are answered, no write is acknowledged: 503 and a time to try again',
+    target: 'delay of the event loop 20 ms at most (p99); 0 answered 408; 0 acknowledged and lost',
+    tests: ['tests/server/hung-database.test.ts'],
+  },
   'server-clock': {
     inject: 'The clock of the server goes an hour ahead and an hour back, in a game and in a study',
     sees: 'Rooms go on; passes are renewed; records keep their order and none is refused',

@@ -8,7 +8,6 @@ import { createRouter } from '../../server/http/router';
 import { createRelay } from '../../server/relay';
 import { relayConfigurationFrom } from '../../server/relay-configuration';
 import { createSitePolicy } from '../../server/site-policy';
-import { createStudyRoutes } from '../../server/study-routes';
 import { openStudyStore } from '../../server/study-store';
 import { serve } from '../../server/web-server';
 import { defaultCalibration } from '../../src/core/body/calibration';
@@ -33,7 +32,7 @@ import {
   withTables,
 } from './access-rows';
 import { poseBytes, rawGuest, rawSocket, startRelay, testSecret, tokenFor, until } from './running-relay';
-import { experimenter, now, studySeats, testSoftware } from './running-studies';
+import { experimenter, now, studiesInThisThread, studySeats } from './running-studies';
 
 const adminToken = 'admin-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 const plan = paperPlan();
@@ -42,14 +41,15 @@ const page: RequestListener = (_request, response) => response.end('the page');
 
 /** The whole server behind a proxy, with a study in which P01 and P02 take part and P03's place is free. */
 async function wholeServer() {
-  const store = openStudyStore(join(directoryWith(), 'studies.db'));
-  store.addStudy(plan, { simulated: false, at: now });
-  const claims = { P01: store.claim('paper', 'P01', now), P02: store.claim('paper', 'P02', now) };
+  const file = join(directoryWith(), 'studies.db');
+  const store = openStudyStore(file);
+  store.plans.add(plan, { simulated: false, at: now });
+  const claims = { P01: store.places.claim('paper', 'P01', now), P02: store.places.claim('paper', 'P02', now) };
   const one = session(scheduleFor(plan, 'P01'));
   one.tell({ type: 'consent', version: plan.consent.version, motion: true });
   one.doUntil(({ kind }) => kind === 'end');
   const records = one.records.map((record) => checkedRecord(record, plan));
-  store.storeRecords('paper', 'P01', records, now);
+  store.records.store('paper', 'P01', records, now);
   const environment = {
     THREEPOINT_LOG_LEVEL: 'silent',
     THREEPOINT_TRUST_PROXY: '1',
@@ -58,16 +58,7 @@ async function wholeServer() {
   const configuration = relayConfigurationFrom(environment);
   const connectionLimiter = createConnectionLimiter({ perAddress: 100, behindProxy: true });
   const relay = createRelay(configuration, testSecret, connectionLimiter);
-  const studies = createStudyRoutes({
-    store,
-    experimenterToken: experimenter,
-    seats: studySeats,
-    software: testSoftware.exportedBy,
-    trustProxy: true,
-    now: () => now,
-    onWrongGuess: () => undefined,
-    onFault: (error) => expect(error).toBeNull(),
-  });
+  const studies = studiesInThisThread({ store, file });
   const services = [relay.service, studies];
   const server = await serve(createRouter(services, page, createSitePolicy(configuration)), {
     host: '127.0.0.1',

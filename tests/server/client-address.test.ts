@@ -6,7 +6,7 @@ import { parseClientAddress } from '../../server/client-address';
 import { createConnectionLimiter } from '../../server/connection-limiter';
 import { measured } from '../reliability/measured';
 import { startRelay } from './running-relay';
-import { servedStudies } from './running-studies';
+import { servedPaperStudy, servedStudies } from './running-studies';
 
 const host = (text: string) => `Host: ${text}\r\n`;
 
@@ -156,6 +156,17 @@ describe('a forwarded value that is no address', () => {
       expect(status, lines).toBe('400');
       expect(text).toContain('X-Forwarded-For');
     }
+  });
+
+  test('is refused by the throttle of secrets, and does not keep a participant from their own place', async () => {
+    const { ask, claim } = await servedPaperStudy();
+    const token = await claim('P01');
+    const wrong = await ask('GET', '/api/studies', { token: 'wrong', from: 'unknown' });
+    expect(wrong.status).toBe(400);
+    expect(wrong.json.error).toContain('X-Forwarded-For');
+    const own = '/api/studies/paper/participants/P01/commands';
+    expect((await ask('GET', own, { token, from: 'unknown' })).status).toBe(200);
+    expect((await ask('GET', '/api/studies/paper', { from: 'unknown' })).status).toBe(200);
   });
 });
 

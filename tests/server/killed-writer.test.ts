@@ -35,13 +35,13 @@ describe('a server killed while it writes (kill -9)', () => {
 
   test('loses nothing that was acknowledged, and no half of a batch remains', { tags: ['full'] }, async () => {
     const { store, file } = withPaperStudy();
-    store.storeRecords('paper', 'P01', completed().slice(0, 1), now);
+    store.records.store('paper', 'P01', completed().slice(0, 1), now);
     store.close();
     const acknowledged: string[] = [];
     for (const [round, count] of [1, 7, 40, 150].entries()) {
       acknowledged.push(...(await acknowledgedBefore(file, 1_000_000 * (round + 1), count)));
       const { store: survivor } = opened(file);
-      const stored = new Set(survivor.records('paper', 'P01').map(({ id }) => id));
+      const stored = new Set(survivor.records.all('paper', 'P01').map(({ id }) => id));
       for (const id of acknowledged) expect(stored.has(id), id).toBe(true);
       const firstHalves = [...stored].filter((id) => id.endsWith('-a'));
       expect(firstHalves.length).toBeGreaterThan(0);

@@ -46,14 +46,14 @@ test('a match over sockets and a study without consent to motion leave no motion
   await relay.close();
 
   const now = 1_800_000_000;
-  store.addStudy(paperPlan(), { simulated: false, at: now });
+  store.plans.add(paperPlan(), { simulated: false, at: now });
   const schedule = scheduleFor(paperPlan(), 'P01');
   const one = session(schedule);
   one.tell({ type: 'consent', version: schedule.consentVersion, motion: false });
   one.doUntil(({ kind }) => kind === 'end');
-  store.storeRecords('paper', 'P01', one.records, now);
+  store.records.store('paper', 'P01', one.records, now);
   const recording = '{"frames":[[1,{"leftHand":{"x":0.1234567}}]]}';
-  expect(() => store.storeMotion('paper', 'P01', 'archery/1/trial-1', recording, now)).toThrow('motion recording');
+  expect(() => store.motion.store('paper', 'P01', 'archery/1/trial-1', recording, now)).toThrow('motion recording');
   store.close();
   open = false;
 

@@ -1,12 +1,15 @@
 import { join } from 'node:path';
 import { expect, onTestFinished } from 'vitest';
 import type { WrongGuess } from '../../server/auth-throttle';
+import { GroupCommit } from '../../server/group-commit';
 import { createRouter, noPage } from '../../server/http/router';
 import { createRoomTokens } from '../../server/room-tokens';
-import { SharedFlush } from '../../server/shared-flush';
+import { StudyDispatcher } from '../../server/study-dispatcher';
+import { createExporter } from '../../server/study-export-thread';
 import { createStudyRoutes } from '../../server/study-routes';
 import { createStudySeats } from '../../server/study-seats';
-import { openStudyStore } from '../../server/study-store';
+import { createStudyService } from '../../server/study-service';
+import { openStudyStore, type StudyStore } from '../../server/study-store';
 import { serve } from '../../server/web-server';
 import type { StudyPlan } from '../../src/core/study/plan';
 import { paperPlan } from '../core/study/studies';
@@ -26,6 +29,38 @@ export const studySeats = createStudySeats(
   testSecret,
   createRoomTokens(testSecret, () => Date.now() / 1000),
 );
+
+interface InThisThread {
+  readonly store: StudyStore;
+  /** The database of the store. */
+  readonly file: string;
+  readonly experimenterToken?: string | null;
+  readonly now?: () => number;
+  readonly trustProxy?: boolean;
+  /** Where faults, and wrong guesses, go. */
+  readonly log?: (line: string) => void;
+  readonly onWrongGuess?: (guess: WrongGuess) => void;
+}
+
+/** The studies' part of a server in the thread of the test, which shares its store. */
+export function studiesInThisThread({
+  store,
+  file,
+  experimenterToken = experimenter,
+  now: clock = () => now,
+  trustProxy = true,
+  log = (line) => expect(line).toBeNull(),
+  onWrongGuess = () => undefined,
+}: InThisThread) {
+  const routes = createStudyRoutes({
+    ...{ store, experimenterToken, onWrongGuess },
+    seats: studySeats,
+    software: testSoftware.exportedBy,
+    makeZip: createExporter(file),
+  });
+  const dispatcher = new StudyDispatcher({ routes, store, log });
+  return createStudyService({ routes: routes.routes, dispatcher, now: clock, trustProxy, log });
+}
 
 // biome-ignore lint/suspicious/noExplicitAny: reason: what arrives over HTTP has no type; each test says what it expects.
 export type Anything = any;
@@ -54,20 +89,16 @@ export async function servedStudies({
   flush,
   silenceMs = 30_000,
 }: ServedOptions = {}) {
-  const opened = openStudyStore(join(directoryWith(), 'studies.db'), { mostBytes });
-  const shared = flush && new SharedFlush(flush);
-  const store = shared ? { ...opened, flushed: () => shared.flushed() } : opened;
-  const faults: unknown[] = [];
+  const file = join(directoryWith(), 'studies.db');
+  const opened = openStudyStore(file, { mostBytes });
+  const commits = flush && new GroupCommit(flush);
+  const store = commits ? { ...opened, flushed: () => commits.flushed() } : opened;
+  const faults: string[] = [];
   const wrongGuesses: WrongGuess[] = [];
-  const service = createStudyRoutes({
-    store,
-    experimenterToken,
-    seats: studySeats,
-    software: testSoftware.exportedBy,
-    trustProxy: true,
-    now: () => now,
+  const service = studiesInThisThread({
+    ...{ store, file, experimenterToken },
     onWrongGuess: (guess) => wrongGuesses.push(guess),
-    onFault: (error) => faults.push(error),
+    log: (line) => faults.push(line),
   });
   const server = await serve(createRouter([service], noPage), { host: '127.0.0.1', port: 0, silenceMs });
   onTestFinished(async () => {
@@ -102,7 +133,7 @@ export async function servedStudies({
 /** The same with the paper's study on it, changed or not. */
 export async function servedPaperStudy(changes: Partial<StudyPlan> = {}, options: ServedOptions = {}) {
   const server = await servedStudies(options);
-  server.store.addStudy(paperPlan(changes), { simulated: false, at: now });
+  server.store.plans.add(paperPlan(changes), { simulated: false, at: now });
   /** What a participant's link says. */
   const invited = (participant: string) => ({
     invitation: server.store.overview('paper', now).find((state) => state.participant === participant)?.invitation,

@@ -1,4 +1,4 @@
-import { fork } from 'node:child_process';
+import { type ChildProcess, spawn } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import { onTestFinished } from 'vitest';
 import type { Route } from '../../server/http/router';
@@ -11,12 +11,34 @@ export interface ServerHello {
   readonly routes: readonly Omit<Route, 'handle'>[];
 }
 
+/** What the process reports of itself. */
+export interface ServerState {
+  readonly faults: readonly string[];
+  /** Every line of the log, faults included. */
+  readonly lines: readonly string[];
+  readonly rssBytes: number;
+  /** Delay of the event loop since the last report [ms]; the first report begins the measurement. */
+  readonly loop: { readonly p99Ms: number; readonly mostMs: number };
+}
+
 export const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 
+interface ForkOptions {
+  /** Holds the page and the studies; default: a new one that goes with the test. */
+  readonly directory?: string;
+  /** A program, with its arguments, that runs the server as its child. */
+  readonly through?: readonly string[];
+}
+
 /** The page, the studies and the relay in a process of their own, until the test is over. */
-export async function forkServer(environment: Readonly<Record<string, string>> = {}) {
-  const child = fork(fileURLToPath(new URL('./server-process.ts', import.meta.url)), [directoryWith()], {
-    execArgv: ['--import', 'tsx'],
+export async function forkServer(
+  environment: Readonly<Record<string, string>> = {},
+  { directory = directoryWith(), through = [] }: ForkOptions = {},
+) {
+  const script = fileURLToPath(new URL('./server-process.ts', import.meta.url));
+  const [command, ...words] = [...through, process.execPath, '--import', 'tsx', script, directory];
+  const child: ChildProcess = spawn(command as string, words, {
+    stdio: ['inherit', 'inherit', 'inherit', 'ipc'],
     env: {
       ...process.env,
       EXPERIMENTER_TOKEN: experimenterToken,
@@ -29,6 +51,7 @@ export async function forkServer(environment: Readonly<Record<string, string>> =
   return {
     port,
     routes,
+    directory,
     url: `http://127.0.0.1:${port}`,
     isAlive: () => isAlive(child),
     /** Moves the clock of the server, and of nothing else, to this far from the machine's [s]. */
@@ -36,10 +59,9 @@ export async function forkServer(environment: Readonly<Record<string, string>> =
       child.send({ ahead });
       await heardFrom(child);
     },
-    /** Faults that the studies told of, and the memory it holds. */
     async inspect() {
       child.send('inspect');
-      return heardFrom<{ readonly faults: readonly string[]; readonly rssBytes: number }>(child);
+      return heardFrom<ServerState>(child);
     },
   };
 }
@@ -54,8 +76,9 @@ export interface Health {
 
 /** Asks a server for its health until the test is over; tells of what was since the last question, once it has asked so often. */
 export function probeHealth(url: string): (atLeast?: number) => Promise<Health> {
-  const child = fork(fileURLToPath(new URL('./health-prober.ts', import.meta.url)), [url], {
-    execArgv: ['--import', 'tsx'],
+  const script = fileURLToPath(new URL('./health-prober.ts', import.meta.url));
+  const child = spawn(process.execPath, ['--import', 'tsx', script, url], {
+    stdio: ['inherit', 'inherit', 'inherit', 'ipc'],
   });
   onTestFinished(() => kill(child));
   return (atLeast = 1) => {

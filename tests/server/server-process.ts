@@ -1,15 +1,23 @@
 // All that `npm start` serves in a process of its own, so that requests can try to end it. The argument is a directory for its files.
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { monitorEventLoopDelay } from 'node:perf_hooks';
+import { ConfigurationError } from '../../server/configuration';
 import { relayConfigurationFrom } from '../../server/relay-configuration';
 import { startServer } from '../../server/start';
-import type { ServerHello } from './server-child';
+import type { ServerHello, ServerState } from './server-child';
 
 const directory = process.argv[2] as string;
 mkdirSync(join(directory, 'page'), { recursive: true });
 writeFileSync(join(directory, 'page/index.html'), '<!doctype html><title>page</title>');
-/** What the studies tell as a fault of the server; they also tell of wrong guesses and of deletions. */
-const faults: string[] = [];
+const lines: string[] = [];
+/** Ends the process as `npm start` does where the server cannot start. */
+function refuse(error: unknown): never {
+  if (!(error instanceof ConfigurationError)) throw error;
+  console.error(error.message);
+  process.exit(1);
+}
+
 const { port, routes } = await startServer({
   pageDirectory: join(directory, 'page'),
   studyDirectory: join(directory, 'studies'),
@@ -18,14 +26,21 @@ const { port, routes } = await startServer({
   secret: 'a secret of the tests, long enough for them',
   host: '127.0.0.1',
   port: 0,
-  log: (line) => {
-    if (line.startsWith('study, a fault: ')) faults.push(line);
-  },
-});
+  log: (line) => lines.push(line),
+}).catch(refuse);
+const loopDelay = monitorEventLoopDelay({ resolution: 2 });
 const machineNow = Date.now;
 process.on('message', (message: 'inspect' | { readonly ahead: number }) => {
   if (message !== 'inspect') Date.now = () => machineNow() + 1000 * message.ahead;
-  process.send?.({ faults, rssBytes: process.memoryUsage.rss() });
+  const state: ServerState = {
+    faults: lines.filter((line) => line.startsWith('study, a fault: ')),
+    lines,
+    rssBytes: process.memoryUsage.rss(),
+    loop: { p99Ms: loopDelay.percentile(99) / 1e6, mostMs: loopDelay.max / 1e6 },
+  };
+  process.send?.(state);
+  loopDelay.enable();
+  loopDelay.reset();
 });
 const hello: ServerHello = {
   port,

@@ -23,7 +23,7 @@ export function opened(file = join(directoryWith(), 'studies.db')): { store: Stu
 /** A store that has the paper's study. */
 export function withPaperStudy(options = { simulated: false }) {
   const { store, file } = opened();
-  store.addStudy(paperPlan(), { ...options, at: now });
+  store.plans.add(paperPlan(), { ...options, at: now });
   return { store, file };
 }
 

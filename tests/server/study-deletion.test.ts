@@ -17,12 +17,12 @@ describe('deleting', () => {
 
   test('leaves a receipt and no trace in the file', () => {
     const { store, file } = withPaperStudy();
-    store.claim('paper', 'P01', now);
+    store.places.claim('paper', 'P01', now);
     const records = completed();
-    store.storeRecords('paper', 'P01', records, now);
-    store.addRemark('paper', 'P01', 'wore a conspicuous hat', now);
+    store.records.store('paper', 'P01', records, now);
+    store.records.addRemark('paper', 'P01', 'wore a conspicuous hat', now);
     expect(bytesOf(file)).toContain('conspicuous hat');
-    const receipt = store.deleteParticipant('paper', 'P01', 'experimenter', now + 9);
+    const receipt = store.deletion.delete('paper', 'P01', 'experimenter', now + 9);
     expect(receipt).toEqual({
       number: 1,
       study: 'paper',
@@ -32,8 +32,8 @@ describe('deleting', () => {
       motionFiles: 0,
       at: now + 9,
     });
-    expect(store.records('paper')).toEqual([]);
-    expect(store.receipts('paper')).toEqual([receipt]);
+    expect(store.records.all('paper')).toEqual([]);
+    expect(store.deletion.receipts('paper')).toEqual([receipt]);
     expect(bytesOf(file)).not.toContain('conspicuous hat');
     expect(bytesOf(file)).not.toContain('Computer science');
   });
@@ -41,23 +41,23 @@ describe('deleting', () => {
   test('concerns one participant alone', () => {
     const { store } = withPaperStudy();
     for (const participant of ['P01', 'P02']) {
-      store.storeRecords('paper', participant, completed(participant), now);
+      store.records.store('paper', participant, completed(participant), now);
     }
-    store.deleteParticipant('paper', 'P01', 'experimenter', now);
-    expect(store.records('paper').every(({ participant }) => participant === 'P02')).toBe(true);
-    expect(store.records('paper')).toHaveLength(completed('P02').length);
+    store.deletion.delete('paper', 'P01', 'experimenter', now);
+    expect(store.records.all('paper').every(({ participant }) => participant === 'P02')).toBe(true);
+    expect(store.records.all('paper')).toHaveLength(completed('P02').length);
   });
 
   test('by the withdrawal code, however it is typed, and for good', () => {
     const { store } = withPaperStudy();
-    const { withdrawalCode } = store.claim('paper', 'P01', now);
-    store.storeRecords('paper', 'P01', completed(), now);
-    expect(store.withdraw('paper', '0000-0000-0000-0000', now)).toBeNull();
+    const { withdrawalCode } = store.places.claim('paper', 'P01', now);
+    store.records.store('paper', 'P01', completed(), now);
+    expect(store.deletion.withdraw('paper', '0000-0000-0000-0000', now)).toBeNull();
     const typed = (withdrawalCode as string).toLowerCase().replaceAll('-', ' ');
-    expect(store.withdraw('paper', typed, now)).toMatchObject({ participant: 'P01', reason: 'withdrawn' });
-    expect(() => store.claim('paper', 'P01', now)).toThrow('has withdrawn');
-    expect(() => store.storeRecords('paper', 'P01', completed(), now)).toThrow('has withdrawn');
-    expect(store.withdraw('paper', withdrawalCode as string, now)).toBeNull();
+    expect(store.deletion.withdraw('paper', typed, now)).toMatchObject({ participant: 'P01', reason: 'withdrawn' });
+    expect(() => store.places.claim('paper', 'P01', now)).toThrow('has withdrawn');
+    expect(() => store.records.store('paper', 'P01', completed(), now)).toThrow('has withdrawn');
+    expect(store.deletion.withdraw('paper', withdrawalCode as string, now)).toBeNull();
   });
 
   test('takes o for 0 and l for 1 in a code, since they look alike', () => {
@@ -66,12 +66,12 @@ describe('deleting', () => {
 
   test('happens by itself after the retention date, not before', () => {
     const { store } = withPaperStudy();
-    store.claim('paper', 'P01', now);
-    store.storeRecords('paper', 'P01', completed(), now);
-    const expired = (at: number) => store.deleteExpired(at, (_, error) => expect(error).toBeNull());
+    store.places.claim('paper', 'P01', now);
+    store.records.store('paper', 'P01', completed(), now);
+    const expired = (at: number) => store.deletion.deleteExpired(at, (_, error) => expect(error).toBeNull());
     expect(expired(now + 365 * day)).toEqual([]);
     expect(expired(now + 365 * day + 1)).toMatchObject([{ participant: 'P01', reason: 'retention' }]);
-    expect(store.records('paper')).toEqual([]);
+    expect(store.records.all('paper')).toEqual([]);
     expect(expired(now + 366 * day)).toEqual([]);
   });
 });

@@ -75,7 +75,7 @@ describe('a place in a study', () => {
     const { ask, invited, claim, store } = await servedPaperStudy();
     const before = invited('P01');
     await claim('P01');
-    store.release('paper', 'P01');
+    store.places.release('paper', 'P01');
     expect(invited('P01')).toEqual(before);
     await ask('DELETE', '/api/studies/paper/participants/P01', { token: experimenter });
     expect((await ask('POST', claimPath('P01'), { json: before })).status).toBe(403);

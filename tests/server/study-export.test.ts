@@ -8,15 +8,15 @@ import { completed, withPaperStudy } from './stored-studies';
 
 describe('an export', () => {
   const contentOf = (store: StudyStore, participant?: string) => {
-    const { plan, simulated, retentionUntil } = store.study('paper');
-    const records = store.records('paper', participant);
-    const motion = store.motion('paper', participant).map(unpacked);
+    const { plan, simulated, retentionUntil } = store.plans.get('paper');
+    const records = store.records.all('paper', participant);
+    const motion = store.motion.all('paper', participant).map(unpacked);
     return { plan, simulated, records, motion, at: now, retentionUntil, software: testSoftware };
   };
 
   test('holds JSON, tidy tables and a codebook, of this participant alone', () => {
     const { store } = withPaperStudy();
-    for (const participant of ['P01', 'P02']) store.storeRecords('paper', participant, completed(participant), now);
+    for (const participant of ['P01', 'P02']) store.records.store('paper', participant, completed(participant), now);
     const files = unzipSync(exportZip(contentOf(store, 'P01'), 'P01'));
     expect(Object.keys(files).toSorted()).toEqual(
       [
@@ -41,7 +41,7 @@ describe('an export', () => {
       ].map((name) => `paper-P01/${name}`),
     );
     const read = (name: string) => strFromU8(files[`paper-P01/${name}`] as Uint8Array);
-    expect(JSON.parse(read('records.json')).records).toEqual(store.records('paper', 'P01'));
+    expect(JSON.parse(read('records.json')).records).toEqual(store.records.all('paper', 'P01'));
     expect(read('answers.csv').trimEnd().split('\r\n')).toHaveLength(1 + 24);
     for (const name of Object.keys(files)) expect(strFromU8(files[name] as Uint8Array)).not.toContain('P02');
   });
@@ -51,14 +51,14 @@ describe('an export', () => {
     const records = completed().map((record) =>
       record.kind === 'demographics' ? { ...record, body: { ...record.body, major: '=cmd|calc' } } : record,
     );
-    store.storeRecords('paper', 'P01', records, now);
+    store.records.store('paper', 'P01', records, now);
     const files = unzipSync(exportZip(contentOf(store, 'P01'), 'P01'));
     expect(strFromU8(files['paper-P01/participants.csv'] as Uint8Array)).toContain(",'=cmd|calc,");
   });
 
   test('of simulated people says so in its name, its text and every row', () => {
     const { store } = withPaperStudy({ simulated: true });
-    store.storeRecords('paper', 'P01', completed('P01', { simulated: true }), now);
+    store.records.store('paper', 'P01', completed('P01', { simulated: true }), now);
     const files = unzipSync(exportZip(contentOf(store)));
     expect(Object.keys(files).every((name) => name.startsWith('SIMULATED-paper/'))).toBe(true);
     expect(strFromU8(files['SIMULATED-paper/README.txt'] as Uint8Array)).toMatch(/^SIMULATED/);
@@ -70,9 +70,9 @@ describe('an export', () => {
 
   test('after deletion is empty, and works', () => {
     const { store } = withPaperStudy();
-    store.storeRecords('paper', 'P01', completed('P01'), now);
+    store.records.store('paper', 'P01', completed('P01'), now);
     const before = unzipSync(exportZip(contentOf(store, 'P01'), 'P01'));
-    store.deleteParticipant('paper', 'P01', 'experimenter', now);
+    store.deletion.delete('paper', 'P01', 'experimenter', now);
     const after = unzipSync(exportZip(contentOf(store, 'P01'), 'P01'));
     expect(Object.keys(after)).toEqual(Object.keys(before));
     expect(JSON.parse(strFromU8(after['paper-P01/records.json'] as Uint8Array)).records).toEqual([]);

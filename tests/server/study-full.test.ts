@@ -3,6 +3,7 @@ import { readdirSync, readFileSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
+import { DatabaseSync } from '@photostructure/sqlite';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { openStudyStore } from '../../server/study-store';
 import { scheduleFor } from '../../src/core/study/schedule';
@@ -45,19 +46,19 @@ describe('storage that is full', () => {
   test('refuses in a sentence, keeps what was acknowledged, and takes the rest once there is room', () => {
     const file = join(directoryWith(), 'studies.db');
     const full = opened(file, 256 * 1024);
-    full.addStudy(paperPlan(), { simulated: false, at: now });
-    full.storeRecords('paper', 'P01', consented('P01').slice(0, 1), now);
+    full.plans.add(paperPlan(), { simulated: false, at: now });
+    full.records.store('paper', 'P01', consented('P01').slice(0, 1), now);
     let stored = 1;
     const fill = () => {
-      for (; stored < 2000; stored++) full.storeRecords('paper', 'P01', [remark(stored)], now);
+      for (; stored < 2000; stored++) full.records.store('paper', 'P01', [remark(stored)], now);
     };
     expect(fill).toThrow('the disk of the server is full: nothing of this was stored');
-    expect(full.records('paper', 'P01')).toHaveLength(stored);
+    expect(full.records.all('paper', 'P01')).toHaveLength(stored);
     full.close();
     const roomy = opened(file);
-    expect(roomy.records('paper', 'P01').at(-1)).toEqual(remark(stored - 1));
-    roomy.storeRecords('paper', 'P01', [remark(stored)], now);
-    expect(roomy.records('paper', 'P01')).toHaveLength(stored + 1);
+    expect(roomy.records.all('paper', 'P01').at(-1)).toEqual(remark(stored - 1));
+    roomy.records.store('paper', 'P01', [remark(stored)], now);
+    expect(roomy.records.all('paper', 'P01')).toHaveLength(stored + 1);
   });
 
   test('by the limit of the system on files: no acknowledged record goes, and the file stays sound', {
@@ -65,8 +66,8 @@ describe('storage that is full', () => {
   }, async () => {
     const file = join(directoryWith(), 'studies.db');
     const before = opened(file);
-    before.addStudy(paperPlan(), { simulated: false, at: now });
-    before.storeRecords('paper', 'P01', consented('P01').slice(0, 1), now);
+    before.plans.add(paperPlan(), { simulated: false, at: now });
+    before.records.store('paper', 'P01', consented('P01').slice(0, 1), now);
     before.close();
     // In blocks of 1024 bytes: a little more than the file is now. SIGXFSZ is ignored, as servers do: writes fail instead.
     const blocks = Math.ceil(statSync(file).size / 1024) + 1000;
@@ -94,9 +95,9 @@ describe('storage that is full', () => {
     const acknowledged = said.split('\n').filter(Boolean);
     expect(acknowledged.length).toBeGreaterThan(20);
     const after = opened(file);
-    const ids = new Set(after.records('paper', 'P01').map(({ id }) => id));
+    const ids = new Set(after.records.all('paper', 'P01').map(({ id }) => id));
     expect(acknowledged.filter((id) => !ids.has(id))).toEqual([]);
-    after.storeRecords('paper', 'P01', [remark(9_000_000)], now);
+    after.records.store('paper', 'P01', [remark(9_000_000)], now);
   });
 });
 
@@ -116,9 +117,9 @@ describe('deletion by the code', () => {
   test('leaves no byte of the participant in any file: records, progress, commands, motion, tokens', () => {
     const directory = directoryWith();
     const store = opened(join(directory, 'studies.db'));
-    store.addStudy(paperPlan(), { simulated: false, at: now });
-    const { withdrawalCode } = store.claim('paper', 'P01', now);
-    const other = store.claim('paper', 'P02', now);
+    store.plans.add(paperPlan(), { simulated: false, at: now });
+    const { withdrawalCode } = store.places.claim('paper', 'P01', now);
+    const other = store.places.claim('paper', 'P02', now);
     const motion = JSON.stringify({ frames: Array.from({ length: 4000 }, (_, at) => Math.sin(at * 7.3)) });
     for (const participant of ['P01', 'P02']) {
       const records = consented(participant).map((record) =>
@@ -126,22 +127,40 @@ describe('deletion by the code', () => {
           ? { ...record, body: { ...record.body, major: `${conspicuous} ${participant}` } }
           : record,
       );
-      store.storeRecords('paper', participant, records, now);
+      store.records.store('paper', participant, records, now);
     }
-    store.storeMotion('paper', 'P01', 'archery/1/trial-1@1.1:trial', motion, now);
-    store.addRemark('paper', 'P01', `${conspicuous} P01, said the experimenter`, now);
-    store.addCommand('paper', 'P01', { type: 'stop', by: 'experimenter', reason: `${conspicuous} P01 stops` }, now);
+    store.motion.store('paper', 'P01', 'archery/1/trial-1@1.1:trial', motion, now);
+    store.records.addRemark('paper', 'P01', `${conspicuous} P01, said the experimenter`, now);
+    store.commands.add('paper', 'P01', { type: 'stop', by: 'experimenter', reason: `${conspicuous} P01 stops` }, now);
     // The middle of the compressed recording, as it lies on the disk.
     const packed = gzipSync(motion).subarray(2000, 2040);
     const traces = [`${conspicuous} P01`, packed];
     expect(tracesOf(directory, traces)).not.toEqual([]);
     expect(tracesOf(directory, [packed])).not.toEqual([]);
 
-    expect(store.withdraw('paper', withdrawalCode as string, now)).toMatchObject({ motionFiles: 1 });
+    expect(store.deletion.withdraw('paper', withdrawalCode as string, now)).toMatchObject({ motionFiles: 1 });
     expect(tracesOf(directory, traces)).toEqual([]);
     expect(tracesOf(directory, [`${conspicuous} P02`])).not.toEqual([]);
     store.close();
     expect(tracesOf(directory, traces)).toEqual([]);
     expect(other.withdrawalCode).not.toBe(withdrawalCode);
+  });
+
+  test('leaves bytes in the log only while another program reads the database', () => {
+    const directory = directoryWith();
+    const store = opened(join(directory, 'studies.db'));
+    store.plans.add(paperPlan(), { simulated: false, at: now });
+    const { withdrawalCode } = store.places.claim('paper', 'P01', now);
+    store.records.store('paper', 'P01', consented('P01'), now);
+    store.records.addRemark('paper', 'P01', conspicuous, now);
+    const reader = new DatabaseSync(join(directory, 'studies.db'));
+    onTestFinished(() => reader.close());
+    reader.exec('BEGIN; SELECT count(*) FROM records');
+    store.deletion.withdraw('paper', withdrawalCode as string, now);
+    expect(store.forgetDeleted()).toBe(false);
+    expect(tracesOf(directory, [conspicuous])).not.toEqual([]);
+    reader.exec('COMMIT');
+    expect(store.forgetDeleted()).toBe(true);
+    expect(tracesOf(directory, [conspicuous])).toEqual([]);
   });
 });

@@ -15,12 +15,12 @@ const later = latencyPlan({ title: 'A body that follows much later' });
 function begunStudy() {
   const file = join(directoryWith(), 'studies.db');
   const store = openStudyStore(file);
-  store.addStudy(plan, { simulated: false, at: now });
-  const { token, withdrawalCode } = store.claim('latency', 'P02', now);
+  store.plans.add(plan, { simulated: false, at: now });
+  const { token, withdrawalCode } = store.places.claim('latency', 'P02', now);
   const p02 = session(scheduleFor(plan, 'P02'));
   p02.doUntil(({ kind }) => kind === 'end');
-  store.storeRecords('latency', 'P02', p02.records, now);
-  store.deleteParticipant('latency', 'P03', 'withdrawn', now);
+  store.records.store('latency', 'P02', p02.records, now);
+  store.deletion.delete('latency', 'P03', 'withdrawn', now);
   store.close();
   return { file, token, withdrawalCode: withdrawalCode as string, records: p02.records };
 }
@@ -43,23 +43,23 @@ test('a database from before invitations gives each place one, and loses nothing
   const given = invitations.filter((invitation) => invitation !== null);
   expect(new Set(given).size).toBe(17);
   for (const invitation of given) expect(invitation).toMatch(/^(\w{4}-){3}\w{4}$/);
-  expect(store.invites('latency', 'P01', given[0] as string)).toBe(true);
-  expect(store.invites('latency', 'P04', given[0] as string)).toBe(false);
-  expect(store.holds('latency', 'P02', token)).toBe(true);
-  expect(store.records('latency')).toEqual(records);
-  expect(store.withdraw('latency', withdrawalCode, now)).toMatchObject({ participant: 'P02' });
+  expect(store.places.invites('latency', 'P01', given[0] as string)).toBe(true);
+  expect(store.places.invites('latency', 'P04', given[0] as string)).toBe(false);
+  expect(store.places.holds('latency', 'P02', token)).toBe(true);
+  expect(store.records.all('latency')).toEqual(records);
+  expect(store.deletion.withdraw('latency', withdrawalCode, now)).toMatchObject({ participant: 'P02' });
 });
 
 test('a database from before versions of plans keeps every plan and participant, as version 1', () => {
   const { file, token, records } = begunStudy();
   const store = broughtUpToDate(file, withoutPlanVersions);
-  expect(store.study('latency')).toMatchObject({
+  expect(store.plans.get('latency')).toMatchObject({
     ...{ plan, version: 1, createdAt: now },
     versions: [{ version: 1, since: now, participants: ['P02', 'P03'] }],
   });
-  expect(store.records('latency')).toEqual(records);
-  expect(store.holds('latency', 'P02', token)).toBe(true);
-  expect(store.addStudy(later, { simulated: false, newVersion: true, at: now }).version).toBe(2);
-  expect(store.planFor('latency', 'P02')).toEqual(plan);
-  expect(store.planFor('latency', 'P01')).toEqual(later);
+  expect(store.records.all('latency')).toEqual(records);
+  expect(store.places.holds('latency', 'P02', token)).toBe(true);
+  expect(store.plans.add(later, { simulated: false, newVersion: true, at: now }).version).toBe(2);
+  expect(store.plans.planFor('latency', 'P02')).toEqual(plan);
+  expect(store.plans.planFor('latency', 'P01')).toEqual(later);
 });

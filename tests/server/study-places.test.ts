@@ -6,40 +6,40 @@ import { completed, withPaperStudy } from './stored-studies';
 describe('a place in the study', () => {
   test('belongs to the first device that claims it', () => {
     const { store } = withPaperStudy();
-    const { token } = store.claim('paper', 'P01', now);
-    expect(() => store.claim('paper', 'P01', now)).toThrow('taken by another device');
-    expect(store.holds('paper', 'P01', token)).toBe(true);
-    expect(store.holds('paper', 'P02', token)).toBe(false);
-    expect(store.holds('paper', 'P01', `${token}x`)).toBe(false);
+    const { token } = store.places.claim('paper', 'P01', now);
+    expect(() => store.places.claim('paper', 'P01', now)).toThrow('taken by another device');
+    expect(store.places.holds('paper', 'P01', token)).toBe(true);
+    expect(store.places.holds('paper', 'P02', token)).toBe(false);
+    expect(store.places.holds('paper', 'P01', `${token}x`)).toBe(false);
   });
 
   test('that is released goes to the next device; the withdrawal code stays', () => {
     const { store } = withPaperStudy();
-    const first = store.claim('paper', 'P01', now);
-    store.storeRecords('paper', 'P01', completed(), now);
-    store.release('paper', 'P01');
-    const second = store.claim('paper', 'P01', now);
-    expect(store.holds('paper', 'P01', first.token)).toBe(false);
-    expect(store.holds('paper', 'P01', second.token)).toBe(true);
+    const first = store.places.claim('paper', 'P01', now);
+    store.records.store('paper', 'P01', completed(), now);
+    store.places.release('paper', 'P01');
+    const second = store.places.claim('paper', 'P01', now);
+    expect(store.places.holds('paper', 'P01', first.token)).toBe(false);
+    expect(store.places.holds('paper', 'P01', second.token)).toBe(true);
     expect(second.withdrawalCode).toBeNull();
-    expect(store.withdraw('paper', first.withdrawalCode as string, now)?.participant).toBe('P01');
+    expect(store.deletion.withdraw('paper', first.withdrawalCode as string, now)?.participant).toBe('P01');
   });
 
   test('of which nothing is recorded yet gives a withdrawal code again: the answer to the first claim may have been lost', () => {
     const { store } = withPaperStudy();
-    const lost = store.claim('paper', 'P01', now).withdrawalCode as string;
-    store.release('paper', 'P01');
-    const { withdrawalCode } = store.claim('paper', 'P01', now);
+    const lost = store.places.claim('paper', 'P01', now).withdrawalCode as string;
+    store.places.release('paper', 'P01');
+    const { withdrawalCode } = store.places.claim('paper', 'P01', now);
     expect(withdrawalCode).toMatch(/^(\w{4}-){3}\w{4}$/);
     expect(withdrawalCode).not.toBe(lost);
-    store.storeRecords('paper', 'P01', completed(), now);
-    expect(store.withdraw('paper', lost, now)).toBeNull();
-    expect(store.withdraw('paper', withdrawalCode as string, now)?.participant).toBe('P01');
+    store.records.store('paper', 'P01', completed(), now);
+    expect(store.deletion.withdraw('paper', lost, now)).toBeNull();
+    expect(store.deletion.withdraw('paper', withdrawalCode as string, now)?.participant).toBe('P01');
   });
 
   test('keeps neither token nor code, only what proves them', () => {
     const { store, file } = withPaperStudy();
-    const { token, withdrawalCode } = store.claim('paper', 'P01', now);
+    const { token, withdrawalCode } = store.places.claim('paper', 'P01', now);
     store.close();
     const bytes = readFileSync(file).toString('latin1');
     expect(bytes).not.toContain(token);

@@ -1,18 +1,15 @@
 // The studies' part of the server in a process of its own, to be killed. Its argument is the folder of its files.
 import { createRouter, noPage } from '../../server/http/router';
-import { createRoomTokens } from '../../server/room-tokens';
-import { createStudySeats } from '../../server/study-seats';
 import { openStudyService } from '../../server/study-service';
 import { serve } from '../../server/web-server';
 
 const secret = 'a secret of the tests, long enough for them';
-const now = () => Date.now() / 1000;
-const { service } = openStudyService({
+const { service } = await openStudyService({
   directory: process.argv[2] as string,
   token: process.env.EXPERIMENTER_TOKEN ?? null,
   software: { name: 'threepoint', version: '0.1.0', weights: [] },
-  now,
-  seats: createStudySeats(secret, createRoomTokens(secret, now)),
+  now: () => Date.now() / 1000,
+  secret,
   trustProxy: true,
   log: (line) => {
     if (line.startsWith('study, a fault: ')) process.send?.({ fault: line });

@@ -30,7 +30,7 @@ describe('a participant', () => {
     const records = completed('P01');
     const sent = await ask('POST', own('P01', '/records'), { token: claimed.json.token, json: { records } });
     expect(sent.json.acknowledged).toEqual(records.map(({ id }) => id));
-    expect(store.records('paper', 'P01')).toEqual(records);
+    expect(store.records.all('paper', 'P01')).toEqual(records);
   });
 
   test('goes on on another device where the first one was', async () => {
@@ -85,7 +85,7 @@ describe('a participant', () => {
         expect(body.toString()).not.toContain('Computer science');
       }
     }
-    expect(store.records('paper', 'P02')).toEqual(records);
+    expect(store.records.all('paper', 'P02')).toEqual(records);
   });
 
   test('cannot put records under the code of another', async () => {
@@ -93,7 +93,7 @@ describe('a participant', () => {
     const token = await claim('P01');
     const answer = await ask('POST', own('P01', '/records'), { token, json: { records: completed('P02') } });
     expect(answer.status).toBe(403);
-    expect(store.records('paper')).toEqual([]);
+    expect(store.records.all('paper')).toEqual([]);
   });
 
   test('learns nothing of the conditions before the place is theirs', async () => {
@@ -119,7 +119,7 @@ describe('a participant', () => {
     );
     const { json } = await ask('POST', '/api/studies/paper/withdraw', { json: { code: withdrawalCode } });
     expect(json).toMatchObject({ participant: 'P01', reason: 'withdrawn', records: completed('P01').length });
-    expect(store.records('paper')).toEqual([]);
+    expect(store.records.all('paper')).toEqual([]);
     expect((await ask('POST', own('P01', '/records'), { token, json: { records: completed('P01') } })).status).toBe(
       401,
     );
@@ -141,7 +141,7 @@ describe('a participant', () => {
       ask('PUT', own('P01', '/motion?trial=archery/1/trial-1@1.1:trial'), { raw: { headers, body } });
     expect((await put('{}')).status).toBe(400);
     expect((await put(recording)).status).toBe(204);
-    expect(store.motion('paper', 'P01').map(unpacked)).toEqual([
+    expect(store.motion.all('paper', 'P01').map(unpacked)).toEqual([
       { participant: 'P01', trial: 'archery/1/trial-1@1.1:trial', text: recording },
     ]);
   });
@@ -199,7 +199,7 @@ describe('the experimenter', () => {
   test('exports while others are served', async () => {
     const { ask, store } = await servedPaperStudy();
     for (const participant of ['P01', 'P02', 'P03']) {
-      store.storeRecords('paper', participant, completed(participant), now);
+      store.records.store('paper', participant, completed(participant), now);
     }
     let ended = false;
     const exported = ask('GET', '/api/studies/paper/export', { token: experimenter }).then((answer) => {
@@ -218,7 +218,7 @@ describe('the experimenter', () => {
   test('exports for longer than a connection may be silent, several at once', async () => {
     const { ask, store } = await servedPaperStudy({}, { silenceMs: 100 });
     const people = ['P01', 'P02'];
-    for (const participant of people) store.storeRecords('paper', participant, completed(participant), now);
+    for (const participant of people) store.records.store('paper', participant, completed(participant), now);
     const exported = people.map(async (participant) => {
       const { status, body } = await ask('GET', own(participant, '/export'), { token: experimenter });
       expect(status).toBe(200);
@@ -254,7 +254,7 @@ describe('what is wrong', () => {
     const { status, json } = await ask('POST', own('P01', '/records'), { token, json: { records } });
     expect(status).toBe(400);
     expect(json.field).toBe('records[1].body.age');
-    expect(store.records('paper')).toEqual([]);
+    expect(store.records.all('paper')).toEqual([]);
   });
 
   test('answers with the status that says what', async () => {
@@ -300,7 +300,7 @@ describe('what is wrong', () => {
       () => 'cut off',
     );
     expect([413, 'cut off']).toContain(outcome);
-    expect(store.records('paper')).toEqual([]);
+    expect(store.records.all('paper')).toEqual([]);
   });
 
   test('a full disk is said as 507; what was there stays, and deleting makes room again', async () => {
@@ -322,7 +322,7 @@ describe('what is wrong', () => {
       ask('POST', own('P02', '/records'), { token: tokens[1]!, json: { records: completed('P02') } });
     const refused = [last.status, (await second()).status];
     expect(refused).toEqual([507, 507]);
-    const lost = own1.length + stored - store.records('paper', 'P01').length;
+    const lost = own1.length + stored - store.records.all('paper', 'P01').length;
     expect(lost).toBe(0);
     expect((await ask('DELETE', own('P01'), { token: experimenter })).status).toBe(200);
     expect((await second()).status).toBe(200);

@@ -19,7 +19,7 @@ function recordsOf(plan: StudyPlan, participant: string) {
 async function begunStudy() {
   const server = await servedStudies();
   const plan = latencyPlan();
-  server.store.addStudy(plan, { simulated: false, at: now });
+  server.store.plans.add(plan, { simulated: false, at: now });
   const of = (participant: string) => `/api/studies/latency/participants/${participant}`;
   const take = async (participant: string, by: StudyPlan) => {
     const { json } = await server.ask('POST', `${of(participant)}/claim`, { token: experimenter, json: {} });
@@ -116,17 +116,17 @@ describe('a plan that has participants', () => {
     const after = await invitations();
     expect(after.slice(0, 18)).toEqual(before);
     expect(new Set(after).size).toBe(24);
-    expect(store.study('latency').retentionUntil).toBe(now + 365 * 86_400);
+    expect(store.plans.get('latency').retentionUntil).toBe(now + 365 * 86_400);
   });
 
   test('that is open keeps its one invitation, also to the places that the new version has more', async () => {
     const { store } = await servedStudies();
     const open = latencyPlan({ entry: 'open', participants: 6 });
-    store.addStudy(open, { simulated: false, at: now });
+    store.plans.add(open, { simulated: false, at: now });
     const invitations = () => store.overview('latency', now).map(({ invitation }) => invitation);
     const [sent] = invitations();
-    for (const { participant } of store.overview('latency', now)) store.claim('latency', participant, now);
-    store.addStudy({ ...open, participants: 12 }, { simulated: false, at: now, newVersion: true });
+    for (const { participant } of store.overview('latency', now)) store.places.claim('latency', participant, now);
+    store.plans.add({ ...open, participants: 12 }, { simulated: false, at: now, newVersion: true });
     expect(invitations()).toEqual(Array.from({ length: 12 }, () => sent));
   });
 
@@ -148,8 +148,8 @@ describe('a plan that has participants', () => {
 
   test('that no one has begun is replaced as before, without a version', async () => {
     const { store } = await servedStudies();
-    store.addStudy(latencyPlan(), { simulated: false, at: now });
-    expect(store.addStudy(later, { simulated: false, at: now })).toMatchObject({ version: 1, plan: later });
+    store.plans.add(latencyPlan(), { simulated: false, at: now });
+    expect(store.plans.add(later, { simulated: false, at: now })).toMatchObject({ version: 1, plan: later });
   });
 });
 
@@ -157,7 +157,7 @@ describe('a place that the experimenter clears', () => {
   test('is free, and the next who takes it follows the new version', async () => {
     const { change, take, of, ask, store } = await begunStudy();
     await change(asksMore, true);
-    expect(store.planFor('latency', 'P01')).toEqual(latencyPlan());
+    expect(store.plans.planFor('latency', 'P01')).toEqual(latencyPlan());
     expect((await ask('DELETE', of('P01'), { token: experimenter })).status).toBe(200);
     expect((await take('P01', asksMore)).plan).toEqual(asksMore);
     expect(store.overview('latency', now)[0]).toMatchObject({ participant: 'P01', version: 2 });
@@ -165,65 +165,65 @@ describe('a place that the experimenter clears', () => {
 
   test('goes where the new version has no such place', async () => {
     const { change, of, ask, store } = await begunStudy();
-    for (const participant of ['P02', 'P18']) store.claim('latency', participant, now);
+    for (const participant of ['P02', 'P18']) store.places.claim('latency', participant, now);
     await change({ ...later, participants: 12 }, true);
     const places = () => store.overview('latency', now).map(({ participant }) => participant);
     expect(places()).toHaveLength(13);
     expect((await ask('DELETE', of('P18'), { token: experimenter })).status).toBe(200);
     expect(places()).toHaveLength(12);
-    expect(store.receipts('latency')).toMatchObject([{ participant: 'P18', reason: 'experimenter' }]);
+    expect(store.deletion.receipts('latency')).toMatchObject([{ participant: 'P18', reason: 'experimenter' }]);
   });
 
   test('stays with the version of a group in which another has begun, and leaves it with the last of them', async () => {
     const { store } = await servedStudies();
-    store.addStudy(paperPlan(), { simulated: false, at: now });
+    store.plans.add(paperPlan(), { simulated: false, at: now });
     const [first = '', second = '', third = ''] = togetherWith(paperPlan(), 'P04');
-    for (const participant of [first, second]) store.claim('paper', participant, now);
-    store.addStudy(paperPlan({ title: 'Changed' }), { simulated: false, newVersion: true, at: now });
+    for (const participant of [first, second]) store.places.claim('paper', participant, now);
+    store.plans.add(paperPlan({ title: 'Changed' }), { simulated: false, newVersion: true, at: now });
     const versions = () => {
       const states = store.overview('paper', now);
       return [first, second, third].map((one) => states.find(({ participant }) => participant === one)?.version);
     };
-    store.deleteParticipant('paper', first, 'experimenter', now);
+    store.deletion.delete('paper', first, 'experimenter', now);
     expect(versions()).toEqual([1, 1, 1]);
-    store.deleteParticipant('paper', second, 'experimenter', now);
+    store.deletion.delete('paper', second, 'experimenter', now);
     expect(versions()).toEqual([2, 2, 2]);
   });
 
   test('stays where the new version groups it with a participant who began', async () => {
     const { store } = await servedStudies();
     const plan = paperPlan({ participants: 6 });
-    store.addStudy(plan, { simulated: false, at: now });
+    store.plans.add(plan, { simulated: false, at: now });
     const one = [...togetherWith(plan, 'P01')];
     const other = ['P01', 'P02', 'P03', 'P04', 'P05', 'P06'].find((name) => !one.includes(name)) as string;
-    for (const participant of ['P01', other]) store.claim('paper', participant, now);
+    for (const participant of ['P01', other]) store.places.claim('paper', participant, now);
     // By another seed everybody plays with others, and all stay: nothing is mixed yet.
     const seed = [1, 2, 3, 4, 5, 6, 7, 8].find((value) =>
       [...togetherWith({ ...plan, seed: value }, 'P01')].some((name) => !one.includes(name)),
     );
-    store.addStudy({ ...plan, seed: seed as number }, { simulated: false, newVersion: true, at: now });
-    store.deleteParticipant('paper', 'P01', 'experimenter', now);
+    store.plans.add({ ...plan, seed: seed as number }, { simulated: false, newVersion: true, at: now });
+    store.deletion.delete('paper', 'P01', 'experimenter', now);
     expect(store.overview('paper', now).map(({ version }) => version)).toEqual([1, 1, 1, 1, 1, 1]);
   });
 
   test('of a study that has been opened to all is taken by the invitation of all, and not by the old one', async () => {
     const { store } = await servedStudies();
     const invited = latencyPlan({ participants: 6 });
-    store.addStudy(invited, { simulated: false, at: now });
+    store.plans.add(invited, { simulated: false, at: now });
     const invitations = () => store.overview('latency', now).map(({ invitation }) => invitation);
     const old = invitations()[0] as string;
-    store.claim('latency', 'P01', now);
-    store.addStudy({ ...invited, entry: 'open' }, { simulated: false, at: now, newVersion: true });
+    store.places.claim('latency', 'P01', now);
+    store.plans.add({ ...invited, entry: 'open' }, { simulated: false, at: now, newVersion: true });
     const [, ofAll] = invitations();
-    store.deleteParticipant('latency', 'P01', 'experimenter', now);
+    store.deletion.delete('latency', 'P01', 'experimenter', now);
     expect(invitations()).toEqual(Array.from({ length: 6 }, () => ofAll));
-    expect(store.invites('latency', 'P01', old)).toBe(false);
+    expect(store.places.invites('latency', 'P01', old)).toBe(false);
   });
 
   test('stays taken for a participant who has withdrawn', async () => {
     const { change, store } = await begunStudy();
     await change(asksMore, true);
-    store.deleteParticipant('latency', 'P01', 'withdrawn', now);
+    store.deletion.delete('latency', 'P01', 'withdrawn', now);
     expect(store.overview('latency', now)[0]).toMatchObject({ participant: 'P01', version: 1, withdrawn: true });
   });
 });
@@ -232,24 +232,24 @@ describe('those who play together', () => {
   test('follow one version: the group of a participant who began stays with them', async () => {
     const { store } = await servedStudies();
     const plan = paperPlan();
-    store.addStudy(plan, { simulated: false, at: now });
-    store.claim('paper', 'P04', now);
+    store.plans.add(plan, { simulated: false, at: now });
+    store.places.claim('paper', 'P04', now);
     const changed = paperPlan({ title: 'Changed' });
-    store.addStudy(changed, { simulated: false, newVersion: true, at: now });
+    store.plans.add(changed, { simulated: false, newVersion: true, at: now });
     const group = togetherWith(plan, 'P04');
     expect(group.size).toBe(3);
     for (const { participant, version } of store.overview('paper', now)) {
       expect(version).toBe(group.has(participant) ? 1 : 2);
-      expect(store.planFor('paper', participant).title).toBe(group.has(participant) ? plan.title : 'Changed');
+      expect(store.plans.planFor('paper', participant).title).toBe(group.has(participant) ? plan.title : 'Changed');
     }
   });
 
   test('are never mixed: a change that would put others into their group is refused, and says so', async () => {
     const { store } = await servedStudies();
-    store.addStudy(paperPlan(), { simulated: false, at: now });
-    store.claim('paper', 'P04', now);
-    const change = () => store.addStudy(paperPlan({ seed: 1 }), { simulated: false, newVersion: true, at: now });
+    store.plans.add(paperPlan(), { simulated: false, at: now });
+    store.places.claim('paper', 'P04', now);
+    const change = () => store.plans.add(paperPlan({ seed: 1 }), { simulated: false, newVersion: true, at: now });
     expect(change).toThrow(/would play with P\d\d, who stays with version 1: leave seed/);
-    expect(store.study('paper').versions).toHaveLength(1);
+    expect(store.plans.get('paper').versions).toHaveLength(1);
   });
 });

@@ -14,7 +14,7 @@ for (let number = Number(first); ; number++) {
     const id = `event-${number}-${part}`;
     return { ...base, id, at: number, kind: 'event', body: { type: 'remark', text: 'x'.repeat(500) } };
   });
-  const acknowledged = store.storeRecords('paper', 'P01', records, number);
+  const acknowledged = store.records.store('paper', 'P01', records, number);
   await store.flushed();
   writeSync(1, `${acknowledged.join('\n')}\n`);
 }

@@ -35,12 +35,12 @@ async function roundsRecorded(server: StudyServer, choices: typeof silently) {
   play(tab, 40);
   await tab.exchange();
   expect(tab.visit.state()).toMatchObject({ step: 'archery/1/rest', unsent: 0 });
-  return server.store.motion('paper').map(({ trial }) => trial);
+  return server.store.motion.all('paper').map(({ trial }) => trial);
 }
 
 const remarks = ({ store }: StudyServer) =>
-  store
-    .records('paper')
+  store.records
+    .all('paper')
     .flatMap((record) => (record.kind === 'event' && record.body.type === 'remark' ? [record.body.text] : []));
 
 describe('a participant who goes on with another device', () => {

@@ -7,7 +7,7 @@ test('after a withdrawal in another tab nothing that is pressed here stores the 
   const server = await studyServer();
   const { tab } = await beforeTheQuestions(server);
   await tab.exchange();
-  server.store.deleteParticipant('paper', 'P01', 'withdrawn', 1e9);
+  server.store.deletion.delete('paper', 'P01', 'withdrawn', 1e9);
   const vault = await openStudyVault();
   await vault.forget('paper', 'P01');
   const field = tab.display.screen?.question?.field;

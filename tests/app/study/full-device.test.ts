@@ -52,6 +52,6 @@ test('what happened while the device was full keeps its place in the records aft
   await again.exchange();
   expect(again.display.shown).toBe('question-Q1');
   expect(again.visit.state().unsent).toBe(0);
-  const events = server.store.records('paper').flatMap((one) => (one.kind === 'event' ? [one.body.type] : []));
+  const events = server.store.records.all('paper').flatMap((one) => (one.kind === 'event' ? [one.body.type] : []));
   expect(events).toEqual(['pause', 'resume', 'reload']);
 });

@@ -26,7 +26,7 @@ test('tracked frames reach the server with consent to them, and leave the device
   expect(await vault.motion('paper', 'P01')).toHaveLength(1);
   await first.exchange();
   await first.motionSent();
-  expect(store.motion('paper').map(unpacked)).toEqual([
+  expect(store.motion.all('paper').map(unpacked)).toEqual([
     { participant: 'P01', trial: 'archery/1/trial-1@1.1:trial', text: recording },
   ]);
   expect(await vault.motion('paper', 'P01')).toEqual([]);
@@ -41,8 +41,8 @@ test('a recording that the server refuses is reported and kept, and holds up nei
   first.keepMotion('archery/2/trial-1@1.1:trial', recording);
   await first.exchange();
   await first.motionSent();
-  expect(store.progress('paper', 'P01')?.step).toBe(first.step.id);
-  expect(store.motion('paper').map(({ trial }) => trial)).toEqual(['archery/2/trial-1@1.1:trial']);
+  expect(store.places.progress('paper', 'P01')?.step).toBe(first.step.id);
+  expect(store.motion.all('paper').map(({ trial }) => trial)).toEqual(['archery/2/trial-1@1.1:trial']);
   expect(await vault.motion('paper', 'P01')).toHaveLength(1);
   await experimenter.command('paper', 'P01', { type: 'pause' });
   await first.exchange();
@@ -81,7 +81,7 @@ test('while a recording is on its way, progress is reported and commands are fol
   toTheFirstQuestion(first, true);
   first.keepMotion('archery/1/trial-1@1.1:trial', recording);
   await first.exchange();
-  expect(store.progress('paper', 'P01')?.step).toBe(first.step.id);
+  expect(store.places.progress('paper', 'P01')?.step).toBe(first.step.id);
   await experimenter.command('paper', 'P01', { type: 'pause' });
   await first.exchange();
   expect(first.progress.paused).toBe(true);

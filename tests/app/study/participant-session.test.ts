@@ -19,9 +19,9 @@ test('what the server has acknowledged leaves the device, and nothing before', a
     'trial',
     'trial',
   ]);
-  expect(store.records('paper')).toEqual([]);
+  expect(store.records.all('paper')).toEqual([]);
   await first.exchange();
-  expect(store.records('paper').map(({ kind }) => kind)).toEqual([
+  expect(store.records.all('paper').map(({ kind }) => kind)).toEqual([
     'consent',
     'demographics',
     'calibration',
@@ -37,7 +37,7 @@ test('what the server has acknowledged leaves the device, and nothing before', a
     refusal: null,
     lockedOut: false,
   });
-  expect(store.progress('paper', 'P01')?.step).toBe(first.step.id);
+  expect(store.places.progress('paper', 'P01')?.step).toBe(first.step.id);
 });
 
 test('a reload in a questionnaire without a network goes on at the same question, and all is sent later', async () => {
@@ -64,7 +64,7 @@ test('a reload in a questionnaire without a network goes on at the same question
   const third = await reload();
   await third.exchange();
   expect(third.safekeeping).toMatchObject({ unsent: 0, online: true, refusal: null });
-  const answers = server.store.records('paper').find(({ kind }) => kind === 'answers');
+  const answers = server.store.records.all('paper').find(({ kind }) => kind === 'answers');
   expect(answers?.body).toMatchObject({ answers: { Q1: 4, Q2: 5, Q3: 3, Q4: 3, Q5: 3, Q6: 3, Q7: 3 } });
 });
 
@@ -90,7 +90,7 @@ test('a full device says so, keeps the answers in the page, and stores them when
   expect(await vault.records('paper', 'P01')).toHaveLength(5);
   await server.restart();
   await first.exchange();
-  expect(server.store.records('paper')).toHaveLength(5);
+  expect(server.store.records.all('paper')).toHaveLength(5);
 });
 
 test('a full device with a network loses nothing either', async () => {
@@ -101,7 +101,7 @@ test('a full device with a network loses nothing either', async () => {
   });
   toTheFirstQuestion(first);
   await first.exchange();
-  expect(server.store.records('paper')).toHaveLength(5);
+  expect(server.store.records.all('paper')).toHaveLength(5);
   expect(first.safekeeping).toMatchObject({ unsent: 0, unsaved: 0 });
 });
 
@@ -117,7 +117,7 @@ test('a browser without storage sends everything all the same', async () => {
   toTheFirstQuestion(session);
   expect(session.safekeeping).toMatchObject({ unsaved: 5, storageFault: 'this browser offers no storage' });
   await session.exchange();
-  expect(store.records('paper')).toHaveLength(5);
+  expect(store.records.all('paper')).toHaveLength(5);
 });
 
 test('the experimenter’s commands are followed once, also across a reload; one out of place is remarked', async () => {
@@ -140,7 +140,7 @@ test('the experimenter’s commands are followed once, also across a reload; one
   await experimenter.command('paper', 'P01', { type: 'void-block', reason: 'the phone rang', repeat: true });
   await second.exchange();
   expect(second.step.id).toBe('archery/1/calibration');
-  const said = store.records('paper').flatMap((record) => (record.kind === 'event' ? [record.body] : []));
+  const said = store.records.all('paper').flatMap((record) => (record.kind === 'event' ? [record.body] : []));
   expect(said).toContainEqual(expect.objectContaining({ type: 'remark', text: expect.stringContaining('"start"') }));
   expect(said).toContainEqual(expect.objectContaining({ type: 'void-block', reason: 'the phone rang' }));
 });
@@ -161,8 +161,8 @@ test('a device that takes over follows no command that another one has followed'
   expect(second.step.id).toBe('archery/1/tutorial');
   await second.exchange();
   expect(second.step.id).toBe('archery/1/tutorial');
-  const voided = store
-    .records('paper')
+  const voided = store.records
+    .all('paper')
     .filter((record) => record.kind === 'event' && record.body.type === 'void-block');
   expect(voided).toHaveLength(1);
   await experimenter.command('paper', 'P01', { type: 'pause' });
@@ -221,7 +221,7 @@ test('what the server knows later than a device with full storage is where the s
   const early = first.progress;
   toTheFirstQuestion(first);
   await first.exchange();
-  const known = store.progress('paper', 'P01');
+  const known = store.places.progress('paper', 'P01');
   if (!known) throw new Error('nothing was reported');
   expect(isLater(first.schedule, known, early)).toBe(true);
   expect(isLater(first.schedule, early, known)).toBe(false);
@@ -236,7 +236,7 @@ test('a record that the server refuses is reported and kept, and does not hold u
   const { first, vault } = await device(server);
   toTheFirstQuestion(first);
   await first.exchange();
-  const [stored] = store.records('paper').filter(({ kind }) => kind === 'demographics');
+  const [stored] = store.records.all('paper').filter(({ kind }) => kind === 'demographics');
   if (!stored) throw new Error('there are no demographics');
   // Another story under an id that is taken, as after a device was set back to an old backup.
   await vault.save((await vault.session('paper', 'P01')) as never, [{ ...stored, at: stored.at + 5 }]);
@@ -250,7 +250,7 @@ test('a record that the server refuses is reported and kept, and does not hold u
     again.apply({ type: 'answer', question, value: 2 });
   again.apply({ type: 'submit' });
   await again.exchange();
-  expect(store.records('paper').some(({ kind }) => kind === 'answers')).toBe(true);
+  expect(store.records.all('paper').some(({ kind }) => kind === 'answers')).toBe(true);
   expect(again.safekeeping).toMatchObject({
     unsent: 1,
     online: true,

@@ -64,7 +64,7 @@ describe('a study with no one beside its participants', () => {
     expect(taken).toMatch(/^P01 is taken by another device: .*\. Write to lab@example\.org$/);
     tab.wear(true);
     await tab.exchange();
-    server.store.deleteParticipant('paper', 'P01', 'experimenter', 1e9);
+    server.store.deletion.delete('paper', 'P01', 'experimenter', 1e9);
     await tab.exchange();
     const form = tab.display.asked('locked-out');
     expect(form.contact).toBe(remote.contact);

@@ -4,8 +4,8 @@ import { browser, type Tab } from './study-browser';
 import { type StudyServer, studyServer } from './study-server';
 
 const stops = ({ store }: StudyServer) =>
-  store
-    .records('paper')
+  store.records
+    .all('paper')
     .flatMap((record) => (record.kind === 'event' && record.body.type === 'stop' ? [record.body] : []));
 
 const stateOf = ({ store }: StudyServer) => store.overview('paper', 1e9)[0]?.session;
@@ -40,7 +40,7 @@ describe('a participant stops', () => {
     tab.display.press('stop');
     await expectStopped(server, visit);
     expect(stops(server)).toMatchObject([{ by: 'participant', step: 'archery/1/trial-1' }]);
-    expect(server.store.records('paper').filter(({ kind }) => kind === 'trial')).toHaveLength(1);
+    expect(server.store.records.all('paper').filter(({ kind }) => kind === 'trial')).toHaveLength(1);
   });
 
   test('and hands that are up for a moment only pause nothing, nor do hands that were not lowered since', async () => {
@@ -112,7 +112,7 @@ describe('the experimenter stops a participant', () => {
     const visit = await beforeTheRound(server);
     visit.tab.display.press('start');
     visit.tab.draw(1);
-    server.store.addCommand('paper', 'P01', stop, 1e9);
+    server.store.commands.add('paper', 'P01', stop, 1e9);
     await visit.tab.exchange();
     await expectStopped(server, visit);
     expect(stops(server)).toMatchObject([{ by: 'experimenter', reason: 'looked pale', step: 'archery/1/trial-1' }]);
@@ -123,7 +123,7 @@ describe('the experimenter stops a participant', () => {
     const visit = where === 'questions' ? await beforeTheQuestions(server) : await beforeTheRound(server);
     if (where === 'rest') play(visit.tab, 40);
     if (where === 'pause') visit.tab.display.press('pause');
-    server.store.addCommand('paper', 'P01', stop, 1e9);
+    server.store.commands.add('paper', 'P01', stop, 1e9);
     await visit.tab.exchange();
     await expectStopped(server, visit);
   });
@@ -133,7 +133,7 @@ describe('the experimenter stops a participant', () => {
     const device = browser(server);
     const tab = await device.open();
     await agree(tab);
-    server.store.addCommand('paper', 'P01', stop, 1e9);
+    server.store.commands.add('paper', 'P01', stop, 1e9);
     await tab.exchange();
     await expectStopped(server, { device, tab });
   });
@@ -141,7 +141,7 @@ describe('the experimenter stops a participant', () => {
 
 describe('a round whose end is still being looked at counts as played', () => {
   const playedIn = ({ store }: StudyServer) =>
-    store.records('paper').flatMap((record) => (record.kind === 'trial' ? [record.body.outcome.score] : []));
+    store.records.all('paper').flatMap((record) => (record.kind === 'trial' ? [record.body.outcome.score] : []));
 
   /** The shot has hit, which ended the round, and the sheet has not come yet. */
   async function justOver(server: StudyServer) {
@@ -179,7 +179,7 @@ describe('a round whose end is still being looked at counts as played', () => {
   test('when the experimenter stops the participant', async () => {
     const server = await studyServer();
     const visit = await justOver(server);
-    server.store.addCommand('paper', 'P01', { type: 'stop', by: 'experimenter', reason: 'fire alarm' }, 1e9);
+    server.store.commands.add('paper', 'P01', { type: 'stop', by: 'experimenter', reason: 'fire alarm' }, 1e9);
     await visit.tab.exchange();
     await expectStopped(server, visit);
     expect(playedIn(server)).toEqual([10, 40]);
@@ -209,7 +209,9 @@ describe('answers over a value of the plan', () => {
     tab.display.press('go-on');
     expect(tab.display.shown).toBe('calibration');
     await tab.exchange();
-    const events = server.store.records('paper').flatMap((record) => (record.kind === 'event' ? [record.body] : []));
+    const events = server.store.records
+      .all('paper')
+      .flatMap((record) => (record.kind === 'event' ? [record.body] : []));
     expect(events).toMatchObject([
       { type: 'unwell', questionnaire: 'archery', measure: 'Q2', value: 4 },
       { type: 'go-on' },

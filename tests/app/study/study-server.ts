@@ -1,32 +1,23 @@
 import { join } from 'node:path';
-import { expect, onTestFinished } from 'vitest';
+import { onTestFinished } from 'vitest';
 import { createRouter, noPage } from '../../../server/http/router';
-import { createStudyRoutes } from '../../../server/study-routes';
 import { openStudyStore } from '../../../server/study-store';
 import { serve, type WebServer } from '../../../server/web-server';
 import type { StudyPlan } from '../../../src/core/study/plan';
 import { createExperimenterClient } from '../../../src/net/study-client';
 import { paperPlan } from '../../core/study/studies';
-import { studySeats, testSoftware } from '../../server/running-studies';
+import { studiesInThisThread } from '../../server/running-studies';
 import { directoryWith } from '../../temporary-directory';
 
 const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 
 /** The real server with the paper's study, changed or not, on a port; it can be taken away and put back on the same port. */
 export async function studyServer(changes: Partial<StudyPlan> = {}) {
-  const store = openStudyStore(join(directoryWith(), 'studies.db'));
+  const file = join(directoryWith(), 'studies.db');
+  const store = openStudyStore(file);
   const plan = paperPlan(changes);
-  store.addStudy(plan, { simulated: false, at: 1e9 });
-  const routes = createStudyRoutes({
-    store,
-    experimenterToken,
-    seats: studySeats,
-    software: testSoftware.exportedBy,
-    trustProxy: false,
-    onWrongGuess: () => undefined,
-    now: () => 1e9,
-    onFault: (error) => expect(error).toBe(null),
-  });
+  store.plans.add(plan, { simulated: false, at: 1e9 });
+  const routes = studiesInThisThread({ store, file, experimenterToken, trustProxy: false, now: () => 1e9 });
   const listen = (port: number) => serve(createRouter([routes], noPage), { host: '127.0.0.1', port });
   let server: WebServer | null = await listen(0);
   const { port } = server;

@@ -7,9 +7,9 @@ import { browser, ofAnother, type Tab } from './study-browser';
 import { type StudyServer, studyServer } from './study-server';
 
 const eventsOf = ({ store }: StudyServer) =>
-  store.records('paper').flatMap((record) => (record.kind === 'event' ? [record.body.type] : []));
+  store.records.all('paper').flatMap((record) => (record.kind === 'event' ? [record.body.type] : []));
 const trialsOf = ({ store }: StudyServer) =>
-  store.records('paper').flatMap((record) => (record.kind === 'trial' ? [record.body] : []));
+  store.records.all('paper').flatMap((record) => (record.kind === 'trial' ? [record.body] : []));
 
 describe('the entrance', () => {
   test('an address without a participant asks who takes part, and leads to the place that is told', async () => {
@@ -38,9 +38,9 @@ describe('the entrance', () => {
     const server = await studyServer();
     const { plan, store } = server;
     const tab = await browser(server).open();
-    store.claim('paper', 'P09', 1e9);
+    store.places.claim('paper', 'P09', 1e9);
     const changed = { ...plan, consent: { ...plan.consent, version: 'newer', paragraphs: ['Another text.'] } };
-    store.addStudy(changed, { simulated: false, at: 1e9, newVersion: true });
+    store.plans.add(changed, { simulated: false, at: 1e9, newVersion: true });
     expect(await tab.display.asked('consent').agree({ motion: false, language: null })).toBeNull();
     expect(await tab.wentTo).toBe('reload');
     tab.close();
@@ -158,7 +158,7 @@ describe('a round', () => {
       outcome: { score: 40, maximum: 50, ended: 'arrows' },
     });
     expect(round?.outcome.frames.count).toBe(30);
-    expect(server.store.motion('paper').map(({ trial }) => trial)).toEqual(['archery/1/trial-1@1.1:trial']);
+    expect(server.store.motion.all('paper').map(({ trial }) => trial)).toEqual(['archery/1/trial-1@1.1:trial']);
     expect(tab.visit.state()).toMatchObject({ unsent: 0, unsaved: 0, online: true });
   });
 
@@ -370,7 +370,7 @@ describe('a questionnaire', () => {
     tab.display.press('submit');
     expect(tab.display.shown).toBe('calibration');
     await tab.exchange();
-    const answers = server.store.records('paper').find(({ kind }) => kind === 'answers');
+    const answers = server.store.records.all('paper').find(({ kind }) => kind === 'answers');
     expect(answers?.body).toMatchObject({ answers: { Q1: 4, Q2: 4, Q3: 4, Q4: 4, Q5: 4, Q6: 4, Q7: 4 } });
   });
 });

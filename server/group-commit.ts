@@ -1,5 +1,5 @@
-/** Flushes for many at once: those who ask while one is under way share the next. */
-export class SharedFlush {
+/** Combines the flushes that many callers ask for: all who ask while one is under way share the next. */
+export class GroupCommit {
   readonly #flush: () => Promise<void>;
   #last: Promise<void> = Promise.resolve();
   #next: Promise<void> | null = null;
@@ -10,8 +10,8 @@ export class SharedFlush {
   }
 
   /**
-   * Resolves when a flush is through that began after this call: one under way may have missed what the caller has just written. Rejects
-   * when it fails, and ever after: the system forgets which pages it could not write, and a later flush that succeeds says nothing of them.
+   * Resolves when a flush has ended that began after this call: one under way may have missed what the caller has just written. Rejects
+   * when it fails, and every time after that: the system drops the pages that it could not write, and a later flush does not report them.
    */
   flushed(): Promise<void> {
     this.#next ??= this.#last.then(() => {

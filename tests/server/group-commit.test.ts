@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import { SharedFlush } from '../../server/shared-flush';
+import { GroupCommit } from '../../server/group-commit';
 import { recordVersion, type StudyRecord } from '../../src/core/study/study-record';
 import { paperPlan } from '../core/study/studies';
 import { now, servedPaperStudy } from './running-studies';
@@ -34,7 +34,7 @@ const order = (log: string[], name: string, flushed: Promise<void>) => flushed.t
 describe('flushes for many at once', () => {
   test('who asks while one is under way waits for the next, which all of them share', async () => {
     const disk = heldDisk();
-    const shared = new SharedFlush(disk.flush);
+    const shared = new GroupCommit(disk.flush);
     const log: string[] = [];
     const first = order(log, 'first', shared.flushed());
     await disk.begun(1);
@@ -51,7 +51,7 @@ describe('flushes for many at once', () => {
 
   test('who asks when none is under way waits for one of their own', async () => {
     const disk = heldDisk();
-    const shared = new SharedFlush(disk.flush);
+    const shared = new GroupCommit(disk.flush);
     for (let count = 1; count <= 3; count++) {
       const flushed = shared.flushed();
       await disk.begun(count);
@@ -62,7 +62,7 @@ describe('flushes for many at once', () => {
 
   test('after one has failed nothing is said to be on the disk any more', async () => {
     const disk = heldDisk();
-    const shared = new SharedFlush(disk.flush);
+    const shared = new GroupCommit(disk.flush);
     const first = shared.flushed();
     await disk.begun(1);
     const second = shared.flushed();
@@ -110,6 +110,6 @@ describe('the server of studies', () => {
     disk.end();
     await again;
     expect(log).toEqual(['acknowledged 200', 'acknowledged again 200']);
-    expect(store.records('paper', 'P01')).toHaveLength(1);
+    expect(store.records.all('paper', 'P01')).toHaveLength(1);
   });
 });

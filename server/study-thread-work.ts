@@ -1,0 +1,146 @@
+import { join } from 'node:path';
+import { parentPort } from 'node:worker_threads';
+import { reasonOf } from '../src/core/errors/reasons';
+import type { WrongGuess } from './auth-throttle';
+import { ConfigurationError } from './configuration';
+import { createRoomTokens } from './room-tokens';
+import type { Software } from './software';
+import { StudyDispatcher, type StudyOutcome } from './study-dispatcher';
+import { createExporter } from './study-export-thread';
+import { openStudyFolder, type StudyFolder } from './study-folder';
+import { createStudyRoutes, type StudyRequest, type StudyRoute } from './study-routes';
+import { createStudySeats } from './study-seats';
+import type { StudyStore } from './study-store';
+import { answerCalls, logFrom } from './thread-calls';
+
+// The thread that has the studies: their database, the secrets that open them and the rules of who may what. Nothing that takes it long, or
+// that a disk does not finish, holds up the thread of the sockets.
+
+export interface StudyThreadOptions {
+  /** Holds the database and a token that the server drew; made where it is missing. */
+  readonly directory: string;
+  /** The experimenter's token; null: the one kept in the directory, drawn at the first start. */
+  readonly token: string | null;
+  /** What serves the studies now. */
+  readonly software: Software;
+  /** Signs participants into the rooms of their trials. */
+  readonly secret: string;
+}
+
+export type OpenedStudies =
+  | { readonly problem: string }
+  | {
+      readonly routes: readonly Omit<StudyRoute, 'handle'>[];
+      /** Holds the token; null: it was given. */
+      readonly tokenFile: string | null;
+    };
+
+/** What the thread does for others; `at` is seconds since 1970. */
+export type StudyThreadApi = {
+  /** The first call of all. */
+  open(options: StudyThreadOptions, at: number): OpenedStudies;
+  admit(route: number, request: StudyRequest): Promise<StudyOutcome>;
+  handle(route: number, request: StudyRequest, body: Uint8Array<ArrayBuffer>): Promise<StudyOutcome>;
+  /** Deletes what is past its retention date. */
+  expire(at: number): void;
+  close(): void;
+};
+
+const port = parentPort;
+if (!port) throw new Error('this file is the work of a thread');
+const log = logFrom(port);
+
+/** How often overwriting deleted data is tried again where it failed [ms]. */
+const forgetMs = 1000;
+
+const wrongGuess = ({ what, of, address, failures }: WrongGuess): string =>
+  `study: a wrong ${what}${of === null ? '' : ` for "${of}"`} came from ${address}, number ${failures} within the hour`;
+
+/** A full disk or a locked database must not end a server that others use. */
+function expire(store: StudyStore, at: number): void {
+  const again = 'which is tried again within the hour';
+  try {
+    const receipts = store.deletion.deleteExpired(at, ({ study, participant }, error) => {
+      const failed = 'is past the retention date and could not be deleted';
+      log(`study "${study}": ${participant} ${failed}, ${again}: ${reasonOf(error)}`);
+    });
+    for (const { study, participant, records } of receipts) {
+      log(`study "${study}": ${participant} is past the retention date, ${records} records deleted`);
+    }
+  } catch (error) {
+    log(`study: who is past a retention date could not be read, ${again}: ${reasonOf(error)}`);
+  }
+}
+
+/** Overwrites deleted data as soon as it can be. */
+function keepForgetting(store: StudyStore): NodeJS.Timeout {
+  let isHeld = false;
+  return setInterval(() => {
+    const wasHeld = isHeld;
+    isHeld = !store.forgetDeleted();
+    if (isHeld && !wasHeld) {
+      log(
+        'study: deleted data stays in studies.db-wal while another program reads it or the disk is full: end that program, or make room',
+      );
+    }
+    if (wasHeld && !isHeld) log('study: deleted data is overwritten now');
+  }, forgetMs);
+}
+
+interface Serving {
+  readonly folder: StudyFolder;
+  readonly dispatcher: StudyDispatcher;
+  readonly forgetting: NodeJS.Timeout;
+}
+
+let serving: Serving | null = null;
+/** The time of the newest request: the clock of the process is that of its main thread. */
+let newest = 0;
+
+function open({ directory, token, software, secret }: StudyThreadOptions, at: number): OpenedStudies {
+  newest = at;
+  try {
+    const folder = openStudyFolder(directory, token, log);
+    const { store, experimenterToken, tokenFile } = folder;
+    store.software.note(software, at);
+    const routes = createStudyRoutes({
+      ...{ store, experimenterToken, software },
+      seats: createStudySeats(
+        secret,
+        createRoomTokens(secret, () => newest),
+      ),
+      makeZip: createExporter(join(directory, 'studies.db')),
+      onWrongGuess: (guess) => log(wrongGuess(guess)),
+    });
+    const dispatcher = new StudyDispatcher({ routes, store, log });
+    serving = { folder, dispatcher, forgetting: keepForgetting(store) };
+    return { routes: routes.routes.map(({ handle: _, ...rest }) => rest), tokenFile };
+  } catch (error) {
+    if (error instanceof ConfigurationError) return { problem: error.message };
+    throw error;
+  }
+}
+
+function opened(): Serving {
+  if (!serving) throw new Error('the studies are not open');
+  return serving;
+}
+
+answerCalls<StudyThreadApi>(port, {
+  open,
+  admit(route, request) {
+    newest = request.at;
+    return opened().dispatcher.admit(route, request);
+  },
+  handle(route, request, body) {
+    newest = request.at;
+    return opened().dispatcher.handle(route, request, body);
+  },
+  expire: (at) => expire(opened().folder.store, at),
+  close() {
+    const { folder, forgetting } = opened();
+    clearInterval(forgetting);
+    folder.close();
+    serving = null;
+  },
+});
