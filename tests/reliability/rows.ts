@@ -314,6 +314,13 @@ export const attackRows = {
     target: 'delay of the event loop 20 ms at most (p99); 0 answered 408; 0 acknowledged and lost',
     tests: ['tests/server/hung-database.test.ts'],
   },
+  'study-folder': {
+    inject:
+      'The folder of the studies: open to other accounts, deleted or replaced under the server, of another server, with a database that is damaged, locked, newer or foreign',
+    sees: 'Closed to others at the start; 507 and a line of the log until it is back; a start that is refused with the file and what to do',
+    target: '0 files open to others; 0 acknowledged and lost; a sentence for every start that is refused',
+    tests: ['tests/server/study-folder.test.ts'],
+  },
   'server-clock': {
     inject: 'The clock of the server goes an hour ahead and an hour back, in a game and in a study',
     sees: 'Rooms go on; passes are renewed; records keep their order and none is refused',
