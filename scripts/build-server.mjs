@@ -9,18 +9,18 @@ import { main, root, SetupError } from './run-command.mjs';
 
 /** The server reads package.json, dist/ and study-data/ beside its own folder, which a build replaces as server/ does. */
 const usualOut = 'dist-server';
-const thread = '-worker.mjs';
+const worker = '-worker.mjs';
 
 /**
- * Returns the entry of the process and those of its threads by name. From source a thread begins with NAME-worker.mjs, which loads NAME-work.ts
- * through a loader for TypeScript; in the build NAME-worker.mjs is NAME-work.ts itself.
+ * Returns the entry of the server and those of its threads and of its processes by name. From source these begin with NAME-worker.mjs, which
+ * loads NAME-work.ts through a loader for TypeScript; in the build NAME-worker.mjs is NAME-work.ts itself.
  */
 function entries() {
-  const threads = readdirSync(join(root, 'server')).filter((file) => file.endsWith(thread));
+  const workers = readdirSync(join(root, 'server')).filter((file) => file.endsWith(worker));
   return Object.fromEntries([
     ['main', join(root, 'server/main.ts')],
-    ...threads.map((file) => {
-      const work = join(root, 'server', file.replace(thread, '-work.ts'));
+    ...workers.map((file) => {
+      const work = join(root, 'server', file.replace(worker, '-work.ts'));
       if (!existsSync(work)) throw new SetupError(`server/${file} needs a ${work.slice(root.length + 1)} to load.`);
       return [file.replace(/\.mjs$/, ''), work];
     }),

@@ -1,6 +1,6 @@
 import { buildWhenStale } from './build.mjs';
 import { ensureInstalled } from './installation.mjs';
-import { main } from './run-command.mjs';
+import { main, SetupError } from './run-command.mjs';
 
 await main(async () => {
   await ensureInstalled();
@@ -8,5 +8,10 @@ await main(async () => {
   // Found only now: tsx may just have been installed.
   const { register } = await import('tsx/esm/api');
   register();
-  await import('../server/main.ts');
+  try {
+    await import('../server/main.ts');
+  } catch (error) {
+    if (!/EMFILE|ENFILE/.test(`${error.code} ${error.message}`)) throw error;
+    throw new SetupError('The server may not have more files open. Raise the limit: ulimit -n 1024.');
+  }
 });

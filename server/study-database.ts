@@ -145,6 +145,20 @@ export class StudyDatabase {
     return this.#refusing(() => this.#statement(sql).all(...parameters) as Row[]);
   }
 
+  /** The rows one after the other: all of them might not fit into the memory. */
+  *each<Row>(sql: string, ...parameters: readonly Parameter[]): Iterable<Row> {
+    const rows = this.#refusing(() =>
+      this.#statement(sql)
+        .iterate(...parameters)
+        [Symbol.iterator](),
+    );
+    for (;;) {
+      const { done, value } = this.#refusing(() => rows.next());
+      if (done) return;
+      yield value as Row;
+    }
+  }
+
   /** Returns how many rows were changed. */
   run(sql: string, ...parameters: readonly Parameter[]): number {
     return this.#refusing(() => Number(this.#statement(sql).run(...parameters).changes));
@@ -258,7 +272,8 @@ export class FolderLock {
     makeFile(file);
     this.#database = new DatabaseSync(file);
     try {
-      this.#database.exec('BEGIN EXCLUSIVE');
+      // Without a journal it takes no room on the disk.
+      this.#database.exec('PRAGMA journal_mode = MEMORY; BEGIN EXCLUSIVE');
     } catch (error) {
       this.#database.close();
       if (((sqliteCodeOf(error) ?? 0) & 0xff) !== 5) throw error;

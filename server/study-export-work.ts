@@ -1,11 +1,10 @@
-import { parentPort, workerData } from 'node:worker_threads';
 import type { PlanVersion, StudyInfo } from '../src/core/study/study-api';
 import { type ExportContent, exportZip } from './study-export';
-import type { ExportOrder } from './study-export-thread';
+import type { ExportOrder } from './study-exporter';
 import { unpacked } from './study-motion';
 import { openStudyStore, type StudyStore } from './study-store';
 
-// The work of one thread: an export from what is stored, sent back as the bytes of its zip.
+// The work of one process: an export from what is stored, written to its output as a zip. Its arguments are the database and the order.
 
 /** What was recorded of participants who follow the version of the plan that `info` shows. */
 const ofVersion = <Row extends { readonly participant: string }>(rows: readonly Row[], info: StudyInfo) => {
@@ -34,9 +33,9 @@ function contentOf(store: StudyStore, { at, study, version, participant, softwar
   };
 }
 
-const { file, order } = workerData as { readonly file: string; readonly order: ExportOrder };
+const [file, order] = process.argv.slice(-2) as [string, string];
 const store = openStudyStore(file, { readOnly: true });
-const content = store.snapshot(() => contentOf(store, order));
+const asked = JSON.parse(order) as ExportOrder;
+const content = store.snapshot(() => contentOf(store, asked));
 store.close();
-const zip = exportZip(content, order.participant);
-parentPort?.postMessage(zip, [zip.buffer as ArrayBuffer]);
+process.stdout.write(exportZip(content, asked.participant));

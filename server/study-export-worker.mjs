@@ -1,4 +1,4 @@
-// A thread begins with JavaScript: threads of Node 20 do not inherit a loader for TypeScript.
+// The process of an export begins with JavaScript: it does not inherit a loader for TypeScript.
 import { register } from 'tsx/esm/api';
 
 register();

@@ -74,6 +74,21 @@ export class StudyRecords {
     return rows.map(({ record }) => JSON.parse(record) as StudyRecord);
   }
 
+  /** The records of these participants as the JSON of a list, without making objects of them: of a whole study they may fill the memory. */
+  listed(study: string, participants: ReadonlySet<string>): readonly Uint8Array[] {
+    const chunks: Buffer[] = [];
+    const rows = this.#database.each<{ participant: string; record: string }>(
+      'SELECT participant, record FROM records WHERE study = ? ORDER BY participant, number',
+      study,
+    );
+    for (const { participant, record } of rows) {
+      if (!participants.has(participant)) continue;
+      chunks.push(Buffer.from(`${chunks.length === 0 ? '[' : ','}${record}`));
+    }
+    chunks.push(Buffer.from(chunks.length === 0 ? '[]' : ']'));
+    return chunks;
+  }
+
   count(study: string, participant: string): number {
     return this.#database.getOne<{ count: number }>(
       'SELECT count(*) AS count FROM records WHERE study = ? AND participant = ?',

@@ -18,7 +18,7 @@ import { jsonOf, refusalOf as knownRefusalOf, type Route, textOf } from './http/
 import type { Software } from './software';
 import { StoreRefusal } from './study-database';
 import { exportName } from './study-export';
-import type { Exporter } from './study-export-thread';
+import type { Exporter } from './study-exporter';
 import {
   type Concerned,
   createStudyGuard,
@@ -166,11 +166,14 @@ function versionIn(query: URLSearchParams): number | undefined {
   return checked(versionSchema, asked === null ? {} : { version: Number(asked) }).version;
 }
 
-/** What was recorded of those who follow this version of the plan. */
-const ofVersion = <Row extends { readonly participant: string }>(rows: readonly Row[], info: StudyInfo) => {
+/** A study with what was recorded of those who follow the version of its plan that `info` shows. */
+function recordsOf(store: StudyStore, info: StudyInfo): Answer {
   const { participants } = info.versions.find(({ version }) => version === info.version) as PlanVersion;
-  return rows.filter(({ participant }) => participants.includes(participant));
-};
+  const head = `${JSON.stringify(info).slice(0, -1)},"records":`;
+  const records = store.records.listed(info.plan.id, new Set(participants));
+  const body = Buffer.concat([Buffer.from(head), ...records, Buffer.from('}\n')]);
+  return { ...json(null), body };
+}
 
 /** What an error is to the other side; null: a fault of the server. */
 export function refusalOf(error: unknown): HttpError | null {
@@ -236,8 +239,7 @@ function studyTable({ store, guard, software, makeZip }: TableOptions): StudyRou
       return done;
     }),
     route('GET', '/:study/records', 'experimenter', 0, ({ study, query }) => {
-      const info = store.plans.get(study, versionIn(query));
-      return json({ ...info, records: ofVersion(store.records.all(study), info) });
+      return recordsOf(store, store.plans.get(study, versionIn(query)));
     }),
     route('GET', '/:study/receipts', 'experimenter', 0, ({ study }) => {
       store.plans.get(study);

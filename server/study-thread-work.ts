@@ -6,7 +6,7 @@ import { ConfigurationError } from './configuration';
 import { createRoomTokens } from './room-tokens';
 import type { Software } from './software';
 import { StudyDispatcher, type StudyOutcome } from './study-dispatcher';
-import { createExporter } from './study-export-thread';
+import { createExporter } from './study-exporter';
 import { openStudyFolder, type StudyFolder } from './study-folder';
 import { createStudyRoutes, type StudyRequest, type StudyRoute } from './study-routes';
 import { createStudySeats } from './study-seats';

@@ -61,13 +61,13 @@ const buffersIn = (values: readonly unknown[]): ArrayBuffer[] =>
 export const startThread = (script: URL, workerData?: object): Worker =>
   new Worker(script, { workerData, execArgv: [] });
 
-/** What a thread lacked that ended by this error, as a sentence with what to do; null: the error is another one. */
+/** What a thread or process lacked that ended by this error, as a sentence with what to do; null: the error is another one. */
 export function shortageOf(error: Error): string | null {
   const text = `${(error as NodeJS.ErrnoException).code} ${error.message}`;
   if (/\b(EMFILE|ENFILE)\b/.test(text)) {
     return 'The server may not have more files open. Raise the limit: ulimit -n 1024.';
   }
-  if (!/ERR_WORKER_OUT_OF_MEMORY|ERR_WORKER_INIT_FAILED|\bENOMEM\b/.test(text)) return null;
+  if (!/ERR_WORKER_OUT_OF_MEMORY|ERR_WORKER_INIT_FAILED|\bENOMEM\b|out of memory/i.test(text)) return null;
   return 'The memory of the server does not suffice. Give it more: NODE_OPTIONS=--max-old-space-size=512.';
 }
 

@@ -321,6 +321,13 @@ export const attackRows = {
     target: '0 files open to others; 0 acknowledged and lost; a sentence for every start that is refused',
     tests: ['tests/server/study-folder.test.ts'],
   },
+  'study-shortage': {
+    inject:
+      'A heap of 64 MB, a limit of open files that strangers use up, a disk that is full, while a study is exported',
+    sees: 'A sentence that says what is short and what to do; the server goes on',
+    target: '0 faults, 0 acknowledged and lost',
+    tests: ['tests/server/study-shortage.test.ts'],
+  },
   'server-clock': {
     inject: 'The clock of the server goes an hour ahead and an hour back, in a game and in a study',
     sees: 'Rooms go on; passes are renewed; records keep their order and none is refused',

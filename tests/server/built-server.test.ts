@@ -47,7 +47,7 @@ async function runBuiltServer(directory: string): Promise<string> {
   return address;
 }
 
-test('the built server needs no loader: it serves the page, rooms, and exports from its own thread', {
+test('the built server needs no loader: it serves the page, rooms, the studies from their thread, and exports from a process', {
   tags: ['full'],
 }, async () => {
   const directory = directoryWith();

@@ -5,7 +5,7 @@ import { GroupCommit } from '../../server/group-commit';
 import { createRouter, noPage } from '../../server/http/router';
 import { createRoomTokens } from '../../server/room-tokens';
 import { StudyDispatcher } from '../../server/study-dispatcher';
-import { createExporter } from '../../server/study-export-thread';
+import { createExporter } from '../../server/study-exporter';
 import { createStudyRoutes } from '../../server/study-routes';
 import { createStudySeats } from '../../server/study-seats';
 import { createStudyService } from '../../server/study-service';

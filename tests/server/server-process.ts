@@ -1,5 +1,5 @@
 // All that `npm start` serves in a process of its own, so that requests can try to end it. The argument is a directory for its files.
-import { mkdirSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { monitorEventLoopDelay } from 'node:perf_hooks';
 import { ConfigurationError } from '../../server/configuration';
@@ -8,8 +8,10 @@ import { startServer } from '../../server/start';
 import type { ServerHello, ServerState } from './server-child';
 
 const directory = process.argv[2] as string;
+const index = join(directory, 'page/index.html');
 mkdirSync(join(directory, 'page'), { recursive: true });
-writeFileSync(join(directory, 'page/index.html'), '<!doctype html><title>page</title>');
+// Written once: the disk may be full at a later start.
+if (!existsSync(index)) writeFileSync(index, '<!doctype html><title>page</title>');
 const lines: string[] = [];
 /** Ends the process as `npm start` does where the server cannot start. */
 function refuse(error: unknown): never {

@@ -1,8 +1,10 @@
+import { type ChildProcess, spawn } from 'node:child_process';
+import { fileURLToPath } from 'node:url';
 import type { Software } from './software';
 import { StoreRefusal } from './study-database';
-import { shortageOf, startThread } from './thread-calls';
+import { shortageOf } from './thread-calls';
 
-/** What an export is asked for; the thread reads its content from the database. */
+/** What an export is asked for; its process reads the content from the database. */
 export interface ExportOrder {
   /** Seconds since 1970. */
   readonly at: number;
@@ -19,21 +21,38 @@ export type Exporter = (order: ExportOrder) => Promise<Uint8Array>;
 
 /** Exports that wait for the one that is being made: each holds a connection and an answer. */
 const mostWaiting = 8;
+/** How much of what a process writes about its end is read [characters]. */
+const mostComplaint = 10_000;
 
-/** A zip made in a thread of its own: of a study with recordings it takes many seconds, in which others are served. */
-function zipInThread(file: string, order: ExportOrder): Promise<Uint8Array> {
-  const worker = startThread(new URL('./study-export-worker.mjs', import.meta.url), { file, order });
-  // A server that ends waits for no export.
-  worker.unref();
+function started(file: string, order: ExportOrder): ChildProcess {
+  const script = fileURLToPath(new URL('./study-export-worker.mjs', import.meta.url));
+  return spawn(process.execPath, [script, file, JSON.stringify(order)], { stdio: ['ignore', 'pipe', 'pipe'] });
+}
+
+/**
+ * A zip made in a process of its own. Of a study with recordings it takes many seconds and much memory: a thread that runs out of memory
+ * within SQLite's driver ends the whole process, and rooms with it.
+ */
+function zipInProcess(file: string, order: ExportOrder): Promise<Uint8Array> {
+  const child = started(file, order);
+  const chunks: Buffer[] = [];
+  let complaint = '';
+  child.stdout?.on('data', (chunk: Buffer) => chunks.push(chunk));
+  child.stderr?.on('data', (chunk: Buffer) => {
+    complaint = `${complaint}${chunk}`.slice(-mostComplaint);
+  });
   return new Promise((resolve, reject) => {
-    worker.once('message', resolve);
-    worker.on('error', (error: Error) => {
+    const fail = (error: Error) => {
       const shortage = shortageOf(error);
       reject(
         shortage === null ? error : new StoreRefusal('full', `${shortage} Or export the participants one by one.`),
       );
+    };
+    child.once('error', fail);
+    child.once('close', (code, signal) => {
+      if (code === 0) resolve(new Uint8Array(Buffer.concat(chunks)));
+      else fail(new Error(`the process of an export ended with ${code ?? signal}: ${complaint}`));
     });
-    worker.once('exit', () => reject(new Error('the thread of an export ended without one')));
   });
 }
 
@@ -46,7 +65,7 @@ export function createExporter(file: string): Exporter {
       throw new StoreRefusal('busy', `${waiting} exports are waiting already: ask again when they are made`);
     }
     waiting += 1;
-    const zip = last.then(() => zipInThread(file, order)).finally(() => (waiting -= 1));
+    const zip = last.then(() => zipInProcess(file, order)).finally(() => (waiting -= 1));
     // The next one neither keeps these bytes nor fails for what failed here, which its own caller receives.
     const over = () => undefined;
     last = zip.then(over, over);
