@@ -14,10 +14,13 @@ export class StoreRefusal extends Error {
    * database or its disk is not as the server left it, which a person must look into.
    */
   readonly reason: 'unknown' | 'conflict' | 'begun' | 'forbidden' | 'full' | 'locked' | 'busy' | 'lost';
+  /** For the log: names what the person who asked has no business with, such as paths; null: the message says all. */
+  readonly detail: string | null;
 
-  constructor(reason: StoreRefusal['reason'], message: string) {
+  constructor(reason: StoreRefusal['reason'], message: string, detail: string | null = null) {
     super(message);
     this.reason = reason;
+    this.detail = detail;
   }
 }
 
@@ -44,7 +47,7 @@ function asRefusal(error: unknown): unknown {
     return new StoreRefusal('locked', 'another program holds the lock of the database: nothing of this was stored');
   }
   if (!fileIsBad.has(primary)) return error;
-  return new StoreRefusal('lost', `the database cannot be used (${reasonOf(error)}): nothing of this was stored`);
+  return new StoreRefusal('lost', 'the database cannot be used: nothing of this was stored', reasonOf(error));
 }
 
 type Statement = ReturnType<DatabaseSyncInstance['prepare']>;
@@ -172,10 +175,15 @@ export class StudyDatabase {
     try {
       await this.#commits.flushed();
     } catch (error) {
-      const text = `the disk of the server failed (${reasonOf(error)}), and what was sent may not be stored: start the server again`;
-      throw new StoreRefusal('lost', text);
+      const text =
+        'the disk of the server failed, and what was sent may not be stored: the server must be started again';
+      throw new StoreRefusal('lost', text, reasonOf(error));
     }
-    if (this.#misplaced !== null) throw new StoreRefusal('lost', this.#misplaced);
+    if (this.#misplaced !== null) {
+      const text =
+        'the folder of the studies was deleted or replaced while the server ran, and nothing is stored: it must be put back, or the server started again';
+      throw new StoreRefusal('lost', text, this.#misplaced);
+    }
   }
 
   /**
@@ -223,10 +231,7 @@ export class StudyDatabase {
   async #writeThrough(): Promise<void> {
     if (this.#log !== null) await flushFile(this.#log);
     const [problem] = (await Promise.all(this.#files.map(displacementOf))).filter((found) => found !== null);
-    this.#misplaced =
-      problem === undefined
-        ? null
-        : `${problem} while the server ran: nothing is stored. Put the folder of the studies back, or start the server again`;
+    this.#misplaced = problem ?? null;
   }
 
   #refusing<T>(body: () => T): T {
@@ -247,7 +252,7 @@ export class StudyDatabase {
   }
 }
 
-/** What happened to the file under its name, as the beginning of a sentence; null: it is still the one that was opened. */
+/** What happened to the file under its name; null: it is still the one that was opened. */
 async function displacementOf({ path, identity }: OpenedFile): Promise<string | null> {
   try {
     const { dev, ino } = await stat(path);

@@ -102,9 +102,9 @@ export class StudyDispatcher {
     }
   }
 
-  #logLost({ message }: StoreRefusal): void {
+  #logLost({ message, detail }: StoreRefusal): void {
     if (performance.now() - this.#logged < logEveryMs) return;
     this.#logged = performance.now();
-    this.#options.log(`study: ${message}`);
+    this.#options.log(`study: ${message}${detail === null ? '' : ` (${detail})`}`);
   }
 }
