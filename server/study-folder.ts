@@ -4,7 +4,8 @@ import { join } from 'node:path';
 import { reasonOf } from '../src/core/errors/reasons';
 import { ConfigurationError } from './configuration';
 import { weaknessOf } from './secret-bits';
-import { FolderLock, FolderTaken, sqliteCodeOf } from './study-database';
+import type { Software } from './software';
+import { FolderLock, FolderTaken, StoreRefusal, sqliteCodeOf } from './study-database';
 import { DatabaseProblem } from './study-schema';
 import { openStudyStore, type StudyStore } from './study-store';
 
@@ -17,7 +18,7 @@ export interface StudyFolder {
   close(): void;
 }
 
-/** As this server draws tokens, and has drawn them before. */
+/** The form of the tokens that this server draws, and has drawn before. */
 const drawnToken = /^([\w-]{43}|[\w-]{32})$/;
 
 const modeOf = (path: string): string => (statSync(path).mode & 0o777).toString(8).padStart(4, '0');
@@ -60,6 +61,8 @@ function remedyOf(error: unknown, directory: string): string | null {
     return `Another server has the folder ${directory}. End it, or name another folder with --studies.`;
   }
   if (error instanceof DatabaseProblem) return `${file} ${error.message}`;
+  if (error instanceof StoreRefusal)
+    return `${file} cannot be written: ${reason}. Mend that, then start the server again.`;
   const { code } = (error ?? {}) as NodeJS.ErrnoException;
   if (code === 'ENOSPC' || code === 'EDQUOT') {
     return `The disk with ${directory} is full (${reason}). Make room, then start the server again.`;
@@ -86,28 +89,39 @@ function remedyOf(error: unknown, directory: string): string | null {
   }
 }
 
+export interface StudyFolderOptions {
+  /** Holds the database and a token that the server drew; made where it is missing. */
+  readonly directory: string;
+  /** The experimenter's token; null: the one kept in the directory, drawn at the first start. */
+  readonly token: string | null;
+  /** What serves the studies from now on. */
+  readonly software: Software;
+}
+
 /**
- * Opens the folder of the studies; `token` null: the one kept in it. Throws a ConfigurationError with the file and the remedy where it cannot
- * be used: taken by another server, not writable, or with a database that is damaged, locked or of a newer version.
+ * Opens the folder of the studies at this time [s]. Throws a ConfigurationError with the file and the remedy where it cannot be used: taken by
+ * another server, not writable, or with a database that is damaged, locked or of a newer version.
  */
-export function openStudyFolder(directory: string, token: string | null, log: (line: string) => void): StudyFolder {
-  let lock: FolderLock | null = null;
+export function openStudyFolder(
+  { directory, token, software }: StudyFolderOptions,
+  at: number,
+  log: (line: string) => void,
+): StudyFolder {
+  const opened: (FolderLock | StudyStore)[] = [];
+  const close = () => {
+    for (const part of opened.toReversed()) part.close();
+  };
   try {
     prepare(directory, log);
-    const held = new FolderLock(join(directory, 'studies.lock'));
-    lock = held;
+    opened.push(new FolderLock(join(directory, 'studies.lock')));
     const tokenFile = token === null ? join(directory, 'experimenter-token') : null;
     const experimenterToken = token ?? keptToken(tokenFile as string);
     const store = openStudyStore(join(directory, 'studies.db'));
-    return {
-      ...{ store, experimenterToken, tokenFile },
-      close() {
-        store.close();
-        held.close();
-      },
-    };
+    opened.push(store);
+    store.software.note(software, at);
+    return { store, experimenterToken, tokenFile, close };
   } catch (error) {
-    lock?.close();
+    close();
     if (error instanceof ConfigurationError) throw error;
     const remedy = remedyOf(error, directory);
     throw remedy === null ? error : new ConfigurationError(remedy);

@@ -1,5 +1,6 @@
 import type { IncomingMessage } from 'node:http';
 import type { Worker } from 'node:worker_threads';
+import { reasonOf } from '../src/core/errors/reasons';
 import { findClientAddress } from './client-address';
 import { ConfigurationError } from './configuration';
 import { type Answer, HttpError } from './http/answer';
@@ -72,12 +73,14 @@ class StudyThread {
       calls.end();
     });
     const asked = [{ directory, token, software, secret }, now()] as const;
-    const opened = await calls.call('open', [...asked], { patient: true }).catch((error: unknown) => {
+    try {
+      const opened = await calls.call('open', [...asked], { patient: true });
+      if (!('problem' in opened)) return opened;
+      throw new ConfigurationError(opened.problem);
+    } catch (error) {
+      await worker.terminate();
       throw shortage === null ? error : new ConfigurationError(shortage);
-    });
-    if (!('problem' in opened)) return opened;
-    await worker.terminate();
-    throw new ConfigurationError(opened.problem);
+    }
   }
 
   /** A call of the thread; rejects with an HttpError 503 where it has no room, no answer in time, or has ended. */
@@ -110,7 +113,7 @@ class StudyThread {
     if (performance.now() - this.#startedAt < restartMs) throw new ThreadUnavailable('ended');
     const { log } = this.#options;
     log('study: the thread of the database ended; it starts again');
-    this.open().catch((error: unknown) => log(`study: the thread of the database did not start: ${String(error)}`));
+    this.open().catch((error: unknown) => log(`study: the thread of the database did not start: ${reasonOf(error)}`));
     if (!this.#calls) throw new ThreadUnavailable('ended');
     return this.#calls;
   }
@@ -180,7 +183,7 @@ export async function openStudyService(options: StudyServiceOptions): Promise<St
   const thread = new StudyThread(options);
   const { routes, tokenFile } = await thread.open();
   const expire = () =>
-    thread.call('expire', [now()], { patient: true }).catch((error: unknown) => log(`study: ${String(error)}`));
+    thread.call('expire', [now()], { patient: true }).catch((error: unknown) => log(`study: ${reasonOf(error)}`));
   await expire();
   const timer = setInterval(expire, hourMs);
   timer.unref();

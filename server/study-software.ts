@@ -15,11 +15,9 @@ export class StudySoftware {
   /** This software serves from now on; what serves already is not noted again. */
   note(software: Software, at: number): void {
     const text = JSON.stringify(software);
+    const last = this.#database.get<{ software: string }>('SELECT software FROM software ORDER BY number DESC LIMIT 1');
+    if (last?.software === text) return;
     this.#database.transaction(() => {
-      const last = this.#database.get<{ software: string }>(
-        'SELECT software FROM software ORDER BY number DESC LIMIT 1',
-      );
-      if (last?.software === text) return;
       this.#database.run('INSERT INTO software (software, since) VALUES (?, ?)', text, at);
     });
   }

@@ -4,10 +4,9 @@ import { reasonOf } from '../src/core/errors/reasons';
 import type { WrongGuess } from './auth-throttle';
 import { ConfigurationError } from './configuration';
 import { createRoomTokens } from './room-tokens';
-import type { Software } from './software';
 import { StudyDispatcher, type StudyOutcome } from './study-dispatcher';
 import { createExporter } from './study-exporter';
-import { openStudyFolder, type StudyFolder } from './study-folder';
+import { openStudyFolder, type StudyFolder, type StudyFolderOptions } from './study-folder';
 import { createStudyRoutes, type StudyRequest, type StudyRoute } from './study-routes';
 import { createStudySeats } from './study-seats';
 import type { StudyStore } from './study-store';
@@ -16,13 +15,7 @@ import { answerCalls, logFrom } from './thread-calls';
 // The thread that has the studies: their database, the secrets that open them and the rules of who may what. Nothing that takes it long, or
 // that a disk does not finish, holds up the thread of the sockets.
 
-export interface StudyThreadOptions {
-  /** Holds the database and a token that the server drew; made where it is missing. */
-  readonly directory: string;
-  /** The experimenter's token; null: the one kept in the directory, drawn at the first start. */
-  readonly token: string | null;
-  /** What serves the studies now. */
-  readonly software: Software;
+export interface StudyThreadOptions extends StudyFolderOptions {
   /** Signs participants into the rooms of their trials. */
   readonly secret: string;
 }
@@ -97,12 +90,12 @@ let serving: Serving | null = null;
 /** The time of the newest request: the clock of the process is that of its main thread. */
 let newest = 0;
 
-function open({ directory, token, software, secret }: StudyThreadOptions, at: number): OpenedStudies {
+function open({ secret, ...options }: StudyThreadOptions, at: number): OpenedStudies {
   newest = at;
   try {
-    const folder = openStudyFolder(directory, token, log);
+    const folder = openStudyFolder(options, at, log);
     const { store, experimenterToken, tokenFile } = folder;
-    store.software.note(software, at);
+    const { directory, software } = options;
     const routes = createStudyRoutes({
       ...{ store, experimenterToken, software },
       seats: createStudySeats(

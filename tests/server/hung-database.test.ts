@@ -53,7 +53,7 @@ async function playing(url: string) {
   return people;
 }
 
-/** Sends writes and reads to the study until told to stop; every answer with its status, and after how long it came [s]. */
+/** Sends writes and reads to the study until it is stopped, and keeps the status and the duration [s] of every answer. */
 function studyTraffic(url: string, token: string) {
   const answers: { kind: 'write' | 'read'; status: number; seconds: number; retryAfter: string | null; id?: string }[] =
     [];

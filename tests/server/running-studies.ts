@@ -37,7 +37,7 @@ interface InThisThread {
   readonly experimenterToken?: string | null;
   readonly now?: () => number;
   readonly trustProxy?: boolean;
-  /** Where faults, and wrong guesses, go. */
+  /** Receives the lines of the log. */
   readonly log?: (line: string) => void;
   readonly onWrongGuess?: (guess: WrongGuess) => void;
 }

@@ -167,6 +167,18 @@ describe('a database that cannot be opened is refused with its file and what to 
     );
   });
 
+  test('when another program writes to it while the server has news to write', async () => {
+    const { directory, file } = studied();
+    const other = new DatabaseSync(file);
+    onTestFinished(() => other.close());
+    other.exec('BEGIN IMMEDIATE');
+    await expect(started(directory)).rejects.toThrow(
+      /studies\.db cannot be written: another program holds the lock of the database.*then start the server again/,
+    );
+    other.exec('ROLLBACK');
+    expect((await (await started(directory)).add('new')).status).toBe(201);
+  });
+
   test('and one of an older version is brought up to date', async () => {
     const { directory, file } = studied();
     sql(file, withoutInvitations);
