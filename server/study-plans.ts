@@ -1,5 +1,5 @@
 import { togetherWith } from '../src/core/study/allocation';
-import { checkedPlan, participantsOf, type StudyPlan } from '../src/core/study/plan';
+import { checkedPlan, participantsOf, type StudyPlan, storedPlan } from '../src/core/study/plan';
 import type { PlanVersion, StudyInfo } from '../src/core/study/study-api';
 import { ValidationError } from '../src/core/study/validation';
 import { StoreRefusal, type StudyDatabase } from './study-database';
@@ -56,7 +56,7 @@ export class StudyPlans {
          (SELECT max(version) FROM plan_versions WHERE study = ?))`,
       ...[id, id, participant, id],
     );
-    return checkedPlan(JSON.parse(plan));
+    return storedPlan(JSON.parse(plan));
   }
 
   /** The one invitation to all places of an open study, which those who follow its newest plan have; null: none of them has one. */
@@ -166,7 +166,7 @@ export class StudyPlans {
       .map(
         ({ version, plan, since }): PlanVersion => ({
           version,
-          plan: checkedPlan(JSON.parse(plan)),
+          plan: storedPlan(JSON.parse(plan)),
           since,
           participants: places.filter((place) => place.plan_version === version).map(({ participant }) => participant),
         }),

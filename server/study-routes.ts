@@ -266,13 +266,29 @@ const sessionOf = ({ store }: Pick<TableOptions, 'store'>, { study, participant,
   ...wearerIn(store.records.all(study, participant)),
 });
 
+/** Throws where a plan that was stored could not be a new study's any more: nothing can be recorded by its rules. */
+function refuseOutdated(plan: StudyPlan): void {
+  try {
+    checkedPlan(plan);
+  } catch (error) {
+    if (!(error instanceof ValidationError)) throw error;
+    throw new HttpError(
+      409,
+      `the plan of this study is of an older version of the program, and today it is refused: ${error.message}. ` +
+        'What was recorded can be exported and deleted; a study with another plan needs another id',
+    );
+  }
+}
+
 /** `read`: version of the text that was consented to; undefined: not told. Throws where the plan shows another one, and the place stays free. */
 function takePlace(
   { store }: Pick<TableOptions, 'store'>,
   { study, participant, at }: StudyCall,
   read: string | undefined,
 ) {
-  const { version } = store.plans.planFor(study, participant).consent;
+  const plan = store.plans.planFor(study, participant);
+  refuseOutdated(plan);
+  const { version } = plan.consent;
   if (read !== undefined && read !== version) {
     throw new HttpError(409, `consent was given to text ${read}, but the study shows ${version}`, { field: 'consent' });
   }

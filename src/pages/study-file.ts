@@ -1,6 +1,6 @@
 import { strFromU8, unzipSync } from 'fflate';
 import { reasonOf } from '../core/errors/reasons';
-import { checkedPlan, type StudyPlan } from '../core/study/plan';
+import { type StudyPlan, storedPlan } from '../core/study/plan';
 import { checkedRecord, type StudyRecord } from '../core/study/study-record';
 
 /** A study as an export holds it. */
@@ -39,7 +39,7 @@ export function openStudyFile(zip: Uint8Array): OpenedStudy {
       throw new Error(`${path}: ${reasonOf(error)}`);
     }
   };
-  const plan = checkedPlan(json('plan.json'));
+  const plan = storedPlan(json('plan.json'));
   const file = json('records.json');
   if (typeof file !== 'object' || file === null || !('records' in file) || !Array.isArray(file.records)) {
     throw new Error('records.json: expected a list of records');

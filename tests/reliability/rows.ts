@@ -321,6 +321,13 @@ export const attackRows = {
     target: '0 files open to others; 0 acknowledged and lost; a sentence for every start that is refused',
     tests: ['tests/server/study-folder.test.ts'],
   },
+  'first-folder': {
+    inject:
+      'The folder of studies that the first version of the program left, with a study whose plan is not allowed any more',
+    sees: 'Everything is there, its pages go on; the study that is not allowed is listed, exported and deleted, and no one else joins it',
+    target: '0 records lost, 0 studies that cannot be read',
+    tests: ['tests/server/study-migrations.test.ts'],
+  },
   'study-shortage': {
     inject:
       'A heap of 64 MB, a limit of open files that strangers use up, a disk that is full, while a study is exported',

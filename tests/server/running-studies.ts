@@ -74,6 +74,8 @@ export interface Asked {
 }
 
 export interface ServedOptions {
+  /** The database; a new one where none is named. */
+  readonly file?: string;
   readonly experimenterToken?: string | null;
   readonly mostBytes?: number;
   /** The disk under the store: resolves when what was written is on it. */
@@ -84,12 +86,12 @@ export interface ServedOptions {
 
 /** The studies' part of the server on a port of loopback, as if behind a proxy; with its store and what it logs. */
 export async function servedStudies({
+  file = join(directoryWith(), 'studies.db'),
   experimenterToken = experimenter,
   mostBytes = 2 ** 30,
   flush,
   silenceMs = 30_000,
 }: ServedOptions = {}) {
-  const file = join(directoryWith(), 'studies.db');
   const opened = openStudyStore(file, { mostBytes });
   const commits = flush && new GroupCommit(flush);
   const store = commits ? { ...opened, flushed: () => commits.flushed() } : opened;

@@ -1,11 +1,16 @@
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { gunzipSync } from 'node:zlib';
 import { DatabaseSync } from '@photostructure/sqlite';
-import { expect, onTestFinished, test } from 'vitest';
+import { describe, expect, onTestFinished, test } from 'vitest';
+import { unpacked } from '../../server/study-motion';
 import { openStudyStore } from '../../server/study-store';
 import { scheduleFor } from '../../src/core/study/schedule';
 import { latencyPlan, session } from '../core/study/studies';
+import { measured } from '../reliability/measured';
 import { directoryWith } from '../temporary-directory';
 import { withoutInvitations, withoutPlanVersions } from './older-databases';
+import { type Anything, experimenter, servedStudies } from './running-studies';
 
 const now = 1_800_000_000;
 const plan = latencyPlan();
@@ -62,4 +67,72 @@ test('a database from before versions of plans keeps every plan and participant,
   expect(store.plans.add(later, { simulated: false, newVersion: true, at: now }).version).toBe(2);
   expect(store.plans.planFor('latency', 'P02')).toEqual(plan);
   expect(store.plans.planFor('latency', 'P01')).toEqual(later);
+});
+
+/**
+ * The database that the first version of the program left, with what its pages had sent. Participants P01 and P02 of the study "paper" have
+ * finished and begun, P07 has withdrawn. P01 of "pairs" plays archery in pairs, which plans of today may not ask for.
+ */
+describe('a database that the first version of the program wrote', () => {
+  const golden = (name: string) => readFileSync(new URL(`../golden/${name}`, import.meta.url));
+  const sent = JSON.parse(golden('first-studies.json').toString()) as Anything;
+
+  async function served() {
+    const file = join(directoryWith(), 'studies.db');
+    writeFileSync(file, gunzipSync(golden('first-studies.db.gz')));
+    return servedStudies({ file });
+  }
+
+  test('has every record, recording, token, command and receipt', async () => {
+    const { store } = await served();
+    let kept = 0;
+    for (const participant of ['P01', 'P02']) {
+      const { token, progress, records } = sent[participant];
+      const own = store.records.all('paper', participant).filter(({ id }) => !id.startsWith('experimenter-'));
+      expect(own).toEqual(records);
+      kept += own.length;
+      expect(store.places.progress('paper', participant)).toEqual(progress);
+      expect(store.places.holds('paper', participant, token)).toBe(true);
+    }
+    expect(store.records.all('paper', 'P02').at(-1)).toMatchObject({ body: { type: 'remark' } });
+    expect(store.commands.after('paper', 'P02', 0)).toMatchObject([{ command: { type: 'pause' } }]);
+    expect(store.motion.all('paper').map(unpacked)).toEqual([{ participant: 'P01', ...sent.motion }]);
+    expect(store.deletion.receipts('paper')).toMatchObject([{ participant: 'P07', reason: 'withdrawn' }]);
+    measured('first-folder', { 'records kept': `${kept} of ${sent.P01.records.length + sent.P02.records.length}` });
+  });
+
+  test('takes what its pages send once more, and goes on', async () => {
+    const { ask } = await served();
+    for (const participant of ['P01', 'P02']) {
+      const { token, progress, records } = sent[participant];
+      const place = `/api/studies/paper/participants/${participant}`;
+      const { status, json } = await ask('POST', `${place}/records`, { token, json: { records } });
+      expect([status, json.acknowledged.length]).toEqual([200, records.length]);
+      expect((await ask('PUT', `${place}/progress`, { token, json: progress })).status).toBe(204);
+      expect((await ask('GET', `${place}/export`, { token })).status).toBe(200);
+    }
+    expect((await ask('GET', '/api/studies/paper/export', { token: experimenter })).status).toBe(200);
+  });
+
+  test('keeps a study whose plan is not allowed any more: it is listed, exported and deleted, and no one else joins it', async () => {
+    const { ask, store } = await served();
+    const list = await ask('GET', '/api/studies', { token: experimenter });
+    expect(list.json.studies.map(({ id }: Anything) => id)).toEqual(['paper', 'pairs']);
+    const { token, withdrawalCode, records } = sent.pairs;
+    const pairs = '/api/studies/pairs';
+    for (const path of ['', '/participants', '/records', '/export', '/participants/P01/export']) {
+      expect((await ask('GET', `${pairs}${path}`, { token: experimenter })).status, path).toBe(200);
+    }
+    expect((await ask('GET', `${pairs}/participants/P01/records`, { token })).json.records).toEqual(records);
+    const claim = await ask('POST', `${pairs}/participants/P02/claim`, { token: experimenter, json: {} });
+    expect([claim.status, claim.json.error]).toEqual([
+      409,
+      'the plan of this study is of an older version of the program, and today it is refused: tasks[0].groupSize: archery is played alone: ' +
+        'expected 1. What was recorded can be exported and deleted; a study with another plan needs another id',
+    ]);
+    const receipt = await ask('POST', `${pairs}/withdraw`, { json: { code: withdrawalCode } });
+    expect([receipt.status, receipt.json.records]).toEqual([200, records.length]);
+    expect(store.records.all('pairs')).toEqual([]);
+    measured('first-folder', { 'its studies that cannot be read': 0 });
+  });
 });
