@@ -20,8 +20,7 @@ test('a participant whose page has just reported is there, though the experiment
   const study = plan('clocks');
   const experimenting = experimenter(origin);
   await experimenting.begin(study, false);
-  const place = '/clocks/participants/P01';
-  expect((await experimenting.ask(`${place}/claim`, 'POST', {})).status).toBe(201);
+  const place = await experimenting.consented(study, 'P01');
   const progress = { ...begin(scheduleFor(study, 'P01')), motion: false, step: 'demographics' };
   expect((await experimenting.ask(`${place}/progress`, 'PUT', progress)).status).toBe(204);
   await page.clock.setFixedTime(Date.now() + 600_000);
@@ -36,8 +35,7 @@ test('the link of a participant under way is in sight on a narrow screen too @fu
   const study = plan('narrow');
   const experimenting = experimenter(origin);
   await experimenting.begin(study, false);
-  const place = '/narrow/participants/P01';
-  expect((await experimenting.ask(`${place}/claim`, 'POST', {})).status).toBe(201);
+  const place = await experimenting.consented(study, 'P01');
   const progress = {
     ...begin(scheduleFor(study, 'P01')),
     motion: false,
@@ -94,7 +92,7 @@ test('a block of those who play together is voided for all of them, if the exper
   const { members } = scheduleFor(study, 'P01').groups.ball as { readonly members: readonly string[] };
   const placeOf = (participant: string) => `/trios/participants/${participant}`;
   const at = async (participant: string, step: string) => {
-    await experimenting.ask(`${placeOf(participant)}/claim`, 'POST', {});
+    await experimenting.consented(study, participant);
     const progress = { ...begin(scheduleFor(study, participant)), motion: false, step };
     expect((await experimenting.ask(`${placeOf(participant)}/progress`, 'PUT', progress)).status).toBe(204);
   };
@@ -135,8 +133,7 @@ test('a block that is over by the time the reason is written is not taken for th
   const study = plan('moving-on');
   const experimenting = experimenter(origin);
   await experimenting.begin(study, false);
-  const place = '/moving-on/participants/P01';
-  await experimenting.ask(`${place}/claim`, 'POST', {});
+  const place = await experimenting.consented(study, 'P01');
   const at = async (step: string) => {
     const progress = { ...begin(scheduleFor(study, 'P01')), motion: false, step };
     expect((await experimenting.ask(`${place}/progress`, 'PUT', progress)).status).toBe(204);

@@ -6,6 +6,7 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parsePlan, type StudyPlan } from '../src/core/study/plan';
 import type { ParticipantState } from '../src/core/study/study-api';
+import { recordVersion } from '../src/core/study/study-record';
 import { studyLink } from '../src/net/study-link';
 
 export const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
@@ -93,6 +94,30 @@ export function experimenter(origin: string) {
       };
       const invitation = participants.find((one) => one.participant === participant)?.invitation ?? null;
       return new URL(studyLink({ study, participant, invitation }).replace('#', `${switches}#`), origin).href;
+    },
+    /** Takes a participant's place and consents; returns the way to the place. */
+    async consented({ id: study, consent }: StudyPlan, participant: string): Promise<string> {
+      const place = `/${study}/participants/${participant}`;
+      const at = Date.now() / 1000;
+      const body = { version: consent.version, given: true, motion: false, at };
+      const record = {
+        version: recordVersion,
+        id: 'consent',
+        study,
+        participant,
+        simulated: false,
+        at,
+        kind: 'consent',
+        body,
+      };
+      for (const [path, sent] of [
+        ['/claim', {}],
+        ['/records', { records: [record] }],
+      ] as const) {
+        const response = await ask(`${place}${path}`, 'POST', sent);
+        if (!response.ok) throw new Error(`${participant} did not get to ${path}: ${await response.text()}`);
+      }
+      return place;
     },
     async begin(plan: StudyPlan, simulated: boolean): Promise<void> {
       const response = await ask('', 'POST', { plan, simulated });

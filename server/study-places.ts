@@ -1,5 +1,5 @@
 import { createHash, randomBytes, timingSafeEqual } from 'node:crypto';
-import { type Progress, resumed, sinceReport } from '../src/core/study/progress';
+import { isLater, type Progress, resumed, sinceReport } from '../src/core/study/progress';
 import { scheduleFor } from '../src/core/study/schedule';
 import { StoreRefusal, type StudyDatabase } from './study-database';
 import type { StudyPlans } from './study-plans';
@@ -18,6 +18,9 @@ export interface PlaceRow {
   readonly progress: string | null;
   readonly progress_at: number | null;
 }
+
+export const notConsented = (participant: string): StoreRefusal =>
+  new StoreRefusal('forbidden', `${participant} has not consented: nothing is recorded`);
 
 const hashOf = (secret: string): Buffer => createHash('sha256').update(secret).digest();
 const newToken = (): string => randomBytes(32).toString('base64url');
@@ -130,12 +133,11 @@ export class StudyPlaces {
     );
   }
 
+  /** Stores where a participant is, unless a later report is there already; throws a StoreRefusal before consent. */
   saveProgress(study: string, participant: string, progress: unknown, at: number): void {
     const { simulated } = this.#plans.get(study);
-    const checked = resumed(
-      scheduleFor(this.#plans.planFor(study, participant), participant),
-      JSON.stringify(progress),
-    );
+    const schedule = scheduleFor(this.#plans.planFor(study, participant), participant);
+    const checked = resumed(schedule, JSON.stringify(progress));
     if (checked.simulated !== simulated) {
       throw new StoreRefusal(
         'forbidden',
@@ -143,7 +145,11 @@ export class StudyPlaces {
       );
     }
     this.#database.transaction(() => {
-      this.getPresent(study, participant);
+      const { motion_consent, progress: stored } = this.getPresent(study, participant);
+      if (motion_consent === null) throw notConsented(participant);
+      // On another device a participant may take back what the record of the consent says.
+      if (checked.motion === false && motion_consent === 1) this.setMotionConsent(study, participant, 0);
+      if (stored !== null && isLater(schedule, resumed(schedule, stored), checked)) return;
       this.#database.run(
         'UPDATE participants SET progress = ?, progress_at = ? WHERE study = ? AND participant = ?',
         ...[JSON.stringify(checked), at, study, participant],

@@ -1,12 +1,12 @@
 import { recordVersion, type StudyRecord } from '../src/core/study/study-record';
 import { StoreRefusal, type StudyDatabase } from './study-database';
-import type { StudyPlaces } from './study-places';
+import { notConsented, type StudyPlaces } from './study-places';
 import type { StudyPlans } from './study-plans';
 
 export const mostRecordsPerParticipant = 10_000;
 
-const notConsented = (participant: string): StoreRefusal =>
-  new StoreRefusal('forbidden', `${participant} has not consented: nothing is recorded`);
+/** What the ids of the experimenter's remarks begin with. */
+const remarkPrefix = 'experimenter-';
 
 /** What was recorded of participants, once they have consented. */
 export class StudyRecords {
@@ -28,18 +28,12 @@ export class StudyRecords {
       let { motion_consent: consented } = this.#places.getPresent(study, participant);
       for (const record of records) {
         refuseForeign(record, study, participant, simulated);
-        if (record.kind === 'consent') {
-          if (record.body.version !== plan.consent.version) {
-            throw new StoreRefusal(
-              'conflict',
-              `consent is to text ${record.body.version}, the study shows ${plan.consent.version}`,
-            );
-          }
-          consented = Number(record.body.motion && plan.consent.motion !== null);
-          this.#places.setMotionConsent(study, participant, consented);
-        }
-        if (consented === null) throw notConsented(participant);
-        this.#insert(record, at);
+        if (record.kind === 'consent') refuseOtherText(record.body.version, plan.consent.version);
+        else if (consented === null) throw notConsented(participant);
+        // A record that is sent once more changes nothing: consent to motion may have been taken back since.
+        if (!this.#insert(record, at) || record.kind !== 'consent') continue;
+        consented = Number(record.body.motion && plan.consent.motion !== null);
+        this.#places.setMotionConsent(study, participant, consented);
       }
       return records.map(({ id }) => id);
     });
@@ -52,7 +46,7 @@ export class StudyRecords {
       const { next } = this.#database.getOne<{ next: number }>(
         'SELECT coalesce(max(number), 0) + 1 AS next FROM records',
       );
-      const id = `experimenter-${next}`;
+      const id = `${remarkPrefix}${next}`;
       const about = { version: recordVersion, id, study, participant, simulated, at } as const;
       this.#insert({ ...about, kind: 'event', body: { type: 'remark', text } }, at);
       return id;
@@ -101,8 +95,8 @@ export class StudyRecords {
     return this.#database.run('DELETE FROM records WHERE study = ? AND participant = ?', study, participant);
   }
 
-  /** Inside a transaction. */
-  #insert(record: StudyRecord, receivedAt: number): void {
+  /** Inside a transaction; returns false where the record is stored already. */
+  #insert(record: StudyRecord, receivedAt: number): boolean {
     const { study, participant, id } = record;
     const text = JSON.stringify(record);
     const stored = this.#database.get<{ record: string }>(
@@ -110,7 +104,7 @@ export class StudyRecords {
       ...[study, participant, id],
     );
     if (stored) {
-      if (stored.record === text) return;
+      if (stored.record === text) return false;
       throw new StoreRefusal('conflict', `${participant} has stored something else as "${id}" already`);
     }
     if (this.count(study, participant) >= mostRecordsPerParticipant) {
@@ -120,13 +114,25 @@ export class StudyRecords {
       'INSERT INTO records (study, participant, id, record, received_at) VALUES (?, ?, ?, ?, ?)',
       ...[study, participant, id, text, receivedAt],
     );
+    return true;
   }
 }
 
-/** Refuses a record that is of another place, or of people where the study is simulated and the other way round. */
+function refuseOtherText(read: unknown, shown: string): void {
+  if (read === shown) return;
+  throw new StoreRefusal('conflict', `consent is to text ${read}, the study shows ${shown}`);
+}
+
+/**
+ * Refuses a record that is of another place or named as the remarks of the experimenter are, or of people where the study is simulated and the
+ * other way round.
+ */
 function refuseForeign(record: StudyRecord, study: string, participant: string, simulated: boolean): void {
   if (record.study !== study || record.participant !== participant) {
     throw new StoreRefusal('forbidden', `"${record.id}" is of ${record.participant} in "${record.study}"`);
+  }
+  if (record.id.startsWith(remarkPrefix)) {
+    throw new StoreRefusal('forbidden', `"${record.id}" is the name of an experimenter's remark`);
   }
   if (record.simulated !== simulated) {
     throw new StoreRefusal(

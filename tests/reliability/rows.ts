@@ -321,6 +321,13 @@ export const attackRows = {
     target: '0 files open to others; 0 acknowledged and lost; a sentence for every start that is refused',
     tests: ['tests/server/study-folder.test.ts'],
   },
+  'study-replays': {
+    inject:
+      'What a participant’s page sends, out of order, twice and after consent to motion was taken back; a link that twenty people open at once',
+    sees: 'Each record is stored once; the latest report and the last word on consent hold; one person has the place',
+    target: '0 records lost or stored twice, 0 reports that lead back, 1 place',
+    tests: ['tests/server/study-replays.test.ts'],
+  },
   'first-folder': {
     inject:
       'The folder of studies that the first version of the program left, with a study whose plan is not allowed any more',

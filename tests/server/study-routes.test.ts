@@ -42,6 +42,7 @@ describe('a participant', () => {
       draft: { Q1: 4 },
       motion: false,
     };
+    await ask('POST', own('P01', '/records'), { token, json: { records: completed('P01') } });
     expect((await ask('PUT', own('P01', '/progress'), { token, json: progress })).status).toBe(204);
     expect((await ask('POST', own('P01', '/claim'), { json: invited('P01') })).status).toBe(409);
     expect((await ask('POST', own('P01', '/release'), { token: experimenter })).status).toBe(204);

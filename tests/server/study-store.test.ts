@@ -99,6 +99,7 @@ describe('the store', () => {
   test('knows where each participant is', () => {
     const { store } = withPaperStudy();
     store.places.claim('paper', 'P02', now);
+    store.records.store('paper', 'P02', completed('P02').slice(0, 1), now);
     store.places.saveProgress('paper', 'P02', { ...begin(scheduleFor(paperPlan(), 'P02')), step: 'consent' }, now);
     const [first, second] = store.overview('paper', now + 20);
     expect(first).toMatchObject({ participant: 'P01', claimed: false, session: null });
@@ -111,6 +112,7 @@ describe('the store', () => {
     store.places.claim('paper', 'P01', now);
     const one = session(scheduleFor(paperPlan(), 'P01'));
     one.doUntil(({ kind }) => kind === 'rest');
+    store.records.store('paper', 'P01', one.records, now);
     one.wait(20);
     // The device's clock is an hour ahead of the server's.
     store.places.saveProgress('paper', 'P01', reported(one.progress, one.now), one.now - 3600);
@@ -124,6 +126,7 @@ describe('the store', () => {
     const { store } = withPaperStudy();
     const one = session(scheduleFor(paperPlan(), 'P01'));
     one.doUntil(({ kind }) => kind === 'rest');
+    store.records.store('paper', 'P01', one.records, now);
     store.places.saveProgress('paper', 'P01', one.progress, one.now);
     expect(store.overview('paper', one.now + 15)[0]?.session?.remainingSeconds).toBeCloseTo(45, 6);
     expect(store.places.progress('paper', 'P01', one.now + 15)).toEqual(one.progress);

@@ -91,22 +91,6 @@ export function startSession(claim: Claim, study: string, participant: string): 
   };
 }
 
-/**
- * Whether the server knows a later state of a session than this device: a device whose storage was full when the page went tells
- * an old story. Blocks that run again count first, then the step, then its attempt, then what changed within it.
- */
-export function isLater(schedule: Schedule, known: Progress, here: Progress): boolean {
-  const order = ({ runs, step, attempt, changes = 0 }: Progress) => [
-    Object.values(runs).reduce((sum, run) => sum + run, 0),
-    schedule.steps.findIndex(({ id }) => id === step),
-    attempt,
-    changes,
-  ];
-  const [there, local] = [order(known), order(here)];
-  const differing = there.findIndex((value, index) => value !== local[index]);
-  return differing >= 0 && (there[differing] as number) > (local[differing] as number);
-}
-
 /** `unsent`: what an earlier visit of this page left in the vault. */
 export const createParticipantSession = (
   kept: KeptSession,

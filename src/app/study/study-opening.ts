@@ -1,11 +1,10 @@
 import { PhrasedError } from '../../core/study/phrases/phrases';
-import type { Progress } from '../../core/study/progress';
+import { isLater, type Progress } from '../../core/study/progress';
 import { scheduleFor } from '../../core/study/schedule';
 import type { PublicStudy } from '../../core/study/study-api';
 import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../../net/study-client';
 import {
   createParticipantSession,
-  isLater,
   type ParticipantSession,
   type ParticipantSessionOptions,
   startSession,

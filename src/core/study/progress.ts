@@ -121,6 +121,22 @@ export const sinceReport = (report: Progress, seconds: number): Progress =>
 export const runningOn = (progress: Progress, now: number): Progress =>
   runs(progress) && (progress.since === null || progress.since > now) ? { ...progress, since: now } : progress;
 
+/**
+ * Whether one state of a session came after another one. Devices and reports can be late: a device whose storage was full resumes an older
+ * state, and a request may arrive after its successor. Blocks that run again count first, then the step, its attempt, and what changed within it.
+ */
+export function isLater(schedule: Schedule, state: Progress, than: Progress): boolean {
+  const order = ({ runs, step, attempt, changes = 0 }: Progress) => [
+    Object.values(runs).reduce((sum, run) => sum + run, 0),
+    schedule.steps.findIndex(({ id }) => id === step),
+    attempt,
+    changes,
+  ];
+  const [one, other] = [order(state), order(than)];
+  const differing = one.findIndex((value, index) => value !== other[index]);
+  return differing >= 0 && (one[differing] as number) > (other[differing] as number);
+}
+
 /** Seconds left of this step, at least 0; null: it has no time limit. */
 export function remainingSeconds(schedule: Schedule, progress: Progress, now: number): number | null {
   const step = currentStep(schedule, progress);

@@ -1,5 +1,6 @@
 import { afterEach, expect, test, vi } from 'vitest';
-import { createParticipantSession, isLater, startSession } from '../../../src/app/study/participant-session';
+import { createParticipantSession, startSession } from '../../../src/app/study/participant-session';
+import { isLater } from '../../../src/core/study/progress';
 import { createParticipantClient } from '../../../src/net/study-client';
 import { calibration, device, toTheFirstQuestion, toTheFirstRest } from './participant-device';
 import { studyServer } from './study-server';
