@@ -328,6 +328,13 @@ export const attackRows = {
     target: '0 records lost or stored twice, 0 reports that lead back, 1 place',
     tests: ['tests/server/study-replays.test.ts'],
   },
+  'study-traces': {
+    inject:
+      'Two of three participants withdraw or are deleted after a whole session with motion, exports and a log of every detail; every file is searched',
+    sees: 'No text, secret, address or motion of theirs in database, write-ahead log, log, temporary files or exports',
+    target: '0 traces',
+    tests: ['tests/server/study-traces.test.ts'],
+  },
   'first-folder': {
     inject:
       'The folder of studies that the first version of the program left, with a study whose plan is not allowed any more',
