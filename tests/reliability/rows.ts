@@ -197,6 +197,7 @@ export const promiseRows = {
     target: '0 elements made; 0 formulas in a CSV',
     tests: [
       'tests/reliability/text.test.ts',
+      'e2e/foreign-text.spec.ts',
       'tests/core/protocol/messages.test.ts',
       'tests/core/study/tidy-csv.test.ts',
     ],
