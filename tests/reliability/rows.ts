@@ -336,6 +336,12 @@ export const attackRows = {
     target: '0 traces',
     tests: ['tests/server/study-traces.test.ts'],
   },
+  'storage-denied': {
+    inject: 'A browser that lets no site store anything: the page, a room and a study in it',
+    sees: 'All three work, and the page says that this browser keeps nothing',
+    target: '0 pages that fail',
+    tests: ['e2e/storage-denied.spec.ts'],
+  },
   'first-folder': {
     inject:
       'The folder of studies that the first version of the program left, with a study whose plan is not allowed any more',

@@ -57,14 +57,21 @@ async function openVault(): Promise<StudyVault | null> {
   }
 }
 
-/** One page per participant: two would tell the server two stories. */
+/**
+ * One page per participant: two would send the server two sessions. A browser that lets the site store nothing refuses the lock too; its
+ * pages share no session.
+ */
 function alone({ study, participant }: Place): Promise<boolean> {
   if (!navigator.locks) return Promise.resolve(true);
-  return new Promise((resolve) => {
-    void navigator.locks.request(`threepoint study ${study} ${participant}`, { ifAvailable: true }, (lock) => {
+  return new Promise((resolve, reject) => {
+    const held = navigator.locks.request(`threepoint study ${study} ${participant}`, { ifAvailable: true }, (lock) => {
       resolve(lock !== null);
       // Held until the page goes.
       return lock && new Promise(() => undefined);
+    });
+    held.catch((error: unknown) => {
+      if (error instanceof DOMException && error.name === 'SecurityError') resolve(true);
+      else reject(error);
     });
   });
 }
