@@ -61,6 +61,17 @@ class _FittingInput:
     upper_arm: Tensor
 
 
+@dataclass(frozen=True)
+class _Unleaned:
+    """What leans start from, frame and unit as above: the shoulder line and the thorax's up direction [N, 3], unit, the neck's base to the head joint
+    [N, 3], and what chest joint and hips follow of the neck's way onto its bone's length from the head [N, 3]."""
+
+    line: Tensor
+    up: Tensor
+    neck_to_head: Tensor
+    moved: Tensor
+
+
 class DifferentiableKinematics:
     """Fits joints to the skeleton of the proportions in use."""
 
@@ -107,7 +118,8 @@ class DifferentiableKinematics:
         leans = torch.zeros_like(given.estimated[:, 2:4])
         # How far clavicles and neck go beyond anatomy [share of the way to their extremes].
         extremity = torch.zeros_like(leans[..., :1])
-        trunk, shoulders = self._place_trunk(given, leans, extremity)
+        upright = self._place_upright_neck(given)
+        trunk, shoulders = self._place_trunk(given, upright, leans, extremity)
         reach = config.reach * given.arm
         soft = _softened(_length(given.wrists - shoulders), reach)
         for number in range(config.reach_passes):
@@ -115,37 +127,48 @@ class DifferentiableKinematics:
             wanted = soft if number < REACH["anatomicalPasses"] else reach
             missing = (_length(to_wrist) - wanted).clamp_min(0.0)
             missing = torch.where(missing > config.least_missing, missing, 0.0)
-            leans = leans + _unit(to_wrist) * missing * TORSO["reachOvershoot"]
+            leans = leans + _unit(to_wrist) * missing
             leans = leans * (reach / _length(leans)).clamp_max(1.0)
             if number >= REACH["anatomicalPasses"]:
                 extremity = (extremity + missing / (REACH["extremeReach"] * reach)).clamp_max(1.0)
-            placed = self._place_trunk(given, leans, extremity)
+            placed = self._place_trunk(given, upright, leans, extremity)
             if config.reach_passes > 1:
                 placed = _chosen((missing > 0.0).any(dim=1), placed, (trunk, shoulders))
             trunk, shoulders = placed
         return trunk, shoulders
 
-    def _place_trunk(self, given: _FittingInput, leans: Tensor, extremity: Tensor) -> tuple[Trunk, Tensor]:
+    def _place_upright_neck(self, given: _FittingInput) -> _Unleaned:
+        """The neck below the head and the thorax below it as they are estimated, before any lean."""
+        estimated, head_joint = given.estimated, given.head_joint
+        middle = estimated[:, 2:4].mean(1)
+        line = _unit(estimated[:, 3] - estimated[:, 2])
+        up = _unit(middle - estimated[:, 4])
+        chest = self._aligned(self.thorax, up, line)
+        implied_neck = middle - chest @ self.shoulders_from_neck
+        neck_bone = self.rest["head"]
+        anatomical = _limit("neckBend", torch.zeros_like(up[:, :1]))
+        neck_to_head = _swung(chest @ neck_bone, head_joint - implied_neck, anatomical)
+        # Chest joint and hips follow a share of what the neck is moved by.
+        shift = head_joint - neck_to_head - implied_neck
+        moved = shift * TORSO["neckShiftShare"] * (neck_bone.norm() / _length(shift)).clamp_max(1.0)
+        return _Unleaned(line, up, neck_to_head, moved)
+
+    def _place_trunk(self, given: _FittingInput, upright: _Unleaned, leans: Tensor, extremity: Tensor) -> tuple[Trunk, Tensor]:
         """Chest joint, hips and shoulders on their bones below the head, for estimated shoulders that lean by these offsets [N, 2, 3].
 
-        Leans in opposite directions turn the shoulder line; what pulls the shoulders together or apart is left to the clavicles.
+        A lean turns neck, thorax and shoulder line by less than a right angle each; what it asks back along them is left to the clavicles.
         extremity: of each side, how far on the way from anatomical limits to extreme ones [N, 2, 1].
         """
         estimated, head_joint = given.estimated, given.head_joint
-        targets = estimated[:, 2:4] + leans
-        middle = targets.mean(1)
-        estimated_line = _unit(estimated[:, 3] - estimated[:, 2])
-        line = _unit(estimated_line * self.shoulder_width + _across(leans[:, 1] - leans[:, 0], estimated_line))
-        rough = self._aligned(self.thorax, middle - estimated[:, 4], line)
-        implied_neck = middle - rough @ self.shoulders_from_neck
+        targets, mean = estimated[:, 2:4] + leans, leans.mean(1)
+        line = _leaned(upright.line, self.shoulder_width, leans[:, 1] - leans[:, 0])
+        rough = self._aligned(self.thorax, _leaned(upright.up, self.thorax.norm(), mean), line)
         neck_bone = self.rest["head"]
-        neck = head_joint - _swung(rough @ neck_bone, head_joint - implied_neck, _limit("neckBend", extremity.amax(dim=1)))
-        # Chest joint and hips follow a share of what the neck was moved by.
-        shift = neck - implied_neck
-        moved = shift * TORSO["neckShiftShare"] * (neck_bone.norm() / _length(shift)).clamp_max(1.0)
-        up = _unit(neck - estimated[:, 4] - moved)
+        neck_to_head = _leaned(_unit(upright.neck_to_head), neck_bone.norm(), -mean)
+        neck = head_joint - _swung(rough @ neck_bone, neck_to_head, _limit("neckBend", extremity.amax(dim=1)))
+        up = _unit(neck - estimated[:, 4] - upright.moved)
         chest = neck - up * self.thorax.norm()
-        hips = chest + _unit(estimated[:, 5] + moved - chest) * self.lower_back_length
+        hips = chest + _unit(estimated[:, 5] + upright.moved - chest) * self.lower_back_length
         pelvis_line = _unit(torch.lerp(line, given.heading_right, TORSO["pelvisToHead"]))
         lower, upper = (self._aligned(self.thorax, up, side) for side in (torch.lerp(pelvis_line, line, TORSO["chestToShoulders"]), line))
         shoulders = []
@@ -176,6 +199,11 @@ class DifferentiableKinematics:
     def _aligned(self, main: Tensor, to_main: Tensor, to_x: Tensor) -> Tensor:
         """The rotations [N, 3, 3] that take `main` [3] to the directions `to_main` [N, 3], and x as nearly as that allows to `to_x` [N, 3]."""
         return _frame(to_main, to_x) @ _frame(main, self.x).T
+
+
+def _leaned(direction: Tensor, length: Tensor, offset: Tensor) -> Tensor:
+    """Where the end of a bone in this direction [N, 3], unit, points when it is moved by an offset [N, 3], without what of it leads back along it."""
+    return _unit(offset + direction * (length - _dot(offset, direction).clamp_max(0.0)))
 
 
 def _chosen(bodies: Tensor, a: tuple[Trunk, Tensor], b: tuple[Trunk, Tensor]) -> tuple[Trunk, Tensor]:

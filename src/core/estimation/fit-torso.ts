@@ -27,7 +27,6 @@ import {
   lerp,
   type MutableVec3,
   normalise,
-  reject,
   right,
   scale,
   setVec3,
@@ -148,22 +147,31 @@ interface TorsoInput {
   readonly deltaSeconds: number;
 }
 
-/** A thorax as it was placed, for the spine below it; floor frame. */
+/** A thorax as it was placed, for the spine below it; floor frame, unit. */
 interface PlacedThorax {
+  /** From the chest joint to the neck. */
+  readonly up: MutableVec3;
+  /** From the left to the right shoulder as the thorax faces. */
+  readonly line: MutableVec3;
+}
+
+/** What leans start from in one frame; floor frame. */
+interface UnleanedThorax {
   /** From the chest joint to the neck, unit. */
   readonly up: MutableVec3;
-  /** From the left to the right shoulder as the thorax faces, unit. */
-  readonly line: MutableVec3;
-  /** By how much the neck was moved onto its length from the head, the part of it that chest joint and hips follow. */
+  /** From the neck to the head joint [m]. */
+  readonly neckToHead: MutableVec3;
+  /** What chest joint and hips follow of the neck's way onto its bone's length from the head [m]. */
   readonly moved: MutableVec3;
 }
 
-const thorax: PlacedThorax = { up: vec3(0, 0, 0), line: vec3(0, 0, 0), moved: vec3(0, 0, 0) };
+const thorax: PlacedThorax = { up: vec3(0, 0, 0), line: vec3(0, 0, 0) };
+const unleaned: UnleanedThorax = { up: vec3(0, 0, 0), neckToHead: vec3(0, 0, 0), moved: vec3(0, 0, 0) };
 /** Where the shoulders are to be, floor frame. */
 const shoulderTargets: Readonly<Record<Side, MutableVec3>> = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
 const headingRight = vec3(0, 0, 0);
 const lineBefore = vec3(0, 0, 0);
-const roughUp = vec3(0, 0, 0);
+const meanLean = vec3(0, 0, 0);
 const shoulderMiddle = vec3(0, 0, 0);
 /** The neck's base that the wanted shoulders hang from, before it is brought onto the neck's length from the head. */
 const impliedNeck = vec3(0, 0, 0);
@@ -192,6 +200,7 @@ export function fitTorso(
   beginLean(lean.left);
   beginLean(lean.right);
   followShoulderLine(state, joints, bones, deltaSeconds);
+  placeUprightNeck(state.shoulderLine, input, unleaned);
   for (let pass = 0; pass <= anatomicalPasses + extremePasses; pass++) {
     placeThorax(state, input, lean.left.wanted, lean.right.wanted, thorax);
     const pulledLeft = leanFurther(lean.left, pose.shoulders.left, frame.leftHand, bones.reach, pass);
@@ -239,43 +248,71 @@ function turnTowards(wanted: MutableVec3, before: Vec3, share: number, most: num
 const limitOf = (joint: 'clavicleSwing' | 'neckBend', extremity: number): number =>
   torsoLimits[joint] + extremity * (extremeLimits[joint] - torsoLimits[joint]);
 
+/** The neck below the head and the thorax below it as they are estimated, before any lean. */
+function placeUprightNeck(
+  shoulderLine: Vec3,
+  { joints, frame, bones }: TorsoInput,
+  { up: thoraxUp, neckToHead, moved }: UnleanedThorax,
+): void {
+  lerp(joints.leftUpperArm, joints.rightUpperArm, 0.5, shoulderMiddle);
+  normalise(subtract(shoulderMiddle, joints.chest, thoraxUp), up, thoraxUp);
+  const chest = alignDirections(bones.thorax, thoraxUp, shoulderLine, rotation);
+  subtract(shoulderMiddle, rotate(chest, bones.shouldersFromNeck, a), impliedNeck);
+  rotate(chest, bones.neck.main, neckAtRest);
+  limitAngle(
+    rotationBetween(neckAtRest, subtract(frame.headJoint, impliedNeck, a), swing),
+    torsoLimits.neckBend,
+    swing,
+  );
+  rotate(swing, neckAtRest, neckToHead);
+
+  // Chest joint and hips follow a share of what the neck is moved by.
+  subtract(subtract(frame.headJoint, neckToHead, moved), impliedNeck, moved);
+  const far = length(moved);
+  scale(moved, torsoLimits.neckShiftShare * Math.min(1, bones.neckLength / Math.max(far, 1e-9)), moved);
+}
+
 /**
- * Neck, chest joint, the upper chest's rotation and the shoulders, for estimated shoulders that lean by these offsets [m]. Leans in opposite
- * directions turn the shoulder line by less than a right angle; what pulls the shoulders together or apart is left to the clavicles.
+ * Neck, chest joint, the upper chest's rotation and the shoulders, for estimated shoulders that lean by these offsets [m]. A lean turns neck,
+ * thorax and shoulder line by less than a right angle each, so that none of them flips; what it asks back along them is left to the
+ * clavicles.
  */
 function placeThorax(
   state: FitTorsoState,
   { joints, frame, bones }: TorsoInput,
   leftLean: Vec3,
   rightLean: Vec3,
-  { up: thoraxUp, line, moved }: PlacedThorax,
+  { up: thoraxUp, line }: PlacedThorax,
 ): void {
   const { pose, shoulderLine, lean } = state;
   const neckBend = limitOf('neckBend', Math.max(lean.left.extremity, lean.right.extremity));
   const { upperChest } = pose.rotations;
   add(joints.leftUpperArm, leftLean, shoulderTargets.left);
   add(joints.rightUpperArm, rightLean, shoulderTargets.right);
-  lerp(shoulderTargets.left, shoulderTargets.right, 0.5, shoulderMiddle);
-  reject(subtract(rightLean, leftLean, line), shoulderLine, line);
-  normalise(addScaled(line, shoulderLine, bones.shoulderWidth, line), shoulderLine, line);
+  lerp(leftLean, rightLean, 0.5, meanLean);
+  leanDirection(shoulderLine, bones.shoulderWidth, subtract(rightLean, leftLean, line), line);
+  leanDirection(unleaned.up, bones.thoraxLength, meanLean, thoraxUp);
 
-  normalise(subtract(shoulderMiddle, joints.chest, roughUp), up, roughUp);
-  const roughChest = alignDirections(bones.thorax, roughUp, line, rotation);
-  subtract(shoulderMiddle, rotate(roughChest, bones.shouldersFromNeck, a), impliedNeck);
+  const roughChest = alignDirections(bones.thorax, thoraxUp, line, rotation);
   rotate(roughChest, bones.neck.main, neckAtRest);
-  limitAngle(rotationBetween(neckAtRest, subtract(frame.headJoint, impliedNeck, a), swing), neckBend, swing);
+  normalise(unleaned.neckToHead, up, a);
+  leanDirection(a, bones.neckLength, scale(meanLean, -1, meanLean), b);
+  limitAngle(rotationBetween(neckAtRest, b, swing), neckBend, swing);
   subtract(frame.headJoint, rotate(swing, neckAtRest, a), pose.neck);
-
-  // Chest joint and hips follow a share of what the neck was moved by; a hand far out of reach does not throw them about.
-  subtract(pose.neck, impliedNeck, moved);
-  const far = length(moved);
-  scale(moved, torsoLimits.neckShiftShare * Math.min(1, bones.neckLength / Math.max(far, 1e-9)), moved);
-  subtract(pose.neck, add(joints.chest, moved, a), thoraxUp);
-  normalise(thoraxUp, roughUp, thoraxUp);
+  normalise(subtract(pose.neck, add(joints.chest, unleaned.moved, a), thoraxUp), unleaned.up, thoraxUp);
   addScaled(pose.neck, thoraxUp, -bones.thoraxLength, pose.chest);
   alignDirections(bones.thorax, thoraxUp, line, upperChest);
   placeShoulder('left', pose, bones, shoulderTargets.left, limitOf('clavicleSwing', lean.left.extremity));
   placeShoulder('right', pose, bones, shoulderTargets.right, limitOf('clavicleSwing', lean.right.extremity));
+}
+
+/**
+ * Writes where the end of a bone in this direction (unit) and length [m] points when it is moved by an offset, of which the part that leads
+ * back along the bone is left out: by less than a right angle from where it pointed.
+ */
+function leanDirection(direction: Vec3, boneLength: number, offset: Vec3, target: MutableVec3): void {
+  addScaled(offset, direction, boneLength - Math.min(dot(offset, direction), 0), target);
+  normalise(target, direction, target);
 }
 
 /** A shoulder on its clavicle, which swings towards its target. */
@@ -297,12 +334,12 @@ function placeShoulder(
 function placeSpine(
   state: FitTorsoState,
   { joints, frame, bones, deltaSeconds }: TorsoInput,
-  { up: thoraxUp, line, moved }: PlacedThorax,
+  { up: thoraxUp, line }: PlacedThorax,
 ): void {
   const { pose } = state;
   const { head, headJoint } = frame;
   const { hips, chest, neck, rotations } = pose;
-  hangHips(state, add(joints.hips, moved, a), frame.bodyTurn, bones.lowerBackLength, deltaSeconds);
+  hangHips(state, add(joints.hips, unleaned.moved, a), frame.bodyTurn, bones.lowerBackLength, deltaSeconds);
   const lowerBackUp = normalise(subtract(chest, hips, a), up, a);
   const pelvisLine = normalise(lerp(line, headingRight, torsoLimits.pelvisToHead, b), line, b);
   alignDirections(bones.lowerBack, lowerBackUp, pelvisLine, rotations.hips);

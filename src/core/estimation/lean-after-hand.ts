@@ -72,7 +72,7 @@ export function leanFurther(
   const missing = far - (pass < anatomicalPasses ? lean.softReach : reach);
   if (missing <= 1e-5) return false;
   if (pass >= anatomicalPasses) lean.extremity = Math.min(1, lean.extremity + missing / (extremeReach * reach));
-  addScaled(lean.wanted, normalise(towards, undefined, towards), missing * limits.torso.reachOvershoot, lean.wanted);
+  addScaled(lean.wanted, normalise(towards, undefined, towards), missing, lean.wanted);
   const leant = length(lean.wanted);
   if (leant > reach) scale(lean.wanted, reach / leant, lean.wanted);
   return true;
