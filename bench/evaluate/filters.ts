@@ -7,7 +7,7 @@ import { loadRegressors } from './networks';
 import { measureResponse, measureTremble, standing } from './response';
 
 const joints = ['rightLowerArm', 'rightUpperArm', 'hips'] as const;
-const frequencies = [1, 3] as const;
+const frequencies = [1, 2, 4] as const;
 
 const regressors = await loadRegressors(join(fileURLToPath(new URL('../..', import.meta.url)), 'public/models'));
 const row = (cells: readonly string[]) =>

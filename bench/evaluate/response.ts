@@ -3,6 +3,7 @@ import type { TrackedPose } from '../../src/core/math/pose';
 import { fromAxisAngle, identity, multiply, type Quat } from '../../src/core/math/quat';
 import { normalNumbers } from '../../src/core/math/random';
 import { add, dot, length, normalise, scale, subtract, type Vec3, vec3 } from '../../src/core/math/vec3';
+import { trackers } from '../../src/core/mocap/mocap-rules.json';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import type { Driver } from './drive';
 
@@ -106,8 +107,12 @@ function responseOf(slow: Fundamental, quick: Fundamental, hz: number): Response
   return { lagMs, gain: Math.hypot(inPhase, ahead) };
 }
 
-/** Standard deviations of the trackers' noise by axis: 0.3 mm, 0.1°. */
-const noise = { metres: 0.0003, radians: 0.1 * (Math.PI / 180) };
+type Tracker = 'head' | 'hands';
+/** Standard deviations of the trackers' noise by axis [m, rad], as in the simulated trackers of the evaluation. */
+const noiseOf = (tracker: Tracker) => ({
+  metres: trackers.positionNoise[tracker],
+  radians: (trackers.rotationNoiseDegrees[tracker] * Math.PI) / 180 / Math.sqrt(3),
+});
 
 /** Root mean square [mm] of what joints move from frame to frame while the wearer stands still and the trackers are noisy. */
 export async function measureTremble(
@@ -116,8 +121,9 @@ export async function measureTremble(
   rateHz = 60,
 ): Promise<Readonly<Record<string, number>>> {
   const normal = normalNumbers(15);
-  const noisy = <P extends TrackedPose | null>(pose: P): P => {
+  const noisy = <P extends TrackedPose | null>(pose: P, tracker: Tracker): P => {
     if (!pose) return pose;
+    const noise = noiseOf(tracker);
     const by = (size: number) => vec3(normal() * size, normal() * size, normal() * size);
     const turn = by(noise.radians);
     const angle = length(turn);
@@ -135,9 +141,9 @@ export async function measureTremble(
     const { head, leftHand, rightHand } = frame;
     const drawn = await driver.draw({
       ...frame,
-      head: noisy(head),
-      leftHand: noisy(leftHand),
-      rightHand: noisy(rightHand),
+      head: noisy(head, 'head'),
+      leftHand: noisy(leftHand, 'hands'),
+      rightHand: noisy(rightHand, 'hands'),
     });
     if (before && row >= 0) {
       for (const joint of joints) {

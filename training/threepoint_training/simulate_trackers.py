@@ -1,9 +1,10 @@
 """What a headset and two hands would have reported while the motion was recorded."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import hand_tilt, quaternion
 from .mocap_rules import RULES
@@ -12,7 +13,12 @@ from .prepared_corpus import TRACKED_COLUMNS
 
 Array = NDArray[np.float64]
 
-_TRACKERS: dict[str, float] = RULES["trackers"]
+_TRACKERS: dict[str, Any] = RULES["trackers"]
+
+
+def _by_tracker(noise: dict[str, float]) -> tuple[float, float, float]:
+    """For head, left hand and right hand."""
+    return noise["head"], noise["hands"], noise["hands"]
 
 
 # Standard deviation [m] of a forearm's length that its owner has measured and typed.
@@ -27,8 +33,9 @@ class TrackerConfig:
     headset_pitch: float = np.radians(_TRACKERS["headsetPitchDegrees"])  # [rad]
     wrist_offset: float = _TRACKERS["wristOffset"]  # [m] per axis
     hand_turn: float = np.radians(_TRACKERS["handTurnDegrees"])  # [rad] about a random axis
-    position_noise: float = _TRACKERS["positionNoise"]  # [m] per frame
-    rotation_noise: float = np.radians(_TRACKERS["rotationNoiseDegrees"])  # [rad] per frame
+    # Of head, left hand and right hand, drawn anew in each frame: [m] per axis; [rad] about a random axis.
+    position_noise: tuple[float, float, float] = _by_tracker(_TRACKERS["positionNoise"])
+    rotation_noise: tuple[float, float, float] = tuple(np.radians(_by_tracker(_TRACKERS["rotationNoiseDegrees"])).tolist())
     hand_tilt_error: float = np.radians(5.0)  # [rad], of the calibration that measures the hands
 
 
@@ -42,8 +49,9 @@ class Wearer:
     hand_turns: Array  # [2, 4]
 
 
-def draw_turns(deviation: float, shape: tuple[int, ...], random: np.random.Generator) -> Array:
-    """Rotations [*shape, 4] about random axes, by this much (standard deviation) [rad]."""
+def draw_turns(deviation: ArrayLike, shape: tuple[int, ...], random: np.random.Generator) -> Array:
+    """Rotations [*shape, 4] about random axes, by this much (standard deviation, [rad], broadcast to `shape`)."""
+    deviation = np.asarray(deviation)[..., None]
     return quaternion.from_rotation_vector(random.normal(size=(*shape, 3)) * deviation / np.sqrt(3))
 
 
@@ -73,7 +81,7 @@ def simulate(
     anchors = positions[:, TRACKED_COLUMNS]
     offsets = np.stack([wearer.eyes_in_head, *wearer.wrist_offsets])
     tracked = anchors + quaternion.rotate(rotations, np.broadcast_to(offsets, (frames, 3, 3)))
-    tracked = tracked + random.normal(size=tracked.shape) * config.position_noise
+    tracked = tracked + random.normal(size=tracked.shape) * np.reshape(config.position_noise, (-1, 1))
     turns = np.stack([wearer.head_turn, *wearer.hand_turns])
     turned = quaternion.multiply(rotations, np.broadcast_to(turns, (frames, 3, 4)))
     return tracked, quaternion.multiply(turned, draw_turns(config.rotation_noise, (frames, 3), random))

@@ -11,6 +11,10 @@ export const trackedWidth = 7 * trackedJoints.length;
 
 const radians = (degrees: number): number => (degrees * Math.PI) / 180;
 
+/** The deviation for a tracker, by its index in `trackedJoints`: the headset, then the hands. */
+const noiseOf = (joint: number, { head, hands }: Readonly<Record<'head' | 'hands', number>>): number =>
+  joint === 0 ? head : hands;
+
 /** Three normal numbers of this deviation. */
 const drawVector = (random: NumpyRandom, deviation: number): Vec3 =>
   vec3(random.normal() * deviation, random.normal() * deviation, random.normal() * deviation);
@@ -69,16 +73,16 @@ export function simulateTrackers(
     for (const [joint, column] of columns.entries()) {
       const from = frame * positionsWidth + column;
       const moved = rotate(read(frame, joint), offsets[joint]!);
-      const noise = drawVector(random, trackers.positionNoise);
+      const noise = drawVector(random, noiseOf(joint, trackers.positionNoise));
       const at = frame * trackedWidth + 7 * joint;
       tracked[at] = positions[from]! + moved.x + noise.x;
       tracked[at + 1] = positions[from + 1]! + moved.y + noise.y;
       tracked[at + 2] = positions[from + 2]! + moved.z + noise.z;
     }
   }
-  const jitter = radians(trackers.rotationNoiseDegrees) / Math.sqrt(3);
   for (let frame = 0; frame < frameCount; frame++) {
     for (const [joint, turn] of turns.entries()) {
+      const jitter = radians(noiseOf(joint, trackers.rotationNoiseDegrees)) / Math.sqrt(3);
       const turned = multiply(multiply(read(frame, joint), turn), fromRotationVector(drawVector(random, jitter)));
       tracked.set([turned.x, turned.y, turned.z, turned.w], frame * trackedWidth + 7 * joint + 3);
     }
