@@ -26,7 +26,6 @@ const contractSchema = v.object({
   outputs: v.pipe(v.array(tensor), v.length(1)),
   rateHz: v.number(),
   windowSeconds: v.pipe(v.array(v.pipe(v.number(), v.minValue(0))), v.minLength(1)),
-  correctionHalfLife: v.optional(v.pipe(v.number(), v.minValue(0))),
   quantisation: v.object({ scheme: v.string(), maxAbsoluteDifference: v.number() }),
   trainedOn: v.object({ corpus: v.string(), corpusHash: v.string(), people: v.array(v.string()) }),
   gitCommit: v.string(),
@@ -57,7 +56,7 @@ export function parseContract(file: string, text: string): ModelContract {
     throw new Error(`${file}: ${v.getDotPath(issue) ?? 'the contract'}: ${issue.message}`);
   }
   // What is absent stays absent: exact optional properties know no undefined.
-  const { correctionHalfLife, weights, ...contract } = result.output;
+  const { weights, ...contract } = result.output;
   const { name, windowSeconds } = contract;
   const expected = name === 'paper' ? 18 : learnedInputCount(windowSeconds);
   const count = (shape: readonly number[]) => shape.reduce((product, size) => product * size, 1);
@@ -70,7 +69,6 @@ export function parseContract(file: string, text: string): ModelContract {
   }
   return {
     ...contract,
-    ...(correctionHalfLife !== undefined && { correctionHalfLife }),
     ...(weights !== undefined && { weights }),
   };
 }

@@ -2,7 +2,6 @@ import { type EstimatedJoint, estimatedJoints } from '../body/joints';
 import { rotate, rotateInverse } from '../math/quat';
 import { addScaled, distance, subtract, type Vec3, vec3 } from '../math/vec3';
 import { type DeviceBody, deviceJoint, type SharedJoint } from '../tracking/device-body';
-import { usualSmoothing } from './filter-joints';
 import { makeJoints, mapJoints } from './joint-positions';
 import type { JointSource, SolvedFrame } from './joint-source';
 
@@ -40,7 +39,6 @@ export function createDeviceSource(otherwise: JointSource): JointSource {
 
   return {
     network: otherwise.network,
-    smoothing: usualSmoothing,
     calibrate: (body) => otherwise.calibrate(body),
     reset() {
       otherwise.reset();

@@ -1,6 +1,5 @@
 import type { Calibration } from '../body/calibration';
 import { createDeviceSource } from './device';
-import { usualSmoothing } from './filter-joints';
 import { createHandsOnly } from './hands-only';
 import { transformJoints } from './joint-positions';
 import type { JointSource } from './joint-source';
@@ -23,7 +22,6 @@ export const networkOf = (name: EstimatorName): NetworkName | null =>
 /** Inverse kinematics alone: the competitor that the networks are measured against, with the same calibration. */
 const ikAlone: JointSource = {
   network: null,
-  smoothing: usualSmoothing,
   calibrate: () => undefined,
   reset: () => undefined,
   joints({ ik, floorFromHeading }, _, target) {
@@ -31,19 +29,22 @@ const ikAlone: JointSource = {
   },
 };
 
-export const createIk = (calibration: Calibration): Pipeline => new Pipeline('ik', calibration, ikAlone);
+export const createIk = (calibration: Calibration, frameByFrame = false): Pipeline =>
+  new Pipeline('ik', calibration, ikAlone, frameByFrame);
 
 /** One method with a network, whose stages can be looked at; throws where the regressor is another's. */
 export function createWithNetwork(
   name: NetworkName,
   calibration: Calibration,
   regressor: PoseRegressor | null,
+  frameByFrame = false,
 ): Pipeline {
   if (regressor?.contract.name !== name) throw new Error(`estimator “${name}” needs the regressor of the same name`);
   return new Pipeline(
     name,
     calibration,
     name === 'paper' ? createPaper(regressor) : createResidual(calibration, regressor),
+    frameByFrame,
   );
 }
 

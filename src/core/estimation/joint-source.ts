@@ -2,9 +2,9 @@ import type { ChestSpaceBody } from '../body/skeleton';
 import type { Transform } from '../math/pose';
 import type { DeviceBody } from '../tracking/device-body';
 import type { CompletedFrame } from './complete-hands';
-import type { JointSmoothing } from './filter-joints';
 import type { MutableJointPositions } from './joint-positions';
 import type { IkSolution, ThreePoints } from './solve-ik';
+import type { SteadyTrackersState } from './steady-trackers';
 
 /** What the first two stages found of one frame. */
 export interface SolvedFrame {
@@ -12,8 +12,10 @@ export interface SolvedFrame {
   readonly time: number;
   /** Floor frame. */
   readonly completed: CompletedFrame;
+  /** What the joints are estimated from, floor frame. */
+  readonly trackers: SteadyTrackersState;
   readonly floorFromHeading: Transform<'floor', 'heading'>;
-  /** Head and hands of `completed`, heading frame. */
+  /** Head and hands of `trackers`, heading frame. */
   readonly points: ThreePoints;
   /** Heading frame. */
   readonly ik: IkSolution;
@@ -27,19 +29,14 @@ export interface JointSource {
   reset(): void;
   /** Writes the six joints [m], floor frame, finite; deltaSeconds since the last call, 0 at first. */
   joints(solved: SolvedFrame, deltaSeconds: number, target: MutableJointPositions): void;
-  /** What stage 4 does with the joints of the newest frame. */
-  readonly smoothing: JointSmoothing;
   /** The network behind it; null: there is none. */
   readonly network: JointNetwork | null;
 }
 
 /** The network behind a joint source. */
 export interface JointNetwork {
-  /**
-   * Whether `ask` is to be called for a frame of this time [s]. False if inference runs synchronously inside `joints`, or a frame less than
-   * one interval ago was already requested.
-   */
-  wantsFrame(time: number): boolean;
+  /** Whether `ask` is to be called after each frame; false for a network that answers inside `joints`. */
+  readonly wantsFrames: boolean;
   /** Asks about this frame, unless a question is open; resolves when that is answered, however it ends. Never rejects. */
   ask(solved: SolvedFrame): Promise<void>;
   /** The newest answer as joints [m], floor frame, moved along with this frame, before any filter; null before the first answer and after a fault. */

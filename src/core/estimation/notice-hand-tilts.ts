@@ -14,7 +14,7 @@ import {
   vec3,
 } from '../math/vec3';
 import type { CompletedFrame } from './complete-hands';
-import { doubtAngle, memorySeconds, toldSeconds, usualSeconds } from './hand-tilts.json';
+import { calibratedMetres, doubtAngle, memoryMetres, usualMetres } from './hand-tilts.json';
 import type { IkSolution } from './solve-ik';
 
 /** What is known of how one hand stands to its forearm; directions from elbow to wrist in the frame of the hand as it is tracked. */
@@ -22,7 +22,7 @@ interface HandTiltState {
   /** The direction that a calibration tells, or the usual one, unit. */
   readonly prior: MutableVec3;
   told: boolean;
-  /** Sum of observed directions times seconds [s], decaying with time constant memorySeconds while the hand is tracked. */
+  /** Sum of observed directions times metres of travel [m], decaying by 1/e in memoryMetres. */
   readonly noticed: MutableVec3;
 }
 
@@ -64,39 +64,38 @@ export function tellHandTilts(state: HandTiltsState, told: HandTilts | undefined
 const direction = vec3(0, 0, 0);
 
 /**
- * Weight of the prior, as the seconds of observed motion it equals. A measured tilt's shrinks with the square of doubtAngle/angle once
+ * Weight of the prior, as the metres of observed travel it equals. A measured tilt's shrinks with the square of doubtAngle/angle once
  * prior and observations differ by more than doubtAngle; the usual tilt's is constant.
  */
-function priorSeconds({ prior, told, noticed }: HandTiltState): number {
-  if (!told) return usualSeconds;
+function priorMetres({ prior, told, noticed }: HandTiltState): number {
+  if (!told) return usualMetres;
   const angle = Math.atan2(length(cross(prior, noticed, direction)), dot(prior, noticed));
-  return angle > doubtAngle ? toldSeconds * (doubtAngle / angle) ** 2 : toldSeconds;
+  return angle > doubtAngle ? calibratedMetres * (doubtAngle / angle) ** 2 : calibratedMetres;
 }
 
 function turnAfter(state: HandTiltsState, side: Side): void {
   const hand = state[side];
-  addScaled(hand.noticed, hand.prior, priorSeconds(hand), direction);
+  addScaled(hand.noticed, hand.prior, priorMetres(hand), direction);
   turnToForearm(normalise(direction, forward, direction), state.turns[side]);
 }
 
 /**
- * Accumulates, per tracked hand, the forearm direction that IK gives without knowledge of tilts (frame of the hand as it is tracked),
- * weighted by time. Takes effect next frame. The input ignores the estimate, so errors cannot feed back; IK's own errors average out as
- * the posture changes. No time passed: nothing changes.
+ * Accumulates, per tracked hand, the forearm direction that IK gives without knowledge of tilts (frame of the hand as it is tracked), weighted
+ * by how far the hand has travelled about the head since the frame before. Takes effect next frame. The input ignores the estimate, so
+ * errors cannot feed back; IK's own errors average out as the posture changes. A hand that lies still changes nothing.
  */
 export function noticeHandTilts(
   state: HandTiltsState,
   { untoldForearms }: IkSolution,
   { leftHand, rightHand }: Pick<CompletedFrame, 'leftHand' | 'rightHand'>,
-  deltaSeconds: number,
+  travel: Readonly<Record<Side, number>>,
 ): void {
-  if (deltaSeconds <= 0) return;
-  const kept = Math.exp(-deltaSeconds / memorySeconds);
   for (const side of sides) {
     const hand = side === 'left' ? leftHand : rightHand;
-    if (hand.source !== 'tracked') continue;
+    const metres = travel[side];
+    if (hand.source !== 'tracked' || metres === 0) continue;
     const { noticed } = state[side];
-    addScaled(scale(noticed, kept, noticed), untoldForearms[side], deltaSeconds, noticed);
+    addScaled(scale(noticed, Math.exp(-metres / memoryMetres), noticed), untoldForearms[side], metres, noticed);
     turnAfter(state, side);
   }
 }

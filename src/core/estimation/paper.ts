@@ -1,6 +1,5 @@
 import { estimatedJoints } from '../body/joints';
 import { setVec3 } from '../math/vec3';
-import { usualSmoothing } from './filter-joints';
 import { type MutableJointPositions, makeJoints, transformJoints } from './joint-positions';
 import type { JointNetwork, JointSource, SolvedFrame } from './joint-source';
 import { LatestResult } from './latest-result';
@@ -33,7 +32,7 @@ export function createPaper(regressor: PoseRegressor): JointSource {
 
   const network: JointNetwork = {
     // Its joints are drawn as they are, so each frame needs its own.
-    wantsFrame: () => true,
+    wantsFrames: true,
     ask({ completed }) {
       if (inference.running) return inference.running;
       return inference.start(paperFeatures(completed.head, completed.leftHand, completed.rightHand, input));
@@ -50,7 +49,6 @@ export function createPaper(regressor: PoseRegressor): JointSource {
 
   return {
     network,
-    smoothing: usualSmoothing,
     calibrate: () => undefined,
     reset() {
       inference.reset();

@@ -9,15 +9,16 @@ import { floorFromHeading } from '../tracking/heading';
 import type { TrackingFrame } from '../tracking/tracking-frame';
 import { completeHands, makeCompleteHandsState, resetCompleteHands } from './complete-hands';
 import { composeBody } from './compose-body';
-import { filterJoints, makeFilterJointsState, resetFilterJoints } from './filter-joints';
 import { armBones, fitArms, makeFitArmsState, resetFitArms } from './fit-arms';
 import { fitTorso, makeFitTorsoState, resetFitTorso, torsoBones } from './fit-torso';
 import { makeJoints } from './joint-positions';
 import type { JointSource, SolvedFrame } from './joint-source';
+import { limitJoints, makeLimitJointsState, resetLimitJoints } from './limit-joints';
 import { makeHandTiltsState, noticeHandTilts, tellHandTilts } from './notice-hand-tilts';
 import { forgetHeadsetRise, makeHeadsetRiseState, noticeHeadsetRise } from './notice-headset-rise';
 import type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from './pose-estimator';
 import { makeIkSolution, makeThreePoints, solveIk, turnHands } from './solve-ik';
+import { makeSteadyTrackersState, resetSteadyTrackers, steadyTrackers } from './steady-trackers';
 import { WornHeadset } from './worn-headset';
 
 /** A gap longer than this [s] is no motion: filters and memories begin anew. */
@@ -37,13 +38,16 @@ function measure(calibration: Calibration) {
 /** Everything that is remembered of one wearer, stage by stage; a stage writes its own part alone. */
 function makeEstimatorState({ handTilts }: Calibration) {
   const hands = makeCompleteHandsState();
+  const trackers = makeSteadyTrackersState();
   return {
     hands,
+    trackers,
     tilts: makeHandTiltsState(handTilts),
     headset: makeHeadsetRiseState(),
     solved: {
       time: Number.NaN,
       completed: hands.frame,
+      trackers,
       floorFromHeading: makeTransform<'floor', 'heading'>(),
       points: makeThreePoints(),
       ik: makeIkSolution(),
@@ -51,7 +55,7 @@ function makeEstimatorState({ handTilts }: Calibration) {
     } satisfies SolvedFrame,
     /** The six joints of the third stage, floor frame. */
     joints: makeJoints(),
-    filter: makeFilterJointsState(),
+    limited: makeLimitJointsState(),
     torso: makeFitTorsoState(),
     arms: makeFitArmsState(),
   };
@@ -88,8 +92,12 @@ export class Pipeline implements PoseEstimator {
   #body: ReturnType<typeof measure>;
   #lastTime = Number.NaN;
 
-  constructor(name: EstimatorName, calibration: Calibration, source: JointSource) {
+  readonly #frameByFrame: boolean;
+
+  /** frameByFrame: no filter and no limit of speed holds anything back, for benches that measure what these cost. */
+  constructor(name: EstimatorName, calibration: Calibration, source: JointSource, frameByFrame = false) {
     this.name = name;
+    this.#frameByFrame = frameByFrame;
     this.source = source;
     this.state = makeEstimatorState(calibration);
     this.#headset = new WornHeadset(calibration);
@@ -110,10 +118,11 @@ export class Pipeline implements PoseEstimator {
   }
 
   reset(): void {
-    const { hands, filter, torso, arms } = this.state;
+    const { hands, trackers, limited, torso, arms } = this.state;
     resetCompleteHands(hands);
+    resetSteadyTrackers(trackers);
     this.source.reset();
-    resetFilterJoints(filter);
+    resetLimitJoints(limited);
     resetFitTorso(torso);
     resetFitArms(arms);
     this.#lastTime = Number.NaN;
@@ -131,17 +140,19 @@ export class Pipeline implements PoseEstimator {
     const head = this.#headset.head(frame.head, rise);
 
     const completed = completeHands(state.hands, head, frame, body.chestSpace, deltaSeconds);
+    const step = this.#frameByFrame ? Number.POSITIVE_INFINITY : deltaSeconds;
+    steadyTrackers(state.trackers, completed, step);
     const solved = this.#solve(frame);
-    noticeHandTilts(state.tilts, solved.ik, completed, deltaSeconds);
+    noticeHandTilts(state.tilts, solved.ik, completed, state.trackers.travel);
     // An arm that is longer than is believed seems as far from its shoulder as one under a headset that sits too high.
     if (body.spanMeasured) noticeHeadsetRise(state.headset, solved, body.chestSpace.arm, rise, deltaSeconds);
-    this.source.joints(solved, deltaSeconds, state.joints);
-    const joints = filterJoints(state.filter, state.joints, completed, this.source.smoothing, deltaSeconds);
-    const torso = fitTorso(state.torso, joints, completed, body.torso, deltaSeconds);
+    this.source.joints(solved, step, state.joints);
+    const joints = limitJoints(state.limited, state.joints, completed, step);
+    const torso = fitTorso(state.torso, joints, completed, body.torso, step);
     const armsInput = { frame: completed, joints, torso, bones: body.arm, poles: this.#poles };
-    const arms = fitArms(state.arms, armsInput, deltaSeconds);
+    const arms = fitArms(state.arms, armsInput, step);
 
-    this.#estimate.request = this.source.network?.wantsFrame(frame.time) ? this.#request : null;
+    this.#estimate.request = this.source.network?.wantsFrames ? this.#request : null;
     const { pose } = this.#estimate;
     pose.head = head;
     pose.leftHand = frame.leftHand;
@@ -161,15 +172,15 @@ export class Pipeline implements PoseEstimator {
 
   /** Stage 2 in the heading frame. */
   #solve({ time, deviceBody }: TrackingFrame): SolvedFrame {
-    const { solved, hands, tilts } = this.state;
-    const { head, leftHand, rightHand } = hands.frame;
+    const { solved, trackers, tilts } = this.state;
+    const { head, leftHand, rightHand } = trackers;
     solved.time = time;
     solved.deviceBody = deviceBody ?? null;
-    floorFromHeading(head, solved.floorFromHeading);
+    floorFromHeading(head.pose, solved.floorFromHeading);
     invertTransform(solved.floorFromHeading, this.#headingFromFloor);
-    transformPose(this.#headingFromFloor, head, solved.points.head);
-    transformPose(this.#headingFromFloor, leftHand, solved.points.leftHand);
-    transformPose(this.#headingFromFloor, rightHand, solved.points.rightHand);
+    transformPose(this.#headingFromFloor, head.pose, solved.points.head);
+    transformPose(this.#headingFromFloor, leftHand.pose, solved.points.leftHand);
+    transformPose(this.#headingFromFloor, rightHand.pose, solved.points.rightHand);
     turnHands(solved.points, tilts.turns);
     solveIk(solved.points, tilts.turns, this.#body.chestSpace, solved.ik);
     rotate(solved.floorFromHeading.orientation, solved.ik.poles.left, this.#poles.left);

@@ -34,8 +34,6 @@ export interface ModelContract {
   readonly rateHz: number;
   /** Ages [s] of the frames in the input, newest first: [0] for a single frame. */
   readonly windowSeconds: readonly number[];
-  /** Half-life [s] with which the page damps the network's correction to the IK solution. */
-  readonly correctionHalfLife?: number;
   readonly quantisation: { readonly scheme: string; readonly maxAbsoluteDifference: number };
   readonly trainedOn: { readonly corpus: string; readonly corpusHash: string; readonly people: readonly string[] };
   readonly gitCommit: string;

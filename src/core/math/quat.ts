@@ -176,6 +176,15 @@ export function slerp(a: Quat, b: Quat, t: number, target: MutableQuat = quat(0,
   return normaliseQuat(target, target);
 }
 
+/** The unit axis times the angle in [0, π] [rad]; q and −q give the same vector. */
+export function toRotationVector(q: Quat, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
+  const sine = Math.sqrt(q.x * q.x + q.y * q.y + q.z * q.z);
+  const angle = 2 * Math.atan2(sine, Math.abs(q.w));
+  // The limit of angle / sine for no rotation is 2.
+  const factor = (q.w < 0 ? -1 : 1) * (sine < 1e-12 ? 2 : angle / sine);
+  return setVec3(target, q.x * factor, q.y * factor, q.z * factor);
+}
+
 /** The angle [0, π] between two rotations; q and −q are the same rotation. */
 export function angleBetween(a: Quat, b: Quat): number {
   // The components of conjugate(a)·b.

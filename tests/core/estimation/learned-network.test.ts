@@ -68,7 +68,7 @@ describe('the learned network without a runtime', () => {
   test.each([
     ['later', false],
     ['in the frame', true],
-  ])('that answers %s is asked about every second frame or third, and at once after a reset', async (_, inFrame) => {
+  ])('that answers %s is asked about every frame', async (_, inFrame) => {
     const calibration = { eyeHeight: 1.65, armSpan: 1.56 };
     const at = movingPerson(3, calibration, { x: 1, z: -0.5, yaw: 2 });
     let runs = 0;
@@ -84,11 +84,10 @@ describe('the learned network without a runtime', () => {
       run: counted(later.run),
       ...(inFrame && { runNow: counted(runNow!) }),
     });
-    const framesApart = { 36: 1, 60: 2, 72: 2, 80: 2, 90: 2, 120: 3 };
-    for (const [rate, apart] of Object.entries(framesApart)) {
+    for (const rate of [36, 60, 72, 80, 90, 120]) {
       estimator.reset();
       runs = 0;
-      for (let frame = 0; frame < 30 * apart; frame++) await estimator.update(at(frame / Number(rate))).request?.ask();
+      for (let frame = 0; frame < 30; frame++) await estimator.update(at(frame / rate)).request?.ask();
       expect(runs).toBe(30);
     }
     estimator.update(at(1));

@@ -8,7 +8,8 @@ import { transformJoints } from '../../../src/core/estimation/joint-positions';
 import { makeHandTiltsState, noticeHandTilts } from '../../../src/core/estimation/notice-hand-tilts';
 import { paperFeatures } from '../../../src/core/estimation/paper-features';
 import { solveIk } from '../../../src/core/estimation/solve-ik';
-import { sides } from '../../../src/core/math/side';
+import { type Side, sides } from '../../../src/core/math/side';
+import { distance, subtract, type Vec3 } from '../../../src/core/math/vec3';
 import { floorFromHeading } from '../../../src/core/tracking/heading';
 import { type GoldenCase, goldenHand, goldenPoints, pointsInHeading, readGolden } from './golden';
 
@@ -54,15 +55,20 @@ describe.each(cases)('TypeScript agrees with Python for eyes at $calibration.eye
 
   test('how hands stand to their forearms, noticed frame by frame', () => {
     const state = makeHandTiltsState(golden.calibration.handTilts);
-    let before = golden.frames[0]?.time ?? Number.NaN;
+    const fromHead: Partial<Record<Side, Vec3>> = {};
     for (const frame of golden.frames) {
       const points = goldenPoints(frame);
       const turns = turnsOf(frame);
       for (const side of sides) expect(state.turns[side]).toBeSameRotationAs(turns[side], 1e-4);
       const solution = solveIk(pointsInHeading(points, state.turns), state.turns, body);
       const hands = { leftHand: goldenHand(points.seen.left), rightHand: goldenHand(points.seen.right) };
-      noticeHandTilts(state, solution, hands, frame.time - before);
-      before = frame.time;
+      const travel = { left: 0, right: 0 };
+      for (const side of sides) {
+        const now = subtract((side === 'left' ? points.leftHand : points.rightHand).position, points.head.position);
+        travel[side] = distance(now, fromHead[side] ?? now);
+        fromHead[side] = now;
+      }
+      noticeHandTilts(state, solution, hands, travel);
     }
   });
 

@@ -1,0 +1,64 @@
+import { type EstimatedJoint, estimatedJoints } from '../body/joints';
+import { rotate } from '../math/quat';
+import { add, copyVec3, distance, lerp, subtract, vec3 } from '../math/vec3';
+import type { CompletedFrame, CompletedHand } from './complete-hands';
+import { type JointPositions, type MutableJointPositions, makeJoints, mapJoints } from './joint-positions';
+import { catchUpSpeed, doubtfulSpeed } from './smoothing.json';
+
+export interface LimitJointsState {
+  /** False before the first frame, which passes unchanged. */
+  known: boolean;
+  /** The joints from the headset [m], floor axes. */
+  readonly relative: MutableJointPositions;
+  /** Whether a joint is still on its way to where it is estimated. */
+  readonly behind: Record<EstimatedJoint, boolean>;
+  readonly joints: MutableJointPositions;
+}
+
+export const makeLimitJointsState = (): LimitJointsState => ({
+  known: false,
+  relative: makeJoints(),
+  behind: mapJoints(() => false),
+  joints: makeJoints(),
+});
+
+const wanted = vec3(0, 0, 0);
+const carried = vec3(0, 0, 0);
+
+/** Confidence that this hand makes no joint jump; 1 for a lost hand, since its guess moves slowly. */
+const steadiness = ({ source, confidence }: CompletedHand): number => (source === 'tracked' ? confidence : 1);
+
+/**
+ * Stage 4: joints may jump for no motion of the person where a hand that was lost is seen elsewhere, and under a head on its side, whose
+ * heading says nothing of the body's. There, and until they have caught up, they move about the head at most `doubtfulSpeed` [m/s] without
+ * any confidence and at most `catchUpSpeed` with all of it; everywhere else they are free. An elbow whose own hand jumps goes along: the
+ * arm transition of stage 5 bridges it. Floor frame.
+ */
+export function limitJoints(
+  state: LimitJointsState,
+  joints: JointPositions,
+  { head, heading, bodyTurn, leftHand, rightHand }: CompletedFrame,
+  deltaSeconds: number,
+): MutableJointPositions {
+  const { relative, behind } = state;
+  const confidence = Math.min(heading.confidence, steadiness(leftHand), steadiness(rightHand));
+  const most = (doubtfulSpeed + (catchUpSpeed - doubtfulSpeed) * confidence) * Math.max(deltaSeconds, 0);
+  for (let index = 0; index < estimatedJoints.length; index++) {
+    const joint = estimatedJoints[index]!;
+    const hand = joint === 'leftLowerArm' ? leftHand : joint === 'rightLowerArm' ? rightHand : null;
+    subtract(joints[joint], head.position, wanted);
+    rotate(bodyTurn, relative[joint], carried);
+    const far = distance(wanted, carried);
+    behind[joint] = state.known && !hand?.jumped && (confidence < 1 || behind[joint]) && far > most;
+    if (behind[joint]) lerp(carried, wanted, most / far, relative[joint]);
+    else copyVec3(wanted, relative[joint]);
+    add(head.position, relative[joint], state.joints[joint]);
+  }
+  state.known = true;
+  return state.joints;
+}
+
+/** Forgets the past: the next frame is the first. */
+export function resetLimitJoints(state: LimitJointsState): void {
+  state.known = false;
+}
