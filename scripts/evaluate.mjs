@@ -1,4 +1,4 @@
-// npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--robustness] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR] [--legs]:
+// npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--robustness] [--speed] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR] [--legs]:
 // the shipping path on recorded motion. Python prepares the recordings with their truth, TypeScript drives them.
 // npm run evaluate -- --recording FILE [--recording FILE] [--json FILE] [--models DIR]: on the page's own recordings, the body that their device
 // reported as the truth.
@@ -11,8 +11,8 @@ import { pythonEnvironment } from './python-environment.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
 
 const usage =
-  'npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--robustness] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR]\n' +
-  'npm run evaluate -- --legs --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--gaits DIR]\n' +
+  'npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--robustness] [--speed] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR]\n' +
+  'npm run evaluate -- --legs --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--gaits DIR]\n' +
   'npm run evaluate -- --recording FILE [--recording FILE] [--json FILE] [--models DIR]\n' +
   'DIR holds .asf and .amc or .bvh files; docs/evaluation.md says the rest.';
 const twoHours = 2 * 3600;
@@ -29,6 +29,7 @@ function options() {
         people: text,
         models: text,
         robustness: { type: 'boolean' },
+        speed: { type: 'boolean' },
         'hands-measured': { type: 'boolean' },
         'forearm-typed': { type: 'boolean' },
         figures: text,
@@ -41,7 +42,9 @@ function options() {
     const beside = Object.keys(values).find((name) => !['recording', 'json', 'models'].includes(name));
     if (values.recording && beside)
       throw new Error(`--recording measures against what a device reported: without --${beside}`);
-    const other = ['robustness', 'hands-measured', 'forearm-typed', 'figures', 'fp32'].find((name) => values[name]);
+    const other = ['robustness', 'speed', 'hands-measured', 'forearm-typed', 'figures', 'fp32'].find(
+      (name) => values[name],
+    );
     if (values.gaits && !values.legs) throw new Error('--gaits are the networks of legs: with --legs');
     if (values.legs && other) throw new Error(`--legs measures legs alone: without --${other}`);
     return values;
@@ -80,7 +83,8 @@ await main(async () => {
     drive.push('--models', given.models ? path(given.models) : join(root, 'public/models'));
     if (given.json) drive.push('--json', path(given.json));
     for (const name of ['figures', 'fp32', 'gaits']) if (given[name]) drive.push(`--${name}`, path(given[name]));
-    for (const name of ['robustness', 'hands-measured', 'forearm-typed']) if (given[name]) drive.push(`--${name}`);
+    for (const name of ['robustness', 'speed', 'hands-measured', 'forearm-typed'])
+      if (given[name]) drive.push(`--${name}`);
     const { code } = await run(process.execPath, drive, { cwd: root, limitSeconds: twoHours });
     return code;
   } finally {

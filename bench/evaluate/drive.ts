@@ -26,9 +26,18 @@ export interface Driver {
   reset(): void;
 }
 
-/** The shipping path of one estimator; `draw` rejects where it reports a fault or draws no body. */
-export function createDriver(name: MeasuredMethod, calibration: Calibration, regressor: PoseRegressor | null): Driver {
-  const estimator = name === 'ik' ? createIk(calibration) : createWithNetwork(name, calibration, regressor);
+/**
+ * The shipping path of one estimator, or (frameByFrame) the same without filters and limits of speed; `draw` rejects where it reports a fault
+ * or draws no body.
+ */
+export function createDriver(
+  name: MeasuredMethod,
+  calibration: Calibration,
+  regressor: PoseRegressor | null,
+  frameByFrame = false,
+): Driver {
+  const estimator =
+    name === 'ik' ? createIk(calibration, frameByFrame) : createWithNetwork(name, calibration, regressor, frameByFrame);
   const skeleton = skeletonFromCalibration(calibration);
   return {
     async draw(frame) {

@@ -9,6 +9,7 @@ import { addReach, emptyReach, mergeReaches, type Reach, reachReport, reachText 
 import { calibrationOf, type RecordingIndex, readClip, readIndex } from './recordings';
 import { printReports } from './report-text';
 import { chooseClips, measureRobustness, robustnessText } from './robustness';
+import { addSpeeds, emptySpeedTally, type SpeedTally, speedTable } from './speed';
 
 /** Robustness drives forty variants of each clip: beyond so many frames, a selection stands for the rest. */
 const robustnessFrames = 12_000;
@@ -19,6 +20,7 @@ const { values: options } = parseArgs({
     models: { type: 'string' },
     json: { type: 'string' },
     robustness: { type: 'boolean' },
+    speed: { type: 'boolean' },
     'hands-measured': { type: 'boolean' },
     'forearm-typed': { type: 'boolean' },
     figures: { type: 'string' },
@@ -192,6 +194,22 @@ function measureDisturbed(corpus: Corpus) {
   });
 }
 
+/** The judged clips by speed, on the shipping path and frame by frame. */
+async function measureSpeeds({ recordings, index, regressors, ...corpus }: Corpus) {
+  const judged = judgedOf({ recordings, index, regressors, ...corpus });
+  const tallies: Partial<Record<MeasuredMethod, SpeedTally>> = {};
+  for (const clip of index.clips.filter(({ person }) => judged.has(person))) {
+    const calibration = toldOf(index, clip);
+    const frames = readClip(recordings, index, clip);
+    for (const name of ['ik', 'learned'] as const) {
+      tallies[name] ??= emptySpeedTally();
+      const regressor = regressors.get(name) ?? null;
+      await addSpeeds(tallies[name], name, { calibration, regressor, frames, rateHz: index.rateHz });
+    }
+  }
+  return tallies;
+}
+
 async function main(): Promise<void> {
   const { recordings, models, json, robustness, figures, fp32 } = options;
   if (!recordings || !models)
@@ -204,7 +222,9 @@ async function main(): Promise<void> {
   if (figures) writeFileSync(figures, `${JSON.stringify(figuresOf(measured.collection, rateHz))}\n`);
   const disturbed = robustness ? await measureDisturbed(corpus) : null;
   if (disturbed) console.log(robustnessText(disturbed, rateHz));
-  const complete = { ...result, ...(disturbed ? { robustness: disturbed } : {}) };
+  const speeds = options.speed ? await measureSpeeds(corpus) : null;
+  if (speeds) console.log(speedTable(speeds));
+  const complete = { ...result, ...(speeds ? { speeds } : {}), ...(disturbed ? { robustness: disturbed } : {}) };
   if (json) writeFileSync(json, `${JSON.stringify(complete, null, 2)}\n`);
 }
 
