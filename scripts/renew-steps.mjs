@@ -21,7 +21,7 @@ export const steps = [
     name: 'in-turn',
     script: 'train',
     options: ['--leave-one-out', '--groups', '4'],
-    renews: 'errors by person, by posture and by what is known of hands, in docs/training.md',
+    renews: 'errors by person and by what is known of hands, in docs/training.md',
     takes: 'three quarters of an hour',
   },
   {
@@ -30,13 +30,6 @@ export const steps = [
     options: ['--stage', 'all-subjects'],
     renews: "the page's networks in public/models, golden vectors, and the results in docs/training.md",
     takes: 'a quarter of an hour',
-  },
-  {
-    name: 'ablation',
-    script: 'train',
-    options: ['--ablate'],
-    renews: 'the recipe without each of its parts and the neutral pose, in docs/training.md',
-    takes: 'three quarters of an hour',
   },
   {
     name: 'noticed',

@@ -1,4 +1,4 @@
-// npm run report -- --mocap DIR [--people 005,135] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]: measures the shipping path with the
+// npm run report -- --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]: measures the shipping path with the
 // networks that npm run train left without their fold's people, and renews the tables and figures of docs/accuracy.md. npm run report --
 // --redraw: the same from what was measured last. npm run report -- --legs --mocap DIR: the tables of legs alone, with the page's network for
 // the body and those that npm run train:gait left for the gait of people they have not seen.
@@ -9,11 +9,11 @@ import { pythonEnvironment } from './python-environment.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
 
 const usage =
-  'npm run report -- --mocap DIR [--people 005,135] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]\n' +
+  'npm run report -- --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]\n' +
   'npm run report -- --redraw [--models DIR]\n' +
-  'npm run report -- --legs --mocap DIR [--people 005,135] [--skeleton MAP.json] [--models DIR]\n' +
-  'DIR holds .asf and .amc or .bvh files; people whom the tables are of (the first eleven, 001 to 135, where DIR has them all, else all; of ' +
-  'legs: all), beside whom 005, 135 and another laboratory (901, 902, 903) are measured with and without their hands where DIR has them; ' +
+  'npm run report -- --legs --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR]\n' +
+  'DIR holds .asf and .amc or .bvh files; people whom the tables are of (the varied ones outside the lockbox where DIR has them all, else all outside the lockbox; of ' +
+  'legs: all), beside whom 005 and another laboratory (901, 902, 903) are measured with and without their hands where DIR has them; ' +
   'models the networks of a cross-validation (.cache/cross-validation, where npm run train leaves them); fp32 what npm run train -- --fp32 ' +
   'wrote. docs/accuracy.md is renewed.';
 const sixHours = 6 * 3600;
@@ -87,7 +87,7 @@ async function measure(given, models, { evaluation, figures }) {
   // Of other networks or people than those measured now: better no table than a mixed one.
   for (const file of Object.values(laboratories).flat()) rmSync(file, { force: true });
   const tables = ['--models', models, '--robustness', '--json', evaluation, '--figures', figures];
-  const people = given.people ?? there.tables?.join(',');
+  const people = given.people ?? there.tables.join(',');
   if (people) tables.push('--people', people);
   if (given.fp32) tables.push('--fp32', path(given.fp32));
   const code = await evaluate(given, ...tables);

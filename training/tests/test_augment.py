@@ -16,7 +16,7 @@ from threepoint_training.skeleton import body_from_calibration
 
 CORPUS = generate_corpus(people=3, clips=2, frames=80, seed=6)
 PARTS = BodyParts(CORPUS, tuple(CORPUS.people))
-EXACT = TrackerConfig(*[0.0] * 7)
+EXACT = TrackerConfig(*[0.0] * 4, (0.0,) * 3, (0.0,) * 3, 0.0)
 PLAIN = AugmentConfig(
     recombined=0,
     lost_hand=0,
@@ -26,7 +26,6 @@ PLAIN = AugmentConfig(
     arm_scale=0,
     eye_height_error=0,
     arm_span_error=0,
-    mistaken_hands=0,
     typed_forearms=0,
     trackers=EXACT,
 )
@@ -77,15 +76,6 @@ def test_hands_of_tilts_that_no_hand_has_are_turned_by_the_usual_one():
     parts = BodyParts(turned, tuple(turned.people))
     assert not hand_tilt.believed(parts.tilts).any()
     assert_rows_of(draw_batch(parts, 60, PLAIN, np.random.default_rng(1)), corpus_rows(turned, lambda _: hand_tilt.usual()))
-
-
-def test_people_who_were_asked_for_many_things_are_drawn_twice_as_often():
-    """Of three people with as many frames each; 004 is not among the varied."""
-    parts = BodyParts(CORPUS, ("002", "003", "004"))
-    trunks = parts.person[parts.draw_trunks(np.random.default_rng(3), 6000)]
-    arms = parts.person[parts.draw_arms(np.random.default_rng(4), 6000)[0]]
-    for drawn in (trunks, arms):
-        np.testing.assert_allclose(np.bincount(drawn) / 6000, [0.4, 0.4, 0.2], atol=0.03)
 
 
 def test_people_count_alike_at_an_exponent_of_one_however_much_there_is_of_them():
@@ -201,7 +191,7 @@ def test_a_hand_that_has_been_seen_again_was_lost_in_earlier_frames_of_the_windo
 
 def test_trackers_jitter_in_position_and_rotation_at_every_frame_of_the_window_anew():
     still = replace(PLAIN, window_frames=(0, 6))
-    jittery = replace(still, trackers=replace(EXACT, position_noise=1e-3, rotation_noise=1e-2))
+    jittery = replace(still, trackers=replace(EXACT, position_noise=(1e-3,) * 3, rotation_noise=(1e-2,) * 3))
     exact, noisy = (draw_batch(PARTS, 2000, config, np.random.default_rng(12)) for config in (still, jittery))
     moved = [frame_of(noisy, place) - frame_of(exact, place) for place in (0, 1)]
     for frame in moved:
@@ -243,18 +233,6 @@ def test_hands_continue_their_forearms_on_average():
     as_they_are, worn_off = bends(CORPUS), bends(hand_turned_corpus(0.5))
     assert 10 < np.median(as_they_are) < 25
     np.testing.assert_allclose(worn_off, as_they_are, atol=0.1)
-
-
-def test_a_hand_that_stands_otherwise_than_noticed_is_turned_and_stays_where_it_is():
-    right, wrong = (
-        draw_batch(PARTS, 1000, replace(PLAIN, mistaken_hands=part, mistaken_turn=0.3), np.random.default_rng(11)) for part in (0.0, 0.2)
-    )
-    np.testing.assert_allclose(hand_positions(wrong.inputs), hand_positions(right.inputs), atol=1e-6)
-    np.testing.assert_allclose(joints_of(wrong), joints_of(right), atol=1e-5)
-    turned = [np.abs(wrong.inputs[:, hand][:, 3:] - right.inputs[:, hand][:, 3:]).max(axis=1) > 1e-4 for hand in HANDS]
-    assert np.mean(turned, axis=1) == pytest.approx([0.2, 0.2], abs=0.04)
-    # Each hand by itself.
-    assert np.mean(turned[0] & turned[1]) == pytest.approx(0.04, abs=0.02)
 
 
 def hand_turned_corpus(angle):

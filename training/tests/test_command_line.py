@@ -24,7 +24,7 @@ def test_a_run_has_one_seed_for_both_networks():
         assert (config.paper.seed, config.learned.seed) == (3, 3)
 
 
-@pytest.mark.parametrize(("option", "task"), [("--ablate", "ablation"), ("--noticed", "noticed wear"), ("--leave-one-out", "leave one out")])
+@pytest.mark.parametrize(("option", "task"), [("--select", "selection"), ("--noticed", "noticed wear"), ("--leave-one-out", "leave one out"), ("--lockbox", "lockbox")])
 def test_a_study_is_done_instead_of_the_training(option, task):
     assert config_of(["--generated", option]).task == task
 
@@ -32,10 +32,10 @@ def test_a_study_is_done_instead_of_the_training(option, task):
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        (["--groups", "4"], "--groups 4 is of --leave-one-out: give both"),
+        (["--groups", "4"], "--groups 4 is of --select and --leave-one-out: give one of them too"),
         (["--leave-one-out", "--groups", "1"], "--groups 1: two groups at least"),
-        (["--ablate", "--steps", "7"], "--ablate trains each variant with 600 steps: it takes neither --steps nor --quick"),
-        (["--ablate", "--quick"], "--ablate trains each variant with 600 steps: it takes neither --steps nor --quick"),
+        (["--lockbox", "--steps", "7"], "--lockbox trains nothing: it takes neither --steps nor --quick"),
+        (["--lockbox", "--quick"], "--lockbox trains nothing: it takes neither --steps nor --quick"),
     ],
 )
 def test_options_that_would_be_ignored_are_refused_in_a_sentence(options, sentence, capsys):
@@ -46,5 +46,5 @@ def test_options_that_would_be_ignored_are_refused_in_a_sentence(options, senten
 
 def test_two_studies_at_once_are_refused_in_a_sentence(capsys):
     with pytest.raises(SystemExit):
-        config_of(["--generated", "--noticed", "--ablate"])
-    assert "--noticed and --ablate are runs of their own: give one of them" in capsys.readouterr().err
+        config_of(["--generated", "--noticed", "--select"])
+    assert "--noticed and --select are runs of their own: give one of them" in capsys.readouterr().err

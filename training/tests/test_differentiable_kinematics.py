@@ -10,7 +10,7 @@ from threepoint_training.differentiable_kinematics import DifferentiableKinemati
 from threepoint_training.features import ARM_LENGTH, IK_JOINTS
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.skeleton import load_proportions
-from threepoint_training.train_learned import Condition, HeldOut, fitted_errors_cm, held_out, ik_errors_cm, mean_distances, raw_errors_cm, regret
+from threepoint_training.train_learned import Condition, HeldOut, fitted_errors_cm, held_out, ik_errors_cm, mean_distances, raw_errors_cm
 
 pytestmark = pytest.mark.training
 
@@ -45,7 +45,7 @@ def test_elbows_lie_where_both_bones_let_them_be(typed):
     ik = people.inputs[:, IK_JOINTS].reshape(-1, 6, 3)
     upper = np.linalg.norm(ik[:, 0] - ik[:, 2], axis=1)
     average = load_proportions()["upperArmShare"]
-    assert (np.abs(upper / arm - average).max() > 1e-3) == typed
+    assert (np.abs(upper / arm - average).max() > 1e-4) == typed
     arms = people.inputs[:, -CHEST_FEATURES:][:, ARMS].reshape(-1, 2, ARM_COLUMNS // 3, 3)
     for side in (0, 1):
         # From IK's shoulder, chest frame.
@@ -82,9 +82,3 @@ def test_elbows_count_in_the_loss_for_what_their_share_says():
     still = torch.zeros_like(away)
     torch.testing.assert_close(mean_distances(away, still), torch.full((10,), (2 * 3.0 + 4 * 1.5) / 6))
     torch.testing.assert_close(mean_distances(away, still, 0.8), torch.full((10,), 0.8 * 3.0 + 0.2 * 1.5))
-
-
-def test_bodies_better_than_asked_do_not_make_up_for_worse_ones():
-    bound = torch.full((3,), 5.0)
-    assert regret(torch.tensor([1.0, 5.0, 8.0]), bound).item() == pytest.approx(1.0)
-    assert regret(torch.tensor([1.0, 5.0, 4.0]), bound).item() == 0.0

@@ -187,20 +187,3 @@ def test_the_residual_is_what_to_add_to_ik(motion):
     np.testing.assert_allclose(residual(floor, positions, rotations, BODY, vector), 0.0, atol=1e-12)
     answer = residual(floor + up, positions, rotations, BODY, vector).reshape(-1, 6, 3)
     np.testing.assert_allclose(answer, 0.03 / BODY.eye_height[0] * np.repeat(chest_axes(vector)[:, None, :, 1], 6, axis=1), atol=1e-12)
-
-
-def test_recorded_hands_turn_with_the_trackers_and_not_with_the_tilts_while_ik_stays():
-    random = np.random.default_rng(5)
-    joints, turns = generate_clip(random, 20, Person("one", 1.6, 1.5))
-    tracked = simulate(joints, turns, draw_wearer(TrackerConfig(), random), TrackerConfig(), random)
-    body = body_from_calibration(np.array(1.6), np.array(1.5))
-    tilts = np.array([[0.3, -0.2], [0.1, 0.4]])
-    turned, ik = frame_features(*tracked, body.with_hands(tilts))
-    recorded, ik_of_recorded = frame_features(*tracked, body.with_hands(tilts), recorded_hands=True)
-    np.testing.assert_array_equal(ik_of_recorded, ik)
-    untilted, _ = frame_features(*tracked, body)
-    axes = np.r_[HANDS[0].start + 3 : HANDS[0].stop, HANDS[1].start + 3 : HANDS[1].stop]
-    np.testing.assert_allclose(recorded[:, axes], untilted[:, axes], atol=1e-12)
-    assert np.abs(recorded[:, axes] - turned[:, axes]).max() > 0.1
-    others = np.setdiff1d(np.arange(turned.shape[1]), axes)
-    np.testing.assert_array_equal(recorded[:, others], turned[:, others])

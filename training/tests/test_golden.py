@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import re
 
 import numpy as np
 import onnx
@@ -13,7 +14,6 @@ from threepoint_training.chest_features import CHEST_FEATURES
 from threepoint_training.features import FEATURES
 from threepoint_training.flat_weights import flat_file
 from threepoint_training.residual import OUTPUTS
-from threepoint_training.splits import FOLDS
 
 MODELS = golden.GOLDEN.parents[1] / "public/models"
 LARGEST = {"paper": 1_700_000, "learned": 300_000}
@@ -75,7 +75,6 @@ def test_the_contract_speaks_of_the_file_beside_it(name):
         assert stated["inputs"][0]["shape"] == [1, FEATURES * len(stated["windowSeconds"]) + CHEST_FEATURES]
         assert stated["windowSeconds"][0] == 0
         assert stated["windowSeconds"] == sorted(stated["windowSeconds"])
-        assert 0 <= stated["correctionHalfLife"] <= 0.2
 
 
 @pytest.mark.parametrize("name", ["paper", "learned"])
@@ -83,9 +82,10 @@ def test_errors_are_claimed_for_people_held_out_of_them(name):
     """The page's networks were trained on all subjects: their contracts state the errors of networks that were not."""
     stated = contract(name)
     known, errors = set(stated["trainedOn"]["people"]), stated["errors"]
-    for fold, people in FOLDS.items():
-        assert f"{name}, fold {fold} ({', '.join(people)})" in errors
-        assert set(people) < known
+    folds = [re.fullmatch(rf"{name}, fold [A-Z] \((.+)\)", row) for row in errors]
+    held_out = [set(fold[1].split(", ")) for fold in folds if fold]
+    assert held_out
+    assert all(people < known for people in held_out)
     (seen,) = (row for row in errors if row.endswith("trained on"))
     assert seen.startswith(f"{name}, all subjects")
 

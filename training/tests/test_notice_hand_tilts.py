@@ -8,7 +8,7 @@ from threepoint_training import hand_tilt, mirror, quaternion
 from threepoint_training.features import frame_features
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.kinematic_limits import HAND_TILTS, LIMB
-from threepoint_training.notice_hand_tilts import NOTHING_TOLD, ToldTilts, noticed, untold_forearms, with_noticed_hands
+from threepoint_training.notice_hand_tilts import NOTHING_TOLD, ToldTilts, noticed, travel, untold_forearms, with_noticed_hands
 from threepoint_training.prepare import EYES_FROM_HEAD_JOINT
 from threepoint_training.simulate_trackers import TrackerConfig, Wearer, simulate
 from threepoint_training.skeleton import body_from_calibration
@@ -17,7 +17,6 @@ from threepoint_training.skeleton import body_from_calibration
 CORPUS = generate_corpus(people=1, clips=1, frames=3600, seed=3)
 (PERSON,) = CORPUS.people.values()
 BODY = body_from_calibration(np.array(PERSON.eye_height), np.array(PERSON.arm_span))
-SECONDS = np.diff(np.arange(3600) / CORPUS.rate_hz, prepend=0.0)
 STILL = np.array([0.0, 0.0, 0.0, 1.0])
 BOTH = np.array([True, True])
 TOLD = np.array([[0.3, -0.2], [-0.1, 0.4]])
@@ -26,7 +25,7 @@ TOLD = np.array([[0.3, -0.2], [-0.1, 0.4]])
 def tracked(corpus):
     """Its positions and rotations as exact trackers see them."""
     wearer = Wearer(EYES_FROM_HEAD_JOINT, STILL, np.zeros((2, 3)), np.stack([STILL, STILL]))
-    return simulate(corpus.positions, corpus.rotations, wearer, TrackerConfig(*[0.0] * 7), np.random.default_rng(0))
+    return simulate(corpus.positions, corpus.rotations, wearer, TrackerConfig(*[0.0] * 4, (0.0,) * 3, (0.0,) * 3, 0.0), np.random.default_rng(0))
 
 
 def worn_off(corpus, right):
@@ -37,6 +36,7 @@ def worn_off(corpus, right):
 
 POSITIONS, ROTATIONS = tracked(CORPUS)
 FOREARMS = untold_forearms(POSITIONS, ROTATIONS, BODY)
+METRES = travel(POSITIONS)
 
 
 def angles(tilts, others):
@@ -48,19 +48,26 @@ def angles(tilts, others):
 @pytest.mark.parametrize("known", [[True, True], [True, False], [False, True], [False, False]])
 def test_at_first_a_tilt_is_what_is_told_else_the_usual_one(known):
     known = np.array(known)
-    (first,) = noticed(FOREARMS[:1], SECONDS[:1], ToldTilts(TOLD, known))
+    (first,) = noticed(FOREARMS[:1], METRES[:1], ToldTilts(TOLD, known))
     np.testing.assert_allclose(first[known], TOLD[known], atol=1e-12)
     np.testing.assert_allclose(first[~known], hand_tilt.usual()[~known], atol=1e-12)
 
 
 def test_the_usual_tilt_of_a_left_hand_is_that_of_the_right_one_in_a_mirror():
-    (left_pitch, left_yaw), (right_pitch, right_yaw) = noticed(FOREARMS[:1], SECONDS[:1])[0]
+    (left_pitch, left_yaw), (right_pitch, right_yaw) = noticed(FOREARMS[:1], METRES[:1])[0]
     assert left_pitch == pytest.approx(right_pitch) != 0
     assert left_yaw == pytest.approx(-right_yaw) != 0
 
 
-def test_nothing_is_noticed_while_no_time_passes():
-    tilts = noticed(FOREARMS[:100], np.zeros(100), ToldTilts(TOLD, BOTH))
+def test_a_hand_travels_about_the_head_and_not_with_it():
+    positions = np.zeros((3, 3, 3))
+    positions[1:, :, 0] = 0.5
+    positions[2, 2] += [0.0, 0.3, 0.4]
+    np.testing.assert_allclose(travel(positions), [[0.0, 0.0], [0.0, 0.0], [0.0, 0.5]])
+
+
+def test_nothing_is_noticed_while_hands_rest():
+    tilts = noticed(FOREARMS[:100], np.zeros((100, 2)), ToldTilts(TOLD, BOTH))
     np.testing.assert_allclose(tilts, np.broadcast_to(TOLD, tilts.shape), atol=1e-12)
 
 
@@ -70,44 +77,44 @@ def test_where_forearms_point_is_noticed_without_what_is_known_of_the_hands():
     np.testing.assert_array_equal(untold_forearms(POSITIONS, ROTATIONS, turned), FOREARMS)
     elbows = [frame_features(POSITIONS, ROTATIONS, body)[1][:, :2] for body in (turned, BODY)]
     assert np.abs(elbows[1] - elbows[0]).max() > 0.05
-    tilts = [with_noticed_hands(body, POSITIONS, ROTATIONS, SECONDS).hand_tilts for body in (turned, BODY)]
+    tilts = [with_noticed_hands(body, POSITIONS, ROTATIONS, METRES).hand_tilts for body in (turned, BODY)]
     np.testing.assert_array_equal(tilts[0], tilts[1])
 
 
 def test_what_was_told_is_outweighed_by_a_minute_of_motion():
-    """By a memory that is full: it then counts toldSeconds beside memorySeconds."""
+    """Once the memory is full, the measured tilt weighs calibratedMetres and what was noticed memoryMetres."""
     others = TOLD + np.array([[-0.4, 0.2], [0.3, -0.4]])
-    apart = angles(noticed(FOREARMS, SECONDS, ToldTilts(TOLD, BOTH)), noticed(FOREARMS, SECONDS, ToldTilts(others, BOTH)))
+    apart = angles(noticed(FOREARMS, METRES, ToldTilts(TOLD, BOTH)), noticed(FOREARMS, METRES, ToldTilts(others, BOTH)))
     at_first, *later = apart[[0, 600, 1800, 3599]]
     assert (at_first > 0.4).all()
     assert (np.diff([at_first, *later], axis=0) < 0).all()
-    assert (later[-1] < 1.5 * HAND_TILTS["toldSeconds"] / HAND_TILTS["memorySeconds"] * at_first).all()
+    assert (later[-1] < 1.5 * HAND_TILTS["calibratedMetres"] / HAND_TILTS["memoryMetres"] * at_first).all()
 
 
 def test_what_was_told_is_kept_longer_than_the_usual_tilt():
     moved = [
         angles(tilts[60], tilts[0])
-        for tilts in (noticed(FOREARMS[:61], SECONDS[:61], ToldTilts(hand_tilt.usual(), np.array([known] * 2))) for known in (True, False))
+        for tilts in (noticed(FOREARMS[:61], METRES[:61], ToldTilts(hand_tilt.usual(), np.array([known] * 2))) for known in (True, False))
     ]
     assert (moved[0] < 0.6 * moved[1]).all()
 
 
 @pytest.mark.parametrize(("off", "way"), [(0.2, 0.5), (0.7, 0.8)])
 def test_what_was_told_is_doubted_where_hands_are_held_far_from_it(off, way):
-    """Noticed as long as told counts: half of the way to where hands are held, but most of it where that is 40° away."""
+    """After a travel that weighs as much as the measured tilt: half of the way to where hands are held, most of it where that is 40° away."""
     held = TOLD + [0.0, off]
-    seconds = np.full(round(60 * HAND_TILTS["toldSeconds"]) + 1, 1 / 60)
-    tilts = noticed(np.broadcast_to(hand_tilt.direction_of(held), (len(seconds), 2, 3)), seconds, ToldTilts(TOLD, BOTH))
+    metres = np.full((round(60 * HAND_TILTS["calibratedMetres"]) + 1, 2), 1 / 60)
+    tilts = noticed(np.broadcast_to(hand_tilt.direction_of(held), (len(metres), 2, 3)), metres, ToldTilts(TOLD, BOTH))
     assert angles(tilts[-1], TOLD) / angles(held, TOLD) == pytest.approx(way, abs=0.03)
 
 
 def test_what_was_noticed_is_forgotten_by_and_by_and_what_was_told_is_not():
-    """A controller that is gripped anew after minutes; ten frames a second."""
+    """A controller is gripped anew after minutes; hands travel 10 cm between frames."""
     before, after = hand_tilt.direction_of(TOLD + [0.0, 0.3]), hand_tilt.direction_of(TOLD - [0.3, 0.0])
     minutes = np.broadcast_to(before, (3000, 2, 3))
-    memory = np.broadcast_to(after, (round(10 * HAND_TILTS["memorySeconds"]), 2, 3))
-    tilts = noticed(np.concatenate([minutes, memory]), np.full(3000 + len(memory), 0.1), ToldTilts(TOLD, BOTH))
-    balance = hand_tilt.tilt_of(HAND_TILTS["toldSeconds"] * hand_tilt.direction_of(TOLD) + HAND_TILTS["memorySeconds"] * before)
+    memory = np.broadcast_to(after, (round(10 * HAND_TILTS["memoryMetres"]), 2, 3))
+    tilts = noticed(np.concatenate([minutes, memory]), np.full((3000 + len(memory), 2), 0.1), ToldTilts(TOLD, BOTH))
+    balance = hand_tilt.tilt_of(HAND_TILTS["calibratedMetres"] * hand_tilt.direction_of(TOLD) + HAND_TILTS["memoryMetres"] * before)
     np.testing.assert_allclose(tilts[2999], balance, atol=1e-3)
     assert (angles(tilts[-1], hand_tilt.tilt_of(after)) < angles(tilts[-1], hand_tilt.tilt_of(before))).all()
 
@@ -119,7 +126,7 @@ def test_hands_that_are_worn_off_their_forearms_are_found(right):
     true = hand_tilt.ForearmMeans(corpus, (PERSON.name,)).of(PERSON.name)
     usual = angles(hand_tilt.usual(), true)
     assert (usual > 0.4).all()
-    found = with_noticed_hands(BODY, *tracked(corpus), SECONDS).hand_tilts[-1]
+    found = with_noticed_hands(BODY, *tracked(corpus), METRES).hand_tilts[-1]
     assert (angles(found, true) < 0.4 * usual).all()
 
 
@@ -127,11 +134,11 @@ def test_a_hand_that_is_not_seen_is_not_noticed():
     """For two seconds; the other one is, all the while."""
     seen = np.ones((600, 2), bool)
     seen[300:420, 0] = False
-    tilts = noticed(FOREARMS[:600], SECONDS[:600], NOTHING_TOLD, seen)
+    tilts = noticed(FOREARMS[:600], METRES[:600], NOTHING_TOLD, seen)
     unseen = tilts[300:421, 0]
     # Nothing but the last digits of doubles may differ.
     np.testing.assert_allclose(unseen, np.broadcast_to(unseen[0], unseen.shape), rtol=0, atol=1e-14)
-    always = noticed(FOREARMS[:600], SECONDS[:600])
+    always = noticed(FOREARMS[:600], METRES[:600])
     np.testing.assert_array_equal(tilts[:, 1], always[:, 1])
     assert (np.abs(np.diff(always[300:421], axis=0)).max(axis=-1) > 0).all()
     assert np.abs(tilts[421] - unseen[-1])[0].max() > 1e-5
@@ -143,8 +150,8 @@ def test_a_frame_s_tilts_come_of_the_frames_before_it():
     positions, rotations = (part[:300].copy() for part in (POSITIONS, ROTATIONS))
     positions[frame:, 1:] += [0.0, 0.2, -0.1]
     rotations[frame:, 1:] = quaternion.multiply(rotations[frame:, 1:], quaternion.from_rotation_vector(np.array([0.4, 0.3, 0.0])))
-    before = with_noticed_hands(BODY, POSITIONS[:300], ROTATIONS[:300], SECONDS[:300]).hand_tilts
-    after = with_noticed_hands(BODY, positions, rotations, SECONDS[:300]).hand_tilts
+    before = with_noticed_hands(BODY, POSITIONS[:300], ROTATIONS[:300], METRES[:300]).hand_tilts
+    after = with_noticed_hands(BODY, positions, rotations, METRES[:300]).hand_tilts
     np.testing.assert_array_equal(after[: frame + 1], before[: frame + 1])
     assert (np.abs(after[frame + 1] - before[frame + 1]).max(axis=-1) > 1e-4).all()
 
@@ -155,29 +162,30 @@ def test_hands_are_turned_no_further_than_the_steepest_tilt():
     steep = np.array([[0.9, -1.6], [-1.8, 0.3]])
     ahead = hand_tilt.direction_of(np.array([[0.2, 0.0], [0.0, -0.1]]))
     forearms = np.concatenate([np.broadcast_to(hand_tilt.direction_of(steep), (1200, 2, 3)), np.broadcast_to(ahead, (2400, 2, 3))])
-    tilts = noticed(forearms, SECONDS)
+    metres = np.full((len(forearms), 2), 1 / 60)
+    tilts = noticed(forearms, metres)
     size = np.linalg.norm(tilts, axis=-1)
     assert size.max() <= steepest + 1e-12
     np.testing.assert_allclose(size[1200], steepest)
-    far = noticed(forearms, SECONDS, ToldTilts(steep, BOTH))
+    far = noticed(forearms, metres, ToldTilts(steep, BOTH))
     np.testing.assert_allclose(far[0], steep * steepest / np.linalg.norm(steep, axis=-1, keepdims=True))
     assert (size[-1] < 0.9 * steepest).all()
 
 
 def test_twice_the_frame_rate_gives_nearly_the_same_tilts():
-    """At first a frame more or less is a part of the half second that the usual tilt counts for."""
-    fast, slow = noticed(FOREARMS, SECONDS)[::2], noticed(FOREARMS[::2], np.diff(np.arange(1800) / 30, prepend=0.0))
+    """At first a frame more or less is a part of the travel that the usual tilt weighs."""
+    fast, slow = noticed(FOREARMS, METRES)[::2], noticed(FOREARMS[::2], travel(POSITIONS[::2]))
     apart = angles(fast, slow).max(axis=-1)
-    assert apart.max() < 0.03
+    assert apart.max() < 0.06
     # After five seconds.
-    assert apart[150:].max() < 0.002
+    assert apart[150:].max() < 0.003
     assert (angles(fast[-1], fast[0]) > 0.2).all()
 
 
 def test_the_mirror_image_has_the_mirrored_tilts():
     positions, rotations = mirror.trackers(POSITIONS, ROTATIONS)
     seen = np.random.default_rng(2).uniform(size=(len(POSITIONS), 2)) > 0.3
-    tilts = with_noticed_hands(BODY, POSITIONS, ROTATIONS, SECONDS, told=ToldTilts(TOLD, np.array([True, False])), seen=seen).hand_tilts
+    tilts = with_noticed_hands(BODY, POSITIONS, ROTATIONS, METRES, told=ToldTilts(TOLD, np.array([True, False])), seen=seen).hand_tilts
     told = ToldTilts(mirror.tilts(TOLD), np.array([False, True]))
-    mirrored = with_noticed_hands(BODY, positions, rotations, SECONDS, told=told, seen=seen[:, ::-1]).hand_tilts
+    mirrored = with_noticed_hands(BODY, positions, rotations, METRES[:, ::-1], told=told, seen=seen[:, ::-1]).hand_tilts
     np.testing.assert_allclose(mirrored, mirror.tilts(tilts), atol=1e-9)

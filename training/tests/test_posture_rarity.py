@@ -21,7 +21,7 @@ def test_a_rare_posture_is_drawn_more_often_than_its_share_of_the_frames():
     corpus.positions[squatting, :, 1] -= 0.8
 
     def share(exponent: float) -> float:
-        parts = BodyParts(corpus, ("002",), BalanceConfig(people=0.0, varied=1.0, postures=exponent, clusters=12))
+        parts = BodyParts(corpus, ("002",), BalanceConfig(people=0.0, postures=exponent, clusters=12))
         return float(squatting[parts.draw_trunks(np.random.default_rng(2), 8000)].mean())
 
     assert abs(share(0.0) - 0.025) < 0.008

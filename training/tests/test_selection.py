@@ -1,14 +1,19 @@
 """Facts about the figures by which recipes are chosen."""
 
+import io
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import torch
-from threepoint_training import postures, selection, splits, train_learned
+from rich.console import Console
+from threepoint_training import pipeline, postures, selection, train_learned
 from threepoint_training.features import HANDS, HEAD_AXES, HEADSET_HEIGHT
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.model import CorrectionNetwork
-from threepoint_training.recipes import RECIPES
 from threepoint_training.selection import PersonErrors
+from threepoint_training.train_paper import predict
+from threepoint_training.training_config import TrainConfig
 
 pytestmark = pytest.mark.training
 
@@ -36,7 +41,7 @@ def test_a_network_that_corrects_nothing_errs_as_ik_does():
     network = CorrectionNetwork(1, 8, 0.0).eval()
     network.normalise(torch.from_numpy(held_out.inputs), torch.from_numpy(held_out.targets))
     network.shrink(0.0, 0.0)
-    by_frames = selection.errors_by_person(network, held_out)
+    by_frames = selection.errors_by_person(predict(network, held_out.inputs), held_out)
     assert set(by_frames["all"]) == set(CORPUS.people)
     assert sum(each.frames for each in by_frames["active"].values()) == postures.active(held_out.inputs).sum() > 0
     for people in by_frames.values():
@@ -68,11 +73,31 @@ def test_a_constant_gain_of_every_person_and_seed_is_no_tie_and_noise_is_one():
     assert selection.compare(another, one)["all people, all joints"].is_tie
 
 
-def test_no_recipe_trains_on_the_lockbox_or_on_another_laboratory():
-    subjects = tuple(sorted({*splits.VARIED, *splits.ADDED, "006", "132", "901"}))
-    for recipe in RECIPES.values():
-        people = recipe.trained_on(subjects)
-        assert people and not splits.in_lockbox(people) and not splits.evaluation_only(people)
-    assert RECIPES["old, varied"].trained_on(subjects) == ("002", "003", "005", "014", "016", "017", "127")
-    assert not set(RECIPES["old, first"].trained_on(subjects)) & set(splits.ADDED)
-    assert set(RECIPES["old, all"].trained_on(subjects)) == set(splits.trainable(subjects))
+def test_everyone_is_judged_by_networks_of_each_seed_that_have_not_seen_them(tmp_path):
+    corpus = generate_corpus(people=3, clips=1, frames=60, seed=8)
+    recipe = train_learned.TrainLearnedConfig(width=8, batch=32, steps=2)
+    reported = []
+    found = selection.main(corpus, recipe, selection.SelectionConfig(groups=2, seeds=2), reported.append)
+    assert reported == [f"held out: {group}; seed {recipe.seed + number}" for group in ("002, 004", "003") for number in (0, 1)]
+    assert all(set(seed["all"]) == {"002", "003", "004"} for seed in found)
+    network = train_learned.train(corpus, ("002", "004"), recipe)
+    held_out = train_learned.held_out(corpus, ("003",), recipe.window_seconds, selection.CONDITION)
+    own = selection.errors_by_person(predict(network, held_out.inputs), held_out)["all"]["003"]
+    np.testing.assert_array_equal(found[0]["all"]["003"].ours, own.ours)
+    assert (found[1]["all"]["003"].ours != own.ours).any()
+    selection.save(found, tmp_path / "selection/recipe.json")
+    assert selection.figures(selection.load(tmp_path / "selection/recipe.json")[1]["all"]) == selection.figures(found[1]["all"])
+
+
+def test_the_command_compares_a_recipe_with_those_judged_before(tmp_path):
+    printed = io.StringIO()
+    config = TrainConfig(mocap=None, task="selection", groups=2, selections=tmp_path)
+    first, second = (replace(config, learned=train_learned.TrainLearnedConfig(width=8, batch=32, steps=steps)) for steps in (1, 2))
+    pipeline.main(first, Console(quiet=True))
+    pipeline.main(second, Console(file=printed, width=300))
+    (earlier,) = tmp_path.glob("*-1.json")
+    lines = printed.getvalue().splitlines()
+    assert sum(line.startswith(f"minus {earlier.stem}, active frames, ") for line in lines) == 4
+    assert sum(line.startswith("error relative to IK, ") for line in lines) == 2
+    pipeline.main(second, Console(quiet=True))
+    assert len(list(tmp_path.glob("*.json"))) == 2

@@ -25,6 +25,11 @@ def test_groups_in_turn_hold_everybody_out_once_and_partners_together():
     assert all({"060", "061"} <= set(group) or not {"060", "061"} & set(group) for group in groups)
 
 
+@pytest.mark.parametrize("count", [None, 9])
+def test_people_are_held_out_alone_but_for_partners(count):
+    assert splits.groups_in_turn(("002", "018", "019", "088"), count) == [("002",), ("018", "019"), ("088",)]
+
+
 def test_who_has_no_partner_among_the_people_is_held_out_alone():
     assert splits.groups_in_turn(("002", "019", "061"), 3) == [("002",), ("019",), ("061",)]
 

@@ -18,7 +18,7 @@ from .prepared_corpus import PreparedCorpus, chest_axes_of, joints_of
 from .residual import residual
 from .simulate_trackers import FOREARM_ERROR, TrackerConfig, draw_turns, measured_tilts
 from .skeleton import Body, body_from_calibration
-from .splits import VARIED
+
 
 Array = NDArray[np.float64]
 
@@ -30,12 +30,10 @@ FRAME_RATE = 60
 
 @dataclass(frozen=True)
 class BalanceConfig:
-    """How often a frame is drawn: in proportion to (frames of its person)^-people · (frames of its posture's cluster)^-postures, and `varied`
-    times as often where that person was asked for many things (`splits.VARIED`)."""
+    """How often a frame is drawn: in proportion to (frames of its person)^-people · (frames of its posture's cluster)^-postures."""
 
-    people: float = 0.5
-    varied: float = 2.0
-    postures: float = 0.0
+    people: float = 0.25
+    postures: float = 0.7
     clusters: int = 200
 
 
@@ -57,12 +55,6 @@ class AugmentConfig:
     arm_scale: float = 0.03
     eye_height_error: float = 0.025
     arm_span_error: float = 0.02
-    # Share of hands, each by itself, that are tilted otherwise than was noticed (a wearer who has only begun, a controller gripped anew), and by
-    # how much [rad].
-    mistaken_hands: float = 0.05
-    mistaken_turn: float = np.radians(40.0)
-    # Whether the network's hand axes are those that trackers report; else they are turned by the hand's tilt, as those of IK always are.
-    recorded_hands: bool = False
     # Share of wearers who typed how long their forearm is, and by how much they err [m].
     typed_forearms: float = 0.5
     forearm_error: float = FOREARM_ERROR
@@ -122,8 +114,7 @@ class BodyParts:
         self.forearm_shares = np.stack(
             [np.linalg.norm(arm[:, 2] - arm[:, 1], axis=-1) / length for arm, length in zip(self.arms, self.arm_length, strict=True)], axis=1
         )
-        favour = np.where(np.isin(self.people, VARIED), balance.varied, 1.0)
-        weights = posture_rarity.frequency(self.person) ** -balance.people * favour[self.person]
+        weights = posture_rarity.frequency(self.person) ** -balance.people
         if balance.postures > 0:
             weights *= posture_rarity.frequency(posture_rarity.cluster(self._postures(), balance.clusters)) ** -balance.postures
         self._cumulative_trunks, self._cumulative_arms = (np.cumsum(each) / each.sum() for each in (weights, np.tile(weights, 2)))
@@ -296,8 +287,6 @@ def _calibrated(bodies: _Bodies, tracking: _Tracking, config: AugmentConfig, ran
     )
     tilts = tracking.images(bodies.tilts(), mirror.tilts(bodies.tilts()))
     tilts = measured_tilts(tilts, tracking.worn[:, 1:], config.trackers, random)
-    otherwise = random.normal(size=tilts.shape) * config.mistaken_turn / np.sqrt(2)
-    tilts = tilts + otherwise * (random.uniform(size=(count, 2, 1)) < config.mistaken_hands)
     body = body.with_hands(np.where(hand_tilt.believed(tilts)[..., None], tilts, hand_tilt.usual()))
     forearms = tracking.images(bodies.forearms(), bodies.forearms()[:, ::-1]) + random.normal(size=(count, 1)) * config.forearm_error
     return body.with_forearms(forearms, random.uniform(size=(count, 1)) < config.typed_forearms)
@@ -322,7 +311,7 @@ def _trackers_at(ago: NDArray[np.int64], bodies: _Bodies, tracking: _Tracking) -
 def _with_noise(positions: Array, rotations: Array, trackers: TrackerConfig, random: np.random.Generator) -> tuple[Array, Array]:
     """What trackers report that are at these positions [N, 3, 3] and rotations [N, 3, 4]."""
     jitter = draw_turns(trackers.rotation_noise, positions.shape[:-1], random)
-    return positions + random.normal(size=positions.shape) * trackers.position_noise, quaternion.multiply(rotations, jitter)
+    return positions + random.normal(size=positions.shape) * np.reshape(trackers.position_noise, (-1, 1)), quaternion.multiply(rotations, jitter)
 
 
 def _window_at(
@@ -331,8 +320,6 @@ def _window_at(
     tracking: _Tracking,
     calibrated: Body,
     noisy: Callable[[Array, Array], tuple[Array, Array]],
-    *,
-    recorded_hands: bool,
 ) -> _Reported:
     """The frames `age` frames before the newest; noisy(positions, rotations): what trackers that are there report.
 
@@ -349,7 +336,7 @@ def _window_at(
             place[:, column], turn[:, column], (place[:, 0], turn[:, 0]), (positions[lost, 0], rotations[lost, 0])
         )
     positions, rotations = complete_hands(positions, rotations, unseen / FRAME_RATE, calibrated.eye_height[:, 0], calibrated.arm[:, 0])
-    vector, _ = frame_features(positions, rotations, calibrated, unseen == 0, recorded_hands=recorded_hands)
+    vector, _ = frame_features(positions, rotations, calibrated, unseen == 0)
     return _Reported(positions, rotations, vector)
 
 
@@ -365,7 +352,7 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
         return _with_noise(positions, rotations, config.trackers, random)
 
     window = {
-        age: _window_at(age, bodies, tracking, calibrated, noisy, recorded_hands=config.recorded_hands) for age in config.window_frames
+        age: _window_at(age, bodies, tracking, calibrated, noisy) for age in config.window_frames
     }
     newest, truth = window[0], bodies.truth()
     truth = tracking.images(truth, mirror.joints(truth))

@@ -83,8 +83,6 @@ class ExportConfig:
     out: Path
     window_seconds: tuple[float, ...]
     provenance: Provenance
-    # Of the page's filter of the correction [s]; None: the network's joints are no correction.
-    correction_half_life: float | None = None
     fp32_out: Path | None = None
 
 
@@ -130,10 +128,6 @@ def _contract(config: ExportConfig, content: bytes, quantisation: dict[str, Any]
         "outputs": [_paper_output() if is_paper else _learned_output()],
         "rateHz": 60,
         "windowSeconds": config.window_seconds,
-    }
-    if config.correction_half_life is not None:
-        contract["correctionHalfLife"] = config.correction_half_life
-    contract |= {
         "quantisation": quantisation,
         "trainedOn": {"corpus": provenance.corpus, "corpusHash": provenance.corpus_hash, "people": provenance.people},
         "gitCommit": git_commit(),

@@ -23,16 +23,15 @@ FEATURES = 46
 
 
 def frame_features(
-    positions: Array, rotations: Array, body: Body, seen: Array | None = None, *, recorded_hands: bool = False
+    positions: Array, rotations: Array, body: Body, seen: Array | None = None
 ) -> tuple[Array, Array]:
     """Features [F, 46] of tracked points in the floor frame ([F, 3, 3], [F, 3, 4]) and the IK joints [F, 6, 3], heading frame [m].
 
-    seen [F, 2]: whether each hand is seen in this frame; all, when None. recorded_hands: the features carry the hands' axes as trackers report
-    them; IK's hands are turned by their tilts either way.
+    seen [F, 2]: whether each hand is seen in this frame; all, when None.
     """
     local, turns, _, _ = solve_ik.to_heading(positions, hand_tilt.normalised(rotations, body.hand_tilts))
     joints = solve_ik.solve(local, turns, body)
-    matrices = quaternion.to_matrix(solve_ik.to_heading(positions, rotations)[1] if recorded_hands else turns)
+    matrices = quaternion.to_matrix(turns)
     headset = local[:, 0]
     e, a = body.eye_height, body.arm
     columns = [headset[:, 1:2] / e, *_two_columns(matrices[:, 0])]

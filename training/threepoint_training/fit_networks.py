@@ -124,12 +124,12 @@ def write(
         first = run.corpus.clip_slice(0)
         tracked = run.corpus.positions[first][:, TRACKED_COLUMNS].astype(np.float64)
         examples = paper_features(tracked, run.corpus.rotations[first].astype(np.float64)).astype(np.float32)[::7]
-        window, half_life = (0.0,), None
+        window = (0.0,)
     else:
-        window, half_life = run.config.learned.window_seconds, run.config.correction_half_life
+        window = run.config.learned.window_seconds
         examples = train_learned.held_out(run.corpus, provenance.people[:1], window).inputs[::97]
     export.main(
-        export.ExportConfig(name, VERSION, destination.out, window, provenance, correction_half_life=half_life, fp32_out=destination.fp32),
+        export.ExportConfig(name, VERSION, destination.out, window, provenance, fp32_out=destination.fp32),
         network,
         examples,
     )

@@ -90,8 +90,8 @@ def feature_vectors() -> list[dict[str, Any]]:
         positions, rotations = _tracked(person.eye_height, person.arm_span, random)
         seen = random.uniform(size=(FRAMES, 2)) > 0.15
         times = np.arange(FRAMES) * STRIDE / 60 + random.uniform(0, 0.01, FRAMES)
-        seconds = np.diff(times, prepend=times[0])
-        body = notice_hand_tilts.with_noticed_hands(person.body(), positions, rotations, seconds, told=person.told(), seen=seen)
+        metres = notice_hand_tilts.travel(positions)
+        body = notice_hand_tilts.with_noticed_hands(person.body(), positions, rotations, metres, told=person.told(), seen=seen)
         vector, ik_joints = frame_features(positions, rotations, body, seen)
         floor_joints = _in_floor_frame(ik_joints, positions, rotations)
         cases.append(

@@ -1,17 +1,16 @@
 """Leave-one-out: errors on each person (or group of people) held out in turn, with proportions, IK and network trained on everyone else.
 
-`npm run train -- --mocap DIR --leave-one-out` calls this and renews three tables of docs/training.md.
+`npm run train -- --mocap DIR --leave-one-out` calls this and renews two tables of docs/training.md.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import fitted_kinematics, postures, splits, train_learned
+from . import fitted_kinematics, splits, train_learned
 from .accuracy_tables import renew, table
 from .fit_ik import FitIkConfig
 from .model import CorrectionNetwork
@@ -23,7 +22,6 @@ from .training_page import PAGE
 COLUMNS = ("IK", "ours", "ours / IK", "elbows, ours / IK", "minutes")
 # Frames of each person that IK is fitted on, at most: it is fitted anew for each person held out, and with more frames that takes hours.
 IK_FRAMES = 400
-POSTURE_COLUMNS = ("of all frames", "IK", "ours", "ours / IK", "elbows, ours / IK")
 HAND_COLUMNS = ("IK", "ours", "ours / IK", "elbows: IK", "ours", "ours / IK")
 # What marks errors of people who were held out in turn, among those that a contract states.
 IN_TURN = "in turn"
@@ -43,38 +41,26 @@ HANDS = {
 }
 # Every how many-th frame counts for that table.
 HAND_STRIDE = 3
-# Quantiles of the frames' distance from the motion trained on (`postures.distance`); the frames between two of them have a row.
-DISTANCES = (0.0, 0.25, 0.5, 0.75, 0.9, 1.0)
 
 
 @dataclass(frozen=True)
 class HeldOutPerson:
-    """A person held out: errors [F, 6] in cm of IK and ours, which frames [F] are of each posture, and how far they are from the motion trained on
-    [F]."""
+    """A person held out: errors [F, 6] in cm of IK and ours."""
 
     of_ik: NDArray[np.float64]
     ours: NDArray[np.float64]
-    postures: dict[str, NDArray[np.bool_]]
-    distance: NDArray[np.float32]
     # By rows of HANDS: mean errors [2, 6] in cm of IK and ours.
     hands: dict[str, NDArray[np.float64]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Tables:
-    """Rows by person, by posture, and by what is known of the hands; and the errors that the page's contract states."""
+    """Rows by person and by what is known of the hands; and the errors that the page's contract states."""
 
     people: list[list[str]]
-    postures: list[list[str]]
     hands: list[list[str]]
     # By the name that the contract gives them: mean errors [P, 6] in cm of each person by joint.
     errors: dict[str, NDArray[np.float64]]
-
-
-def groups_of(people: tuple[str, ...], count: int | None) -> list[tuple[str, ...]]:
-    """The groups held out in turn: each person alone (None), or `count` groups of nearly equal size, neighbours in the list in different ones."""
-    count = len(people) if count is None else min(count, len(people))
-    return [people[number::count] for number in range(count)]
 
 
 def main(
@@ -90,7 +76,7 @@ def main(
     """
     ik = replace(ik, frames_per_person=min(ik.frames_per_person, IK_FRAMES))
     trainable = splits.trainable(tuple(corpus.people))
-    turns = [*groups_of(trainable, groups), *([measured] if (measured := splits.evaluation_only(tuple(corpus.people))) else [])]
+    turns = [*splits.groups_in_turn(trainable, groups), *([measured] if (measured := splits.evaluation_only(tuple(corpus.people))) else [])]
     found: dict[str, HeldOutPerson] = {}
     for group in turns:
         report(", ".join(group))
@@ -115,9 +101,7 @@ def judge(corpus: PreparedCorpus, name: str, network: CorrectionNetwork, window_
     for told, condition in HANDS.items():
         seen = train_learned.held_out(corpus, (name,), window_seconds, condition=condition)
         by_hands[told] = _mean_errors(seen.subset(np.arange(0, len(seen.inputs), HAND_STRIDE)), network)
-    return HeldOutPerson(
-        train_learned.ik_errors_cm(person), ours, postures.of_frames(person.inputs), postures.distance(network, person.inputs), by_hands
-    )
+    return HeldOutPerson(train_learned.ik_errors_cm(person), ours, by_hands)
 
 
 def _mean_errors(person: HeldOut, network: CorrectionNetwork) -> NDArray[np.float64]:
@@ -136,10 +120,8 @@ def tables(corpus: PreparedCorpus, found: dict[str, HeldOutPerson]) -> Tables:
             means = (np.stack([getattr(found[name], method).mean(axis=0) for name in names]) for method in ("of_ik", "ours"))
             rows.append([mean, *_cells(*means), ""])
     judged, elsewhere = ([found[name] for name in names] for names in (trainable, splits.evaluation_only(tuple(found))))
-    by_posture, by_hands = (
-        [*rows_of(judged), *([f"another laboratory: {name}", *cells] for name, *cells in rows_of(elsewhere))] for rows_of in (_posture_rows, _hand_rows)
-    )
-    return Tables(rows, by_posture, by_hands, _errors(judged))
+    by_hands = [*_hand_rows(judged), *([f"another laboratory: {name}", *cells] for name, *cells in _hand_rows(elsewhere))]
+    return Tables(rows, by_hands, _errors(judged))
 
 
 def _errors(people: list[HeldOutPerson]) -> dict[str, NDArray[np.float64]]:
@@ -164,27 +146,6 @@ def _hand_rows(people: list[HeldOutPerson]) -> list[list[str]]:
     return rows
 
 
-def _posture_rows(people: list[HeldOutPerson]) -> list[list[str]]:
-    """A row for each posture, then for each range of DISTANCES, each person weighing the same; without people none."""
-    if not people:
-        return []
-    of_ik, ours, distance = (np.concatenate([getattr(person, key) for person in people]) for key in ("of_ik", "ours", "distance"))
-    weight = np.concatenate([np.full(len(person.ours), 1 / len(person.ours) / len(people)) for person in people])
-    order = np.argsort(distance)
-    rank = np.empty(len(order))
-    rank[order] = np.cumsum(weight[order])
-    chosen = {name: np.concatenate([person.postures[name] for person in people]) for name in people[0].postures}
-    for low, high in pairwise(DISTANCES):
-        chosen[f"{100 * low:.0f} to {100 * high:.0f} % by distance"] = (rank > low) & (rank <= high)
-    rows = []
-    for name, frames in chosen.items():
-        if frames.any():
-            share = weight[frames]
-            means = (np.average(errors[frames], axis=0, weights=share, keepdims=True) for errors in (of_ik, ours))
-            rows.append([name, f"{100 * share.sum():.1f} %", *_cells(*means)])
-    return rows
-
-
 def _cells(of_ik: NDArray[np.float64], ours: NDArray[np.float64]) -> list[str]:
     """Cells for errors [F, 6] in cm: means of IK and ours, their ratio, and the elbows' ratio."""
     elbows = ours[:, :2].mean() / of_ik[:, :2].mean()
@@ -193,6 +154,6 @@ def _cells(of_ik: NDArray[np.float64], ours: NDArray[np.float64]) -> list[str]:
 
 def write(rows: Tables, page: Path = PAGE) -> None:
     """Renews the page's tables."""
-    columns = {"leave-one-out": COLUMNS, "postures": POSTURE_COLUMNS, "hands": HAND_COLUMNS}
-    cells = {"leave-one-out": rows.people, "postures": rows.postures, "hands": rows.hands}
+    columns = {"leave-one-out": COLUMNS, "hands": HAND_COLUMNS}
+    cells = {"leave-one-out": rows.people, "hands": rows.hands}
     page.write_text(renew(page.read_text(), {name: table(["cm", *columns[name]], cells[name]) for name in columns}))

@@ -35,36 +35,42 @@ def untold_forearms(positions: Array, rotations: Array, body: Body) -> Array:
     return quaternion.rotate(quaternion.conjugate(turns[:, 1:]), forearms)
 
 
-def noticed(forearms: Array, seconds: Array, told: ToldTilts = NOTHING_TOLD, seen: NDArray[np.bool_] | None = None) -> Array:
+def travel(positions: Array) -> Array:
+    """How far each hand moves about the head [F, 2] since the frame before [m], of tracked points [F, 3, 3]; 0 in the first."""
+    from_head = positions[:, 1:] - positions[:, :1]
+    return np.linalg.norm(np.diff(from_head, axis=0, prepend=from_head[:1]), axis=-1)
+
+
+def noticed(forearms: Array, metres: Array, told: ToldTilts = NOTHING_TOLD, seen: NDArray[np.bool_] | None = None) -> Array:
     """The tilts [F, 2, 2] by which hands are turned in each frame, by what was noticed before it.
 
-    forearms [F, 2, 3] in the frames of the hands; seconds [F] since the frame before, 0 for the first; seen [F, 2]: which hands are, all when None.
+    forearms [F, 2, 3] in the frames of the hands; metres [F, 2] that each hand travelled since the frame before (`travel`); seen [F, 2]: which hands are, all when None.
     """
     prior = hand_tilt.direction_of(np.where(told.known[:, None], told.tilts, hand_tilt.usual()))
     total = np.zeros_like(prior)
     sums = np.empty_like(forearms)
-    weight = seconds[:, None, None] * (1.0 if seen is None else seen[:, :, None])
-    kept = np.exp(-weight / HAND_TILTS["memorySeconds"])
+    weight = metres[:, :, None] * (1.0 if seen is None else seen[:, :, None])
+    kept = np.exp(-weight / HAND_TILTS["memoryMetres"])
     for frame, forearm in enumerate(forearms):
-        sums[frame] = _prior_seconds(prior, told.known, total)[:, None] * prior + total
+        sums[frame] = _prior_metres(prior, told.known, total)[:, None] * prior + total
         total = total * kept[frame] + forearm * weight[frame]
     tilts = hand_tilt.tilt_of(sums)
     return tilts * np.minimum(1.0, LIMB["steepestHandTilt"] / np.maximum(np.linalg.norm(tilts, axis=-1, keepdims=True), 1e-12))
 
 
-def _prior_seconds(prior: Array, told: NDArray[np.bool_], total: Array) -> Array:
-    """The weight of each hand's prior direction [2, 3], as seconds of motion [2], beside `total` [2, 3], the sum of noticed directions times seconds;
+def _prior_metres(prior: Array, told: NDArray[np.bool_], total: Array) -> Array:
+    """The weight of each hand's prior direction [2, 3], as metres of travel [2], next to `total` [2, 3], the sum of noticed directions times metres;
     told: whose prior is a measured tilt."""
     angle = np.arctan2(np.linalg.norm(np.cross(prior, total), axis=-1), np.sum(prior * total, axis=-1))
     doubted = np.minimum(1.0, (HAND_TILTS["doubtAngle"] / np.maximum(angle, 1e-9)) ** 2)
-    return np.where(told, HAND_TILTS["toldSeconds"] * doubted, HAND_TILTS["usualSeconds"])
+    return np.where(told, HAND_TILTS["calibratedMetres"] * doubted, HAND_TILTS["usualMetres"])
 
 
 def with_noticed_hands(
-    body: Body, positions: Array, rotations: Array, seconds: Array, *, told: ToldTilts = NOTHING_TOLD, seen: NDArray[np.bool_] | None = None
+    body: Body, positions: Array, rotations: Array, metres: Array, *, told: ToldTilts = NOTHING_TOLD, seen: NDArray[np.bool_] | None = None
 ) -> Body:
     """The body with the hands of each frame turned as the page turns them, for one clip from its beginning.
 
-    positions [F, 3, 3] and rotations [F, 3, 4] of the tracked points, floor frame; seconds, told and seen as for `noticed`.
+    positions [F, 3, 3] and rotations [F, 3, 4] of the tracked points, floor frame; metres, told and seen as for `noticed`.
     """
-    return body.with_hands(noticed(untold_forearms(positions, rotations, body), seconds, told, seen))
+    return body.with_hands(noticed(untold_forearms(positions, rotations, body), metres, told, seen))

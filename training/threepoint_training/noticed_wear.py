@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from . import fitted_kinematics, leave_one_out, notice_hand_tilts, notice_headset_rise, quaternion, splits, train_learned
+from . import fitted_kinematics, notice_hand_tilts, notice_headset_rise, quaternion, splits, train_learned
 from .accuracy_tables import renew, table
 from .features import frame_features
 from .fit_ik import FitIkConfig
@@ -106,7 +106,7 @@ def main(
     shipped = splits.training_people("A", tuple(name for name in corpus.people if name in splits.VARIED))
     reach = usual_reach(corpus, shipped, config)
     report(f"usual reach of the people that the page's IK is fitted on: {reach:.3f} (headset-rise.json: {HEADSET_RISE['usualReach']})")
-    home = [judged(group) for group in leave_one_out.groups_of(trainable, config.groups)]
+    home = [judged(group) for group in splits.groups_in_turn(trainable, config.groups)]
     away = judged(elsewhere) if elsewhere else np.full((1, len(FAULTS), 2, 2), np.nan)
     rows = []
     for label, at_home, another in zip(FAULTS, np.concatenate(home).mean(axis=0), away.mean(axis=0), strict=True):
@@ -189,7 +189,7 @@ def _errors(corpus: PreparedCorpus, worn: _Worn, made: _Network, config: Noticed
         )
         positions[:, 0] -= quaternion.rotate(rotations[:, 0], np.broadcast_to([0.0, worn.rise, 0.0], (len(positions), 3)))
         times = np.arange(len(positions)) / corpus.rate_hz
-        worn_by = notice_hand_tilts.with_noticed_hands(body, positions, rotations, np.diff(times, prepend=0.0))
+        worn_by = notice_hand_tilts.with_noticed_hands(body, positions, rotations, notice_hand_tilts.travel(positions))
         vector, _ = frame_features(positions, rotations, worn_by)
         chosen = slice(None, None, config.judged_stride)
         inputs = network_input(vector, times, made.window_seconds)[chosen]

@@ -9,10 +9,10 @@ from pathlib import Path
 import torch
 from rich.console import Console
 
-from . import ablation, cross_validate, fit_networks, golden, leave_one_out, neutral_pose, noticed_wear, prepare, train_learned, train_paper, training_page
+from . import cross_validate, fit_networks, golden, leave_one_out, lockbox, noticed_wear, prepare, selection, train_learned, train_paper, training_page
+from .export import git_commit
 from .fit_networks import Destination, TrainingRun
 from .generated_motion import generate_corpus
-from .model import CorrectionNetwork
 from .prepared_corpus import PreparedCorpus
 from .splits import evaluation_only, trainable
 from .training_config import REPOSITORY, Task, TrainConfig
@@ -68,25 +68,24 @@ def _train_on_all_subjects(run: TrainingRun) -> None:
         fit_networks.write(run, name, network, provenance, Destination(run.config.out))
 
 
-def _ablate(run: TrainingRun) -> Rows:
-    """Trains the recipe without each of its parts; renews the tables of parts and of the neutral pose in docs/training.md."""
-    recipe, networks = run.config.learned, dict[tuple[str, ...], CorrectionNetwork]()
-    done = 0
-    with run.report.task("ablation", len(ablation.FOLDS) * len(ablation.variants(recipe))) as advance:
-
-        def report(name: str) -> None:
-            nonlocal done
-            done += 1
-            advance(done, name)
-
-        rows = ablation.main(run.corpus, recipe, ablation.AblationConfig(seed=run.config.seed), report, networks.__setitem__)
-    shown = run.report.table_of_cells("MPJPE without each part of the recipe, people held out [cm]", ablation.CONDITIONS, rows)
-    neutral = neutral_pose.main(run.corpus, recipe, networks)
-    run.report.table_of_cells("MPJPE with what a neutral pose tells of its person [cm]", neutral_pose.COLUMNS, neutral)
-    # Last: a page without a place for them costs no hour of training.
-    ablation.write(rows)
-    neutral_pose.write(neutral)
-    return shown
+def _select(run: TrainingRun) -> Rows:
+    """Judges the recipe by the selection metric, and compares it with the recipes judged earlier on the same people and seeds."""
+    config = selection.SelectionConfig(run.config.groups)
+    found = selection.main(run.corpus, run.config.learned, config, run.report.console.print)
+    for frames in selection.FRAMES:
+        figures = [selection.figures(seed[frames]) for seed in found]
+        means = {name: sum(each[name] for each in figures) / len(figures) for name in figures[0]}
+        run.report.console.print(f"error relative to IK, {frames} frames: {', '.join(f'{name} {value:.3f}' for name, value in means.items())}")
+    file = run.config.selections / f"{git_commit()}-{run.config.learned.steps}.json"
+    for earlier in sorted(set(run.config.selections.glob("*.json")) - {file}):
+        other = selection.load(earlier)
+        if [set(seed["active"]) for seed in other] != [set(seed["active"]) for seed in found]:
+            continue
+        for name, difference in selection.compare([seed["active"] for seed in found], [seed["active"] for seed in other]).items():
+            verdict = " (a tie)" if difference.is_tie else ""
+            run.report.console.print(f"minus {earlier.stem}, active frames, {name}: {difference.mean:+.4f} ± {difference.standard_error:.4f}{verdict}")
+    selection.save(found, file)
+    return {}
 
 
 def _notice(run: TrainingRun) -> Rows:
@@ -96,7 +95,7 @@ def _notice(run: TrainingRun) -> Rows:
 
 
 def _leave_one_out(run: TrainingRun) -> Rows:
-    """Holds each person, or group of people, out in turn; renews three tables of docs/training.md and what a contract states of them."""
+    """Holds each person, or group of people, out in turn; renews two tables of docs/training.md and what a contract states of them."""
     cross_validate.warn_without_contract(run, "learned")
     done, groups = 0, run.config.groups
     with run.report.task("leave one out", None) as advance:
@@ -108,7 +107,7 @@ def _leave_one_out(run: TrainingRun) -> Rows:
             run.report.console.print(f"held out: {people}")
 
         rows = leave_one_out.main(run.corpus, run.config.learned, run.config.ik, report, groups)
-    for row in [*rows.people, *rows.postures, *rows.hands]:
+    for row in [*rows.people, *rows.hands]:
         run.report.console.print("  ".join(row))
     for row, errors in rows.errors.items():
         run.report.found(row, errors)
@@ -117,11 +116,19 @@ def _leave_one_out(run: TrainingRun) -> Rows:
     return {}
 
 
+def _open_lockbox(run: TrainingRun) -> Rows:
+    """Evaluates the learned network in `out` on the lockbox people and logs it."""
+    row = lockbox.main(run.corpus, lockbox.LockboxConfig(run.config.out, run.config.lockbox_log))
+    run.report.console.print_json(data=row)
+    return {}
+
+
 _TASKS: dict[Task, Callable[[TrainingRun], Rows]] = {
     "train": _train,
-    "ablation": _ablate,
+    "selection": _select,
     "noticed wear": _notice,
     "leave one out": _leave_one_out,
+    "lockbox": _open_lockbox,
 }
 
 

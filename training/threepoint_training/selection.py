@@ -1,14 +1,19 @@
-"""The figures by which recipes of the learned network are chosen: errors of people held out in turn, in active frames, hands not measured."""
+"""The figures by which recipes of the learned network are chosen: errors of people held out in turn, in active frames, hands not measured.
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+`npm run train -- --mocap DIR --select` calls this for the recipe of the code as it is, and compares it with those of earlier calls.
+"""
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import postures, train_learned
-from .model import CorrectionNetwork
-from .train_learned import Condition, HeldOut
+from . import postures, splits, train_learned
+from .prepared_corpus import PreparedCorpus
+from .train_learned import Condition, HeldOut, TrainLearnedConfig
 from .train_paper import predict
 
 Array = NDArray[np.float64]
@@ -38,9 +43,10 @@ class PersonErrors:
 People = Mapping[str, PersonErrors]
 
 
-def errors_by_person(network: CorrectionNetwork, people: HeldOut) -> dict[str, dict[str, PersonErrors]]:
-    """Errors of held-out people after torso and arm fitting, by FRAMES and by name; a person without active frames is missing from those."""
-    ours, of_ik = train_learned.fitted_errors_cm(predict(network, people.inputs), people), train_learned.ik_errors_cm(people)
+def errors_by_person(corrections: NDArray[np.float32], people: HeldOut) -> dict[str, dict[str, PersonErrors]]:
+    """Errors of a network with these corrections [F, 18] after torso and arm fitting, by FRAMES and by name; a person without active frames is
+    missing from those."""
+    ours, of_ik = train_learned.fitted_errors_cm(corrections, people), train_learned.ik_errors_cm(people)
     chosen = {"all": np.ones(len(ours), bool), "active": postures.active(people.inputs)}
     return {
         frames: {
@@ -50,6 +56,49 @@ def errors_by_person(network: CorrectionNetwork, people: HeldOut) -> dict[str, d
         }
         for frames, among in chosen.items()
     }
+
+
+@dataclass(frozen=True)
+class SelectionConfig:
+    """People are held out in `groups` groups in turn (None: each alone), each with networks of `seeds` seeds."""
+
+    groups: int | None = None
+    seeds: int = 3
+
+
+def main(
+    corpus: PreparedCorpus, recipe: TrainLearnedConfig, config: SelectionConfig = SelectionConfig(), report: Callable[[str], None] = lambda _: None
+) -> list[dict[str, People]]:
+    """By seed and by FRAMES: errors on each trainable person, of a network trained on everyone outside the person's group; IK keeps its constants."""
+    everyone = splits.trainable(tuple(corpus.people))
+    found: list[dict[str, dict[str, PersonErrors]]] = [{frames: {} for frames in FRAMES} for _ in range(config.seeds)]
+    for group in splits.groups_in_turn(everyone, config.groups):
+        held_out = train_learned.held_out(corpus, group, recipe.window_seconds, CONDITION)
+        others = tuple(name for name in everyone if name not in group)
+        for number, of_seed in enumerate(found):
+            report(f"held out: {', '.join(group)}; seed {recipe.seed + number}")
+            network = train_learned.train(corpus, others, replace(recipe, seed=recipe.seed + number))
+            for frames, people in errors_by_person(predict(network, held_out.inputs), held_out).items():
+                of_seed[frames] |= people
+    return [dict(of_seed) for of_seed in found]
+
+
+def save(found: list[dict[str, People]], file: Path) -> None:
+    """Writes what `main` found."""
+    seeds = [
+        {frames: {name: [each.frames, each.of_ik.tolist(), each.ours.tolist()] for name, each in people.items()} for frames, people in seed.items()}
+        for seed in found
+    ]
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(json.dumps(seeds))
+
+
+def load(file: Path) -> list[dict[str, People]]:
+    """Reads what `save` wrote."""
+    return [
+        {frames: {name: PersonErrors(count, np.array(of_ik), np.array(ours)) for name, (count, of_ik, ours) in people.items()} for frames, people in seed.items()}
+        for seed in json.loads(file.read_text())
+    ]
 
 
 def worse_half(*recipes: People) -> tuple[str, ...]:

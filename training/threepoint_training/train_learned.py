@@ -21,7 +21,6 @@ from .prepared_corpus import PreparedCorpus
 from .residual import OUTPUTS, network_input, residual
 from .simulate_trackers import FOREARM_ERROR, TrackerConfig, Wearer, draw_wearer, measured_tilts, simulate
 from .skeleton import Body, body_from_calibration
-from .subject_effects import SubjectEffects
 
 Array = NDArray[np.float64]
 
@@ -44,15 +43,8 @@ class TrainLearnedConfig:
     # Weights in the loss of errors after torso and arm fitting, and of raw joints: these keep small what fitting would undo.
     fitted_loss_weight: float = 1.0
     auxiliary_loss_weight: float = 0.1
-    # Of both losses, a third would be every joint alike. An elbow hangs from its shoulder: trunks are put where elbows come right, too.
-    elbow_share: float = 2 / 3
-    # Weight of the regret: how far the errors of the network alone, without random effects, exceed this part of IK's. What harms costs more than
-    # what helps gains, so that corrections stay small where their direction is uncertain.
-    regret_weight: float = 2.0
-    regret_threshold: float = 0.7
-    # Ridge and learning rate of the per-subject random effects; at a rate of 0 they stay 0.
-    effects_ridge: float = 1e-3
-    effects_learning_rate: float = 2e-2
+    # The elbows' share of both losses; a third would be every joint alike.
+    elbow_share: float = 1 / 2
     seed: int = 2460
     augment: AugmentConfig = field(default_factory=AugmentConfig)
 
@@ -110,16 +102,11 @@ _TRACKERS = TrackerConfig()
 
 
 def held_out(
-    corpus: PreparedCorpus,
-    people: tuple[str, ...],
-    window_seconds: tuple[float, ...],
-    condition: Condition = Condition(),
-    *,
-    recorded_hands: bool = False,
+    corpus: PreparedCorpus, people: tuple[str, ...], window_seconds: tuple[float, ...], condition: Condition = Condition()
 ) -> HeldOut:
     """All frames of these people as trackers report them under this condition, with the calibration that they would have.
 
-    recorded_hands: as the network that is tested was trained (`AugmentConfig`). Hand tilts are measured on the true forearms of the same person's other clips (of a single clip: on its own), with the calibration's error.
+    Hand tilts are measured on the true forearms of the same person's other clips (of a single clip: on its own), with the calibration's error.
     """
     forearms = hand_tilt.ForearmMeans(corpus, people)
     rows = []
@@ -127,11 +114,11 @@ def held_out(
         wearer, body = _worn(name, condition), _calibrated(corpus, name, condition)
         for clip in corpus.clips_of({name}):
             tracked = _disturb(corpus, clip, wearer, body, condition)
-            seconds = np.diff(tracked.times, prepend=0.0) * condition.hands_noticed
+            metres = notice_hand_tilts.travel(tracked.positions) * condition.hands_noticed
             told = _told_tilts(forearms.elsewhere(clip), wearer, name, condition)
-            turned = notice_hand_tilts.with_noticed_hands(body, tracked.positions, tracked.rotations, seconds, told=told, seen=tracked.seen)
+            turned = notice_hand_tilts.with_noticed_hands(body, tracked.positions, tracked.rotations, metres, told=told, seen=tracked.seen)
             count = len(tracked.times)
-            rows.append((*_rows(tracked, turned, window_seconds, recorded_hands), np.full(count, body.eye_height), np.full(count, name), np.full(count, clip)))
+            rows.append((*_rows(tracked, turned, window_seconds), np.full(count, body.eye_height), np.full(count, name), np.full(count, clip)))
     return HeldOut(*(np.concatenate(column) for column in zip(*rows, strict=True)))
 
 
@@ -191,10 +178,10 @@ def _disturb(corpus: PreparedCorpus, clip: int, wearer: Wearer, body: Body, cond
 
 
 def _rows(
-    tracked: _Tracked, body: Body, window_seconds: tuple[float, ...], recorded_hands: bool
+    tracked: _Tracked, body: Body, window_seconds: tuple[float, ...]
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Inputs [F, T·46 + 38] and targets [F, 18] of a clip."""
-    vector, _ = frame_features(tracked.positions, tracked.rotations, body, tracked.seen, recorded_hands=recorded_hands)
+    vector, _ = frame_features(tracked.positions, tracked.rotations, body, tracked.seen)
     inputs = network_input(vector, tracked.times, window_seconds)
     targets = residual(tracked.truth, tracked.positions, tracked.rotations, body, vector)
     return inputs.astype(np.float32), targets.astype(np.float32)
@@ -259,29 +246,18 @@ def train(
     averaged = CorrectionNetwork(len(config.augment.window_frames), config.width, config.dropout, config.hidden_layers)
     averaged.load_state_dict(network.state_dict())
     averaged.eval()
-    effects = SubjectEffects(len(parts.people), inputs)
-    optimiser = torch.optim.AdamW(
-        [
-            {"params": network.parameters(), "lr": config.learning_rate, "weight_decay": config.weight_decay},
-            {"params": effects.parameters(), "lr": config.effects_learning_rate, "weight_decay": 0.0},
-        ]
-    )
-    peaks = [config.learning_rate, config.effects_learning_rate]
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, peaks, total_steps=config.steps, pct_start=0.1)
+    optimiser = torch.optim.AdamW(network.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, config.learning_rate, total_steps=config.steps, pct_start=0.1)
     keep = 0.5 ** (1 / config.average_half_life_steps)
     network.train()
     for step in range(config.steps):
         current = draw_batch(parts, config.batch, config.augment, random)
         x, y = torch.from_numpy(current.inputs), torch.from_numpy(current.targets)
-        shared = network(x).view(-1, 6, 3)
-        corrections = shared + effects(x, torch.from_numpy(current.people))
+        corrections = network(x).view(-1, 6, 3)
         distance = functools.partial(mean_distances, truth=y.view(-1, 6, 3), elbow_share=config.elbow_share)
         loss = config.auxiliary_loss_weight * distance(corrections).mean()
         loss = loss + config.fitted_loss_weight * distance(kinematics(corrections, x)).mean()
-        if config.regret_weight > 0:
-            of_ik = distance(kinematics(torch.zeros_like(shared), x))
-            loss = loss + config.regret_weight * regret(distance(kinematics(shared, x)), config.regret_threshold * of_ik)
-        loss = loss / _RESIDUAL + config.effects_ridge * effects.penalty()
+        loss = loss / _RESIDUAL
         optimiser.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(network.parameters(), 1.0)
@@ -342,8 +318,3 @@ def mean_distances(corrections: torch.Tensor, truth: torch.Tensor, elbow_share: 
     """
     distance = (corrections - truth).norm(dim=-1)
     return elbow_share * distance[:, :2].mean(dim=-1) + (1 - elbow_share) * distance[:, 2:].mean(dim=-1)
-
-
-def regret(ours: torch.Tensor, bound: torch.Tensor) -> torch.Tensor:
-    """By how much errors [N] exceed these bounds [N], on average; errors below make up for none above."""
-    return torch.relu(ours - bound).mean()

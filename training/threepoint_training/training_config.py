@@ -8,8 +8,8 @@ from . import fit_ik, train_learned, train_paper
 
 REPOSITORY = Path(__file__).parents[2]
 
-# What a run does: trains the networks, or renews the tables of one study instead.
-Task = Literal["train", "ablation", "noticed wear", "leave one out"]
+# What a run does: trains the networks, or instead makes the tables of one study, or evaluates the lockbox.
+Task = Literal["train", "selection", "noticed wear", "leave one out", "lockbox"]
 
 
 @dataclass(frozen=True)
@@ -26,13 +26,17 @@ class TrainConfig:
     stages: tuple[str, ...] = ("cross-validation", "all-subjects")
     # The networks of the first fold with 32-bit weights go there, for the evaluation to compare with; None: they are not written.
     fp32_out: Path | None = None
+    # Errors of the recipes that were judged, by commit and steps.
+    selections: Path = REPOSITORY / ".cache/selection"
+    # Every evaluation of the lockbox.
+    lockbox_log: Path = REPOSITORY / "training/lockbox-log.json"
     cache: Path = REPOSITORY / ".cache/mocap"
     skeleton_map: Path | None = None
     folds: tuple[str, ...] = ("A", "B")
     networks: tuple[str, ...] = ("paper", "learned")
     frame_random: bool = True
     task: Task = "train"
-    # Of the task "leave one out": people are held out in this many groups in turn; None: one person at a time.
+    # Of the tasks "selection" and "leave one out": people are held out in this many groups in turn; None: one person at a time.
     groups: int | None = None
     refit_kinematics: bool = False
     seed: int = 2460
@@ -42,8 +46,6 @@ class TrainConfig:
     learned: train_learned.TrainLearnedConfig = train_learned.TrainLearnedConfig()
     learned_frame_random: train_learned.TrainFrameRandomConfig = train_learned.TrainFrameRandomConfig()
     ik: fit_ik.FitIkConfig = fit_ik.FitIkConfig()
-    # Half-life [s] of the page's filter of the correction; chosen by `npm run evaluate`: jerk against error.
-    correction_half_life: float = 0.06
 
 
 def quick(config: TrainConfig) -> TrainConfig:

@@ -45,10 +45,3 @@ class TrainingReport:
         for row, values in rows.items():
             table.add_row(row, *(f"{values[label]:.2f}" for label in labels))
         self.console.print(table)
-
-    def table_of_cells(self, title: str, columns: Iterable[str], rows: list[list[str]]) -> dict[str, dict[str, float]]:
-        """Prints rows of a page's table, name first, and returns them as figures."""
-        labels = list(columns)
-        figures = {name: dict(zip(labels, map(float, values), strict=True)) for name, *values in rows}
-        self.table(title, labels, figures)
-        return figures

@@ -1,13 +1,11 @@
-"""Facts about the conditions under which a recipe is judged."""
+"""Facts about the conditions under which people held out are tracked."""
 
 import numpy as np
 import pytest
-from threepoint_training import ablation, train_learned
-from threepoint_training.augment import AugmentConfig
+from threepoint_training import train_learned
 from threepoint_training.features import HEADSET_HEIGHT, SEEN
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.train_learned import Condition
-from threepoint_training.train_paper import predict
 
 pytestmark = pytest.mark.training
 
@@ -43,23 +41,3 @@ def test_a_lost_hand_is_masked_and_a_seated_head_is_lower():
     seated = train_learned.held_out(CORPUS, people, WINDOW, condition=Condition(seated=0.28))
     plain = train_learned.held_out(CORPUS, people, WINDOW)
     assert np.median(plain.inputs[:, HEADSET_HEIGHT] - seated.inputs[:, HEADSET_HEIGHT]) == pytest.approx(0.28, abs=0.01)
-
-
-def test_every_variant_has_a_row_and_the_recipes_networks_are_handed_out():
-    first, second = sorted(CORPUS.people)
-    recipe = train_learned.TrainLearnedConfig(width=8, batch=32, augment=AugmentConfig())
-    folds = ((first,), (second,))
-    networks = {}
-    rows = ablation.main(CORPUS, recipe, ablation.AblationConfig(steps=2, folds=folds), trained=networks.__setitem__)
-    assert [row[0] for row in rows] == ["IK", *ablation.variants(recipe)]
-    assert all(len(row) == 1 + len(ablation.CONDITIONS) for row in rows)
-    assert set(networks) == set(folds)
-    clean = list(ablation.CONDITIONS).index("as calibrated") + 1
-    tests = {fold: train_learned.held_out(CORPUS, fold, recipe.window_seconds) for fold in folds}
-    errors = [train_learned.fitted_errors_cm(predict(networks[fold], test.inputs), test).mean() for fold, test in tests.items()]
-    assert float(rows[1][clean]) == pytest.approx(np.mean(errors), abs=0.006)
-
-
-def test_people_who_are_not_in_the_corpus_cannot_be_left_out():
-    with pytest.raises(ValueError, match="needs one of these groups"):
-        ablation.main(CORPUS, train_learned.TrainLearnedConfig())
