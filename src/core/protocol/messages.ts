@@ -8,7 +8,7 @@ import { avatarHash, isOwnAvatar, type OwnAvatar, type WornAvatar } from './worn
  * Bumped with every change that an older page or server would misunderstand: of these messages, of pose packets and of their frames, which each
  * have a version of their own. Who joins with another one is told so, and shows nothing to those who could not read it.
  */
-export const protocolVersion = 8;
+export const protocolVersion = 9;
 
 /** No control message is longer [bytes of UTF-8]; a snapshot takes at most half of it. */
 export const longestMessage = 4096;

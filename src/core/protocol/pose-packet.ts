@@ -1,8 +1,8 @@
 import type { AvatarPose } from '../body/avatar-pose';
 import type { Fingers } from '../body/hand-shape';
 
-/** Bumped with every change of the layout: a receiver shows nothing rather than nonsense. */
-export const poseVersion = 3;
+/** Raised with every change of the layout or of the body proportions that packets are relative to; others are refused. */
+export const poseVersion = 4;
 
 /** No packet is longer [bytes]. */
 export const longestPose = 64;

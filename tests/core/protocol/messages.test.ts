@@ -213,8 +213,8 @@ test('a change of packets or frames is told to older pages as a change of messag
   // A change of packets, or of the frames they come in, raises the first: pages that would not see each other are told so when they join.
   const frame = encodeFrame([{ seat: 5, bytes: Uint8Array.from({ length: 20 }, () => poseVersion << 4) }]);
   expect({ protocolVersion, poseVersion, seatAndFlags: frame[0] }).toEqual({
-    protocolVersion: 8,
-    poseVersion: 3,
+    protocolVersion: 9,
+    poseVersion: 4,
     seatAndFlags: 0x50,
   });
 });

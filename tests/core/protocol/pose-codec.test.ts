@@ -195,7 +195,7 @@ const binary = (value: number, bits: number): string => value.toString(2).padSta
 describe('bytes', () => {
   test('are those of docs/protocol.md, bit by bit', () => {
     const expected = bytesOf([
-      '0011', // version 3
+      '0100', // version 4
       '0', // no jump
       '0', // no body
       '1', // head tracked
@@ -244,7 +244,7 @@ describe('bytes', () => {
     };
     const hex = [...encodePose(packet, skeleton)!].map((byte) => byte.toString(16).padStart(2, '0')).join('');
     expect(hex).toBe(
-      '3600000ffff43d3ef0effdffbff2e6161299fdffffe7ff74c0e356bbbff000fff7fdff7ff7fdff7ff7fdff7fdfbf7fbfeb53f0ff7fa947e0',
+      '4600000ffff43e3eeeeffdffbff2e61608d49dffffe7ff74c0e21e0fbff000fff7fdff7ff7fdff7ff7fdff7fdfbf7fbfeb53f0ff7fa947e0',
     );
     const shown = forwardKinematics(skeleton, decodePose(encodePose(packet, skeleton)!, skeleton)!.pose.body!);
     const sent = forwardKinematics(skeleton, body);
