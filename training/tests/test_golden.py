@@ -14,6 +14,7 @@ from threepoint_training.chest_features import CHEST_FEATURES
 from threepoint_training.features import FEATURES
 from threepoint_training.flat_weights import flat_file
 from threepoint_training.residual import OUTPUTS
+from threepoint_training.splits import LOCKBOX
 
 MODELS = golden.GOLDEN.parents[1] / "public/models"
 LARGEST = {"paper": 1_700_000, "learned": 300_000}
@@ -79,13 +80,13 @@ def test_the_contract_speaks_of_the_file_beside_it(name):
 
 @pytest.mark.parametrize("name", ["paper", "learned"])
 def test_errors_are_claimed_for_people_held_out_of_them(name):
-    """The page's networks were trained on all subjects: their contracts state the errors of networks that were not."""
+    """The contracts state the errors on the lockbox, on the shipping path."""
     stated = contract(name)
     known, errors = set(stated["trainedOn"]["people"]), stated["errors"]
-    folds = [re.fullmatch(rf"{name}, fold [A-Z] \((.+)\)", row) for row in errors]
-    held_out = [set(fold[1].split(", ")) for fold in folds if fold]
-    assert held_out
-    assert all(people < known for people in held_out)
+    stated_of = [re.fullmatch(rf"{name}, lockbox \((.+)\), shipping path", row) for row in errors]
+    (held_out,) = [set(row[1].split(", ")) for row in stated_of if row]
+    assert held_out == set(LOCKBOX)
+    assert not held_out & known
     (seen,) = (row for row in errors if row.endswith("trained on"))
     assert seen.startswith(f"{name}, all subjects")
 
