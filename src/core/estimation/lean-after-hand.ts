@@ -35,6 +35,8 @@ export interface Lean {
   softReach: number;
   /** How far clavicle and neck go beyond anatomy for it [share of the way to their extremes, 0 to 1]. */
   extremity: number;
+  /** The same in the frame before. */
+  extremityBefore: number;
 }
 
 export const makeLean = (): Lean => ({
@@ -43,6 +45,7 @@ export const makeLean = (): Lean => ({
   offset: vec3(0, 0, 0),
   softReach: Number.NaN,
   extremity: 0,
+  extremityBefore: 0,
 });
 
 const towards = vec3(0, 0, 0);
@@ -79,22 +82,22 @@ export function leanFurther(
 }
 
 /**
- * Follows `wanted` at no more than leanSpeed; for a fully confident tracked hand this frame's change of `wanted` is applied at once, and
- * in the first frame (not `known`) all of it. Returns whether `wanted` was reached.
+ * Follows `wanted` at no more than leanSpeed, and with it the limits of clavicle and neck; for a fully confident tracked hand this frame's
+ * change of `wanted` is applied at once, and in the first frame (not `known`) all of it. Returns whether `wanted` was reached.
  */
-export function followLean(
-  { wanted, wantedBefore, offset }: Lean,
-  hand: CompletedHand,
-  known: boolean,
-  deltaSeconds: number,
-): boolean {
+export function followLean(lean: Lean, hand: CompletedHand, known: boolean, deltaSeconds: number): boolean {
+  const { wanted, wantedBefore, offset } = lean;
   const anew = hand.source === 'tracked' && hand.confidence === 1 ? distance(wanted, wantedBefore) : 0;
   const most = known ? leanSpeed * Math.max(deltaSeconds, 0) + anew : Number.POSITIVE_INFINITY;
   copyVec3(wanted, wantedBefore);
-  if (distance(wanted, offset) <= most) {
-    copyVec3(wanted, offset);
-    return true;
+  const isReached = distance(wanted, offset) <= most;
+  if (isReached) copyVec3(wanted, offset);
+  else {
+    const leant = length(offset);
+    lerp(offset, wanted, most / distance(wanted, offset), offset);
+    const left = leant > 0 ? Math.min(1, length(offset) / leant) : 0;
+    lean.extremity = Math.max(lean.extremity, left * lean.extremityBefore);
   }
-  lerp(offset, wanted, most / distance(wanted, offset), offset);
-  return false;
+  lean.extremityBefore = lean.extremity;
+  return isReached;
 }
