@@ -88,7 +88,7 @@ describe.each(bodies)('$label draws a still person', (subject) => {
           before = now;
         }
       }),
-      runs(60),
+      runs(25),
     );
   });
 
@@ -106,7 +106,7 @@ describe.each(bodies)('$label draws a still person', (subject) => {
             expect(distance(joints[`${side}Hand`].position, hand!.position)).toBeLessThan(1e-3);
           }
         }),
-        runs(60),
+        runs(25),
       );
     },
   );
@@ -147,7 +147,7 @@ describe.each(bodies)('$label draws a person whose hands move slowly', (subject)
           before = now;
         }
       }),
-      runs(40),
+      runs(20),
     );
   });
 });
