@@ -1,9 +1,9 @@
 import type { Logger } from 'pino';
 import { type ClientMessage, clientMessageFrom, protocolVersion } from '../src/core/protocol/messages';
+import type { TokenBucket } from '../src/core/room/token-bucket';
 import { dismiss, type Guest } from './guest';
 import type { HostedRooms } from './hosted-rooms';
 import type { RelayMetrics } from './relay-metrics';
-import type { TokenBucket } from './token-bucket';
 
 export interface GuestMessagesOptions {
   readonly rooms: HostedRooms;

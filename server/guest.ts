@@ -5,12 +5,12 @@ import { frameLength, writeFrame } from '../src/core/protocol/pose-frame';
 import { messageEvent } from '../src/core/protocol/small-frames';
 import type { HostedGame } from '../src/core/room/match-policy';
 import type { FreshPose } from '../src/core/room/room-outlet';
+import { TokenBucket } from '../src/core/room/token-bucket';
 import type { RelayConfiguration } from './relay-configuration';
 import type { RelayCounts } from './relay-metrics';
 import { hangUp } from './relay-transport';
 import type { RoomPass } from './room-tokens';
 import { mostBytesWaiting } from './slow-readers';
-import { createTokenBucket, type TokenBucket } from './token-bucket';
 
 /** A connection with a pass, before and after it joins its room. */
 export interface Guest {
@@ -45,9 +45,9 @@ export const createGuest = (
   wire: socket.conn.request.socket,
   pass: socket.data.pass,
   connectedAt: now,
-  poses: createTokenBucket(posesPerSecond),
-  events: createTokenBucket(eventsPerSecond, 2 * eventsPerSecond),
-  signals: createTokenBucket(signalsPerSecond, signalsAtOnce),
+  poses: new TokenBucket(posesPerSecond),
+  events: new TokenBucket(eventsPerSecond, 2 * eventsPerSecond),
+  signals: new TokenBucket(signalsPerSecond, signalsAtOnce),
   joined: false,
   badMessages: 0,
   ended: false,

@@ -7,6 +7,7 @@ import type { Logger } from 'pino';
 import { Server, type Socket } from 'socket.io';
 import { longestMessage } from '../src/core/protocol/messages';
 import { relayParser } from '../src/core/protocol/small-frames';
+import { TokenBucket } from '../src/core/room/token-bucket';
 import { type ClientAddress, clientAddressOf } from './client-address';
 import { createSlotCounter } from './connection-limiter';
 import { HttpError, refusal, sendRawAnswer } from './http/answer';
@@ -16,7 +17,6 @@ import type { RelayMetrics } from './relay-metrics';
 import { type ReceivingWebSocket, takeShortMessages } from './short-messages';
 import { createSitePolicy } from './site-policy';
 import { SlowReaders } from './slow-readers';
-import { createTokenBucket } from './token-bucket';
 import { handshakeMs } from './web-server';
 
 /** Where the relay is found on its server. */
@@ -110,7 +110,7 @@ function divert(conn: Socket['conn'], take: () => boolean, listener: (bytes: Uin
  * none is, and `end` is called once. `now`: seconds, monotonic.
  */
 function createFloodWatch(now: () => number, end: () => void): () => boolean {
-  const bucket = createTokenBucket(framesPerSecond);
+  const bucket = new TokenBucket(framesPerSecond);
   let floods = false;
   return () => {
     if (floods || bucket.take(now())) return !floods;

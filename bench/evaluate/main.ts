@@ -195,8 +195,9 @@ function measureDisturbed(corpus: Corpus) {
 }
 
 /** The judged clips by speed, on the shipping path and frame by frame. */
-async function measureSpeeds({ recordings, index, regressors, ...corpus }: Corpus) {
-  const judged = judgedOf({ recordings, index, regressors, ...corpus });
+async function measureSpeeds(corpus: Corpus) {
+  const { recordings, index, regressors } = corpus;
+  const judged = judgedOf(corpus);
   const tallies: Partial<Record<MeasuredMethod, SpeedTally>> = {};
   for (const clip of index.clips.filter(({ person }) => judged.has(person))) {
     const calibration = toldOf(index, clip);

@@ -97,6 +97,12 @@ const jointOf = (joints: Readonly<Record<string, Vec3>>, name: string): Vec3 => 
   return joint;
 };
 
+/** The length of the third difference of four places, one after the other [m]. */
+export function thirdDifference(a: Vec3, b: Vec3, c: Vec3, d: Vec3): number {
+  const along = (axis: 'x' | 'y' | 'z') => d[axis] - 3 * c[axis] + 3 * b[axis] - a[axis];
+  return Math.hypot(along('x'), along('y'), along('z'));
+}
+
 /** Adds one clip's frames, in order, at `rateHz`. */
 export function addClip(measures: Measures, frames: readonly MeasuredFrame[], rateHz: number): void {
   const lengths = bones.map(() => ({ least: Number.POSITIVE_INFINITY, most: 0 }));
@@ -142,11 +148,8 @@ export function addClip(measures: Measures, frames: readonly MeasuredFrame[], ra
   for (const { least, most } of lengths)
     if (most > 0) measures.boneVariation = Math.max(measures.boneVariation, most - least);
 
-  const third = (at: (row: number) => Vec3, row: number): number => {
-    const [a, b, c, d] = [at(row - 3), at(row - 2), at(row - 1), at(row)];
-    const along = (axis: 'x' | 'y' | 'z') => d[axis] - 3 * c[axis] + 3 * b[axis] - a[axis];
-    return Math.hypot(along('x'), along('y'), along('z')) * rateHz ** 3;
-  };
+  const third = (at: (row: number) => Vec3, row: number): number =>
+    thirdDifference(at(row - 3), at(row - 2), at(row - 1), at(row)) * rateHz ** 3;
   const frameAt = (row: number): MeasuredFrame => frames[row] as MeasuredFrame;
   for (let row = 3; row < frames.length; row++) {
     for (const name of estimatedJoints) {

@@ -4,6 +4,7 @@ import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
 import { angleBetween } from '../../src/core/math/quat';
 import { distance, type Vec3 } from '../../src/core/math/vec3';
 import { createDriver, type MeasuredMethod } from './drive';
+import { thirdDifference } from './measures';
 import type { RecordedFrame } from './recordings';
 
 /** Lower bounds of the bins: true speed of the faster wrist [m/s], and of the head's rotation [rad/s]. */
@@ -67,11 +68,7 @@ const errorOf = (joints: Joints, truth: Joints): number =>
 
 /** The third difference of the six joints over four frames [m]. */
 const jerkOf = (a: Joints, b: Joints, c: Joints, d: Joints): number =>
-  estimatedJoints.reduce((sum, joint) => {
-    const along = (axis: 'x' | 'y' | 'z') =>
-      d[joint]![axis] - 3 * c[joint]![axis] + 3 * b[joint]![axis] - a[joint]![axis];
-    return sum + Math.hypot(along('x'), along('y'), along('z'));
-  }, 0);
+  estimatedJoints.reduce((sum, joint) => sum + thirdDifference(a[joint]!, b[joint]!, c[joint]!, d[joint]!), 0);
 
 /** Adds one clip: the shipping path next to the same estimator without any filter or limit of speed. */
 export async function addSpeeds(

@@ -31,7 +31,7 @@ const joining = JSON.stringify({
   voice: { session: 'session-one', muted: false },
 });
 
-/** As far as a client comes before it sends anything but what it should. */
+/** The stages that a client reaches before it sends a bad packet. */
 const stages = ['stranger', 'lobby', 'guest', 'seated'] as const;
 
 /** Opens a WebSocket, comes as far as `stage`, sends these frames, and resolves once it is over. */

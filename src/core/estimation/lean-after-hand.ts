@@ -35,7 +35,7 @@ export interface Lean {
   softReach: number;
   /** How far clavicle and neck go beyond anatomy for it [share of the way to their extremes, 0 to 1]. */
   extremity: number;
-  /** The same in the frame before. */
+  /** Its value in the frame before. */
   extremityBefore: number;
 }
 

@@ -13,6 +13,9 @@ import { LatestResult } from './latest-result';
 import type { PoseRegressor } from './pose-regressor';
 import { correctionCutoff } from './smoothing.json';
 
+/** Half-life [s] of the low-pass on the correction. */
+const correctionHalfLife = halfLifeOfCutoff(correctionCutoff);
+
 /** Numbers of the network's input: the features at each age, and the newest frame's chest-frame features. */
 export const learnedInputCount = (windowSeconds: readonly number[]): number =>
   windowSeconds.length * featureCount + chestFeatureCount;
@@ -97,7 +100,7 @@ class Residual implements JointSource, JointNetwork {
     }
     const { ik, floorFromHeading } = solved;
     // Without an answer IK stands alone, and what was there fades.
-    const share = smoothingFactor(halfLifeOfCutoff(correctionCutoff), deltaSeconds);
+    const share = smoothingFactor(correctionHalfLife, deltaSeconds);
     for (let index = 0; index < estimatedJoints.length; index++) {
       const joint = estimatedJoints[index]!;
       const residual = lerp(this.#damped[joint], this.#newest[joint], share, this.#damped[joint]);

@@ -2,7 +2,7 @@ import type { HostedGame, MatchPolicy } from './match-policy';
 import type { RoomOutlet } from './room-outlet';
 import type { Seats } from './seats';
 
-/** Where the events of a match go. */
+/** The sink for the events of a match. */
 export interface EventRecipients<Game extends HostedGame> {
   readonly policy: Pick<MatchPolicy<Game>, 'refusalOf'>;
   readonly seats: Pick<Seats, 'at'>;

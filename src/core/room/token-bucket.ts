@@ -1,26 +1,33 @@
-/** A limit on how often something happens: `burst` times at once, and `perSecond` on average. Times are in seconds and never go back. */
+/** A limit on how often something happens: `burst` times at once, and `perSecond` on average. Times are in seconds; one that goes back adds nothing. */
 export class TokenBucket {
   readonly #perSecond: number;
   readonly #burst: number;
   #tokens: number;
   #filledAt: number | null = null;
+  #refusedInARow = 0;
 
-  constructor(perSecond: number, burst: number) {
+  constructor(perSecond: number, burst = perSecond) {
     this.#perSecond = perSecond;
     this.#burst = burst;
     this.#tokens = burst;
   }
 
-  /** Takes a token at this time; false: there is none. */
-  take(time: number): boolean {
-    this.#fill(time);
-    if (this.#tokens < 1) return false;
-    this.#tokens -= 1;
-    return true;
+  /** How many calls of `take` have failed since the last one that succeeded. */
+  get refusedInARow(): number {
+    return this.#refusedInARow;
   }
 
-  #fill(time: number): void {
-    this.#tokens = Math.min(this.#burst, this.#tokens + this.#perSecond * (time - (this.#filledAt ?? time)));
+  /** Takes a token at this time; false where none is left. */
+  take(time: number): boolean {
+    const passed = Math.max(0, time - (this.#filledAt ?? time));
+    this.#tokens = Math.min(this.#burst, this.#tokens + this.#perSecond * passed);
     this.#filledAt = time;
+    if (this.#tokens < 1) {
+      this.#refusedInARow += 1;
+      return false;
+    }
+    this.#tokens -= 1;
+    this.#refusedInARow = 0;
+    return true;
   }
 }
