@@ -1,110 +1,119 @@
-// Who may import whom (docs: the design's "Who may import whom"). Every rule says in its comment what it protects.
-// Type-only imports count too (tsPreCompilationDeps): a type from the wrong side is the first step of the wrong dependency.
+// Who may import whom (docs/architecture.md draws it). Between packages the manifests decide: a package imports what its package.json names.
+// Inside a package these rules do. Type-only imports count too (tsPreCompilationDeps): a type from the wrong side is the first step of the
+// wrong dependency.
+import { readdirSync, readFileSync } from 'node:fs';
 
-/** Each folder of core and the folders of core it may know, from the ground up. */
-const coreFolders = {
+const root = new URL('.', import.meta.url);
+const folders = [...readdirSync(new URL('src', root)).map((name) => `src/${name}`), 'server'];
+const manifests = new Map(
+  folders.map((folder) => [folder, JSON.parse(readFileSync(new URL(`${folder}/package.json`, root), 'utf8'))]),
+);
+const folderOf = new Map([...manifests].map(([folder, { name }]) => [name, folder]));
+
+const packageRules = [...manifests].map(([folder, { name, dependencies = {} }]) => {
+  const known = Object.keys(dependencies).flatMap((dependency) => folderOf.get(dependency) ?? []);
+  return {
+    name: `package-${name}`,
+    comment: `${folder}/package.json names the packages of this repository that ${name} may import.`,
+    severity: 'error',
+    from: { path: `^${folder}/` },
+    to: {
+      path: '^(src|server|public)/',
+      pathNot: `^(${[folder, ...known].join('|')})/${folder === 'src/threepoint' ? '|^public/models/learned\\.json$' : ''}`,
+    },
+  };
+});
+
+/** Returns the rules of a package's rooms: each room and the rooms of the package that it may import. */
+const roomRules = (folder, rooms) =>
+  Object.entries(rooms).map(([room, known]) => ({
+    name: `${folder.replaceAll('/', '-')}-${room}`,
+    comment: `${folder}/${room} may import ${known.join(', ') || 'no other room'}: anything else would let a change travel upwards.`,
+    severity: 'error',
+    from: { path: `^${folder}/${room}/` },
+    to: { path: `^${folder}/`, pathNot: `^${folder}/(${[room, ...known].join('|')})/` },
+  }));
+
+const coreRooms = {
   errors: [],
+  validation: ['errors'],
   math: [],
-  body: ['math'],
+  body: ['math', 'validation', 'errors'],
+  input: ['math'],
   tracking: ['math', 'body', 'errors'],
   estimation: ['math', 'body', 'tracking', 'errors'],
   motion: ['math', 'body', 'tracking', 'estimation', 'errors'],
   mocap: ['math', 'body', 'tracking', 'motion', 'errors'],
-  games: ['math', 'tracking'],
-  protocol: ['math', 'body', 'tracking', 'games'],
-  room: ['math', 'body', 'tracking', 'protocol', 'errors'],
-  'match-policies': ['math', 'games', 'protocol', 'room'],
-  statistics: ['math'],
-  study: ['math', 'body', 'tracking', 'estimation', 'protocol', 'statistics', 'errors'],
-  rehearsal: ['math', 'study'],
 };
-
-const coreRules = Object.entries(coreFolders).map(([folder, known]) => ({
-  name: `core-${folder}`,
-  comment:
-    known.length === 0
-      ? `core/${folder} is the ground everything stands on: it knows nothing else.`
-      : `core/${folder} may know ${known.join(', ')}; anything else would let a change travel upwards.`,
-  severity: 'error',
-  from: { path: `^src/core/${folder}/` },
-  to: { path: '^src/core/', pathNot: `^src/core/(${[folder, ...known].join('|')})/` },
-}));
+const libraryRooms = {
+  core: [],
+  xr: ['core'],
+  avatar: ['core'],
+  onnx: ['core'],
+  api: ['core', 'xr', 'avatar', 'onnx'],
+};
+const roomsRooms = {
+  protocol: [],
+  room: ['protocol'],
+  client: ['protocol', 'room'],
+  voices: ['protocol', 'client'],
+  server: ['protocol', 'room'],
+};
+const studyRooms = {
+  statistics: [],
+  model: ['statistics'],
+  simulation: ['model'],
+  client: ['model', 'simulation'],
+  participant: ['model', 'client'],
+  pages: ['model', 'statistics', 'simulation', 'client'],
+  server: ['model', 'statistics'],
+};
+const activity = { shell: 'archery|ball|mocap|studio' };
 
 /** `import 'three'` resolves into node_modules; a package that is not installed keeps its bare name. */
 const packagePath = (...names) => `(^|node_modules/)(${names.join('|')})(/|$)`;
 
-const adapters = 'xr|inference|avatar|scene|net|ui';
-const testsAndTools = '^(tests|e2e|bench|scripts)/';
+const pure = '^src/(threepoint/core|games|rooms/(protocol|room)|study/(model|statistics|simulation))/';
+const runsInNode = '^src/(http/(?!server-presence)|rooms/server/|study/(server|cli)/)';
 
 export default {
   forbidden: [
-    ...coreRules,
+    ...packageRules,
+    ...roomRules('src/threepoint/core', coreRooms),
+    ...roomRules('src/threepoint', libraryRooms),
+    ...roomRules('src/rooms', roomsRooms),
+    ...roomRules('src/study', studyRooms),
     {
-      name: 'core-folders-are-known',
-      comment: 'A new folder in core needs a line in this file that says whom it may know.',
+      name: 'rooms-are-known',
+      comment: 'A new room of a package needs a line in this file that names the rooms it may import.',
       severity: 'error',
-      from: { path: '^src/core/', pathNot: `^src/core/(${Object.keys(coreFolders).join('|')})/` },
+      from: {
+        path: '^src/(threepoint|rooms|study)/',
+        pathNot: `^src/(threepoint/(${Object.keys(libraryRooms).join('|')})|rooms/(${Object.keys(roomsRooms).join('|')})|study/(${Object.keys(studyRooms).join('|')}|cli))/`,
+      },
       to: {},
     },
     {
-      name: 'core-is-pure',
+      name: 'rules-are-pure',
       comment:
-        'core runs in the page, in the server and in tests alike: no package, no Node module and no adapter, so that it ' +
-        'can neither draw nor wait nor ask the time.',
+        'Estimation, game rules, rooms and statistics run in the page, in the server and in tests alike: no adapter, no Node module, and of ' +
+        'packages only valibot, which checks what strangers send, and the distribution functions of stdlib.',
       severity: 'error',
-      from: {
-        path: '^src/core/',
-        pathNot:
-          '^src/core/(study|statistics)/|^src/core/protocol/(messages|ball-messages|ball-snapshot|voice-messages)\\.ts$',
-      },
-      to: { pathNot: '^src/core/' },
-    },
-    {
-      name: 'core-messages-are-checked',
-      comment: 'As core-is-pure, with valibot: messages arrive from strangers and are checked field by field.',
-      severity: 'error',
-      from: { path: '^src/core/protocol/(messages|ball-messages|ball-snapshot|voice-messages)\\.ts$' },
-      to: { pathNot: ['^src/core/', packagePath('valibot')] },
-    },
-    {
-      name: 'core-study-is-pure',
-      comment:
-        'As core-is-pure, with valibot, a function of its arguments alone: study files and records arrive from outside, and errors ' +
-        'must name the field.',
-      severity: 'error',
-      from: { path: '^src/core/study/' },
-      to: { pathNot: ['^src/core/', packagePath('valibot')] },
-    },
-    {
-      name: 'core-statistics-is-pure',
-      comment:
-        'As core-is-pure, with the distribution functions of stdlib: p-values belong to a library that agrees with R.',
-      severity: 'error',
-      from: { path: '^src/core/statistics/' },
-      to: { pathNot: ['^src/core/', packagePath('@stdlib/(stats-base-dists|math-base-special)-[^/]+')] },
-    },
-    {
-      name: 'library-knows-no-page',
-      comment:
-        'src/lib is the public face: it introduces core, inference, xr, avatar and scene to each other, and the page is one of its consumers. ' +
-        "Of public/ it brings the learned network's contract.",
-      severity: 'error',
-      from: { path: '^src/lib/' },
+      from: { path: pure },
       to: {
-        path: '^(src|server|public)/',
-        pathNot: '^src/(lib|core|inference|xr|avatar|scene)/|^public/models/learned\\.json$',
+        pathNot: [pure, packagePath('valibot'), packagePath('@stdlib/(stats-base-dists|math-base-special)-[^/]+')],
       },
     },
     {
-      name: 'library-parts-stay-apart',
+      name: 'library-entries-stay-apart',
       comment:
-        'threepoint has neither three nor onnxruntime in it: what draws is reached through lib/three alone, the runtime through lib/onnx ' +
-        'and its worker alone; of inference the others take what fetches and computes without a runtime.',
+        'threepoint has neither three nor onnxruntime in it: what draws is reached through api/three alone, the runtime through api/onnx and its ' +
+        'worker alone; the others take of onnx what fetches and computes without a runtime.',
       severity: 'error',
-      from: { path: '^src/lib/', pathNot: '^src/lib/(three|onnx|onnx-worker|polyfill)\\.ts$' },
+      from: { path: '^src/threepoint/api/', pathNot: '/(three|onnx|onnx-worker|polyfill)\\.ts$' },
       to: {
-        path: '^src/(xr|avatar|scene|inference|lib/(three|onnx|onnx-worker))',
-        pathNot: '^src/inference/(load-plain-regressor|model-files)\\.ts$',
+        path: '^src/threepoint/(xr|avatar|onnx|api/(three|onnx|onnx-worker))',
+        pathNot: '^src/threepoint/onnx/(load-plain-regressor|model-files)\\.ts$',
       },
     },
     {
@@ -112,129 +121,94 @@ export default {
       comment:
         'threepoint/polyfill serves pages of any engine: it reads sessions, and has neither three nor a runtime.',
       severity: 'error',
-      from: { path: '^src/lib/polyfill\\.ts$' },
-      to: { path: '^src/(avatar|scene|inference|xr/(?!tracker)|lib/(three|onnx|onnx-worker))' },
+      from: { path: '^src/threepoint/api/polyfill\\.ts$' },
+      to: { path: '^src/threepoint/(avatar|onnx|xr/(?!tracker)|api/(three|onnx|onnx-worker))' },
     },
     {
       name: 'library-draws-without-runtime',
-      comment: 'Who draws with threepoint/three serves no runtime: it is threepoint/onnx that brings it.',
+      comment: 'A page that draws with threepoint/three loads no runtime: threepoint/onnx brings it.',
       severity: 'error',
-      from: { path: '^src/lib/three\\.ts$' },
+      from: { path: '^src/threepoint/api/three\\.ts$' },
       to: {
-        path: '^src/(inference|lib/onnx)',
-        pathNot: '^src/inference/(load-plain-regressor|model-files)\\.ts$',
+        path: '^src/threepoint/(onnx|api/onnx)',
+        pathNot: '^src/threepoint/onnx/(load-plain-regressor|model-files)\\.ts$',
       },
     },
     {
-      name: 'room-reaches-no-game',
-      comment:
-        'The Room hosts any game: what is particular to one comes in as its MatchPolicy, not through a third module either.',
-      severity: 'error',
-      from: { path: '^src/core/room/' },
-      to: { path: '^src/core/games/', reachable: true },
-    },
-    {
-      name: 'adapters-are-strangers',
-      comment:
-        'Adapters (one per outside thing) never know each other, or replacing one would mean changing another: the page ' +
-        'introduces them. All may use scene.',
-      severity: 'error',
-      from: { path: `^src/(${adapters})/` },
-      to: { path: `^src/(${adapters})/`, pathNot: '^src/($1|scene)/' },
-    },
-    {
-      name: 'nothing-loose-in-src',
-      comment: 'A file belongs to a room, and the room says whom it may know.',
-      severity: 'error',
-      from: { path: `^src/(?!(core|${adapters}|lib|app|pages|styles)/)` },
-      to: {},
-    },
-    {
-      name: 'adapters-know-no-page',
-      comment: 'Core and adapters are used by the library and by pages; they know neither.',
-      severity: 'error',
-      from: { path: `^src/(core|${adapters})/` },
-      to: { path: '^src/(app|pages|lib)/' },
-    },
-    {
       name: 'activities-are-strangers',
-      comment:
-        'A game, the studio, motion capture and the study can each be taken away: they know neither each other nor the shell, which introduces them.',
+      comment: 'Each activity of the page can be removed: activities import neither each other nor the shell.',
       severity: 'error',
-      from: { path: '^src/app/(archery|ball|mocap|study|studio)/' },
-      to: { path: '^src/app/', pathNot: '^src/app/$1/' },
+      from: { path: `^src/page/(${activity.shell})/` },
+      to: { path: '^src/page/', pathNot: '^src/page/($1|scene)/' },
     },
     {
-      name: 'main-is-imported-by-none',
-      comment: 'main.ts builds everything; who needs something from it should be given it.',
+      name: 'scene-draws-for-activities',
+      comment: 'The scene holds what all activities draw with; it imports none of them.',
       severity: 'error',
-      from: {},
-      to: { path: '^src/app/main\\.ts$' },
-    },
-    {
-      name: 'pages-stand-alone',
-      comment:
-        "The experimenter's and the results page load in a moment: nothing of the body, the games or the page that plays them.",
-      severity: 'error',
-      from: { path: '^src/pages/' },
-      to: { path: '^src/', pathNot: '^src/(pages|core|net|ui|styles)/' },
+      from: { path: '^src/page/(scene|emulator|offline)/' },
+      to: { path: '^src/page/', pathNot: '^src/page/$1/' },
     },
     {
       name: 'three-draws',
       comment: "Three's vectors are live objects: they stay where things are drawn and are copied at the border.",
       severity: 'error',
-      from: { path: '^(src|server)/', pathNot: '^src/(xr|avatar|scene|ui|app)/|^src/lib/three\\.ts$' },
+      from: {
+        path: '^(src|server)/',
+        pathNot: '^src/(threepoint/(xr|avatar)|ui|page|study/participant)/|^src/threepoint/api/three\\.ts$',
+      },
       to: { path: packagePath('three', '@types/three', '@pixiv/[^/]+') },
     },
     {
       name: 'onnxruntime-infers',
       comment: 'The runtime stands behind PoseRegressor, so that an estimator never knows what computes it.',
       severity: 'error',
-      from: { path: '^(src|server)/', pathNot: '^src/inference/' },
+      from: { path: '^(src|server)/', pathNot: '^src/threepoint/onnx/' },
       to: { path: packagePath('onnxruntime-[^/]+') },
     },
     {
-      name: 'socket-io-connects',
-      comment: 'The Room and the games know no socket: offline play is the same code.',
-      severity: 'error',
-      from: { path: '^(src|server)/', pathNot: '^(src/net|server)/' },
-      to: { path: packagePath('socket\\.io[^/]*', '@socket\\.io/[^/]+') },
-    },
-    {
       name: 'sqlite-stores',
-      comment:
-        'The database stands behind StudyStore, so that another one (or the Node module, once we need no Node 20) is one file.',
+      comment: 'The database stands behind StudyStore, so that another one is one file.',
       severity: 'error',
-      from: { path: '^(src|server)/', pathNot: '^server/study-(database|schema)\\.ts$' },
+      from: { path: '^(src|server)/', pathNot: '^src/study/server/study-(database|schema)\\.ts$' },
       to: { path: packagePath('@photostructure/sqlite') },
     },
     {
-      name: 'server-knows-core-alone',
-      comment: 'The server shares the rules with the page, not the page: nothing that draws belongs in it.',
+      name: 'browsers-have-no-node',
+      comment: "A module of Node would fail in a user's browser.",
       severity: 'error',
-      from: { path: '^server/' },
-      to: { path: '^src/', pathNot: '^src/core/' },
+      from: { path: '^src/', pathNot: runsInNode },
+      to: { dependencyTypes: ['core'] },
     },
     {
-      name: 'page-knows-no-server',
+      name: 'browser-code-knows-no-server',
       comment: 'The page reaches the server over the network alone.',
       severity: 'error',
-      from: { path: '^src/' },
-      to: { path: '^server/' },
+      from: { path: '^src/', pathNot: runsInNode },
+      to: { path: runsInNode },
     },
     {
       name: 'shipped-code-knows-no-tests',
       comment: 'What ships must not need what does not.',
       severity: 'error',
       from: { path: '^(src|server)/' },
-      to: { path: testsAndTools },
+      to: { path: '^(tests|e2e|bench|scripts|tools)/' },
     },
     {
-      name: 'page-runs-in-a-browser',
-      comment: "The page has no Node: a built-in module here would only fail in a user's browser.",
+      name: 'shipped-packages-are-no-tools',
+      comment:
+        'A package that runs in the page or in the server is installed by npm ci --omit=dev, and audited. Type packages are exempt, and so are the ' +
+        'loaders by which threads run from source: the built server has none (scripts/build-server.mjs).',
       severity: 'error',
-      from: { path: '^src/' },
-      to: { dependencyTypes: ['core'] },
+      from: { path: '^(src|server)/', pathNot: '-worker\\.mjs$|^src/threepoint/|^src/study/cli/' },
+      to: { dependencyTypes: ['npm-dev'], dependencyTypesNot: ['type-only'], pathNot: packagePath('@types/[^/]+') },
+    },
+    {
+      name: 'packages-are-declared',
+      comment:
+        'A package that is there only because another brought it along disappears with the next update. Tests and tools use what packages declare.',
+      severity: 'error',
+      from: { path: '^(src|server)/', pathNot: '-worker\\.mjs$' },
+      to: { dependencyTypes: ['npm-no-pkg', 'npm-unknown'] },
     },
     {
       name: 'no-cycles',
@@ -250,30 +224,15 @@ export default {
       from: {},
       to: { couldNotResolve: true },
     },
-    {
-      name: 'shipped-packages-are-no-tools',
-      comment:
-        'A package that runs in the page or in the server is installed by npm ci --omit=dev, and audited. Type packages are exempt, and so are the ' +
-        'loaders by which threads run from source: the built server has none (scripts/build-server.mjs).',
-      severity: 'error',
-      from: { path: '^(src|server)/', pathNot: '^server/[^/]+-worker\\.mjs$' },
-      to: { dependencyTypes: ['npm-dev'], dependencyTypesNot: ['type-only'], pathNot: packagePath('@types/[^/]+') },
-    },
-    {
-      name: 'packages-are-declared',
-      comment: 'A package that is there only because another brought it along disappears with the next update.',
-      severity: 'error',
-      from: { path: '^(src|server|tests|e2e|bench)/' },
-      to: { dependencyTypes: ['npm-no-pkg', 'npm-unknown'] },
-    },
   ],
   options: {
     tsPreCompilationDeps: true,
     tsConfig: { fileName: 'tsconfig.json' },
     doNotFollow: { path: 'node_modules' },
+    combinedDependencies: true,
     enhancedResolveOptions: {
       exportsFields: ['exports'],
-      conditionNames: ['import', 'require', 'node', 'default', 'types'],
+      conditionNames: ['source', 'import', 'require', 'node', 'default', 'types'],
     },
   },
 };

@@ -1,5 +1,9 @@
 import { defineConfig } from '@playwright/test';
 import { findChromium } from './scripts/chromium.mjs';
+import { withSourceCondition } from './scripts/source-condition.mjs';
+
+// The workers that run the tests resolve packages to their sources.
+process.env.NODE_OPTIONS = withSourceCondition(process.env.NODE_OPTIONS);
 
 /**
  * Which tests run: those of `npm test` carry no mark, those of `npm run test:full` @full or @realtime, those of `npm run nightly` @nightly.
@@ -34,7 +38,7 @@ export default defineConfig({
   expect: { timeout: 20_000 },
   reporter: [['list']],
   use: {
-    // What a page asks for is what a test sees; e2e/offline.spec.ts alone lets one be kept.
+    // What a page asks for is what a test sees; e2e/page/offline.spec.ts alone lets one be kept.
     serviceWorkers: 'block',
     viewport: { width: 960, height: 600 },
     // What was done and said; a film of it would cost the software renderer two fifths of the time.

@@ -1,6 +1,6 @@
 import { fileURLToPath } from 'node:url';
-import { defineConfig, type Plugin } from 'vite';
-import { contentSecurityPolicy } from './server/security-headers.ts';
+import { defaultClientConditions, defineConfig, type Plugin } from 'vite';
+import { contentSecurityPolicy } from './src/http/security-headers.ts';
 
 /**
  * Sources from which the page may read files that are named by address: those of `npm run build -- --files-from`, else any over https:. Where a
@@ -39,7 +39,7 @@ const decodersWithoutNode: Plugin = {
   load: { filter: { id: /^\0decoders-without-node$/ }, handler: () => 'export {};' },
 };
 
-/** three.js's loader of KTX2 knows where its transcoder's script lies, for a worker of its own; ours has it in itself (src/avatar/decoders/ktx2-worker.ts). */
+/** three.js's loader of KTX2 knows where its transcoder's script lies, for a worker of its own; ours has it in itself (src/threepoint/avatar/decoders/ktx2-worker.ts). */
 const ktx2WithoutScript: Plugin = {
   name: 'ktx2-without-script',
   transform: {
@@ -57,6 +57,7 @@ export default defineConfig({
   base: './',
   plugins: [policyInPages, ktx2WithoutScript],
   resolve: {
+    conditions: ['source', ...defaultClientConditions],
     alias: {
       '@stdlib/assert-has-generator-support': fileURLToPath(
         new URL('scripts/has-generator-support.cjs', import.meta.url),

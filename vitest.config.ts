@@ -1,7 +1,12 @@
+import { defaultServerConditions } from 'vite';
 import { defineConfig, type TestProjectConfiguration } from 'vitest/config';
+import { withSourceCondition } from './scripts/source-condition.mjs';
+
+// Programs that tests start resolve packages to their sources, too.
+process.env.NODE_OPTIONS = withSourceCondition(process.env.NODE_OPTIONS);
 
 /** Pages whose parts load when they are asked for: a file may end while one is still on its way, which would fail the next file. */
-const loading = 'tests/app/shell/**/*.test.ts';
+const loading = 'tests/page/shell/**/*.test.ts';
 
 const projects: TestProjectConfiguration[] = [
   { extends: true, test: { name: 'shared', include: ['tests/**/*.test.ts'], exclude: [loading], isolate: false } },
@@ -9,6 +14,7 @@ const projects: TestProjectConfiguration[] = [
 ];
 
 export default defineConfig({
+  ssr: { resolve: { conditions: ['source', ...defaultServerConditions] } },
   test: {
     setupFiles: ['tests/property-runs.ts', 'tests/matchers/to-be-same-rotation-as.ts'],
     // Most files share a process and what they have loaded, which saves a fifth of the time: a test puts back what it changes outside

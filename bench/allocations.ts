@@ -2,9 +2,9 @@ import { readFileSync } from 'node:fs';
 import { SourceMap } from 'node:module';
 import { fileURLToPath } from 'node:url';
 import type { Browser, CDPSession, Page } from '@playwright/test';
+import { serve, type WebServer } from 'threepoint-http/web-server';
 import { driveTime, pass } from '../e2e/driven-time';
 import { createPageHandler } from '../server/page';
-import { serve, type WebServer } from '../server/web-server';
 import type { AllocationScene } from './page/allocations';
 
 /** Bytes that a frame leaves to the collector, collected or not, on the page's own thread; the network's worker is another heap. */

@@ -1,6 +1,6 @@
 import { readFileSync } from 'node:fs';
 import type { Browser } from '@playwright/test';
-import { largeAvatar } from '../tests/avatar/large-avatar';
+import { largeAvatar } from '../tests/threepoint/avatar/large-avatar';
 
 /** One file on its way onto the stage of the page. */
 export interface AvatarLoading {

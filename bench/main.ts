@@ -1,10 +1,10 @@
 import { writeFileSync } from 'node:fs';
 import { parseArgs } from 'node:util';
 import { type Browser, chromium } from '@playwright/test';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import { serve, type WebServer } from 'threepoint-http/web-server';
 import { findChromium } from '../scripts/chromium.mjs';
 import { createPageHandler } from '../server/page';
-import { serve, type WebServer } from '../server/web-server';
-import { reasonOf } from '../src/core/errors/reasons';
 import { tell } from '../tests/tell';
 import { builtIn, measureAllocations } from './allocations';
 import { measureAvatarLoading } from './avatar-loading';

@@ -6,15 +6,15 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
-import { randomSource } from '../src/core/rehearsal/random-source';
-import { parsePlan, participantsOf, type StudyPlan } from '../src/core/study/plan';
-import { begin } from '../src/core/study/progress';
-import { scheduleFor } from '../src/core/study/schedule';
-import type { ParticipantState } from '../src/core/study/study-api';
-import { recordVersion, type StudyRecord } from '../src/core/study/study-record';
-import { playedRound } from '../tests/app/study/played-round';
-import { paperFile } from '../tests/core/study/studies';
+import { parsePlan, participantsOf, type StudyPlan } from 'threepoint-study/model/plan';
+import { begin } from 'threepoint-study/model/progress';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import type { ParticipantState } from 'threepoint-study/model/study-api';
+import { recordVersion, type StudyRecord } from 'threepoint-study/model/study-record';
+import { randomSource } from 'threepoint-study/simulation/random-source';
 import { heardFrom, kill } from '../tests/server/child-process';
+import { paperFile } from '../tests/study/model/studies';
+import { playedRound } from '../tests/study/participant/played-round';
 
 const experimenter = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 /** As often as the page asks for commands, and sends what is new [s]. */
@@ -137,7 +137,12 @@ const slowDisk = (ms: number) =>
 const flushMs = Number(options['flush-ms'] ?? 0);
 const [command, ...words] = [
   ...(flushMs > 0 ? ['strace', ...slowDisk(flushMs)] : []),
-  ...[process.execPath, '--import', 'tsx', fileURLToPath(new URL('../tests/server/study-process.ts', import.meta.url))],
+  ...[
+    process.execPath,
+    '--import',
+    'tsx',
+    fileURLToPath(new URL('../tests/study/server/study-process.ts', import.meta.url)),
+  ],
   directory,
 ];
 const server = spawn(command as string, words, {

@@ -1,4 +1,4 @@
-import { stageNames } from '../src/app/shell/frame-timing';
+import { stageNames } from 'threepoint-page/shell/frame-timing';
 import type { Allocations } from './allocations';
 import type { MeasuredNetwork } from './networks';
 import type { CrowdTimes } from './page/crowd';

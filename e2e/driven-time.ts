@@ -1,5 +1,5 @@
 import type { Page } from '@playwright/test';
-import type { Probe } from '../src/app/shell/probe';
+import type { Probe } from 'threepoint-page/shell/probe';
 
 /** How far the page's clock goes on from one frame to the next [ms], unless a test says: that of a device with 40 Hz. */
 const usualStepMs = 25;

@@ -1,7 +1,7 @@
 // A person in a room without a page, as a process of its own: what this one imports, Playwright's loader does not read.
 import { createHash } from 'node:crypto';
-import { createAvatarExchange } from '../src/net/avatar-exchange';
-import { arrive, until } from '../tests/server/running-relay';
+import { createAvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
+import { arrive, until } from '../tests/rooms/server/running-relay';
 
 export interface GuestOrder {
   readonly id: number;

@@ -1,5 +1,5 @@
 import type { Page } from '@playwright/test';
-import { menuHeight, menuWidth, otherHeight } from '../src/app/shell/vr-menu/menu-buttons';
+import { menuHeight, menuWidth, otherHeight } from 'threepoint-page/shell/vr-menu/menu-buttons';
 import { emulatedHeadset, frames } from './emulated-headset';
 
 /** What is written on the sheets of the headset, and where on its canvas [pixels]. */

@@ -1,10 +1,10 @@
 import { mkdirSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { type Browser, test as base, type ConsoleMessage, expect, type Page, type Request } from '@playwright/test';
+import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
+import { serve } from 'threepoint-http/web-server';
+import type { Probe } from 'threepoint-page/shell/probe';
 import { createPageHandler } from '../server/page';
-import { serve } from '../server/web-server';
-import type { Probe } from '../src/app/shell/probe';
-import type { EstimatorName } from '../src/core/estimation/pose-estimator';
 import { driveTime, letTimePass, rest } from './driven-time';
 import { type EmulatedHeadset, emulatedHeadset, frames, type Point } from './emulated-headset';
 

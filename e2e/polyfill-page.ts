@@ -1,6 +1,6 @@
 // A page of another engine: it knows WebXR alone, asks for the body of WebXR Body Tracking, and runs on an emulated headset without one.
 import { metaQuest3, XRDevice } from 'iwer';
-import { installBodyTracking } from '../src/lib/polyfill';
+import { installBodyTracking } from 'threepoint/api/polyfill';
 
 type FrameWithBody = XRFrame & {
   readonly body:

@@ -4,10 +4,10 @@ import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { parsePlan, type StudyPlan } from '../src/core/study/plan';
-import type { ParticipantState } from '../src/core/study/study-api';
-import { recordVersion } from '../src/core/study/study-record';
-import { studyLink } from '../src/net/study-link';
+import { studyLink } from 'threepoint-study/client/study-link';
+import { parsePlan, type StudyPlan } from 'threepoint-study/model/plan';
+import type { ParticipantState } from 'threepoint-study/model/study-api';
+import { recordVersion } from 'threepoint-study/model/study-record';
 
 export const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 

@@ -54,7 +54,7 @@ await main(async () => {
     // The page's sources are translated as they are asked for: on a busy machine that takes a minute.
     page.setDefaultTimeout(300_000);
     page.on('pageerror', (error) => console.log(`  ${error.message}`));
-    await page.goto(`${server.resolvedUrls.local[0]}scripts/avatars-try/sheet.html`);
+    await page.goto(`${server.resolvedUrls.local[0]}tools/avatars/try/sheet.html`);
     await page.waitForFunction(() => 'makeSheet' in window);
     const write = (name, picture) =>
       writeFileSync(join(out, `${name}.png`), Buffer.from(picture.split(',')[1], 'base64'));

@@ -7,6 +7,7 @@ import { brotliCompressSync } from 'node:zlib';
 import { rolldown } from 'rolldown';
 import { staleSizes } from './library-sizes.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
+import { sourceResolution } from './source-condition.mjs';
 
 const out = join(root, 'dist-library');
 const entries = ['index', 'motion', 'three', 'onnx', 'onnx-worker', 'polyfill'];
@@ -73,7 +74,7 @@ const weightsBeside = {
   },
 };
 
-const sourceOf = (name) => join(root, `src/lib/${name}.ts`);
+const sourceOf = (name) => join(root, `src/threepoint/api/${name}.ts`);
 
 /** input: where each entry begins, by its name. */
 async function bundle(input, plugins) {
@@ -81,6 +82,7 @@ async function bundle(input, plugins) {
     input,
     cwd: root,
     platform: 'browser',
+    resolve: sourceResolution('browser'),
     external,
     plugins,
     tsconfig: join(root, 'tsconfig.json'),

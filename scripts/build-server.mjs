@@ -6,6 +6,7 @@ import { pathToFileURL } from 'node:url';
 import { parseArgs } from 'node:util';
 import { rolldown } from 'rolldown';
 import { main, root, SetupError } from './run-command.mjs';
+import { sourceResolution } from './source-condition.mjs';
 
 /** The server reads package.json, dist/ and study-data/ beside its own folder, which a build replaces as server/ does. */
 const usualOut = 'dist-server';
@@ -38,6 +39,7 @@ export async function buildServer(out) {
     input: entries(),
     cwd: root,
     platform: 'node',
+    resolve: sourceResolution('node'),
     external: (id) => id.startsWith('node:') || packageOf(id) !== undefined,
     tsconfig: join(root, 'tsconfig.json'),
   });
@@ -61,7 +63,7 @@ export async function buildServer(out) {
   const own = Object.fromEntries(Object.entries(dependencies).filter(([known]) => imported.has(known)));
   const manifest = { name, version, type, private: true, dependencies: own };
   writeFileSync(join(out, 'package.json'), `${JSON.stringify(manifest, null, 2)}\n`);
-  cpSync(join(root, 'server/study-analysis'), join(out, 'study-analysis'), { recursive: true });
+  cpSync(join(root, 'src/study/server/analysis'), join(out, 'study-analysis'), { recursive: true });
 }
 
 if (import.meta.url === pathToFileURL(process.argv[1]).href)

@@ -2,6 +2,7 @@ import { createHash } from 'node:crypto';
 import { readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join, sep } from 'node:path';
 import { root } from './run-command.mjs';
+import { sourceResolution } from './source-condition.mjs';
 
 /** Other pages than the one that is kept; they need their server. */
 const otherPages = ['experimenter.html', 'preview.html', 'results.html', 'withdraw.html'];
@@ -61,8 +62,9 @@ export async function buildServiceWorker(directory) {
   // Loaded here, where it is installed: the commands that install what is missing load this file first.
   const { rolldown } = await import('rolldown');
   const bundle = await rolldown({
-    input: join(root, 'src/app/offline/service-worker.ts'),
+    input: join(root, 'src/page/offline/service-worker.ts'),
     platform: 'browser',
+    resolve: sourceResolution('browser'),
     transform: { define: { 'process.env.NODE_ENV': '"production"' }, target: 'es2022' },
   });
   const { output } = await bundle.generate({ format: 'iife', minify: true });

@@ -19,7 +19,7 @@ const sources = [
   'package-lock.json',
   'public',
   'src',
-  'server/security-headers.ts',
+  'src/http/security-headers.ts',
   'scripts/build.mjs',
   'scripts/build-service-worker.mjs',
 ];

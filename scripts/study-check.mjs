@@ -21,7 +21,7 @@ await main(async () => {
   await ensureInstalled();
   // Paths on the command line mean what they mean to the person who typed them.
   const path = resolve(process.env.INIT_CWD ?? process.cwd(), file);
-  const args = ['--import', 'tsx', 'scripts/study-check/main.ts', path, ...(participant ? [participant] : [])];
+  const args = ['--import', 'tsx', 'src/study/cli/check/main.ts', path, ...(participant ? [participant] : [])];
   const { code } = await run(process.execPath, args);
   return code;
 });

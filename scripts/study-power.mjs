@@ -24,7 +24,7 @@ await main(async () => {
   const { code } = await run(process.execPath, [
     '--import',
     'tsx',
-    'scripts/study-power/main.ts',
+    'src/study/cli/power/main.ts',
     JSON.stringify(given),
   ]);
   return code;

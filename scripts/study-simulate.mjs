@@ -33,7 +33,7 @@ await main(async () => {
   await ensureInstalled();
   // Paths on the command line mean what they mean to the person who typed them.
   const path = (name) => resolve(process.env.INIT_CWD ?? process.cwd(), name);
-  const args = ['--import', 'tsx', 'scripts/study-simulate/main.ts', '--out', path(into), '--plan', path(study)];
+  const args = ['--import', 'tsx', 'src/study/cli/simulate/main.ts', '--out', path(into), '--plan', path(study)];
   for (const [name, value] of Object.entries(rest)) {
     for (const one of [value].flat()) args.push(`--${name}=${one}`);
   }

@@ -18,6 +18,6 @@ await main(async () => {
   // Paths on the command line mean what they mean to the person who typed them.
   const path = resolve(process.env.INIT_CWD ?? process.cwd(), file());
   await ensureInstalled();
-  const { code } = await run(process.execPath, ['--import', 'tsx', 'scripts/study-verify/main.ts', path]);
+  const { code } = await run(process.execPath, ['--import', 'tsx', 'src/study/cli/verify/main.ts', path]);
   return code;
 });

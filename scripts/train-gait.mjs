@@ -1,6 +1,6 @@
 // npm run train:gait -- --mocap DIR [--skeleton MAP.json] [--people 001,002] [--steps N] [--seed N]: the network that tells where feet are expected.
 // Python prepares the motion, the page's own code makes the inputs, Python trains: without each of four groups of people (.cache/gait, for
-// npm run report -- --legs), then on all of them (src/core/estimation/gait-network.json).
+// npm run report -- --legs), then on all of them (src/threepoint/core/estimation/gait-network.json).
 import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';

@@ -3,12 +3,7 @@ import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { hostname } from 'node:os';
 import { join } from 'node:path';
 import { generate } from 'selfsigned';
-
-/** A private key and its certificate, PEM. */
-export interface Credentials {
-  readonly key: string;
-  readonly cert: string;
-}
+import type { Credentials } from 'threepoint-http/web-server';
 
 const day = 24 * 3600 * 1000;
 

@@ -1,5 +1,6 @@
 import { parseArgs } from 'node:util';
-import { weaknessOf } from './secret-bits';
+import { ConfigurationError } from 'threepoint-http/configuration-error';
+import { weaknessOf } from 'threepoint-http/secret-bits';
 
 /** How this process serves, from the command line and the environment. */
 export interface Configuration {
@@ -20,9 +21,6 @@ export const usage = `Usage: npm start -- [options]
   --help         this text
 The environment variable EXPERIMENTER_TOKEN (128 bits or more, as "openssl rand -base64 32" draws them) replaces the token that the
 server draws for itself.`;
-
-/** What was asked for cannot be done; the message is for the person at the terminal. */
-export class ConfigurationError extends Error {}
 
 function portFrom(text: string, source: string): number {
   const port = Number(text);

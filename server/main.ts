@@ -1,12 +1,13 @@
 import { resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { ConfigurationError } from 'threepoint-http/configuration-error';
+import { secretIn } from 'threepoint-rooms/server/relay';
+import { relayConfigurationFrom, relayEnvironment } from 'threepoint-rooms/server/relay-configuration';
+import { welcome } from 'threepoint-rooms/server/welcome';
 import { certificateFor } from './certificate';
-import { ConfigurationError, configurationFrom, usage } from './configuration';
+import { configurationFrom, usage } from './configuration';
 import { lanAddresses } from './lan-addresses';
-import { secretIn } from './relay';
-import { relayConfigurationFrom, relayEnvironment } from './relay-configuration';
 import { startServer } from './start';
-import { welcome } from './welcome';
 
 const pathInRepository = (path: string) => fileURLToPath(new URL(`../${path}`, import.meta.url));
 

@@ -1,13 +1,13 @@
-import type { Credentials } from './certificate';
-import { createConnectionLimiter } from './connection-limiter';
-import { createRouter, type Route } from './http/router';
+import { createConnectionLimiter } from 'threepoint-http/connection-limiter';
+import { createRouter, type Route } from 'threepoint-http/router';
+import { createSitePolicy } from 'threepoint-http/site-policy';
+import { softwareIn } from 'threepoint-http/software';
+import { type Credentials, serve } from 'threepoint-http/web-server';
+import { createRelay } from 'threepoint-rooms/server/relay';
+import type { RelayConfiguration } from 'threepoint-rooms/server/relay-configuration';
+import { openStudyService } from 'threepoint-study/server/study-service';
 import { createPageHandler } from './page';
-import { createRelay } from './relay';
-import type { RelayConfiguration } from './relay-configuration';
-import { createSitePolicy } from './site-policy';
-import { softwareIn } from './software';
-import { openStudyService } from './study-service';
-import { serve } from './web-server';
+import { shippedRoomKinds } from './room-kinds';
 
 export interface StartOptions {
   /** Holds the built page. */
@@ -44,6 +44,7 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
     filesFrom: [...relaying.filesFrom, ...(relaying.avatarsFrom ? [new URL(relaying.avatarsFrom).origin] : [])],
   });
   const studies = await openStudyService({
+    thread: new URL('./study-thread-worker.mjs', import.meta.url),
     directory: options.studyDirectory,
     token: options.experimenterToken,
     software: softwareIn(options.pageDirectory),
@@ -56,7 +57,7 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
     perAddress: relaying.connectionsPerAddress,
     behindProxy: relaying.trustProxy,
   });
-  const relay = createRelay(relaying, options.secret, connectionLimiter);
+  const relay = createRelay(relaying, options.secret, connectionLimiter, shippedRoomKinds(relaying));
   const services = [relay.service, studies.service];
   const server = await serve(createRouter(services, page, createSitePolicy(relaying)), {
     host,

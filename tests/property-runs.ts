@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { seed } from './core/arbitraries';
+import { seed } from './threepoint/core/arbitraries';
 
 // Every property begins with one seed, so that a failure can be repeated. The nightly run looks further than the one before
 // every commit: PROPERTY_RUNS cases for each property that names no number of its own (those that do: `cases` in nightly.ts).

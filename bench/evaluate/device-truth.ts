@@ -1,7 +1,7 @@
-import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
-import { vec3 } from '../../src/core/math/vec3';
-import { deviceJoint } from '../../src/core/tracking/device-body';
-import type { Recording } from '../../src/core/tracking/recording';
+import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import { vec3 } from 'threepoint/core/math/vec3';
+import { deviceJoint } from 'threepoint/core/tracking/device-body';
+import type { Recording } from 'threepoint/core/tracking/recording';
 import { drive, type MeasuredMethod, measuredMethods } from './drive';
 import { addClip, emptyMeasures, type Report, report } from './measures';
 import { type RecordedFrame, truthJoints } from './recordings';

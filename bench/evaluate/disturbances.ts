@@ -1,9 +1,9 @@
-import type { TrackedPose } from '../../src/core/math/pose';
-import { rotate, slerp } from '../../src/core/math/quat';
-import { randomNumbers } from '../../src/core/math/random';
-import type { Side } from '../../src/core/math/side';
-import { add, lerp, type Vec3 } from '../../src/core/math/vec3';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import type { TrackedPose } from 'threepoint/core/math/pose';
+import { rotate, slerp } from 'threepoint/core/math/quat';
+import { randomNumbers } from 'threepoint/core/math/random';
+import type { Side } from 'threepoint/core/math/side';
+import { add, lerp, type Vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { MeasuredFrame } from './measures';
 import { type RecordedFrame, type TruthJoint, truthJoints } from './recordings';
 

@@ -1,12 +1,12 @@
-import type { Calibration } from '../../src/core/body/calibration';
-import { forwardKinematics } from '../../src/core/body/forward-kinematics';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { createIk, createWithNetwork } from '../../src/core/estimation/estimators';
-import { copyJoints, type JointPositions } from '../../src/core/estimation/joint-positions';
-import type { EstimatorName } from '../../src/core/estimation/pose-estimator';
-import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
-import type { Vec3 } from '../../src/core/math/vec3';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { createIk, createWithNetwork } from 'threepoint/core/estimation/estimators';
+import { copyJoints, type JointPositions } from 'threepoint/core/estimation/joint-positions';
+import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
+import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import type { Vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { MeasuredFrame } from './measures';
 import type { RecordedFrame } from './recordings';
 

@@ -10,7 +10,7 @@ import {
   up,
   type Vec3,
   vec3,
-} from '../../src/core/math/vec3';
+} from 'threepoint/core/math/vec3';
 import { type MeasuredMethod, measuredMethods } from './drive';
 import { type MeasuredFrame, rounded } from './measures';
 import { type TruthJoint, truthJoints } from './recordings';

@@ -2,10 +2,10 @@
 import { appendFileSync, mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { parseArgs } from 'node:util';
-import { reasonOf } from '../../src/core/errors/reasons';
-import { gaitOutputCount } from '../../src/core/estimation/gait';
-import { GaitFeatures, gaitFeatureCount, yawOfHips } from '../../src/core/estimation/gait-features';
-import type { Vec3 } from '../../src/core/math/vec3';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import { gaitOutputCount } from 'threepoint/core/estimation/gait';
+import { GaitFeatures, gaitFeatureCount, yawOfHips } from 'threepoint/core/estimation/gait-features';
+import type { Vec3 } from 'threepoint/core/math/vec3';
 import { type DrivenLegs, driveLegs } from './leg-drivers';
 import { loadRegressors } from './networks';
 import { readIndex } from './recordings';

@@ -1,4 +1,4 @@
-import { reasonOf } from '../../src/core/errors/reasons';
+import { reasonOf } from 'threepoint/core/errors/reasons';
 import { createDriver, type MeasuredMethod } from './drive';
 import { addPiece, emptyGoldenTally, type GoldenFigures, goldenFigures, type StepPlaces } from './golden-figures';
 import { type KeptFrames, keepFrames } from './golden-frames';

@@ -1,10 +1,10 @@
-import type { Calibration } from '../../src/core/body/calibration';
-import { forwardKinematics } from '../../src/core/body/forward-kinematics';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { createIk, createWithNetwork } from '../../src/core/estimation/estimators';
-import type { GaitPoints } from '../../src/core/estimation/gait-features';
-import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
-import type { Pose } from '../../src/core/math/pose';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { createIk, createWithNetwork } from 'threepoint/core/estimation/estimators';
+import type { GaitPoints } from 'threepoint/core/estimation/gait-features';
+import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import type { Pose } from 'threepoint/core/math/pose';
 import type { LegClip } from './leg-measures';
 import { type Contact, contactsOf, footHeights, readLegs, type TrueLegs } from './leg-truth';
 import { calibrationOf, type RecordedFrame, type RecordingIndex, readClip } from './recordings';

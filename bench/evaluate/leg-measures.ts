@@ -1,8 +1,8 @@
-import type { LegPose, LegPosture, LegProportions } from '../../src/avatar/legs/leg-posture';
-import type { GaitPoints } from '../../src/core/estimation/gait-features';
-import { rotate } from '../../src/core/math/quat';
-import type { Side } from '../../src/core/math/side';
-import { add, copyVec3, distance, type MutableVec3, type Vec3, vec3 } from '../../src/core/math/vec3';
+import type { LegPose, LegPosture, LegProportions } from 'threepoint/avatar/legs/leg-posture';
+import type { GaitPoints } from 'threepoint/core/estimation/gait-features';
+import { rotate } from 'threepoint/core/math/quat';
+import type { Side } from 'threepoint/core/math/side';
+import { add, copyVec3, distance, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { Contact, TrueLeg, TrueLegs } from './leg-truth';
 import { rounded } from './measures';
 

@@ -1,13 +1,13 @@
 import { readFileSync } from 'node:fs';
-import type { LegProportions } from '../../src/avatar/legs/leg-posture';
-import { legProportionsOf } from '../../src/avatar/legs/legs';
-import { parseAvatar } from '../../src/avatar/load-avatar';
-import { Rig } from '../../src/avatar/rig/rig';
-import type { Calibration } from '../../src/core/body/calibration';
-import { forwardKinematics } from '../../src/core/body/forward-kinematics';
-import { jointNames } from '../../src/core/body/joints';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { identity, type Quat } from '../../src/core/math/quat';
+import type { LegProportions } from 'threepoint/avatar/legs/leg-posture';
+import { legProportionsOf } from 'threepoint/avatar/legs/legs';
+import { parseAvatar } from 'threepoint/avatar/load-avatar';
+import { Rig } from 'threepoint/avatar/rig/rig';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { jointNames } from 'threepoint/core/body/joints';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { identity, type Quat } from 'threepoint/core/math/quat';
 
 const mannequin = new URL('../../public/avatars/mannequin.vrm', import.meta.url);
 

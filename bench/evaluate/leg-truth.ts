@@ -1,7 +1,7 @@
-import type { Pose } from '../../src/core/math/pose';
-import { fromAxes, quat } from '../../src/core/math/quat';
-import type { Side } from '../../src/core/math/side';
-import { cross, normalise, reject, subtract, type Vec3, vec3 } from '../../src/core/math/vec3';
+import type { Pose } from 'threepoint/core/math/pose';
+import { fromAxes, quat } from 'threepoint/core/math/quat';
+import type { Side } from 'threepoint/core/math/side';
+import { cross, normalise, reject, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { openClip, type RecordingIndex } from './recordings';
 
 const legJointNames = ['UpperLeg', 'LowerLeg', 'Foot', 'Toes'] as const;

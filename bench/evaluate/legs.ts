@@ -1,9 +1,9 @@
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { parseArgs } from 'node:util';
-import { LegPosture } from '../../src/avatar/legs/leg-posture';
-import { reasonOf } from '../../src/core/errors/reasons';
-import { Gait, type GaitNetwork, shippedGait } from '../../src/core/estimation/gait';
+import { LegPosture } from 'threepoint/avatar/legs/leg-posture';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import { Gait, type GaitNetwork, shippedGait } from 'threepoint/core/estimation/gait';
 import { bodyOf, driveLegs, type LegDriver, legDrivers } from './leg-drivers';
 import { addLegs, emptyLegMeasures, type LegMeasures, type LegReport, legReport, meanReport } from './leg-measures';
 import { mannequinLegs } from './leg-proportions';

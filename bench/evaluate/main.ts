@@ -1,6 +1,6 @@
 import { writeFileSync } from 'node:fs';
 import { parseArgs } from 'node:util';
-import { reasonOf } from '../../src/core/errors/reasons';
+import { reasonOf } from 'threepoint/core/errors/reasons';
 import { drive, type MeasuredMethod, measuredMethods } from './drive';
 import { addFigures, emptyCollection, figuresOf } from './figures';
 import { addClip, emptyMeasures, type MeasuredFrame, type Measures, merge, type Report, report } from './measures';

@@ -1,6 +1,6 @@
-import { estimatedJoints } from '../../src/core/body/joints';
-import type { JointPositions } from '../../src/core/estimation/joint-positions';
-import { distance, normalise, reject, subtract, type Vec3 } from '../../src/core/math/vec3';
+import { estimatedJoints } from 'threepoint/core/body/joints';
+import type { JointPositions } from 'threepoint/core/estimation/joint-positions';
+import { distance, normalise, reject, subtract, type Vec3 } from 'threepoint/core/math/vec3';
 import type { TruthJoint } from './recordings';
 import { swivelAngle } from './swivel-angle';
 

@@ -1,9 +1,9 @@
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { needsRegressor } from '../../src/core/estimation/estimators';
-import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
-import { startRegressor } from '../../src/inference/load-regressor';
-import { parseContract } from '../../src/inference/model-contract';
+import { needsRegressor } from 'threepoint/core/estimation/estimators';
+import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import { startRegressor } from 'threepoint/onnx/load-regressor';
+import { parseContract } from 'threepoint/onnx/model-contract';
 import { type MeasuredMethod, measuredMethods } from './drive';
 
 /** The networks of a folder with their contracts, started. */

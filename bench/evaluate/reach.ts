@@ -1,6 +1,6 @@
-import type { Calibration } from '../../src/core/body/calibration';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { distance, length } from '../../src/core/math/vec3';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { distance, length } from 'threepoint/core/math/vec3';
 import { rounded } from './measures';
 import type { RecordedFrame } from './recordings';
 

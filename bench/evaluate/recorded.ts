@@ -2,8 +2,8 @@
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename } from 'node:path';
 import { parseArgs } from 'node:util';
-import { reasonOf } from '../../src/core/errors/reasons';
-import { parseRecording } from '../../src/core/tracking/recording';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import { parseRecording } from 'threepoint/core/tracking/recording';
 import { type MeasuredRecording, measureRecording } from './device-truth';
 import { loadRegressors } from './networks';
 import { printReports } from './report-text';

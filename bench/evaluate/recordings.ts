@@ -1,11 +1,11 @@
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import type { TrackedPose } from 'threepoint/core/math/pose';
+import type { Quat } from 'threepoint/core/math/quat';
+import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import * as v from 'valibot';
-import type { Calibration } from '../../src/core/body/calibration';
-import type { TrackedPose } from '../../src/core/math/pose';
-import type { Quat } from '../../src/core/math/quat';
-import { type Vec3, vec3 } from '../../src/core/math/vec3';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 
 const tilt = v.optional(v.object({ pitch: v.number(), yaw: v.number() }));
 

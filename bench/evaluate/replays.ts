@@ -3,11 +3,11 @@
 // share. Public files: MetaGuard/xror test/data/bsor, dmarcos/aframe-motion-capture-components examples.
 import { readFileSync } from 'node:fs';
 import { basename } from 'node:path';
-import { reasonOf } from '../../src/core/errors/reasons';
-import type { TrackedPose } from '../../src/core/math/pose';
-import { fromAxisAngle, multiply } from '../../src/core/math/quat';
-import { backward, distance, right, up, type Vec3 } from '../../src/core/math/vec3';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import type { TrackedPose } from 'threepoint/core/math/pose';
+import { fromAxisAngle, multiply } from 'threepoint/core/math/quat';
+import { backward, distance, right, up, type Vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { createDriver, measuredMethods } from './drive';
 import { loadRegressors } from './networks';
 

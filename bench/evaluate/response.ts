@@ -1,10 +1,10 @@
-import type { Calibration } from '../../src/core/body/calibration';
-import type { TrackedPose } from '../../src/core/math/pose';
-import { fromAxisAngle, identity, multiply, type Quat } from '../../src/core/math/quat';
-import { normalNumbers } from '../../src/core/math/random';
-import { add, dot, length, normalise, scale, subtract, type Vec3, vec3 } from '../../src/core/math/vec3';
-import { trackers } from '../../src/core/mocap/mocap-rules.json';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import type { TrackedPose } from 'threepoint/core/math/pose';
+import { fromAxisAngle, identity, multiply, type Quat } from 'threepoint/core/math/quat';
+import { normalNumbers } from 'threepoint/core/math/random';
+import { add, dot, length, normalise, scale, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { trackers } from 'threepoint/core/mocap/mocap-rules.json';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Driver } from './drive';
 
 /** The calibration of the person who stands there. */

@@ -1,7 +1,7 @@
-import type { Calibration } from '../../src/core/body/calibration';
-import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
-import { nextRandom } from '../../src/core/math/random';
-import { vec3 } from '../../src/core/math/vec3';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import { nextRandom } from 'threepoint/core/math/random';
+import { vec3 } from 'threepoint/core/math/vec3';
 import {
   loseHands,
   offsetTrackers,

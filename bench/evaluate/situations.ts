@@ -1,15 +1,15 @@
-import type { Calibration } from '../../src/core/body/calibration';
+import type { Calibration } from 'threepoint/core/body/calibration';
 import {
   invertTransform,
   type TrackedPose,
   type Transform,
   transformPoint,
   transformPose,
-} from '../../src/core/math/pose';
-import { fromAxisAngle, multiply } from '../../src/core/math/quat';
-import { randomNumbers } from '../../src/core/math/random';
-import { right, up, type Vec3, vec3 } from '../../src/core/math/vec3';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+} from 'threepoint/core/math/pose';
+import { fromAxisAngle, multiply } from 'threepoint/core/math/quat';
+import { randomNumbers } from 'threepoint/core/math/random';
+import { right, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import {
   type Loss,
   loseHands,

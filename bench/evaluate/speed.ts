@@ -1,8 +1,8 @@
-import type { Calibration } from '../../src/core/body/calibration';
-import { estimatedJoints } from '../../src/core/body/joints';
-import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
-import { angleBetween } from '../../src/core/math/quat';
-import { distance, type Vec3 } from '../../src/core/math/vec3';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { estimatedJoints } from 'threepoint/core/body/joints';
+import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import { angleBetween } from 'threepoint/core/math/quat';
+import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { createDriver, type MeasuredMethod } from './drive';
 import { thirdDifference } from './measures';
 import type { RecordedFrame } from './recordings';

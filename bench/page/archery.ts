@@ -1,13 +1,13 @@
 import type { PerspectiveCamera, WebGLRenderer } from 'three';
-import { createArcheryPlay } from '../../src/app/archery/archery-play';
-import { createArcheryView } from '../../src/app/archery/archery-view';
-import type { Studio } from '../../src/app/studio/studio';
-import type { Avatar } from '../../src/avatar/avatar';
-import type { Mirror } from '../../src/avatar/mirror';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { type EstimatorName, estimatorNames, type PoseEstimator } from '../../src/core/estimation/pose-estimator';
-import { identity } from '../../src/core/math/quat';
-import { zero } from '../../src/core/math/vec3';
+import type { Avatar } from 'threepoint/avatar/avatar';
+import type { Mirror } from 'threepoint/avatar/mirror';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { type EstimatorName, estimatorNames, type PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
+import { identity } from 'threepoint/core/math/quat';
+import { zero } from 'threepoint/core/math/vec3';
+import { createArcheryPlay } from 'threepoint-page/archery/archery-play';
+import { createArcheryView } from 'threepoint-page/archery/archery-view';
+import type { Studio } from 'threepoint-page/studio/studio';
 import { type FrameTimes, frameTimes, nextFrame } from './frame-times';
 
 /** Frame times of a whole round as in the paper's table 5, and its result: all play the same one to its end. */

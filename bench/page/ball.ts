@@ -1,6 +1,6 @@
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { type EstimatorName, estimatorNames } from '../../src/core/estimation/pose-estimator';
-import { actorFrame } from '../../src/core/tracking/actor-motion';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { type EstimatorName, estimatorNames } from 'threepoint/core/estimation/pose-estimator';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { ArcheryStage } from './archery';
 import { Court } from './court';
 import { type FrameTimes, frameTimes, nextFrame } from './frame-times';

@@ -9,9 +9,9 @@ import {
   Uint16BufferAttribute,
 } from 'three';
 import { CCDIKSolver } from 'three/examples/jsm/animation/CCDIKSolver.js';
-import { parentOf } from '../../src/core/body/joints';
-import type { Skeleton as Body } from '../../src/core/body/skeleton';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import { parentOf } from 'threepoint/core/body/joints';
+import type { Skeleton as Body } from 'threepoint/core/body/skeleton';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
 const chains = [
   { effector: 'head', links: ['neck', 'upperChest', 'chest', 'spine'], target: 'headTarget' },

@@ -1,6 +1,6 @@
-import type { Transform } from '../../src/core/math/pose';
-import { fromAxisAngle } from '../../src/core/math/quat';
-import { up, vec3 } from '../../src/core/math/vec3';
+import type { Transform } from 'threepoint/core/math/pose';
+import { fromAxisAngle } from 'threepoint/core/math/quat';
+import { up, vec3 } from 'threepoint/core/math/vec3';
 
 /** Radius of the circle on which many bodies are placed [m]. */
 const radius = 2.5;

@@ -1,16 +1,16 @@
-import { createBallView } from '../../src/app/ball/ball-view';
-import type { Studio } from '../../src/app/studio/studio';
-import { parseAvatar } from '../../src/avatar/load-avatar';
-import { createRemoteAvatars, type SeenPerson } from '../../src/avatar/remote-avatars';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { unknownFingers } from '../../src/core/body/hand-shape';
-import { type Skeleton, skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { ballRules } from '../../src/core/games/ball/rules';
-import { composeTransforms, invertTransform, type TrackedPose } from '../../src/core/math/pose';
-import { packetMs } from '../../src/core/protocol/packet-time';
-import { decodePose } from '../../src/core/protocol/pose-codec';
-import { plainAvatar } from '../../src/core/protocol/worn-avatar';
-import { createRemotePlayers } from '../../src/net/remote-players';
+import { parseAvatar } from 'threepoint/avatar/load-avatar';
+import { createRemoteAvatars, type SeenPerson } from 'threepoint/avatar/remote-avatars';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { unknownFingers } from 'threepoint/core/body/hand-shape';
+import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { plainAvatar } from 'threepoint/core/body/worn-avatar';
+import { composeTransforms, invertTransform, type TrackedPose } from 'threepoint/core/math/pose';
+import { ballRules } from 'threepoint-games/ball/rules';
+import { createBallView } from 'threepoint-page/ball/ball-view';
+import type { Studio } from 'threepoint-page/studio/studio';
+import { createRemotePlayers } from 'threepoint-rooms/client/remote-players';
+import { packetMs } from 'threepoint-rooms/protocol/packet-time';
+import { decodePose } from 'threepoint-rooms/protocol/pose-codec';
 import { arenaFromCirclePlace } from './circle';
 
 /** What arrived of one seat. */

@@ -1,5 +1,5 @@
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { actorFrame } from '../../src/core/tracking/actor-motion';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { ArcheryStage } from './archery';
 import { Court } from './court';
 import { nextFrame } from './frame-times';

@@ -1,9 +1,10 @@
 // The learned estimator alone, by one way to run its network (?way=…): what a page without graphics pays for it.
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { createWithNetwork } from '../../src/core/estimation/estimators';
-import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
-import { actorFrame } from '../../src/core/tracking/actor-motion';
-import { createAfterFrame } from '../../src/lib/after-frame';
+
+import { createAfterFrame } from 'threepoint/api/after-frame';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { createWithNetwork } from 'threepoint/core/estimation/estimators';
+import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { NetworkCost, NetworkWay } from '../networks';
 
 /** Frames that are measured, after those in which the engine compiles. */
@@ -13,12 +14,12 @@ const warmUp = 300;
 async function load(way: NetworkWay): Promise<PoseRegressor> {
   const contractUrl = '/models/learned.json';
   if (way === 'plain') {
-    const { loadPlainRegressor } = await import('../../src/inference/load-plain-regressor');
+    const { loadPlainRegressor } = await import('threepoint/onnx/load-plain-regressor');
     return loadPlainRegressor(contractUrl);
   }
   const [{ loadRegressor }, { createInferenceWorker }] = await Promise.all([
-    import('../../src/inference/load-regressor'),
-    import('../../src/inference/create-inference-worker'),
+    import('threepoint/onnx/load-regressor'),
+    import('threepoint/onnx/create-inference-worker'),
   ]);
   return loadRegressor(
     contractUrl,

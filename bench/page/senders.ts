@@ -1,10 +1,10 @@
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { relaxedHand } from '../../src/core/body/hand-shape';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { createEstimator } from '../../src/core/estimation/estimators';
-import { packetMs } from '../../src/core/protocol/packet-time';
-import { encodePose } from '../../src/core/protocol/pose-codec';
-import { actorFrame } from '../../src/core/tracking/actor-motion';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { relaxedHand } from 'threepoint/core/body/hand-shape';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { createEstimator } from 'threepoint/core/estimation/estimators';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import { packetMs } from 'threepoint-rooms/protocol/packet-time';
+import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
 
 /** What others send: the actor's performance, each at another place of it, as packets. */
 export function createSenders(count: number) {

@@ -1,4 +1,4 @@
-import { averageHand, fingerPoints, makeFingerPoints, mirrorPoint } from '../../src/core/body/hand-geometry';
+import { averageHand, fingerPoints, makeFingerPoints, mirrorPoint } from 'threepoint/core/body/hand-geometry';
 import {
   closedHand,
   type FingerName,
@@ -6,12 +6,12 @@ import {
   makeHandShape,
   mixHandShape,
   relaxedHand,
-} from '../../src/core/body/hand-shape';
-import { type Pose, transformPoint } from '../../src/core/math/pose';
-import { type Quat, rotate } from '../../src/core/math/quat';
-import type { Side } from '../../src/core/math/side';
-import { backward, right, up, type Vec3, vec3 } from '../../src/core/math/vec3';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+} from 'threepoint/core/body/hand-shape';
+import { type Pose, transformPoint } from 'threepoint/core/math/pose';
+import { type Quat, rotate } from 'threepoint/core/math/quat';
+import type { Side } from 'threepoint/core/math/side';
+import { backward, right, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
 const ends = ['proximal', 'intermediate', 'distal'];
 const joints: readonly { readonly name: string; readonly finger: FingerName; readonly joint: number }[] =

@@ -1,19 +1,19 @@
-import type { AvatarPose } from '../../src/core/body/avatar-pose';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { forwardKinematics } from '../../src/core/body/forward-kinematics';
-import { unknownFingers } from '../../src/core/body/hand-shape';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { createIk } from '../../src/core/estimation/estimators';
-import { clamp } from '../../src/core/math/damper';
-import type { TrackedPose } from '../../src/core/math/pose';
-import { normalNumbers, randomNumbers } from '../../src/core/math/random';
-import { distance, lerp, type Vec3, vec3 } from '../../src/core/math/vec3';
-import { packetMs } from '../../src/core/protocol/packet-time';
-import { decodePose, encodePose } from '../../src/core/protocol/pose-codec';
-import type { PosePacket } from '../../src/core/protocol/pose-packet';
-import { actorFrame } from '../../src/core/tracking/actor-motion';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
-import { createRemotePlayers } from '../../src/net/remote-players';
+import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { unknownFingers } from 'threepoint/core/body/hand-shape';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { createIk } from 'threepoint/core/estimation/estimators';
+import { clamp } from 'threepoint/core/math/damper';
+import type { TrackedPose } from 'threepoint/core/math/pose';
+import { normalNumbers, randomNumbers } from 'threepoint/core/math/random';
+import { distance, lerp, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { createRemotePlayers } from 'threepoint-rooms/client/remote-players';
+import { packetMs } from 'threepoint-rooms/protocol/packet-time';
+import { decodePose, encodePose } from 'threepoint-rooms/protocol/pose-codec';
+import type { PosePacket } from 'threepoint-rooms/protocol/pose-packet';
 
 /** A way from one page over the relay to another. */
 export interface Way {

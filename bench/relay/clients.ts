@@ -1,18 +1,19 @@
 // The load, in a process of its own: lean clients that speak WebSocket without socket.io's client, so that the relay is what is measured.
+
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { relaxedHand } from 'threepoint/core/body/hand-shape';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { plainAvatar } from 'threepoint/core/body/worn-avatar';
+import { createIk } from 'threepoint/core/estimation/estimators';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import { ballKind } from 'threepoint-games/ball/ball-messages';
+import { protocolVersion } from 'threepoint-rooms/protocol/messages';
+import { packetMs } from 'threepoint-rooms/protocol/packet-time';
+import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
+import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
+import { createRoomTokens } from 'threepoint-rooms/server/room-tokens';
 import { WebSocket } from 'ws';
-import { createRoomTokens } from '../../server/room-tokens';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { relaxedHand } from '../../src/core/body/hand-shape';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { createIk } from '../../src/core/estimation/estimators';
-import { ballKind } from '../../src/core/protocol/ball-messages';
-import { protocolVersion } from '../../src/core/protocol/messages';
-import { packetMs } from '../../src/core/protocol/packet-time';
-import { encodePose } from '../../src/core/protocol/pose-codec';
-import { decodeFrame } from '../../src/core/protocol/pose-frame';
-import { plainAvatar } from '../../src/core/protocol/worn-avatar';
-import { actorFrame } from '../../src/core/tracking/actor-motion';
-import { countingKind } from '../../tests/core/room/counting-game';
+import { countingKind } from '../../tests/rooms/room/counting-game';
 import type { ClientAnswer, Heard, Load, Meeting } from './conversation';
 
 /** A pose packet as players send it most: two controllers and a body. */

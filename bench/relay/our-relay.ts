@@ -1,12 +1,12 @@
 // The relay as it ships, in a process of its own; beside the ball game it hosts one with room for sixteen.
-import { createConnectionLimiter } from '../../server/connection-limiter';
-import { createRouter, noPage } from '../../server/http/router';
-import { createRelay } from '../../server/relay';
-import { relayConfigurationFrom } from '../../server/relay-configuration';
+import { createConnectionLimiter } from 'threepoint-http/connection-limiter';
+import { createRouter, noPage } from 'threepoint-http/router';
+import { serve } from 'threepoint-http/web-server';
+import { mostSeats } from 'threepoint-rooms/protocol/messages';
+import { createRelay } from 'threepoint-rooms/server/relay';
+import { relayConfigurationFrom } from 'threepoint-rooms/server/relay-configuration';
 import { shippedRoomKinds } from '../../server/room-kinds';
-import { serve } from '../../server/web-server';
-import { mostSeats } from '../../src/core/protocol/messages';
-import { countingKind, countingPolicy } from '../../tests/core/room/counting-game';
+import { countingKind, countingPolicy } from '../../tests/rooms/room/counting-game';
 import type { RelayAnswer } from './conversation';
 
 const tell = (answer: RelayAnswer): void => {

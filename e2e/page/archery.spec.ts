@@ -1,8 +1,8 @@
-import type { ArcheryProbe } from '../src/app/archery/archery-play';
-import { driveTime, holdAt } from './driven-time';
-import type { EmulatedHeadset, Rotation } from './emulated-headset';
-import { emulatedHeadset, frames } from './emulated-headset';
-import { enterVr, expect, keepPicture, load, open, probe, settledJoint, test } from './page-fixture';
+import type { ArcheryProbe } from 'threepoint-page/archery/archery-play';
+import { driveTime, holdAt } from '../driven-time';
+import type { EmulatedHeadset, Rotation } from '../emulated-headset';
+import { emulatedHeadset, frames } from '../emulated-headset';
+import { enterVr, expect, keepPicture, load, open, probe, settledJoint, test } from '../page-fixture';
 
 // What is played does not depend on how many pixels show it.
 test.use({ viewport: { width: 800, height: 500 } });

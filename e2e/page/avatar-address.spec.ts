@@ -1,9 +1,9 @@
 import { EventEmitter, once } from 'node:events';
-import { changed, mannequin } from '../tests/avatar/glb';
-import { measured } from '../tests/reliability/measured';
-import { serveElsewhere } from './elsewhere-server';
-import { expect, freshTest, joint, keepPicture, open, probe, test } from './page-fixture';
-import { serveStudies } from './study-server';
+import { measured } from '../../tests/reliability/measured';
+import { changed, mannequin } from '../../tests/threepoint/avatar/glb';
+import { serveElsewhere } from '../elsewhere-server';
+import { expect, freshTest, joint, keepPicture, open, probe, test } from '../page-fixture';
+import { serveStudies } from '../study-server';
 
 test.use({ viewport: { width: 800, height: 500 } });
 

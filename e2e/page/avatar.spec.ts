@@ -1,7 +1,7 @@
 import { readdirSync, readFileSync } from 'node:fs';
-import { changed, type GltfJson } from '../tests/avatar/glb';
-import { etc1sPicture, ktx2Picture, zstdPicture } from '../tests/avatar/ktx2-picture';
-import { expect, joint, keepPicture, open, openWithHeadset, probe, settledJoint, test } from './page-fixture';
+import { changed, type GltfJson } from '../../tests/threepoint/avatar/glb';
+import { etc1sPicture, ktx2Picture, zstdPicture } from '../../tests/threepoint/avatar/ktx2-picture';
+import { expect, joint, keepPicture, open, openWithHeadset, probe, settledJoint, test } from '../page-fixture';
 
 const avatarFile = readdirSync('public/avatars').find((name) => name.endsWith('.vrm'));
 

@@ -1,12 +1,12 @@
 import { spawn } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import type { Browser } from '@playwright/test';
-import type { CourtProbe } from '../src/app/ball/ball-activity';
-import type { BallProbe } from '../src/app/ball/ball-frame';
-import { driveTime, goOn, holdAt } from './driven-time';
-import { emulatedHeadset } from './emulated-headset';
-import { freePort } from './free-port';
-import { enterVr, expect, joinedRoom, keepPicture, open, probe, test } from './page-fixture';
+import type { CourtProbe } from 'threepoint-page/ball/ball-activity';
+import type { BallProbe } from 'threepoint-page/ball/ball-frame';
+import { driveTime, goOn, holdAt } from '../driven-time';
+import { emulatedHeadset } from '../emulated-headset';
+import { freePort } from '../free-port';
+import { enterVr, expect, joinedRoom, keepPicture, open, probe, test } from '../page-fixture';
 
 // What is played does not depend on how many pixels show it.
 test.use({ viewport: { width: 480, height: 300 } });
@@ -102,7 +102,7 @@ test('a spectator sees three bots and follows one of them @full', async ({ page 
 
 /** The server as `npm start` runs it, page and relay on one port; it can be killed and started again. */
 async function startServer(seconds: number, port: number): Promise<{ kill(): Promise<void> }> {
-  const root = fileURLToPath(new URL('..', import.meta.url));
+  const root = fileURLToPath(new URL('../..', import.meta.url));
   const server = spawn(process.execPath, ['--import', 'tsx', 'server/main.ts', '--port', String(port)], {
     cwd: root,
     env: { ...process.env, THREEPOINT_BALL_SECONDS: String(seconds) },

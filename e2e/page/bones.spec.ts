@@ -1,5 +1,5 @@
-import { changed, type GltfJson } from '../tests/avatar/glb';
-import { expect, joint, keepPicture, load, open, probe, test } from './page-fixture';
+import { changed, type GltfJson } from '../../tests/threepoint/avatar/glb';
+import { expect, joint, keepPicture, load, open, probe, test } from '../page-fixture';
 
 test.use({ viewport: { width: 960, height: 760 } });
 

@@ -1,5 +1,5 @@
-import { armSpanFromFingertipSpan } from '../src/core/body/calibration';
-import { enterVr, expect, freshTest, joint, load, openWithHeadset, probe, test } from './page-fixture';
+import { armSpanFromFingertipSpan } from 'threepoint/core/body/calibration';
+import { enterVr, expect, freshTest, joint, load, openWithHeadset, probe, test } from '../page-fixture';
 
 const withHeadset = 'emulate&actor=off&quality=low';
 

@@ -8,7 +8,7 @@ import {
   probe,
   settledJoint,
   test,
-} from './page-fixture';
+} from '../page-fixture';
 
 freshTest('a newcomer sees a moving body within seconds, without touching anything', async ({ page }) => {
   await open(page, 'quality=low');

@@ -3,14 +3,15 @@ import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import type { Page } from '@playwright/test';
 import { rolldown } from 'rolldown';
-import { letTimePass, pass } from './driven-time';
-import { emulatedHeadset } from './emulated-headset';
-import { enterVr, expect, keepPicture, open, probe, freshTest as test } from './page-fixture';
+import { sourceResolution } from '../../scripts/source-condition.mjs';
+import { letTimePass, pass } from '../driven-time';
+import { emulatedHeadset } from '../emulated-headset';
+import { enterVr, expect, keepPicture, open, probe, freshTest as test } from '../page-fixture';
 
 /** Our own polyfill in one piece: it stands for a headset that tracks its wearer's body. */
 async function polyfill(): Promise<string> {
-  const input = fileURLToPath(new URL('../src/lib/polyfill.ts', import.meta.url));
-  const build = await rolldown({ input, platform: 'browser' });
+  const input = fileURLToPath(new URL('../../src/threepoint/api/polyfill.ts', import.meta.url));
+  const build = await rolldown({ input, platform: 'browser', resolve: sourceResolution('browser') });
   const { output } = await build.generate({ format: 'iife', name: 'bodyPolyfill', codeSplitting: false });
   await build.close();
   return output[0].code;
@@ -30,7 +31,7 @@ async function openOnTrackingHeadset(page: Page): Promise<void> {
 
 /** What `npm run evaluate -- --recording` says of the only recording. */
 function evaluated(recording: string, json: string) {
-  const root = fileURLToPath(new URL('..', import.meta.url));
+  const root = fileURLToPath(new URL('../..', import.meta.url));
   const program = ['--import', 'tsx', 'bench/evaluate/recorded.ts'];
   execFileSync(process.execPath, [...program, '--recording', recording, '--json', json], { cwd: root });
   const [only] = Object.values(JSON.parse(readFileSync(json, 'utf8')).recordings);

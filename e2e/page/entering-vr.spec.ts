@@ -1,5 +1,5 @@
-import { frames } from './emulated-headset';
-import { distance, enterVr, expect, joint, openWithHeadset, probe, test } from './page-fixture';
+import { frames } from '../emulated-headset';
+import { distance, enterVr, expect, joint, openWithHeadset, probe, test } from '../page-fixture';
 
 test('the button enters VR, and leaving brings the page back', async ({ page }) => {
   const headset = await openWithHeadset(page);

@@ -1,9 +1,9 @@
 import { fileURLToPath } from 'node:url';
-import { createPageHandler } from '../server/page';
-import { serve } from '../server/web-server';
-import { measured } from '../tests/reliability/measured';
-import { emulatedHeadset, frames } from './emulated-headset';
-import { enterVr, expect, freshTest, open, probe, test } from './page-fixture';
+import { serve } from 'threepoint-http/web-server';
+import { createPageHandler } from '../../server/page';
+import { measured } from '../../tests/reliability/measured';
+import { emulatedHeadset, frames } from '../emulated-headset';
+import { enterVr, expect, freshTest, open, probe, test } from '../page-fixture';
 
 type Page = Parameters<typeof open>[0];
 
@@ -171,7 +171,7 @@ freshTest(
   'cross-origin isolated and without WebXR: the same page, and a sentence @full',
   async ({ page, complaints }) => {
     complaints.allow(/asked http:\/\/localhost/);
-    const handler = createPageHandler(fileURLToPath(new URL('../dist', import.meta.url)));
+    const handler = createPageHandler(fileURLToPath(new URL('../../dist', import.meta.url)));
     const server = await serve(
       (request, response) => {
         response.setHeader('cross-origin-opener-policy', 'same-origin');

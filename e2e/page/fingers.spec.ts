@@ -1,5 +1,5 @@
-import type { EmulatedHeadset } from './emulated-headset';
-import { distance, enterVr, expect, openWithHeadset, probe, settledJoint, test } from './page-fixture';
+import type { EmulatedHeadset } from '../emulated-headset';
+import { distance, enterVr, expect, openWithHeadset, probe, settledJoint, test } from '../page-fixture';
 
 type Page = Parameters<typeof probe>[0];
 type Finger = 'thumb' | 'index' | 'middle' | 'ring' | 'little';

@@ -1,6 +1,6 @@
-import { frames, type Placement } from './emulated-headset';
-import { expectHandsOnControllers, wristName } from './hands-on-controllers';
-import { distance, enterVr, expect, joint, openWithHeadset, probe, test } from './page-fixture';
+import { frames, type Placement } from '../emulated-headset';
+import { expectHandsOnControllers, wristName } from '../hands-on-controllers';
+import { distance, enterVr, expect, joint, openWithHeadset, probe, test } from '../page-fixture';
 
 /** Placements within reach of a standing person, turned and not; the orientation is that of the target ray. */
 const placements: readonly Placement[] = [

@@ -1,7 +1,7 @@
 import type { CDPSession } from '@playwright/test';
-import { measured } from '../tests/reliability/measured';
-import { countsOf, megabytes } from './kept-memory';
-import { expect, open, probe, freshTest as test } from './page-fixture';
+import { measured } from '../../tests/reliability/measured';
+import { countsOf, megabytes } from '../kept-memory';
+import { expect, open, probe, freshTest as test } from '../page-fixture';
 
 type Page = Parameters<typeof open>[0];
 

@@ -1,7 +1,7 @@
 import { rmSync, writeFileSync } from 'node:fs';
-import { goldenMocap } from '../tests/core/mocap/golden-mocap';
-import { card, choose, errors } from './mocap-card';
-import { expect, keepPicture, load, open, probe, test } from './page-fixture';
+import { goldenMocap } from '../../tests/threepoint/core/mocap/golden-mocap';
+import { card, choose, errors } from '../mocap-card';
+import { expect, keepPicture, load, open, probe, test } from '../page-fixture';
 
 const [acclaim, , leaping, folded] = goldenMocap;
 const filesOf = ({ files }: { readonly files: Readonly<Record<string, string>> }) =>

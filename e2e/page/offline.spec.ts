@@ -4,15 +4,15 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { test as base, type Page } from '@playwright/test';
-import { createPageHandler } from '../server/page';
-import { serve } from '../server/web-server';
-import type { ArcheryProbe } from '../src/app/archery/archery-play';
-import { holdAt } from './driven-time';
-import { emulatedHeadset } from './emulated-headset';
-import { enterVr, expect, keepPicture, listen, newPage, probe } from './page-fixture';
-import { type PlainServer, servePlainly } from './plain-server';
+import { serve } from 'threepoint-http/web-server';
+import type { ArcheryProbe } from 'threepoint-page/archery/archery-play';
+import { createPageHandler } from '../../server/page';
+import { holdAt } from '../driven-time';
+import { emulatedHeadset } from '../emulated-headset';
+import { enterVr, expect, keepPicture, listen, newPage, probe } from '../page-fixture';
+import { type PlainServer, servePlainly } from '../plain-server';
 
-const dist = fileURLToPath(new URL('../dist', import.meta.url));
+const dist = fileURLToPath(new URL('../../dist', import.meta.url));
 
 interface OurServer extends PlainServer {
   readonly port: number;

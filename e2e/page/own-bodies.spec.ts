@@ -1,4 +1,4 @@
-import { expect, open, probe, test } from './page-fixture';
+import { expect, open, probe, test } from '../page-fixture';
 
 test('a body of our own is chosen in the panel, worn, and remembered @full', async ({ page }) => {
   await open(page, 'quality=low&estimator=ik');

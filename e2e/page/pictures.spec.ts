@@ -1,6 +1,6 @@
-import type { Placement } from './emulated-headset';
-import { expectHandsOnControllers } from './hands-on-controllers';
-import { enterVr, expect, joint, keepPicture, openWithHeadset, probe, test } from './page-fixture';
+import type { Placement } from '../emulated-headset';
+import { expectHandsOnControllers } from '../hands-on-controllers';
+import { enterVr, expect, joint, keepPicture, openWithHeadset, probe, test } from '../page-fixture';
 
 /** One hand raised to the chest, the other beside the hip; so many metres from where the room begins. */
 const standing = (ahead: number): Placement => ({

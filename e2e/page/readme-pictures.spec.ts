@@ -1,8 +1,8 @@
-import type { ArcheryProbe } from '../src/app/archery/archery-play';
-import { driveTime, holdAt, pass } from './driven-time';
-import { card, choose, errors } from './mocap-card';
-import { expect, joint, keepPicture, open, test } from './page-fixture';
-import { downloaded, recordTheActor } from './recorded-actor';
+import type { ArcheryProbe } from 'threepoint-page/archery/archery-play';
+import { driveTime, holdAt, pass } from '../driven-time';
+import { card, choose, errors } from '../mocap-card';
+import { expect, joint, keepPicture, open, test } from '../page-fixture';
+import { downloaded, recordTheActor } from '../recorded-actor';
 
 // The pictures of README.md as the page shows them now: what is kept in artifacts/screenshots goes to docs/images as JPEG when it was
 // looked at. That of the ball game is taken from `npm start`: tests are served by a host without rooms, and the page says so. That of our

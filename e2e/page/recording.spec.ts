@@ -1,9 +1,9 @@
 import type { Page } from '@playwright/test';
 import { validateBytes } from 'gltf-validator';
-import { readBvh } from '../src/core/motion/read-bvh';
-import { finishWork } from '../src/core/motion/work';
-import { expect, joint, open, probe, test } from './page-fixture';
-import { downloaded, recordTheActor } from './recorded-actor';
+import { readBvh } from 'threepoint/core/motion/read-bvh';
+import { finishWork } from 'threepoint/core/motion/work';
+import { expect, joint, open, probe, test } from '../page-fixture';
+import { downloaded, recordTheActor } from '../recorded-actor';
 
 // In full one that asks a network and one that asks none, the others by night.
 const replays = {

@@ -3,14 +3,14 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { test as base } from '@playwright/test';
-import { build } from '../scripts/build.mjs';
-import type { ArcheryProbe } from '../src/app/archery/archery-play';
-import { holdAt } from './driven-time';
-import { emulatedHeadset } from './emulated-headset';
-import { enterVr, expect, joint, keepPicture, listen, newPage, probe } from './page-fixture';
-import { servePlainly } from './plain-server';
+import type { ArcheryProbe } from 'threepoint-page/archery/archery-play';
+import { build } from '../../scripts/build.mjs';
+import { holdAt } from '../driven-time';
+import { emulatedHeadset } from '../emulated-headset';
+import { enterVr, expect, joint, keepPicture, listen, newPage, probe } from '../page-fixture';
+import { servePlainly } from '../plain-server';
 
-const dist = fileURLToPath(new URL('../dist', import.meta.url));
+const dist = fileURLToPath(new URL('../../dist', import.meta.url));
 
 /** The page from a host that serves files out of a folder and nothing else. It may ask for nothing beyond that folder, nor complain. */
 const test = base.extend<{ built: string; address: string; complaints: readonly string[] }>({

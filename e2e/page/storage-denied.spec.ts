@@ -2,10 +2,10 @@ import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { chromium, type Page } from '@playwright/test';
-import { measured } from '../tests/reliability/measured';
-import { expect, joinedRoom, listen, probe } from './page-fixture';
-import { recordsOf, test } from './study-participant';
-import { experimenter, shortStudy } from './study-server';
+import { measured } from '../../tests/reliability/measured';
+import { expect, joinedRoom, listen, probe } from '../page-fixture';
+import { recordsOf, test } from '../study-participant';
+import { experimenter, shortStudy } from '../study-server';
 
 /** A page of a browser whose user lets no site store anything: localStorage throws, IndexedDB and service workers are refused. */
 async function inClosedBrowser(origin: string, launch: object, body: (page: Page) => Promise<void>): Promise<void> {

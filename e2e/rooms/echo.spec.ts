@@ -1,7 +1,7 @@
 import { expect, type Page } from '@playwright/test';
-import { tell } from '../tests/tell';
-import { loudspeakerInstalled, startLoudspeaker } from './loudspeaker';
-import { bar, heard, joinVoices, loudness, test } from './talkers';
+import { tell } from '../../tests/tell';
+import { loudspeakerInstalled, startLoudspeaker } from '../loudspeaker';
+import { bar, heard, joinVoices, loudness, test } from '../talkers';
 
 /** In the page: its microphone's echo is left as it is. */
 function keepEcho(): void {

@@ -3,14 +3,14 @@ import { once } from 'node:events';
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import type { Page } from '@playwright/test';
-import { answerModelWith } from '../src/core/rehearsal/answer-model';
-import { statedPerformanceModel } from '../src/core/rehearsal/performance-model';
-import { simulatedPlan, simulateStudy } from '../src/core/rehearsal/simulate-study';
-import { checkedPlan, type StudyPlan } from '../src/core/study/plan';
-import { measured } from '../tests/reliability/measured';
-import { expect, joinedRoom } from './page-fixture';
-import { openResults, signIn, test } from './study-participant';
-import { experimenter } from './study-server';
+import { checkedPlan, type StudyPlan } from 'threepoint-study/model/plan';
+import { answerModelWith } from 'threepoint-study/simulation/answer-model';
+import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
+import { simulatedPlan, simulateStudy } from 'threepoint-study/simulation/simulate-study';
+import { measured } from '../../tests/reliability/measured';
+import { expect, joinedRoom } from '../page-fixture';
+import { openResults, signIn, test } from '../study-participant';
+import { experimenter } from '../study-server';
 
 /** What another person may write where a page shows it; as markup it would be an element of this class. */
 const mark = '<b class=foreign>x';

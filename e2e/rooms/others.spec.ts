@@ -1,7 +1,7 @@
-import { emulatedHeadset, frames } from './emulated-headset';
-import { keepWritten, lookingAtMenu, pressBelow, pressInMenu, writtenAs } from './hands-on-menu';
-import { enterVr, expect, freshTest, joinedRoom, keepPicture, open, probe, test } from './page-fixture';
-import { serveStudies } from './study-server';
+import { emulatedHeadset, frames } from '../emulated-headset';
+import { keepWritten, lookingAtMenu, pressBelow, pressInMenu, writtenAs } from '../hands-on-menu';
+import { enterVr, expect, freshTest, joinedRoom, keepPicture, open, probe, test } from '../page-fixture';
+import { serveStudies } from '../study-server';
 
 type Page = Parameters<typeof open>[0];
 

@@ -2,11 +2,11 @@ import { fork } from 'node:child_process';
 import { createHash, randomBytes } from 'node:crypto';
 import { once } from 'node:events';
 import { fileURLToPath } from 'node:url';
-import { changed, type GltfJson } from '../tests/avatar/glb';
-import { serveElsewhere } from './elsewhere-server';
-import type { GuestAnswer, GuestOrder } from './guest-process';
-import { expect, freshTest, joinedRoom, joint, keepPicture, probe, test } from './page-fixture';
-import { serveStudies } from './study-server';
+import { changed, type GltfJson } from '../../tests/threepoint/avatar/glb';
+import { serveElsewhere } from '../elsewhere-server';
+import type { GuestAnswer, GuestOrder } from '../guest-process';
+import { expect, freshTest, joinedRoom, joint, keepPicture, probe, test } from '../page-fixture';
+import { serveStudies } from '../study-server';
 
 type Page = Parameters<typeof probe>[0];
 

@@ -2,12 +2,12 @@ import { appendFileSync, mkdirSync, writeFileSync } from 'node:fs';
 import { dirname } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { type CDPSession, expect, type Page } from '@playwright/test';
-import { tell } from '../tests/tell';
-import { memoryOf } from './browser-processes';
-import { freePort } from './free-port';
-import { countsOf, type InspectedNode, inspectNode, megabytes } from './kept-memory';
-import { probe } from './page-fixture';
-import { bar, heard, loudness, type Talker, test, voicesOf } from './talkers';
+import { tell } from '../../tests/tell';
+import { memoryOf } from '../browser-processes';
+import { freePort } from '../free-port';
+import { countsOf, type InspectedNode, inspectNode, megabytes } from '../kept-memory';
+import { probe } from '../page-fixture';
+import { bar, heard, loudness, type Talker, test, voicesOf } from '../talkers';
 
 /** Of talk and play; THREEPOINT_SOAK_MINUTES for more. Not for fewer: what is compiled in the first four minutes is 1 MB of a page's heap. */
 const minutes = Number(process.env.THREEPOINT_SOAK_MINUTES ?? 10);
@@ -17,7 +17,7 @@ const mutesAMinute = 5;
 const rejoinEvery = 5;
 
 /** A line for each minute, so that a run that breaks has told what it saw. */
-const file = fileURLToPath(new URL('../artifacts/soak.jsonl', import.meta.url));
+const file = fileURLToPath(new URL('../../artifacts/soak.jsonl', import.meta.url));
 
 // A trace would keep each of the test's questions for hours, and film nothing that is looked at.
 test.use({ trace: 'off' });
@@ -206,7 +206,7 @@ function judge(run: readonly Minute[]): void {
 
 declare global {
   interface Window {
-    /** Put there by `countMatches` in e2e/soak.spec.ts. */
+    /** Put there by `countMatches` in e2e/rooms/soak.spec.ts. */
     soakMatches?: number;
   }
 }

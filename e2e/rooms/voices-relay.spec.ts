@@ -1,7 +1,7 @@
 import { createHmac } from 'node:crypto';
 import { expect, type Page } from '@playwright/test';
-import { bar, connected, heard, joinVoices, silent, test } from './talkers';
-import { startTurn, turnProgram, turnSecret } from './turn-server';
+import { bar, connected, heard, joinVoices, silent, test } from '../talkers';
+import { startTurn, turnProgram, turnSecret } from '../turn-server';
 
 declare global {
   interface Window {

@@ -1,10 +1,10 @@
 import { expect } from '@playwright/test';
-import { serviceOf } from './browser-processes';
-import { cutNetwork } from './cut-network';
-import { emulatedHeadset, type Point } from './emulated-headset';
-import { keepWritten, lookingAtMenu, pressBelow, pressInMenu } from './hands-on-menu';
-import { distance, enterVr, joinedRoom, keepPicture, probe } from './page-fixture';
-import { attenuation, bar, connected, heard, joinVoices, otherOf, silent, test, voicesOf } from './talkers';
+import { serviceOf } from '../browser-processes';
+import { cutNetwork } from '../cut-network';
+import { emulatedHeadset, type Point } from '../emulated-headset';
+import { keepWritten, lookingAtMenu, pressBelow, pressInMenu } from '../hands-on-menu';
+import { distance, enterVr, joinedRoom, keepPicture, probe } from '../page-fixture';
+import { attenuation, bar, connected, heard, joinVoices, otherOf, silent, test, voicesOf } from '../talkers';
 
 test('two people hear each other: 6 dB less with twice the distance, nothing of who is muted, hidden or gone @realtime', async ({
   serve,

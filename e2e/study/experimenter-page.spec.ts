@@ -1,10 +1,10 @@
 import { readFileSync } from 'node:fs';
-import { parsePlan } from '../src/core/study/plan';
-import { begin } from '../src/core/study/progress';
-import { scheduleFor } from '../src/core/study/schedule';
-import { expect } from './page-fixture';
-import { signIn, test } from './study-participant';
-import { experimenter } from './study-server';
+import { parsePlan } from 'threepoint-study/model/plan';
+import { begin } from 'threepoint-study/model/progress';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import { expect } from '../page-fixture';
+import { signIn, test } from '../study-participant';
+import { experimenter } from '../study-server';
 
 const plan = (id: string) => ({
   ...parsePlan(readFileSync('public/studies/latency.json', 'utf8'), 'latency.json'),

@@ -1,10 +1,10 @@
 import type { Page } from '@playwright/test';
-import { parsePlan, type StudyPlan } from '../src/core/study/plan';
-import { scheduleFor } from '../src/core/study/schedule';
-import type { Point } from './emulated-headset';
-import { distance, enterVr, expect, keepPicture, probe } from './page-fixture';
-import { agreeAndTell, calibrate, press, reaches, stretched, takePart, tenHertz, test } from './study-participant';
-import { experimenter, shortStudy } from './study-server';
+import { parsePlan, type StudyPlan } from 'threepoint-study/model/plan';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import type { Point } from '../emulated-headset';
+import { distance, enterVr, expect, keepPicture, probe } from '../page-fixture';
+import { agreeAndTell, calibrate, press, reaches, stretched, takePart, tenHertz, test } from '../study-participant';
+import { experimenter, shortStudy } from '../study-server';
 
 const conditions = [
   {

@@ -1,5 +1,5 @@
-import { expect } from './page-fixture';
-import { test } from './study-participant';
+import { expect } from '../page-fixture';
+import { test } from '../study-participant';
 
 test('the keyboard goes on within the card where another question takes the place of one that was answered @full', async ({
   page,

@@ -1,9 +1,9 @@
 import { readFileSync } from 'node:fs';
 import type { Locator, Page } from '@playwright/test';
-import { english } from '../src/core/study/phrases/english';
-import { expect, keepPicture } from './page-fixture';
-import { test } from './study-participant';
-import { experimenter } from './study-server';
+import { english } from 'threepoint-study/model/phrases/english';
+import { expect, keepPicture } from '../page-fixture';
+import { test } from '../study-participant';
+import { experimenter } from '../study-server';
 
 test.use({ viewport: { width: 1280, height: 800 } });
 

@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
 import type { Page } from '@playwright/test';
-import { parsePlan } from '../src/core/study/plan';
-import { enterVr, expect, keepPicture } from './page-fixture';
+import { parsePlan } from 'threepoint-study/model/plan';
+import { enterVr, expect, keepPicture } from '../page-fixture';
 import {
   calibrate,
   openResults,
@@ -13,8 +13,8 @@ import {
   takePart,
   tenHertz,
   test,
-} from './study-participant';
-import { experimenter } from './study-server';
+} from '../study-participant';
+import { experimenter } from '../study-server';
 
 /** The shipped example with questions of every kind, its times cut short. */
 function shortExample(id: string) {

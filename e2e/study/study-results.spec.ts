@@ -1,13 +1,13 @@
 import { readFileSync } from 'node:fs';
 import { strFromU8, unzipSync } from 'fflate';
-import { answerModelWith } from '../src/core/rehearsal/answer-model';
-import { statedPerformanceModel } from '../src/core/rehearsal/performance-model';
-import { simulatedPlan, simulateStudy } from '../src/core/rehearsal/simulate-study';
-import { cohortsByParticipant } from '../src/core/study/allocation';
-import { checkedPlan } from '../src/core/study/plan';
-import { expect, keepPicture } from './page-fixture';
-import { openResults, test } from './study-participant';
-import { experimenter } from './study-server';
+import { cohortsByParticipant } from 'threepoint-study/model/allocation';
+import { checkedPlan } from 'threepoint-study/model/plan';
+import { answerModelWith } from 'threepoint-study/simulation/answer-model';
+import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
+import { simulatedPlan, simulateStudy } from 'threepoint-study/simulation/simulate-study';
+import { expect, keepPicture } from '../page-fixture';
+import { openResults, test } from '../study-participant';
+import { experimenter } from '../study-server';
 
 const shipped = (file: string) => JSON.parse(readFileSync(`public/studies/${file}`, 'utf8')) as Record<string, unknown>;
 

@@ -1,8 +1,8 @@
-import { checkedPlan } from '../src/core/study/plan';
-import type { PlacedPose } from './emulated-headset';
-import { enterVr, expect, keepPicture } from './page-fixture';
-import { agreeAndTell, press, reaches, signIn, stretched, study, takePart, tenHertz, test } from './study-participant';
-import { experimenter, shortStudy } from './study-server';
+import { checkedPlan } from 'threepoint-study/model/plan';
+import type { PlacedPose } from '../emulated-headset';
+import { enterVr, expect, keepPicture } from '../page-fixture';
+import { agreeAndTell, press, reaches, signIn, stretched, study, takePart, tenHertz, test } from '../study-participant';
+import { experimenter, shortStudy } from '../study-server';
 
 test('a participant with no one beside them is checked, asked whether to stop, and stops in the middle of a round by raising both hands, and the experimenter sees it @realtime', async ({
   page,

@@ -1,6 +1,6 @@
 import type { Page } from '@playwright/test';
-import { type EmulatedHeadset, emulatedHeadset, frames } from './emulated-headset';
-import { enterVr, expect, keepPicture } from './page-fixture';
+import { type EmulatedHeadset, emulatedHeadset, frames } from '../emulated-headset';
+import { enterVr, expect, keepPicture } from '../page-fixture';
 import {
   agreeAndTell,
   calibrate,
@@ -11,8 +11,8 @@ import {
   stretched,
   study,
   test,
-} from './study-participant';
-import { experimenter, shortBallStudy } from './study-server';
+} from '../study-participant';
+import { experimenter, shortBallStudy } from '../study-server';
 
 /** The match stands longer than any page takes to draw what has happened [s]. */
 const standsSeconds = 15;

@@ -2,12 +2,12 @@ import { execFile } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { promisify } from 'node:util';
 import { type Browser, type Locator, type Page, test as playwright } from '@playwright/test';
-import { simulatedPlan } from '../src/core/rehearsal/simulate-study';
-import { checkedPlan, questionnairesAfter, type StudyPlan, type StudyTask } from '../src/core/study/plan';
-import { type Questionnaire, questionnaireNamed } from '../src/core/study/questionnaires';
-import { scheduleFor } from '../src/core/study/schedule';
-import type { EmulatedHeadset } from './emulated-headset';
-import { enterVr, expect, keepPicture, newPage } from './page-fixture';
+import { checkedPlan, questionnairesAfter, type StudyPlan, type StudyTask } from 'threepoint-study/model/plan';
+import { type Questionnaire, questionnaireNamed } from 'threepoint-study/model/questionnaires';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import { simulatedPlan } from 'threepoint-study/simulation/simulate-study';
+import type { EmulatedHeadset } from '../emulated-headset';
+import { enterVr, expect, keepPicture, newPage } from '../page-fixture';
 import {
   agreeAndTell,
   calibrate,
@@ -21,7 +21,7 @@ import {
   study,
   tenHertz,
   test,
-} from './study-participant';
+} from '../study-participant';
 
 /** The shipped study of added latency for two orders of its conditions, its rounds and rests cut short by the plan's own fields. */
 const file = {

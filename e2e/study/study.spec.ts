@@ -1,4 +1,4 @@
-import { enterVr, expect, keepPicture } from './page-fixture';
+import { enterVr, expect, keepPicture } from '../page-fixture';
 import {
   calibrate,
   headsetOf,
@@ -13,8 +13,8 @@ import {
   tellOfOneself,
   tenHertz,
   test,
-} from './study-participant';
-import { experimenter, shortStudy } from './study-server';
+} from '../study-participant';
+import { experimenter, shortStudy } from '../study-server';
 
 test('a participant from consent to the end, with a reload in a questionnaire while the server of the study is away @realtime', async ({
   page,

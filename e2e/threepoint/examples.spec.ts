@@ -1,13 +1,13 @@
 import { readFileSync, rmSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { expect, type Page, test } from '@playwright/test';
-import { buildExample, exampleNames, packLibrary } from '../scripts/build-examples.mjs';
-import { emulatedHeadset, type Point } from './emulated-headset';
-import { wristByGrip, wristName } from './hands-on-controllers';
-import { distance } from './page-fixture';
-import { servePlainly } from './plain-server';
+import { buildExample, exampleNames, packLibrary } from '../../scripts/build-examples.mjs';
+import { emulatedHeadset, type Point } from '../emulated-headset';
+import { wristByGrip, wristName } from '../hands-on-controllers';
+import { distance } from '../page-fixture';
+import { servePlainly } from '../plain-server';
 
-const iwer = fileURLToPath(new URL('../node_modules/iwer/build/iwer.min.js', import.meta.url));
+const iwer = fileURLToPath(new URL('../../node_modules/iwer/build/iwer.min.js', import.meta.url));
 
 /** An object of three.js, as far as it tells whether it is drawn. */
 interface Drawn {

@@ -1,6 +1,6 @@
 import type { Page, Route } from '@playwright/test';
-import { measured } from '../tests/reliability/measured';
-import { enterVr, expect, joint, openWithHeadset, probe, freshTest as test } from './page-fixture';
+import { measured } from '../../tests/reliability/measured';
+import { enterVr, expect, joint, openWithHeadset, probe, freshTest as test } from '../page-fixture';
 
 /** What can be wrong with a model file, and how the server would answer then. */
 const faults: Readonly<Record<string, (route: Route) => Promise<void>>> = {

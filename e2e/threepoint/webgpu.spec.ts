@@ -1,5 +1,5 @@
-import { measured } from '../tests/reliability/measured';
-import { expect, joint, open, probe, freshTest as test } from './page-fixture';
+import { measured } from '../../tests/reliability/measured';
+import { expect, joint, open, probe, freshTest as test } from '../page-fixture';
 
 // Chromium without a graphics card computes WebGPU in software, and only when asked to.
 test.use({

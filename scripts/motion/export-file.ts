@@ -1,17 +1,17 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { basename, extname, join } from 'node:path';
-import { avatarClip } from '../../src/avatar/avatar-clip';
-import { reasonOf } from '../../src/core/errors/reasons';
-import type { NetworkName } from '../../src/core/estimation/estimators';
-import { createPlainRegressor } from '../../src/core/estimation/learned-network';
-import { type EstimatorName, estimatorNames } from '../../src/core/estimation/pose-estimator';
-import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
-import { parseRecording } from '../../src/core/tracking/recording';
-import { startRegressor } from '../../src/inference/load-regressor';
-import { parseContract } from '../../src/inference/model-contract';
-import { exportMotionBare, type MotionWriter } from '../../src/lib/bare-export';
-import { type MotionFormat, motionFormats } from '../../src/lib/motion-formats';
-import type { WorkOptions } from '../../src/lib/run-work';
+import { exportMotionBare, type MotionWriter } from 'threepoint/api/bare-export';
+import { type MotionFormat, motionFormats } from 'threepoint/api/motion-formats';
+import type { WorkOptions } from 'threepoint/api/run-work';
+import { avatarClip } from 'threepoint/avatar/avatar-clip';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import type { NetworkName } from 'threepoint/core/estimation/estimators';
+import { createPlainRegressor } from 'threepoint/core/estimation/learned-network';
+import { type EstimatorName, estimatorNames } from 'threepoint/core/estimation/pose-estimator';
+import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import { parseRecording } from 'threepoint/core/tracking/recording';
+import { startRegressor } from 'threepoint/onnx/load-regressor';
+import { parseContract } from 'threepoint/onnx/model-contract';
 import { writeWhole } from './write-whole';
 
 /** What was asked for on the command line, paths in full. */

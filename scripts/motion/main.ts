@@ -1,5 +1,5 @@
-import { reasonOf } from '../../src/core/errors/reasons';
-import type { WorkProgress } from '../../src/lib/run-work';
+import type { WorkProgress } from 'threepoint/api/run-work';
+import { reasonOf } from 'threepoint/core/errors/reasons';
 import { exportFile, type MotionRequest } from './export-file';
 
 const givenUp = new AbortController();

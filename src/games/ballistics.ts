@@ -1,4 +1,4 @@
-import { addScaled, type MutableVec3, normalise, setVec3, subtract, type Vec3, vec3 } from '../math/vec3';
+import { addScaled, type MutableVec3, normalise, setVec3, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 
 /** Downward [m/s²]. Nothing else acts on what flies: no drag, no wind. */
 export const gravity = 9.81;

@@ -1,6 +1,6 @@
-import { type Frame, type MutablePose, makePose, type Pose } from '../math/pose';
-import { fromAxes, type Quat, rotate } from '../math/quat';
-import type { Side } from '../math/side';
+import { type Frame, type MutablePose, makePose, type Pose } from 'threepoint/core/math/pose';
+import { fromAxes, type Quat, rotate } from 'threepoint/core/math/quat';
+import type { Side } from 'threepoint/core/math/side';
 import {
   add,
   cross,
@@ -12,7 +12,7 @@ import {
   subtract,
   type Vec3,
   vec3,
-} from '../math/vec3';
+} from 'threepoint/core/math/vec3';
 
 /** The middle of the fist in the wrist's frame [m]: 8 cm towards the knuckles, 2.5 cm towards the palm. */
 export const fistInWrist: Vec3 = vec3(0, -0.025, -0.08);

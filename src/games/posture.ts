@@ -1,6 +1,6 @@
-import type { MutablePose } from '../math/pose';
-import { fromAxes, type MutableQuat, quat } from '../math/quat';
-import { cross, type MutableVec3, normalise, scale, setVec3, up, type Vec3, vec3 } from '../math/vec3';
+import type { MutablePose } from 'threepoint/core/math/pose';
+import { fromAxes, type MutableQuat, quat } from 'threepoint/core/math/quat';
+import { cross, type MutableVec3, normalise, scale, setVec3, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 
 /** Shoulder to wrist and half the width of the shoulders as shares of the standing eye height (the body model's averages). */
 export const armShare = 0.36;

@@ -1,19 +1,26 @@
 import { createHash, timingSafeEqual } from 'node:crypto';
 import type { IncomingMessage } from 'node:http';
 import type { Logger } from 'pino';
+import { HttpError } from './answer';
 import { type AuthThrottle, createAuthThrottle, TooManyGuesses } from './auth-throttle';
 import { clientAddressOf } from './client-address';
-import { HttpError } from './http/answer';
-import type { RelayConfiguration } from './relay-configuration';
 
 const digest = (text: string): Buffer => createHash('sha256').update(text).digest();
 
+/** Settings of an AdminGuard. */
+export interface AdminSettings {
+  /** Nobody is admitted without one. */
+  readonly adminToken: string | null;
+  /** Whether a proxy in front of the server states the address of the client. */
+  readonly trustProxy: boolean;
+}
+
 /** Knows the holder of the admin's token, and limits how often an address may guess it. */
 export class AdminGuard {
-  readonly #configuration: RelayConfiguration;
+  readonly #configuration: AdminSettings;
   readonly #throttle: AuthThrottle;
 
-  constructor(configuration: RelayConfiguration, log: Logger) {
+  constructor(configuration: AdminSettings, log: Logger) {
     this.#configuration = configuration;
     this.#throttle = createAuthThrottle((guess) => log.warn(guess, 'wrong token of an admin'));
   }

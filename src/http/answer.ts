@@ -1,6 +1,6 @@
 import { type IncomingMessage, type ServerResponse, STATUS_CODES } from 'node:http';
 import type { Duplex } from 'node:stream';
-import { securityHeaders } from '../security-headers';
+import { securityHeaders } from './security-headers';
 
 /** What a request gets, not yet on its way. */
 export interface Answer {

@@ -1,6 +1,6 @@
 import type { IncomingMessage } from 'node:http';
 import { BlockList, isIP, isIPv4, SocketAddress } from 'node:net';
-import { HttpError } from './http/answer';
+import { HttpError } from './answer';
 
 /** The address of a client in its one normal form, whatever its connection or a proxy wrote. Every limit of the server counts `network`. */
 export interface ClientAddress {

@@ -1,6 +1,6 @@
 import { once } from 'node:events';
 import type { AddressInfo, Server } from 'node:net';
-import { ConfigurationError } from './configuration';
+import { ConfigurationError } from './configuration-error';
 
 /** How many ports after the first one are tried. */
 const attempts = 20;

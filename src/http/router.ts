@@ -1,8 +1,8 @@
 import type { IncomingMessage, RequestListener } from 'node:http';
-import { ValidationError } from '../../src/core/study/validation';
-import { createSitePolicy, type SitePolicy } from '../site-policy';
+import { ValidationError } from 'threepoint/core/validation/validation';
 import { type Answer, HttpError, json, refusal, sendAnswer } from './answer';
 import { wholeBody } from './body';
+import { createSitePolicy, type SitePolicy } from './site-policy';
 import { targetOf } from './target';
 
 /** A request to a route, its body read. */

@@ -14,7 +14,9 @@ const isWeights = (file: string): boolean => /\.(onnx|bin)$/.test(file);
 
 /** This program, and the networks below `pageDirectory`, which may have none. */
 export function softwareIn(pageDirectory: string): Software {
-  const { name, version } = JSON.parse(readFileSync(new URL('../package.json', import.meta.url), 'utf8')) as Software;
+  const { name, version } = JSON.parse(
+    readFileSync(new URL('../../package.json', import.meta.url), 'utf8'),
+  ) as Software;
   const models = join(pageDirectory, 'models');
   const files = existsSync(models) ? readdirSync(models).filter(isWeights).toSorted() : [];
   const weights = files.map((file) => ({

@@ -8,11 +8,16 @@ import {
 import { createServer as createHttpsServer } from 'node:https';
 import { createServer as createNetServer, type Server as NetServer, type Socket } from 'node:net';
 import type { Duplex } from 'node:stream';
-import type { Credentials } from './certificate';
+import { HttpError, refusal, sendAnswer, sendRawAnswer } from './answer';
 import type { ConnectionLimiter } from './connection-limiter';
-import { HttpError, refusal, sendAnswer, sendRawAnswer } from './http/answer';
-import { complaintAboutHost, targetOf } from './http/target';
 import { listenOnFreePort } from './listen';
+import { complaintAboutHost, targetOf } from './target';
+
+/** A private key and its certificate, PEM. */
+export interface Credentials {
+  readonly key: string;
+  readonly cert: string;
+}
 
 /** A page being served. */
 export interface WebServer {

@@ -1,7 +1,7 @@
-import { pageElement } from '../ui/element';
-import { createEnterButton, type EnterButton } from '../ui/enter-button';
-import { createNotices } from '../ui/notices';
-import { allowOwnScripts } from '../ui/own-scripts';
+import { pageElement } from 'threepoint-ui/element';
+import { createEnterButton, type EnterButton } from 'threepoint-ui/enter-button';
+import { createNotices } from 'threepoint-ui/notices';
+import { allowOwnScripts } from 'threepoint-ui/own-scripts';
 import { createFrameLoop } from './shell/frame-loop';
 import type { Headset } from './shell/headset';
 import { joinStudy } from './shell/join-study';

@@ -1,4 +1,4 @@
-import type { CalibrationFault } from '../core/tracking/calibration-faults';
+import type { CalibrationFault } from 'threepoint/core/tracking/calibration-faults';
 import { button, element } from './element';
 
 /** The guided calibration as people see it: an instruction, a countdown, then a bar that fills. */

@@ -1,5 +1,5 @@
-import { PassingFault } from '../core/errors/passing-fault';
-import { firstLine, reasonOf } from '../core/errors/reasons';
+import { PassingFault } from 'threepoint/core/errors/passing-fault';
+import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 
 /** What a file is to be, with its article, and how much of it this page reads. */
 export interface FileKind {

@@ -1,9 +1,9 @@
 import type { Mesh } from 'three';
-import { dampVec3 } from '../core/math/damper';
-import type { Pose } from '../core/math/pose';
-import { rotate } from '../core/math/quat';
-import { addScaled, forward, type Vec3, vec3 } from '../core/math/vec3';
-import { showToEyesAlone } from '../scene/eye-layers';
+import { showToEyesAlone } from 'threepoint/avatar/eye-layers';
+import { dampVec3 } from 'threepoint/core/math/damper';
+import type { Pose } from 'threepoint/core/math/pose';
+import { rotate } from 'threepoint/core/math/quat';
+import { addScaled, forward, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { createVrPanel, fillRounded, vrColors, vrFont } from './vr-panel';
 
 /** What is heard, in words, in the headset: a line low before the eyes for players without sound. */

@@ -1,4 +1,6 @@
 import * as fc from 'fast-check';
+import { conjugate, rotate } from 'threepoint/core/math/quat';
+import { distance, subtract } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
 import {
   aftermathSeconds,
@@ -10,8 +12,6 @@ import {
   seedOf,
 } from '../../bench/evaluate/disturbances';
 import { drive } from '../../bench/evaluate/drive';
-import { conjugate, rotate } from '../../src/core/math/quat';
-import { distance, subtract } from '../../src/core/math/vec3';
 import { person, recordedMotion } from './recorded-motion';
 
 describe('losses', () => {

@@ -1,9 +1,9 @@
+import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
+import { add, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
 import { drive } from '../../bench/evaluate/drive';
 import { addFigures, emptyCollection, figuresOf, motions, unlikeness } from '../../bench/evaluate/figures';
 import type { MeasuredFrame } from '../../bench/evaluate/measures';
-import { fromAxisAngle, rotate } from '../../src/core/math/quat';
-import { add, up, type Vec3, vec3 } from '../../src/core/math/vec3';
 import { person, recordedMotion } from './recorded-motion';
 
 type Truth = MeasuredFrame['truth'];

@@ -1,6 +1,7 @@
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { distance } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
 import { createDriver } from '../../bench/evaluate/drive';
 import { addPiece, compareTables, emptyGoldenTally, goldenFigures, worse } from '../../bench/evaluate/golden-figures';
@@ -8,7 +9,6 @@ import { compareFrames, keepFrames, readFrames, writeFrames } from '../../bench/
 import { planGoldens } from '../../bench/evaluate/golden-plan';
 import { driveStaged } from '../../bench/evaluate/golden-worker';
 import { type Piece, situations, undisturbed } from '../../bench/evaluate/situations';
-import { distance } from '../../src/core/math/vec3';
 import { person, recordedMotion } from './recorded-motion';
 
 const rateHz = 60;

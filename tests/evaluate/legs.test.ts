@@ -1,12 +1,12 @@
+import { type LegPose, LegPosture } from 'threepoint/avatar/legs/leg-posture';
+import type { GaitPoints } from 'threepoint/core/estimation/gait-features';
+import { rotate } from 'threepoint/core/math/quat';
+import { add, vec3 } from 'threepoint/core/math/vec3';
 import { expect, test } from 'vitest';
 import { addLegs, emptyLegMeasures, legReport } from '../../bench/evaluate/leg-measures';
 import { mannequinLegs } from '../../bench/evaluate/leg-proportions';
 import { contactsOf, footHeights, type TrueLeg, type TrueLegs } from '../../bench/evaluate/leg-truth';
-import { type LegPose, LegPosture } from '../../src/avatar/legs/leg-posture';
-import type { GaitPoints } from '../../src/core/estimation/gait-features';
-import { rotate } from '../../src/core/math/quat';
-import { add, vec3 } from '../../src/core/math/vec3';
-import { eyeHeight, proportions, standing, walking } from '../avatar/walking-person';
+import { eyeHeight, proportions, standing, walking } from '../threepoint/avatar/walking-person';
 
 const rateHz = 60;
 /** Stands for two seconds; another time walks for four. */

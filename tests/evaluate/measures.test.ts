@@ -1,7 +1,7 @@
+import type { Vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
 import { drive } from '../../bench/evaluate/drive';
 import { addClip, emptyMeasures, type MeasuredFrame, merge, report } from '../../bench/evaluate/measures';
-import type { Vec3 } from '../../src/core/math/vec3';
 import { person, recordedMotion } from './recorded-motion';
 
 /** The truth as an estimate of itself, moved by what `shift` says of a joint [m]. */

@@ -1,8 +1,8 @@
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { armLength } from 'threepoint/core/body/skeleton';
+import { distance } from 'threepoint/core/math/vec3';
 import { expect, test } from 'vitest';
 import { addReach, emptyReach, mergeReaches, reachReport, reachText } from '../../bench/evaluate/reach';
-import type { Calibration } from '../../src/core/body/calibration';
-import { armLength } from '../../src/core/body/skeleton';
-import { distance } from '../../src/core/math/vec3';
 import { person, recordedMotion } from './recorded-motion';
 
 const frames = recordedMotion(5, 120);

@@ -1,11 +1,11 @@
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { createIk } from 'threepoint/core/estimation/estimators';
+import type { Vec3 } from 'threepoint/core/math/vec3';
 import { type RecordedFrame, type TruthJoint, truthJoints } from '../../bench/evaluate/recordings';
-import type { Calibration } from '../../src/core/body/calibration';
-import { forwardKinematics } from '../../src/core/body/forward-kinematics';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { createIk } from '../../src/core/estimation/estimators';
-import type { Vec3 } from '../../src/core/math/vec3';
-import { poseOf } from '../core/estimation/drawn';
-import { movingPerson } from '../core/estimation/moving-person';
+import { poseOf } from '../threepoint/core/estimation/drawn';
+import { movingPerson } from '../threepoint/core/estimation/moving-person';
 
 export const person: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
 

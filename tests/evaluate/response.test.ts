@@ -1,9 +1,9 @@
+import { dampVec3 } from 'threepoint/core/math/damper';
+import type { Vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { expect, test } from 'vitest';
 import type { Driver } from '../../bench/evaluate/drive';
 import { measureResponse, measureTremble } from '../../bench/evaluate/response';
-import { dampVec3 } from '../../src/core/math/damper';
-import type { Vec3 } from '../../src/core/math/vec3';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 
 /** A body whose one joint is the right hand, as a filter lets it be drawn. */
 const drawing = (filter: (hand: Vec3, frame: TrackingFrame) => Vec3): Driver => ({

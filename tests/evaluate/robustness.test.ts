@@ -12,7 +12,7 @@ import {
   ratesHz,
   robustnessText,
 } from '../../bench/evaluate/robustness';
-import { openShippedModel } from '../core/estimation/shipped-models';
+import { openShippedModel } from '../threepoint/core/estimation/shipped-models';
 import { person, recordedMotion } from './recorded-motion';
 
 describe('what a loss costs', () => {

@@ -1,8 +1,8 @@
 import fc from 'fast-check';
+import type { GameRules } from 'threepoint-games/game-rules';
+import { createMatch } from 'threepoint-games/match';
 import { describe, expect, test } from 'vitest';
-import type { GameRules } from '../../../src/core/games/game-rules';
-import { createMatch } from '../../../src/core/games/match';
-import { number, seed } from '../arbitraries';
+import { number, seed } from '../threepoint/core/arbitraries';
 
 interface Tally {
   readonly ticks: number;

@@ -1,6 +1,6 @@
+import { createAuthThrottle, TooManyGuesses, type WrongGuess } from 'threepoint-http/auth-throttle';
+import { type ClientAddress, parseClientAddress } from 'threepoint-http/client-address';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
-import { createAuthThrottle, TooManyGuesses, type WrongGuess } from '../../server/auth-throttle';
-import { type ClientAddress, parseClientAddress } from '../../server/client-address';
 
 beforeEach(() => {
   vi.useFakeTimers();

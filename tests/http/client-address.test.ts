@@ -1,12 +1,12 @@
 import { once } from 'node:events';
 import { BlockList, connect, Socket } from 'node:net';
 import fc from 'fast-check';
+import { parseClientAddress } from 'threepoint-http/client-address';
+import { createConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { afterAll, describe, expect, onTestFinished, test } from 'vitest';
-import { parseClientAddress } from '../../server/client-address';
-import { createConnectionLimiter } from '../../server/connection-limiter';
 import { measured } from '../reliability/measured';
-import { startRelay } from './running-relay';
-import { servedPaperStudy, servedStudies } from './running-studies';
+import { startRelay } from '../rooms/server/running-relay';
+import { servedPaperStudy, servedStudies } from '../study/server/running-studies';
 
 const host = (text: string) => `Host: ${text}\r\n`;
 

@@ -1,17 +1,17 @@
 import { once } from 'node:events';
 import { connect, type Socket } from 'node:net';
 import { connect as connectTls } from 'node:tls';
+import { createConnectionLimiter } from 'threepoint-http/connection-limiter';
+import { noPage } from 'threepoint-http/router';
+import { serve } from 'threepoint-http/web-server';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { certificateFor } from '../../server/certificate';
-import { createConnectionLimiter } from '../../server/connection-limiter';
-import { noPage } from '../../server/http/router';
 import { createPageHandler } from '../../server/page';
-import { serve } from '../../server/web-server';
 import { isNightly } from '../nightly';
 import { measured } from '../reliability/measured';
+import { type RunningRelay, startRelay } from '../rooms/server/running-relay';
+import { forkServer, probeHealth } from '../server/server-child';
 import { directoryWith } from '../temporary-directory';
-import { type RunningRelay, startRelay } from './running-relay';
-import { forkServer, probeHealth } from './server-child';
 
 const upgradeRequest = (headers = '') =>
   `GET /relay/?EIO=4&transport=websocket HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n${headers}Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n`;

@@ -1,8 +1,8 @@
+import { GroupCommit } from 'threepoint-http/group-commit';
+import { recordVersion, type StudyRecord } from 'threepoint-study/model/study-record';
 import { describe, expect, test } from 'vitest';
-import { GroupCommit } from '../../server/group-commit';
-import { recordVersion, type StudyRecord } from '../../src/core/study/study-record';
-import { paperPlan } from '../core/study/studies';
-import { now, servedPaperStudy } from './running-studies';
+import { paperPlan } from '../study/model/studies';
+import { now, servedPaperStudy } from '../study/server/running-studies';
 
 /** A disk whose flushes end when the test says so. */
 function heldDisk() {

@@ -1,6 +1,6 @@
 import { createHash } from 'node:crypto';
+import { secretBits, weaknessOf } from 'threepoint-http/secret-bits';
 import { describe, expect, test } from 'vitest';
-import { secretBits, weaknessOf } from '../../server/secret-bits';
 
 describe('a secret', () => {
   test.each([

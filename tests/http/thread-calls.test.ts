@@ -1,5 +1,5 @@
+import { startThread, ThreadCalls, type ThreadLimits } from 'threepoint-http/thread-calls';
 import { expect, onTestFinished, test } from 'vitest';
-import { startThread, ThreadCalls, type ThreadLimits } from '../../server/thread-calls';
 import type { ObedientApi } from './obedient-work';
 
 const roomy = { mostCalls: 10, mostBytes: 100, deadlineMs: 60_000 };

@@ -5,14 +5,14 @@ import { createServer } from 'node:http';
 import { type AddressInfo, connect } from 'node:net';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { serve } from 'threepoint-http/web-server';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { certificateFor } from '../../server/certificate';
 import { lanAddresses } from '../../server/lan-addresses';
-import { serve } from '../../server/web-server';
+import { until } from '../rooms/server/running-relay';
+import { isAlive, kill } from '../server/child-process';
+import { ask } from '../server/running-server';
 import { directoryWith } from '../temporary-directory';
-import { isAlive, kill } from './child-process';
-import { until } from './running-relay';
-import { ask } from './running-server';
 
 const now = new Date();
 const hello = (_: unknown, response: { end: (text: string) => void }) => response.end('hello');
@@ -34,7 +34,7 @@ describe('the port', () => {
   });
 
   test('where none is free, the server says so and its process ends', async () => {
-    const script = fileURLToPath(new URL('./unserved-process.ts', import.meta.url));
+    const script = fileURLToPath(new URL('../server/unserved-process.ts', import.meta.url));
     const child = fork(script, [directoryWith()], { execArgv: ['--import', 'tsx'], stdio: 'pipe' });
     onTestFinished(() => kill(child));
     let said = '';

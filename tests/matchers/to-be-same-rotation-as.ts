@@ -1,5 +1,5 @@
+import { angleBetween, type Quat } from 'threepoint/core/math/quat';
 import { expect } from 'vitest';
-import { angleBetween, type Quat } from '../../src/core/math/quat';
 
 declare module 'vitest' {
   // biome-ignore lint/suspicious/noExplicitAny: the type parameter must be declared as vitest declares it.

@@ -1,16 +1,16 @@
 // Prints, as JSON, how many bytes on the heap each call of an operation leaves once it is compiled: a program of its own, because
 // the records of property tests have x, y and z too (see `Vec3`).
 import { Session } from 'node:inspector/promises';
-import '../../src/app/archery/archery-play';
-import '../../src/app/ball/ball-play';
-import '../../src/app/studio/recorder';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { createEstimator } from '../../src/core/estimation/estimators';
-import { fromAxisAngle, multiply, quat, rotate } from '../../src/core/math/quat';
-import { add, vec3 } from '../../src/core/math/vec3';
-import '../../src/core/study/study-api';
-import { ImpairedTracking } from '../../src/core/tracking/impaired-tracking';
-import '../../src/net/loopback-connection';
+import 'threepoint-page/archery/archery-play';
+import 'threepoint-page/ball/ball-play';
+import 'threepoint-page/studio/recorder';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { createEstimator } from 'threepoint/core/estimation/estimators';
+import { fromAxisAngle, multiply, quat, rotate } from 'threepoint/core/math/quat';
+import { add, vec3 } from 'threepoint/core/math/vec3';
+import 'threepoint-study/model/study-api';
+import { ImpairedTracking } from 'threepoint/core/tracking/impaired-tracking';
+import 'threepoint-rooms/client/loopback-connection';
 
 const calls = 20_000;
 /** Until the operation is compiled: at most this often. */

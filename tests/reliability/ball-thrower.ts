@@ -1,13 +1,13 @@
-import { createBallGestures } from '../../src/core/games/ball/gestures';
-import { ballRules } from '../../src/core/games/ball/rules';
-import { rackPosition, stations } from '../../src/core/games/ball/stations';
-import { allReleased, type HandButtons } from '../../src/core/games/button-presses';
-import { wristAround } from '../../src/core/games/fist';
-import { invertTransform, type TrackedPose, transformPoint, transformPose } from '../../src/core/math/pose';
-import { identity } from '../../src/core/math/quat';
-import { type Vec3, vec3 } from '../../src/core/math/vec3';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
-import { leftThrower, told } from '../core/games/ball/playing';
+import { allReleased, type HandButtons } from 'threepoint/core/input/button-presses';
+import { invertTransform, type TrackedPose, transformPoint, transformPose } from 'threepoint/core/math/pose';
+import { identity } from 'threepoint/core/math/quat';
+import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { createBallGestures } from 'threepoint-games/ball/gestures';
+import { ballRules } from 'threepoint-games/ball/rules';
+import { rackPosition, stations } from 'threepoint-games/ball/stations';
+import { wristAround } from 'threepoint-games/fist';
+import { leftThrower, told } from '../games/ball/playing';
 
 type Side = 'left' | 'right';
 type Hand = {

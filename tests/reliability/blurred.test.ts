@@ -1,7 +1,7 @@
+import { allReleased } from 'threepoint/core/input/button-presses';
+import { createArcheryGestures, defaultArcheryGestureSettings } from 'threepoint-games/archery/gestures';
 import { expect, test } from 'vitest';
-import { createArcheryGestures, defaultArcheryGestureSettings } from '../../src/core/games/archery/gestures';
-import { allReleased } from '../../src/core/games/button-presses';
-import { bowman, posed } from '../core/games/archery/bowman';
+import { bowman, posed } from '../games/archery/bowman';
 import { ballThrower } from './ball-thrower';
 import { measured } from './measured';
 

@@ -1,13 +1,13 @@
 import { readFileSync } from 'node:fs';
 import { PerspectiveCamera } from 'three';
+import { createMirror } from 'threepoint/avatar/mirror';
+import { identity } from 'threepoint/core/math/quat';
+import { vec3 } from 'threepoint/core/math/vec3';
+import { createVignette } from 'threepoint-page/scene/vignette';
 import { expect, test } from 'vitest';
-import { createMirror } from '../../src/avatar/mirror';
-import { identity } from '../../src/core/math/quat';
-import { vec3 } from '../../src/core/math/vec3';
-import { createVignette } from '../../src/scene/vignette';
 import { measured } from './measured';
 
-const css = readFileSync(new URL('../../src/styles/page/base.css', import.meta.url), 'utf8');
+const css = readFileSync(new URL('../../src/ui/styles/page/base.css', import.meta.url), 'utf8');
 
 /** A colour of the page's root, as shares of red, green and blue. */
 function colour(name: string): readonly number[] {

@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import { bowman } from '../core/games/archery/bowman';
+import { bowman } from '../games/archery/bowman';
 import { ballThrower } from './ball-thrower';
 import { measured } from './measured';
 

@@ -1,15 +1,15 @@
+import { allReleased } from 'threepoint/core/input/button-presses';
+import { otherSide, type Side } from 'threepoint/core/math/side';
+import { archeryRules } from 'threepoint-games/archery/rules';
+import type { BallAction, BallState } from 'threepoint-games/ball/ball-state';
+import { createBallGestures } from 'threepoint-games/ball/gestures';
+import { createHolder } from 'threepoint-games/ball/holder-motion';
+import { ballRules } from 'threepoint-games/ball/rules';
+import { stations } from 'threepoint-games/ball/stations';
+import { createThrower } from 'threepoint-games/ball/thrower-motion';
 import { expect, test } from 'vitest';
-import { archeryRules } from '../../src/core/games/archery/rules';
-import type { BallAction, BallState } from '../../src/core/games/ball/ball-state';
-import { createBallGestures } from '../../src/core/games/ball/gestures';
-import { createHolder } from '../../src/core/games/ball/holder-motion';
-import { ballRules } from '../../src/core/games/ball/rules';
-import { stations } from '../../src/core/games/ball/stations';
-import { createThrower } from '../../src/core/games/ball/thrower-motion';
-import { allReleased } from '../../src/core/games/button-presses';
-import { otherSide, type Side } from '../../src/core/math/side';
-import { shotWithOneHand } from '../core/games/archery/one-handed-round';
-import { playRound, steady } from '../core/games/archery/playing';
+import { shotWithOneHand } from '../games/archery/one-handed-round';
+import { playRound, steady } from '../games/archery/playing';
 import { measured } from './measured';
 
 /** Eyes above the floor [m] of people of 1.10 to 2.20 m, and of the same people seated. */

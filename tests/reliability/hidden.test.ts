@@ -1,11 +1,11 @@
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { unknownFingers } from 'threepoint/core/body/hand-shape';
+import { createEstimator } from 'threepoint/core/estimation/estimators';
+import { allReleased } from 'threepoint/core/input/button-presses';
+import { createBallPlay } from 'threepoint-page/ball/ball-play';
+import { createLoopbackHost } from 'threepoint-rooms/client/loopback-connection';
 import { expect, test } from 'vitest';
-import { createBallPlay } from '../../src/app/ball/ball-play';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { unknownFingers } from '../../src/core/body/hand-shape';
-import { createEstimator } from '../../src/core/estimation/estimators';
-import { allReleased } from '../../src/core/games/button-presses';
-import { createLoopbackHost } from '../../src/net/loopback-connection';
-import { poseOf } from '../core/estimation/drawn';
+import { poseOf } from '../threepoint/core/estimation/drawn';
 import { measured } from './measured';
 
 const released = { left: allReleased, right: allReleased };

@@ -1,10 +1,10 @@
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { createEstimator } from 'threepoint/core/estimation/estimators';
+import { createArcheryPlay } from 'threepoint-page/archery/archery-play';
 import { expect, test } from 'vitest';
-import { createArcheryPlay } from '../../src/app/archery/archery-play';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { createEstimator } from '../../src/core/estimation/estimators';
 import { collectGarbage } from '../collect-garbage';
-import { poseOf } from '../core/estimation/drawn';
 import { isNightly } from '../nightly';
+import { poseOf } from '../threepoint/core/estimation/drawn';
 import { measured } from './measured';
 
 const heap = (): number => {

@@ -1,16 +1,16 @@
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { unknownFingers } from 'threepoint/core/body/hand-shape';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { createEstimator } from 'threepoint/core/estimation/estimators';
+import { distance, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { decodePose, encodePose } from 'threepoint-rooms/protocol/pose-codec';
 import { expect, test } from 'vitest';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { forwardKinematics } from '../../src/core/body/forward-kinematics';
-import { unknownFingers } from '../../src/core/body/hand-shape';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { createEstimator } from '../../src/core/estimation/estimators';
-import { distance, type Vec3, vec3 } from '../../src/core/math/vec3';
-import { decodePose, encodePose } from '../../src/core/protocol/pose-codec';
-import { actorFrame } from '../../src/core/tracking/actor-motion';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
-import { poseOf, show } from '../core/estimation/drawn';
-import { openShippedModel } from '../core/estimation/shipped-models';
 import { isNightly } from '../nightly';
+import { poseOf, show } from '../threepoint/core/estimation/drawn';
+import { openShippedModel } from '../threepoint/core/estimation/shipped-models';
 import { measured } from './measured';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);

@@ -1,13 +1,13 @@
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { jointNames } from 'threepoint/core/body/joints';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { createEstimator } from 'threepoint/core/estimation/estimators';
+import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { expect, test } from 'vitest';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { forwardKinematics } from '../../src/core/body/forward-kinematics';
-import { jointNames } from '../../src/core/body/joints';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { createEstimator } from '../../src/core/estimation/estimators';
-import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
-import { actorFrame } from '../../src/core/tracking/actor-motion';
-import { show } from '../core/estimation/drawn';
-import { openShippedModel } from '../core/estimation/shipped-models';
+import { show } from '../threepoint/core/estimation/drawn';
+import { openShippedModel } from '../threepoint/core/estimation/shipped-models';
 import { measured } from './measured';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);

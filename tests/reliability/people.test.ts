@@ -1,22 +1,22 @@
-import { expect, test } from 'vitest';
 import {
   armSpanFromFingertipSpan,
   type Calibration,
   defaultCalibration,
   eyeHeightFromStature,
   provisionalCalibration,
-} from '../../src/core/body/calibration';
-import { forwardKinematics } from '../../src/core/body/forward-kinematics';
-import { jointNames } from '../../src/core/body/joints';
-import { armLength, skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { createEstimator } from '../../src/core/estimation/estimators';
-import type { TrackedPose } from '../../src/core/math/pose';
-import { identity } from '../../src/core/math/quat';
-import { add, distance, subtract, type Vec3, vec3 } from '../../src/core/math/vec3';
-import { actorFrame } from '../../src/core/tracking/actor-motion';
-import { startGuidedCalibration, stepGuidedCalibration } from '../../src/core/tracking/guided-calibration';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
-import { poseOf } from '../core/estimation/drawn';
+} from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { jointNames } from 'threepoint/core/body/joints';
+import { armLength, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { createEstimator } from 'threepoint/core/estimation/estimators';
+import type { TrackedPose } from 'threepoint/core/math/pose';
+import { identity } from 'threepoint/core/math/quat';
+import { add, distance, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import { startGuidedCalibration, stepGuidedCalibration } from 'threepoint/core/tracking/guided-calibration';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { expect, test } from 'vitest';
+import { poseOf } from '../threepoint/core/estimation/drawn';
 import { measured } from './measured';
 
 const statures = [1.1, 1.2, 1.35, 1.5, 1.7, 1.9, 2.1, 2.2];

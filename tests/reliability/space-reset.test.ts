@@ -1,19 +1,19 @@
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { jointNames } from 'threepoint/core/body/joints';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { createEstimator } from 'threepoint/core/estimation/estimators';
+import { Pipeline } from 'threepoint/core/estimation/pipeline';
+import { estimatorNames, type PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
+import { type TrackedPose, type Transform, transformPose } from 'threepoint/core/math/pose';
+import { copyQuat, fromAxisAngle } from 'threepoint/core/math/quat';
+import { sides } from 'threepoint/core/math/side';
+import { copyVec3, distance, up, vec3 } from 'threepoint/core/math/vec3';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { expect, test } from 'vitest';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { forwardKinematics } from '../../src/core/body/forward-kinematics';
-import { jointNames } from '../../src/core/body/joints';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { createEstimator } from '../../src/core/estimation/estimators';
-import { Pipeline } from '../../src/core/estimation/pipeline';
-import { estimatorNames, type PoseEstimator } from '../../src/core/estimation/pose-estimator';
-import { type TrackedPose, type Transform, transformPose } from '../../src/core/math/pose';
-import { copyQuat, fromAxisAngle } from '../../src/core/math/quat';
-import { sides } from '../../src/core/math/side';
-import { copyVec3, distance, up, vec3 } from '../../src/core/math/vec3';
-import { actorFrame } from '../../src/core/tracking/actor-motion';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
-import { show } from '../core/estimation/drawn';
-import { openShippedModel } from '../core/estimation/shipped-models';
+import { show } from '../threepoint/core/estimation/drawn';
+import { openShippedModel } from '../threepoint/core/estimation/shipped-models';
 import { measured } from './measured';
 
 /** A quarter turn and a metre: where the floor lies after the device has recentred. */

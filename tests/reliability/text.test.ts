@@ -1,7 +1,7 @@
 import { readdirSync, readFileSync } from 'node:fs';
+import { cleanName } from 'threepoint-rooms/protocol/names';
+import { tidyCsv } from 'threepoint-study/model/tidy-csv';
 import { expect, test } from 'vitest';
-import { cleanName } from '../../src/core/protocol/names';
-import { tidyCsv } from '../../src/core/study/tidy-csv';
 import { measured } from './measured';
 
 const source = new URL('../../src/', import.meta.url);

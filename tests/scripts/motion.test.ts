@@ -1,13 +1,13 @@
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { readBvh } from 'threepoint/core/motion/read-bvh';
+import { finishWork } from 'threepoint/core/motion/work';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import { writeRecording } from 'threepoint/core/tracking/recording';
 import { describe, expect, test } from 'vitest';
 import { exportFile } from '../../scripts/motion/export-file';
 import { writeWhole } from '../../scripts/motion/write-whole';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { readBvh } from '../../src/core/motion/read-bvh';
-import { finishWork } from '../../src/core/motion/work';
-import { actorFrame } from '../../src/core/tracking/actor-motion';
-import { writeRecording } from '../../src/core/tracking/recording';
 import { directoryWith } from '../temporary-directory';
 
 const recorded = (seconds: number): string =>

@@ -2,24 +2,27 @@ import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
 import { request as httpRequest, type OutgoingHttpHeaders, type RequestListener } from 'node:http';
 import { join } from 'node:path';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { writeRecording } from 'threepoint/core/tracking/recording';
+import { createConnectionLimiter } from 'threepoint-http/connection-limiter';
+import { createRouter } from 'threepoint-http/router';
+import { createSitePolicy } from 'threepoint-http/site-policy';
+import { serve } from 'threepoint-http/web-server';
+import { poseEvent } from 'threepoint-rooms/protocol/small-frames';
+import { createRelay } from 'threepoint-rooms/server/relay';
+import { relayConfigurationFrom } from 'threepoint-rooms/server/relay-configuration';
+import { begin } from 'threepoint-study/model/progress';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import { checkedRecord } from 'threepoint-study/model/study-record';
+import { openStudyStore } from 'threepoint-study/server/study-store';
 import { afterAll, beforeAll, describe, expect, onTestFinished, test } from 'vitest';
-import { createConnectionLimiter } from '../../server/connection-limiter';
-import { createRouter } from '../../server/http/router';
-import { createRelay } from '../../server/relay';
-import { relayConfigurationFrom } from '../../server/relay-configuration';
-import { createSitePolicy } from '../../server/site-policy';
-import { openStudyStore } from '../../server/study-store';
-import { serve } from '../../server/web-server';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { poseEvent } from '../../src/core/protocol/small-frames';
-import { begin } from '../../src/core/study/progress';
-import { scheduleFor } from '../../src/core/study/schedule';
-import { checkedRecord } from '../../src/core/study/study-record';
-import { writeRecording } from '../../src/core/tracking/recording';
-import { mannequin } from '../avatar/glb';
-import { paperPlan, session } from '../core/study/studies';
+import { shippedRoomKinds } from '../../server/room-kinds';
 import { measured } from '../reliability/measured';
+import { poseBytes, rawGuest, rawSocket, startRelay, testSecret, tokenFor, until } from '../rooms/server/running-relay';
+import { paperPlan, session } from '../study/model/studies';
+import { experimenter, now, studiesInThisThread, studySeats } from '../study/server/running-studies';
 import { directoryWith } from '../temporary-directory';
+import { mannequin } from '../threepoint/avatar/glb';
 import {
   type HttpRole,
   type HttpRow,
@@ -31,8 +34,6 @@ import {
   socketRows,
   withTables,
 } from './access-rows';
-import { poseBytes, rawGuest, rawSocket, startRelay, testSecret, tokenFor, until } from './running-relay';
-import { experimenter, now, studiesInThisThread, studySeats } from './running-studies';
 
 const adminToken = 'admin-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 const plan = paperPlan();
@@ -57,7 +58,7 @@ async function wholeServer() {
   };
   const configuration = relayConfigurationFrom(environment);
   const connectionLimiter = createConnectionLimiter({ perAddress: 100, behindProxy: true });
-  const relay = createRelay(configuration, testSecret, connectionLimiter);
+  const relay = createRelay(configuration, testSecret, connectionLimiter, shippedRoomKinds(configuration));
   const studies = studiesInThisThread({ store, file });
   const services = [relay.service, studies];
   const server = await serve(createRouter(services, page, createSitePolicy(configuration)), {

@@ -1,9 +1,9 @@
 import { connect } from 'node:net';
 import fc from 'fast-check';
 import { expect, test } from 'vitest';
-import { paperPlan } from '../core/study/studies';
 import { isNightly } from '../nightly';
 import { measured } from '../reliability/measured';
+import { paperPlan } from '../study/model/studies';
 import { rawRequests } from './raw-requests';
 import { experimenterToken, forkServer, probeHealth } from './server-child';
 

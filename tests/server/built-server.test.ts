@@ -5,9 +5,9 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { unzipSync } from 'fflate';
 import { expect, onTestFinished, test } from 'vitest';
-import { paperPlan } from '../core/study/studies';
+import { rawGuest, testSecret } from '../rooms/server/running-relay';
+import { paperPlan } from '../study/model/studies';
 import { directoryWith } from '../temporary-directory';
-import { rawGuest, testSecret } from './running-relay';
 import { experimenterToken } from './server-child';
 
 const root = fileURLToPath(new URL('../..', import.meta.url));

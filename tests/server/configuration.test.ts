@@ -1,6 +1,7 @@
+import { ConfigurationError } from 'threepoint-http/configuration-error';
+import { welcome } from 'threepoint-rooms/server/welcome';
 import { describe, expect, test } from 'vitest';
-import { ConfigurationError, configurationFrom } from '../../server/configuration';
-import { welcome } from '../../server/welcome';
+import { configurationFrom } from '../../server/configuration';
 
 const noStudies = { studyDirectory: null, experimenterToken: null };
 

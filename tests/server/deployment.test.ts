@@ -1,10 +1,10 @@
 import { spawnSync } from 'node:child_process';
 import { existsSync, readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
+import { relayConfigurationFrom } from 'threepoint-rooms/server/relay-configuration';
 import { describe, expect, test } from 'vitest';
 import { parse } from 'yaml';
 import { configurationFrom } from '../../server/configuration';
-import { relayConfigurationFrom } from '../../server/relay-configuration';
 import { installed } from './installed';
 
 const deploy = (file: string) => fileURLToPath(new URL(`../../deploy/${file}`, import.meta.url));

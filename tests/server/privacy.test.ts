@@ -1,15 +1,15 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import { openStudyStore } from 'threepoint-study/server/study-store';
 import { expect, onTestFinished, test } from 'vitest';
-import { openStudyStore } from '../../server/study-store';
-import { scheduleFor } from '../../src/core/study/schedule';
-import { packetAt, toldRoom } from '../core/room/told-room';
-import { paperPlan, session } from '../core/study/studies';
-import { fists, releaseOf } from '../net/people';
 import { measured } from '../reliability/measured';
+import { fists, releaseOf } from '../rooms/client/people';
+import { packetAt, toldRoom } from '../rooms/room/told-room';
+import { arrive, startRelay, until } from '../rooms/server/running-relay';
+import { paperPlan, session } from '../study/model/studies';
 import { directoryWith } from '../temporary-directory';
-import { arrive, startRelay, until } from './running-relay';
 
 /** Every file below a directory, of any name. */
 const filesIn = (directory: string): Buffer[] =>
@@ -84,7 +84,7 @@ test('a match over sockets and a study without consent to motion leave no motion
 
 test('nothing that carries poses can write to a disk: relay, sockets, rooms and lobby know no file and no database', () => {
   const server = new URL('../../server/', import.meta.url);
-  const core = new URL('../../src/core/', import.meta.url);
+  const core = new URL('../../src/threepoint/core/', import.meta.url);
   const carriers = [
     ...readdirSync(server)
       .filter((file) =>

@@ -1,6 +1,6 @@
 import { METHODS } from 'node:http';
 import fc from 'fast-check';
-import type { Route } from '../../server/http/router';
+import type { Route } from 'threepoint-http/router';
 import { experimenterToken } from './server-child';
 
 // Requests as bytes, by a grammar of what is right and what is not: each part is right more often than not, so that what is wrong is

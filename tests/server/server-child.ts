@@ -1,7 +1,7 @@
 import { type ChildProcess, spawn } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
+import type { Route } from 'threepoint-http/router';
 import { onTestFinished } from 'vitest';
-import type { Route } from '../../server/http/router';
 import { directoryWith } from '../temporary-directory';
 import { heardFrom, isAlive, kill } from './child-process';
 

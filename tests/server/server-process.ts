@@ -2,8 +2,8 @@
 import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { monitorEventLoopDelay } from 'node:perf_hooks';
-import { ConfigurationError } from '../../server/configuration';
-import { relayConfigurationFrom } from '../../server/relay-configuration';
+import { ConfigurationError } from 'threepoint-http/configuration-error';
+import { relayConfigurationFrom } from 'threepoint-rooms/server/relay-configuration';
 import { startServer } from '../../server/start';
 import type { ServerHello, ServerState } from './server-child';
 

@@ -3,8 +3,8 @@ import { once } from 'node:events';
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:net';
 import { join } from 'node:path';
-import { ConfigurationError } from '../../server/configuration';
-import { relayConfigurationFrom } from '../../server/relay-configuration';
+import { ConfigurationError } from 'threepoint-http/configuration-error';
+import { relayConfigurationFrom } from 'threepoint-rooms/server/relay-configuration';
 import { startServer } from '../../server/start';
 
 /** None follows it that could be tried. */

@@ -1,8 +1,8 @@
 import type { RequestListener } from 'node:http';
 import { createServer } from 'node:http';
 import type { AddressInfo } from 'node:net';
+import { nameOf, readLimited } from 'threepoint-ui/limited-files';
 import { afterEach, describe, expect, test } from 'vitest';
-import { nameOf, readLimited } from '../../src/ui/limited-files';
 import { measured } from '../reliability/measured';
 
 const recording = { what: 'a recording', megabytes: 1 };

@@ -1,5 +1,5 @@
+import { ownScript } from 'threepoint-ui/own-scripts';
 import { expect, test } from 'vitest';
-import { ownScript } from '../../src/ui/own-scripts';
 
 const folder = 'https://example.org/threepoint';
 

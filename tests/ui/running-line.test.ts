@@ -1,6 +1,6 @@
+import { recorderText } from 'threepoint-page/shell/panel/recording-page';
+import { createRunningLine } from 'threepoint-ui/running-line';
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
-import { recorderText } from '../../src/app/shell/panel/recording-page';
-import { createRunningLine } from '../../src/ui/running-line';
 
 /** As much of an element as a line of text needs; it counts how often its text was set. */
 class Element {

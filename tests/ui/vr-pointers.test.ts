@@ -1,6 +1,6 @@
 import { Group, type WebGLRenderer } from 'three';
+import { createVrPointers } from 'threepoint-ui/vr-pointers';
 import { expect, test } from 'vitest';
-import { createVrPointers } from '../../src/ui/vr-pointers';
 
 /** three's controllers and hands, by the index of their input source. */
 function sourcesOfThree() {

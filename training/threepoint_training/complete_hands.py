@@ -1,6 +1,6 @@
 """Where unseen hands are taken to be: held where they were seen last, then on their way to rest beside the hip.
 
-The twin of src/core/estimation/complete-hands.ts for hands that stay lost.
+The twin of src/threepoint/core/estimation/complete-hands.ts for hands that stay lost.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ def complete_hands(positions: Array, rotations: Array, unseen: Array, eye_height
 
 
 def _trapezoidal_easing(share: Array) -> Array:
-    """From 0 to 1: constant acceleration for a fifth of the time, constant speed, constant deceleration (src/core/math/damper.ts)."""
+    """From 0 to 1: constant acceleration for a fifth of the time, constant speed, constant deceleration (src/threepoint/core/math/damper.ts)."""
     ramp, t = TRAPEZOIDAL_RAMP, np.clip(share, 0.0, 1.0)
     slow, fast = 2 * ramp * (1 - ramp), (t - ramp / 2) / (1 - ramp)
     return np.where(t < ramp, t**2 / slow, np.where(t > 1 - ramp, 1 - (1 - t) ** 2 / slow, fast))

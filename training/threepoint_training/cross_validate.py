@@ -97,7 +97,7 @@ def _kinematics(run: TrainingRun, training: tuple[str, ...], fold: str, is_shipp
 
 
 def compact_json(content: Any) -> str:
-    """JSON with a line per innermost list, as the parameter files in src/core are written."""
+    """JSON with a line per innermost list, as the parameter files in src/threepoint/core are written."""
 
     def on_one_line(match: re.Match[str]) -> str:
         return f"[{' '.join(match[1].split())}]"

@@ -1,6 +1,6 @@
 """Torso and arm fitting as a layer that gradients pass: where joints come to lie on bones of constant length.
 
-The twin of src/core/estimation/fit-torso.ts and fit-arms.ts for a frame that none came before. All in the frame of IK's chest, in eye
+The twin of src/threepoint/core/estimation/fit-torso.ts and fit-arms.ts for a frame that none came before. All in the frame of IK's chest, in eye
 heights, from the headset. What is left out moves no estimated joint of a person who stands or sits: the floor under hips, and the rotations
 of vertebrae, forearms and hands.
 """
@@ -232,7 +232,7 @@ def _limit(joint: str, extremity: Tensor) -> Tensor:
 
 
 def _softened(far: Tensor, reach: Tensor) -> Tensor:
-    """How far arms that reach `reach` stretch after hands `far` away, in one unit; the twin of softenedReach in src/core/body/two-bone-ik.ts."""
+    """How far arms that reach `reach` stretch after hands `far` away, in one unit; the twin of softenedReach in src/threepoint/core/body/two-bone-ik.ts."""
     near = LIMB["softReach"] * reach
     # Clamped, for what is not chosen has a gradient as well.
     straightening = reach - (reach - near) * torch.exp((near - far).clamp_max(0.0) / (reach - near))

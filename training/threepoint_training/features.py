@@ -1,4 +1,4 @@
-"""One frame's features for the learned network, and their window in time; the twin of src/core/estimation/features.ts.
+"""One frame's features for the learned network, and their window in time; the twin of src/threepoint/core/estimation/features.ts.
 
 The one function for training and for golden vectors; docs/estimation.md lists the columns.
 """

@@ -12,7 +12,7 @@ from .prepared_corpus import PreparedCorpus
 
 @dataclass(frozen=True)
 class Kinematics:
-    """Body proportions and IK parameters, with the keys of their files in src/core."""
+    """Body proportions and IK parameters, with the keys of their files in src/threepoint/core."""
 
     proportions: dict[str, Any]
     parameters: dict[str, Any]

@@ -2,7 +2,7 @@
 
 A tilt is two numbers [rad]: how far up (pitch) and to the left (yaw) of the hand's −Z its forearm points, elbow to wrist, as the rotation
 vector (pitch, yaw, 0). A hand whose tilt is known is turned by it, so that its −Z continues the forearm; the twin of
-src/core/body/hand-tilt.ts.
+src/threepoint/core/body/hand-tilt.ts.
 """
 
 import numpy as np

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-_CORE = Path(__file__).parents[2] / "src/core"
+_CORE = Path(__file__).parents[2] / "src/threepoint/core"
 _LIMITS: dict[str, Any] = json.loads((_CORE / "estimation/kinematic-limits.json").read_text())
 
 IK: dict[str, Any] = _LIMITS["ik"]

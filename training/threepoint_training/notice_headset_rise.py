@@ -1,4 +1,4 @@
-"""How far above its usual place a headset sits, noticed by arms that hang; the twin of src/core/estimation/notice-headset-rise.ts."""
+"""How far above its usual place a headset sits, noticed by arms that hang; the twin of src/threepoint/core/estimation/notice-headset-rise.ts."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -22,7 +22,7 @@ ROTATIONS = ("head", "leftHand", "rightHand")
 # Of the same three among JOINTS.
 TRACKED_COLUMNS = [JOINTS.index(joint) for joint in ROTATIONS]
 
-# The six joints that no tracker sees, in the order of every tensor (src/core/body/joints.ts).
+# The six joints that no tracker sees, in the order of every tensor (src/threepoint/core/body/joints.ts).
 ESTIMATED_JOINTS = ("leftLowerArm", "rightLowerArm", "leftUpperArm", "rightUpperArm", "chest", "hips")
 
 

@@ -12,7 +12,7 @@ from .kinematic_limits import LIMB
 
 Array = NDArray[np.float64]
 
-PROPORTIONS_FILE = Path(__file__).parents[2] / "src/core/body/body-proportions.json"
+PROPORTIONS_FILE = Path(__file__).parents[2] / "src/threepoint/core/body/body-proportions.json"
 
 
 def load_proportions() -> dict[str, Any]:

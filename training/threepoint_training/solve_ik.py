@@ -1,4 +1,4 @@
-"""Inverse kinematics as docs/estimation.md states it, vectorised over frames; the twin of src/core/estimation/solve-ik.ts."""
+"""Inverse kinematics as docs/estimation.md states it, vectorised over frames; the twin of src/threepoint/core/estimation/solve-ik.ts."""
 
 import json
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from .skeleton import Body
 
 Array = NDArray[np.float64]
 
-PARAMETERS_FILE = Path(__file__).parents[2] / "src/core/estimation/ik-parameters.json"
+PARAMETERS_FILE = Path(__file__).parents[2] / "src/threepoint/core/estimation/ik-parameters.json"
 
 
 def load_parameters() -> dict[str, Any]:

@@ -33,7 +33,7 @@ class GaitConfig:
     """frames: the folder that gait-frames wrote. out: the page's network. held_out: the folder for networks trained without each group of people."""
 
     frames: Path
-    out: Path = REPOSITORY / "src/core/estimation/gait-network.json"
+    out: Path = REPOSITORY / "src/threepoint/core/estimation/gait-network.json"
     held_out: Path | None = None
     groups: int = 4
     steps: int = 2000

@@ -1,4 +1,4 @@
-import { addScaled, distance, dot, subtract, type Vec3 } from '../../math/vec3';
+import { addScaled, distance, dot, subtract, type Vec3 } from 'threepoint/core/math/vec3';
 import type { Target } from './archery-state';
 
 /** How far away an archer aims who points at the sky [m]. */

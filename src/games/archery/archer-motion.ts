@@ -1,7 +1,7 @@
-import { clamp } from '../../math/damper';
-import { addScaled, subtract } from '../../math/vec3';
-import type { TrackingFrame } from '../../tracking/tracking-frame';
-import type { Buttons } from '../button-presses';
+import type { Buttons } from 'threepoint/core/input/button-presses';
+import { clamp } from 'threepoint/core/math/damper';
+import { addScaled, subtract } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { minimumJerk, yawOf } from '../posture';
 import { type ArcherBody, createArcherPostures, mix, type Posture } from './archer-postures';
 import type { ArcheryState, Target } from './archery-state';

@@ -1,7 +1,8 @@
-import { clamp } from '../../math/damper';
-import { type Pose, type TrackedPose, type Transform, transformPose } from '../../math/pose';
-import { fromAxisAngle, identity, multiply, type Quat, rotate, slerp } from '../../math/quat';
-import { otherSide, type Side } from '../../math/side';
+import { allReleased, type Button, type Buttons, type HandButtons } from 'threepoint/core/input/button-presses';
+import { clamp } from 'threepoint/core/math/damper';
+import { type Pose, type TrackedPose, type Transform, transformPose } from 'threepoint/core/math/pose';
+import { fromAxisAngle, identity, multiply, type Quat, rotate, slerp } from 'threepoint/core/math/quat';
+import { otherSide, type Side } from 'threepoint/core/math/side';
 import {
   add,
   addScaled,
@@ -17,9 +18,8 @@ import {
   type Vec3,
   vec3,
   zero,
-} from '../../math/vec3';
-import type { TrackingFrame } from '../../tracking/tracking-frame';
-import { allReleased, type Button, type Buttons, type HandButtons } from '../button-presses';
+} from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { wristAround } from '../fist';
 import {
   armShare,

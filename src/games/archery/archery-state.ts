@@ -1,6 +1,6 @@
-import type { Quat } from '../../math/quat';
-import type { RandomState } from '../../math/random';
-import type { Vec3 } from '../../math/vec3';
+import type { Quat } from 'threepoint/core/math/quat';
+import type { RandomState } from 'threepoint/core/math/random';
+import type { Vec3 } from 'threepoint/core/math/vec3';
 
 /** What may differ between matches. */
 export interface ArcheryOptions {

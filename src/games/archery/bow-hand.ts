@@ -1,6 +1,6 @@
-import { type MutablePose, makePose, type Pose } from '../../math/pose';
-import { fromAxes, identity, quat, rotate, rotationBetween, slerp } from '../../math/quat';
-import type { Side } from '../../math/side';
+import { type MutablePose, makePose, type Pose } from 'threepoint/core/math/pose';
+import { fromAxes, identity, quat, rotate, rotationBetween, slerp } from 'threepoint/core/math/quat';
+import type { Side } from 'threepoint/core/math/side';
 import {
   add,
   backward,
@@ -14,7 +14,7 @@ import {
   up,
   type Vec3,
   vec3,
-} from '../../math/vec3';
+} from 'threepoint/core/math/vec3';
 import { fistOf, thumbOf } from '../fist';
 import { arrowRestHeight, braceHeight } from './bow';
 

@@ -1,4 +1,4 @@
-import { clamp } from '../../math/damper';
+import { clamp } from 'threepoint/core/math/damper';
 
 /** From the grip's arrow rest to the middle of the string at rest [m]. */
 export const braceHeight = 0.16;

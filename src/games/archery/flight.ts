@@ -1,4 +1,4 @@
-import { addScaled, distance, dot, type MutableVec3, subtract, type Vec3, vec3 } from '../../math/vec3';
+import { addScaled, distance, dot, type MutableVec3, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { fallsTo, gravity, type Launch, launchTowards, positionAt, roots } from '../ballistics';
 import type { Target } from './archery-state';
 import { arrowLength, arrowSpeed } from './bow';

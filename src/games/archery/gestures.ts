@@ -1,9 +1,3 @@
-import { copyPose, makePose, seenPose, type TrackedPose, type Transform, transformPoint } from '../../math/pose';
-import { identity, rotate } from '../../math/quat';
-import { otherSide, type Side, sides } from '../../math/side';
-import { addScaled, copyVec3, distance, type Vec3, vec3, zero } from '../../math/vec3';
-import { longestStep } from '../../tracking/page-clock';
-import type { TrackingFrame } from '../../tracking/tracking-frame';
 import {
   allReleased,
   type Button,
@@ -12,7 +6,20 @@ import {
   nothingPressed,
   pressureOf,
   releasedBelow,
-} from '../button-presses';
+} from 'threepoint/core/input/button-presses';
+import {
+  copyPose,
+  makePose,
+  seenPose,
+  type TrackedPose,
+  type Transform,
+  transformPoint,
+} from 'threepoint/core/math/pose';
+import { identity, rotate } from 'threepoint/core/math/quat';
+import { otherSide, type Side, sides } from 'threepoint/core/math/side';
+import { addScaled, copyVec3, distance, type Vec3, vec3, zero } from 'threepoint/core/math/vec3';
+import { longestStep } from 'threepoint/core/tracking/page-clock';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { fistOf } from '../fist';
 import type { ArcheryAction, BowView } from './archery-state';
 import { arrowLength, maximumDraw, minimumDraw } from './bow';

@@ -1,7 +1,7 @@
-import { smoothingFactor } from '../../math/damper';
-import { makePose, type Pose } from '../../math/pose';
-import type { Side } from '../../math/side';
-import { distance, dot, type MutableVec3, type Vec3, vec3 } from '../../math/vec3';
+import { smoothingFactor } from 'threepoint/core/math/damper';
+import { makePose, type Pose } from 'threepoint/core/math/pose';
+import type { Side } from 'threepoint/core/math/side';
+import { distance, dot, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { bowInHand, forwardOf, stringAtRest, turnBow, turnTowards } from './bow-hand';
 
 /** A press takes the bow when the fist is this near to its grip in the other hand, or to the bow on its rest [m]. */

@@ -1,6 +1,7 @@
-import { clamp, damp, smoothingFactor, smoothstep } from '../../math/damper';
-import { makePose, type Pose } from '../../math/pose';
-import type { Side } from '../../math/side';
+import type { Button } from 'threepoint/core/input/button-presses';
+import { clamp, damp, smoothingFactor, smoothstep } from 'threepoint/core/math/damper';
+import { makePose, type Pose } from 'threepoint/core/math/pose';
+import type { Side } from 'threepoint/core/math/side';
 import {
   addScaled,
   copyVec3,
@@ -11,8 +12,7 @@ import {
   subtract,
   type Vec3,
   vec3,
-} from '../../math/vec3';
-import type { Button } from '../button-presses';
+} from 'threepoint/core/math/vec3';
 import type { BowView } from './archery-state';
 import { braceHeight, maximumDraw } from './bow';
 import { arrowRestOf, forwardOf, turnBow, turnTowards } from './bow-hand';

@@ -1,5 +1,5 @@
-import { clamp } from '../../math/damper';
-import { nextRandom, type RandomState } from '../../math/random';
+import { clamp } from 'threepoint/core/math/damper';
+import { nextRandom, type RandomState } from 'threepoint/core/math/random';
 import {
   addScaled,
   distance,
@@ -10,7 +10,7 @@ import {
   subtract,
   type Vec3,
   vec3,
-} from '../../math/vec3';
+} from 'threepoint/core/math/vec3';
 import { positionAt, velocityAt } from '../ballistics';
 import type { GameRules } from '../game-rules';
 import type {

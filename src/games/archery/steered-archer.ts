@@ -1,7 +1,7 @@
-import { clamp, dampVec3 } from '../../math/damper';
-import { subtract, type Vec3 } from '../../math/vec3';
-import type { TrackingFrame } from '../../tracking/tracking-frame';
-import type { Buttons } from '../button-presses';
+import type { Buttons } from 'threepoint/core/input/button-presses';
+import { clamp, dampVec3 } from 'threepoint/core/math/damper';
+import { subtract, type Vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { minimumJerk, yawOf } from '../posture';
 import { type ArcherBody, createArcherPostures, mix, type Posture } from './archer-postures';
 

@@ -1,7 +1,13 @@
+import {
+  finiteWithin,
+  type RoomMessage,
+  roomMessageReader,
+  seconds,
+  wholeFrom,
+} from 'threepoint-rooms/protocol/messages';
 import * as v from 'valibot';
-import type { BallDeed, BallEvent } from '../games/ball/ball-state';
 import { type PackedBall, packedBallSchema } from './ball-snapshot';
-import { finiteWithin, type RoomMessage, roomMessageReader, seconds, wholeFrom } from './messages';
+import type { BallDeed, BallEvent } from './ball-state';
 
 /** The ball game as the messages of its Room carry it. */
 export interface SentBallGame {

@@ -1,11 +1,11 @@
-import type { BallAction, BallDeed, BallEvent, BallOptions, BallState } from '../games/ball/ball-state';
-import { ballRules } from '../games/ball/rules';
-import { arenaFromSeatFloor, rotationForRound, stations } from '../games/ball/stations';
-import { createMatch } from '../games/match';
-import type { Transform } from '../math/pose';
-import { ballActionFrom, ballKind, type SentBallGame } from '../protocol/ball-messages';
-import { type PackedBall, packBall } from '../protocol/ball-snapshot';
-import type { HostedMatch, MatchPolicy } from '../room/match-policy';
+import type { Transform } from 'threepoint/core/math/pose';
+import type { HostedMatch, MatchPolicy } from 'threepoint-rooms/room/match-policy';
+import { createMatch } from '../match';
+import { ballActionFrom, ballKind, type SentBallGame } from './ball-messages';
+import { type PackedBall, packBall } from './ball-snapshot';
+import type { BallAction, BallDeed, BallEvent, BallOptions, BallState } from './ball-state';
+import { ballRules } from './rules';
+import { arenaFromSeatFloor, rotationForRound, stations } from './stations';
 
 /** The types of the ball game as a Room hosts it. */
 export interface BallGame extends SentBallGame {

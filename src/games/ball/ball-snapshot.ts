@@ -1,7 +1,7 @@
+import { vec3 } from 'threepoint/core/math/vec3';
 import * as v from 'valibot';
-import type { BallPlace, BallPlayer, BallState, TimedLaunch } from '../games/ball/ball-state';
-import { ballRules } from '../games/ball/rules';
-import { vec3 } from '../math/vec3';
+import type { BallPlace, BallPlayer, BallState, TimedLaunch } from './ball-state';
+import { ballRules } from './rules';
 
 const finite = v.pipe(v.number(), v.finite());
 const whole = v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(2 ** 31));

@@ -1,7 +1,7 @@
-import type { RandomState } from '../../math/random';
-import type { Side } from '../../math/side';
-import type { Vec3 } from '../../math/vec3';
-import type { SeatAction } from '../../tracking/seat-action';
+import type { RandomState } from 'threepoint/core/math/random';
+import type { Side } from 'threepoint/core/math/side';
+import type { Vec3 } from 'threepoint/core/math/vec3';
+import type { SeatAction } from 'threepoint/core/tracking/seat-action';
 import type { Launch } from '../ballistics';
 
 /** What may differ between matches. */

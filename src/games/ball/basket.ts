@@ -1,6 +1,6 @@
-import type { Frame, Pose } from '../../math/pose';
-import { rotate } from '../../math/quat';
-import type { Side } from '../../math/side';
+import type { Frame, Pose } from 'threepoint/core/math/pose';
+import { rotate } from 'threepoint/core/math/quat';
+import type { Side } from 'threepoint/core/math/side';
 import {
   add,
   addScaled,
@@ -16,7 +16,7 @@ import {
   up,
   type Vec3,
   vec3,
-} from '../../math/vec3';
+} from 'threepoint/core/math/vec3';
 import { fistOf, thumbOf } from '../fist';
 import { basketRadius } from './flight';
 

@@ -1,4 +1,4 @@
-import { clamp } from '../../math/damper';
+import { clamp } from 'threepoint/core/math/damper';
 import {
   add,
   addScaled,
@@ -15,7 +15,7 @@ import {
   subtract,
   type Vec3,
   vec3,
-} from '../../math/vec3';
+} from 'threepoint/core/math/vec3';
 import { fallsTo, positionAt, velocityAt } from '../ballistics';
 import type { Basket, TimedLaunch } from './ball-state';
 

@@ -1,4 +1,13 @@
 import {
+  allReleased,
+  type Button,
+  type ButtonPresses,
+  type Buttons,
+  createButtonPresses,
+  pressureOf,
+  releasedBelow,
+} from 'threepoint/core/input/button-presses';
+import {
   type MutablePose,
   makePose,
   makeTransform,
@@ -7,19 +16,10 @@ import {
   type Transform,
   transformPoint,
   transformPose,
-} from '../../math/pose';
-import { type Side, sides } from '../../math/side';
-import { copyVec3, distance, length, type MutableVec3, type Vec3, vec3 } from '../../math/vec3';
-import type { TrackingFrame } from '../../tracking/tracking-frame';
-import {
-  allReleased,
-  type Button,
-  type ButtonPresses,
-  type Buttons,
-  createButtonPresses,
-  pressureOf,
-  releasedBelow,
-} from '../button-presses';
+} from 'threepoint/core/math/pose';
+import { type Side, sides } from 'threepoint/core/math/side';
+import { copyVec3, distance, length, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { ballInPalm, fistOf } from '../fist';
 import type { BallAction, BallDeed, BallEvent, BallState } from './ball-state';
 import { slowestThrow } from './deeds';

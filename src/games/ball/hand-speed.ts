@@ -1,4 +1,14 @@
-import { addScaled, copyVec3, lerp, type MutableVec3, scale, subtract, type Vec3, vec3, zero } from '../../math/vec3';
+import {
+  addScaled,
+  copyVec3,
+  lerp,
+  type MutableVec3,
+  scale,
+  subtract,
+  type Vec3,
+  vec3,
+  zero,
+} from 'threepoint/core/math/vec3';
 
 /** The path of something over the last moments, and how fast it went. */
 export interface HandSpeed {

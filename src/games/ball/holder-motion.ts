@@ -1,4 +1,4 @@
-import { clamp, dampVec3 } from '../../math/damper';
+import { clamp, dampVec3 } from 'threepoint/core/math/damper';
 import {
   add,
   addScaled,
@@ -14,7 +14,7 @@ import {
   up,
   type Vec3,
   vec3,
-} from '../../math/vec3';
+} from 'threepoint/core/math/vec3';
 import { fallsTo, velocityAt } from '../ballistics';
 import type { BallState, TimedLaunch } from './ball-state';
 import { gripRadius } from './basket';

@@ -1,7 +1,8 @@
-import { clamp } from '../../math/damper';
-import { invertTransform, type TrackedPose, type Transform, transformPoint } from '../../math/pose';
-import { copyQuat, fromAxisAngle, type MutableQuat, multiply, type Quat, quat, slerp } from '../../math/quat';
-import type { Side } from '../../math/side';
+import { allReleased, type Button, type Buttons, type HandButtons } from 'threepoint/core/input/button-presses';
+import { clamp } from 'threepoint/core/math/damper';
+import { invertTransform, type TrackedPose, type Transform, transformPoint } from 'threepoint/core/math/pose';
+import { copyQuat, fromAxisAngle, type MutableQuat, multiply, type Quat, quat, slerp } from 'threepoint/core/math/quat';
+import type { Side } from 'threepoint/core/math/side';
 import {
   add,
   copyVec3,
@@ -13,9 +14,8 @@ import {
   up,
   type Vec3,
   vec3,
-} from '../../math/vec3';
-import type { TrackingFrame } from '../../tracking/tracking-frame';
-import { allReleased, type Button, type Buttons, type HandButtons } from '../button-presses';
+} from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { wristAround } from '../fist';
 import { armShare, makeTracked, shoulderBehind, shoulderDrop, shoulderShare, swayAt, yawOf } from '../posture';
 

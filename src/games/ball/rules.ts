@@ -1,4 +1,4 @@
-import { distance, isFiniteVec3, length, type MutableVec3, type Vec3, vec3 } from '../../math/vec3';
+import { distance, isFiniteVec3, length, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { fistOf } from '../fist';
 import type { GameRules } from '../game-rules';
 import type { BallAction, BallEnd, BallEvent, BallOptions, BallPlayer, BallState, Basket, Refusal } from './ball-state';

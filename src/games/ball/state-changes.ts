@@ -1,4 +1,4 @@
-import { type Vec3, vec3 } from '../../math/vec3';
+import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { BallEvent, BallPlace, BallPlayer, BallState, TimedLaunch } from './ball-state';
 
 /** A state and what happened on the way to it. */

@@ -1,5 +1,5 @@
-import type { Side } from '../../math/side';
-import { addScaled, type MutableVec3, vec3 } from '../../math/vec3';
+import type { Side } from 'threepoint/core/math/side';
+import { addScaled, type MutableVec3, vec3 } from 'threepoint/core/math/vec3';
 import type { BallPlace, BallState } from './ball-state';
 import { ballInAir, ballOnFloor, ballRadius, basketRadius } from './flight';
 import { rackPosition } from './stations';

@@ -1,8 +1,8 @@
-import { clamp, smoothingFactor } from '../../math/damper';
-import { type Transform, transformPoint } from '../../math/pose';
-import { rotate } from '../../math/quat';
-import type { Ray } from '../../math/ray';
-import type { Side } from '../../math/side';
+import { clamp, smoothingFactor } from 'threepoint/core/math/damper';
+import { type Transform, transformPoint } from 'threepoint/core/math/pose';
+import { rotate } from 'threepoint/core/math/quat';
+import type { Ray } from 'threepoint/core/math/ray';
+import type { Side } from 'threepoint/core/math/side';
 import {
   addScaled,
   distance,
@@ -14,7 +14,7 @@ import {
   subtract,
   type Vec3,
   vec3,
-} from '../../math/vec3';
+} from 'threepoint/core/math/vec3';
 import type { Launch } from '../ballistics';
 import { minimumJerk } from '../posture';
 import { createHolder } from './holder-motion';

@@ -1,6 +1,6 @@
-import { clamp } from '../../math/damper';
-import { makePose } from '../../math/pose';
-import { otherSide, type Side } from '../../math/side';
+import { clamp } from 'threepoint/core/math/damper';
+import { makePose } from 'threepoint/core/math/pose';
+import { otherSide, type Side } from 'threepoint/core/math/side';
 import {
   add,
   addScaled,
@@ -14,7 +14,7 @@ import {
   subtract,
   type Vec3,
   vec3,
-} from '../../math/vec3';
+} from 'threepoint/core/math/vec3';
 import { ballInPalm, wristAround } from '../fist';
 import { ballRadius } from './flight';
 import { type MutablePosture, makePosture, type PlayerPosture, type PlayerPostures } from './player-postures';

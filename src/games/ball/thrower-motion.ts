@@ -1,6 +1,6 @@
-import { clamp } from '../../math/damper';
-import { nextRandom } from '../../math/random';
-import type { Side } from '../../math/side';
+import { clamp } from 'threepoint/core/math/damper';
+import { nextRandom } from 'threepoint/core/math/random';
+import type { Side } from 'threepoint/core/math/side';
 import {
   add,
   addScaled,
@@ -14,7 +14,7 @@ import {
   up,
   type Vec3,
   vec3,
-} from '../../math/vec3';
+} from 'threepoint/core/math/vec3';
 import { gravity } from '../ballistics';
 import { minimumJerk } from '../posture';
 import type { BallState } from './ball-state';

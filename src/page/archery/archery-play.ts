@@ -1,21 +1,21 @@
-import type { Calibration } from '../../core/body/calibration';
-import { chestSpaceBody } from '../../core/body/skeleton';
-import { aimPoint } from '../../core/games/archery/aim-point';
-import { type Archer, createArcher } from '../../core/games/archery/archer-motion';
-import type { ArcheryAction, ArcheryEvent, ArcheryState, BowView } from '../../core/games/archery/archery-state';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { chestSpaceBody } from 'threepoint/core/body/skeleton';
+import type { Buttons } from 'threepoint/core/input/button-presses';
+import type { Ray } from 'threepoint/core/math/ray';
+import type { Side } from 'threepoint/core/math/side';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { aimPoint } from 'threepoint-games/archery/aim-point';
+import { type Archer, createArcher } from 'threepoint-games/archery/archer-motion';
+import type { ArcheryAction, ArcheryEvent, ArcheryState, BowView } from 'threepoint-games/archery/archery-state';
 import {
   type BowCue,
   createArcheryGestures,
   defaultArcheryGestureSettings,
   type HapticPulse,
-} from '../../core/games/archery/gestures';
-import { archeryRules, delayed, fullScore, isArmed, matchTime, secondsLeft } from '../../core/games/archery/rules';
-import { createSteeredArcher, type SteeredArcher } from '../../core/games/archery/steered-archer';
-import type { Buttons } from '../../core/games/button-presses';
-import { createMatch, type Match } from '../../core/games/match';
-import type { Ray } from '../../core/math/ray';
-import type { Side } from '../../core/math/side';
-import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+} from 'threepoint-games/archery/gestures';
+import { archeryRules, delayed, fullScore, isArmed, matchTime, secondsLeft } from 'threepoint-games/archery/rules';
+import { createSteeredArcher, type SteeredArcher } from 'threepoint-games/archery/steered-archer';
+import { createMatch, type Match } from 'threepoint-games/match';
 
 /** What the player may choose; asked for in every frame. */
 export interface ArcherySettings {

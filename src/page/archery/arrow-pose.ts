@@ -1,6 +1,16 @@
-import type { Arrow } from '../../core/games/archery/archery-state';
-import { positionAt, velocityAt } from '../../core/games/ballistics';
-import { addScaled, cross, type MutableVec3, normalise, right, scale, up, type Vec3, vec3 } from '../../core/math/vec3';
+import {
+  addScaled,
+  cross,
+  type MutableVec3,
+  normalise,
+  right,
+  scale,
+  up,
+  type Vec3,
+  vec3,
+} from 'threepoint/core/math/vec3';
+import type { Arrow } from 'threepoint-games/archery/archery-state';
+import { positionAt, velocityAt } from 'threepoint-games/ballistics';
 
 /** Where an arrow is drawn: its tip and the unit direction it points in; arena frame. */
 export interface ArrowPose {

@@ -10,9 +10,9 @@ import {
   Quaternion,
   Vector3,
 } from 'three';
-import type { Arrow } from '../../core/games/archery/archery-state';
-import { disposeTree } from '../../scene/dispose-tree';
-import { merged, painted } from '../../scene/painted-geometry';
+import type { Arrow } from 'threepoint-games/archery/archery-state';
+import { disposeTree } from '../scene/dispose-tree';
+import { merged, painted } from '../scene/painted-geometry';
 import { type ArrowPose, arrowPose, makeArrowPose } from './arrow-pose';
 
 /** All arrows that can be seen, drawn in one call; arena frame. */

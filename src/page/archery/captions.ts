@@ -1,7 +1,7 @@
-import type { ArcheryEvent, Landing, Target } from '../../core/games/archery/archery-state';
-import type { BowCue } from '../../core/games/archery/gestures';
-import type { Pose } from '../../core/math/pose';
-import { directionOf } from '../../scene/directions';
+import type { Pose } from 'threepoint/core/math/pose';
+import type { ArcheryEvent, Landing, Target } from 'threepoint-games/archery/archery-state';
+import type { BowCue } from 'threepoint-games/archery/gestures';
+import { directionOf } from '../scene/directions';
 
 /** Targets have numbers, from the nearest. */
 const nameOf = (index: number): string => `target ${index + 1}`;

@@ -1,4 +1,4 @@
-import { walls, zone } from '../../core/games/archery/rules';
+import { walls, zone } from 'threepoint-games/archery/rules';
 
 const back = Math.min(...walls.filter(({ axis }) => axis === 'z').map(({ at }) => at));
 

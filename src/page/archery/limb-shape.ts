@@ -1,5 +1,5 @@
-import { bisect } from '../../core/math/bisection';
-import { distance, type MutableVec3, setVec3, type Vec3, vec3 } from '../../core/math/vec3';
+import { bisect } from 'threepoint/core/math/bisection';
+import { distance, type MutableVec3, setVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 
 /**
  * The shape of a recurve bow in its own frame: grip at the origin, +Y along the upper limb, −Z to the target, so that the string

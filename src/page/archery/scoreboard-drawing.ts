@@ -1,8 +1,8 @@
-import type { ArcheryState } from '../../core/games/archery/archery-state';
-import { fullScore, secondsLeft } from '../../core/games/archery/rules';
-import { ink, paintCard, paintGround, signFont } from '../../scene/boards/lettering';
-import { paintScoreHeading } from '../../scene/boards/score-heading';
-import { paintButton } from '../../scene/boards/sheet';
+import type { ArcheryState } from 'threepoint-games/archery/archery-state';
+import { fullScore, secondsLeft } from 'threepoint-games/archery/rules';
+import { ink, paintCard, paintGround, signFont } from '../scene/boards/lettering';
+import { paintScoreHeading } from '../scene/boards/score-heading';
+import { paintButton } from '../scene/boards/sheet';
 
 /** What the board says; equal boards are drawn once. */
 export interface BoardText {

@@ -1,10 +1,10 @@
-import type { ArcheryEvent, ArcheryState, Arrow } from '../../core/games/archery/archery-state';
-import { maximumDraw } from '../../core/games/archery/bow';
-import type { BowCue } from '../../core/games/archery/gestures';
-import { positionAt } from '../../core/games/ballistics';
-import { clamp } from '../../core/math/damper';
-import { invertTransform, type Pose, type Transform, transformPoint, transformPose } from '../../core/math/pose';
-import { length, lerp, type Vec3, vec3 } from '../../core/math/vec3';
+import { clamp } from 'threepoint/core/math/damper';
+import { invertTransform, type Pose, type Transform, transformPoint, transformPose } from 'threepoint/core/math/pose';
+import { length, lerp, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { ArcheryEvent, ArcheryState, Arrow } from 'threepoint-games/archery/archery-state';
+import { maximumDraw } from 'threepoint-games/archery/bow';
+import type { BowCue } from 'threepoint-games/archery/gestures';
+import { positionAt } from 'threepoint-games/ballistics';
 import {
   type AudibleStage,
   createSoundStage,
@@ -12,8 +12,8 @@ import {
   type Recipe,
   type Recipes,
   type SoundStage,
-} from '../../scene/sound/sound-stage';
-import { bell, chime, click, warning, whoosh } from '../../scene/sound/synthesis';
+} from '../scene/sound/sound-stage';
+import { bell, chime, click, warning, whoosh } from '../scene/sound/synthesis';
 import { cueCaption, eventCaption } from './captions';
 import { creak, earth, rattle, thud, twang } from './synthesis';
 

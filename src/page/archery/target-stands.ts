@@ -16,15 +16,15 @@ import {
   TorusGeometry,
   Vector3,
 } from 'three';
-import type { ArcheryState, Target } from '../../core/games/archery/archery-state';
-import { clamp } from '../../core/math/damper';
-import { ink, signFont } from '../../scene/boards/lettering';
-import { disposeTree } from '../../scene/dispose-tree';
-import { createDrawnTexture, type DrawnTexture } from '../../scene/drawn-texture';
-import { createContactShadows } from '../../scene/outdoors/contact-shadows';
-import { woodColor } from '../../scene/outdoors/wood';
-import { merged, painted } from '../../scene/painted-geometry';
-import type { Quality } from '../../scene/renderer';
+import { clamp } from 'threepoint/core/math/damper';
+import type { ArcheryState, Target } from 'threepoint-games/archery/archery-state';
+import { ink, signFont } from '../scene/boards/lettering';
+import { disposeTree } from '../scene/dispose-tree';
+import { createDrawnTexture, type DrawnTexture } from '../scene/drawn-texture';
+import { createContactShadows } from '../scene/outdoors/contact-shadows';
+import { woodColor } from '../scene/outdoors/wood';
+import { merged, painted } from '../scene/painted-geometry';
+import type { Quality } from '../scene/renderer';
 import { createRingTexture } from './target-rings';
 
 /** Four discs on wooden legs, each with a plate that says what it is worth; arena frame. */

@@ -1,9 +1,20 @@
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Mesh, ShaderMaterial } from 'three';
-import type { Arrow } from '../../core/games/archery/archery-state';
-import { smoothstep } from '../../core/math/damper';
-import { add, addScaled, cross, distance, normalise, scale, subtract, up, type Vec3, vec3 } from '../../core/math/vec3';
-import { bothSides } from '../../scene/both-sides';
-import { disposeTree } from '../../scene/dispose-tree';
+import { smoothstep } from 'threepoint/core/math/damper';
+import {
+  add,
+  addScaled,
+  cross,
+  distance,
+  normalise,
+  scale,
+  subtract,
+  up,
+  type Vec3,
+  vec3,
+} from 'threepoint/core/math/vec3';
+import type { Arrow } from 'threepoint-games/archery/archery-state';
+import { bothSides } from '../scene/both-sides';
+import { disposeTree } from '../scene/dispose-tree';
 import { arrowPose, makeArrowPose } from './arrow-pose';
 
 /** Bright ribbons behind arrows in flight; arena frame. */

@@ -8,8 +8,8 @@ import {
   Quaternion,
   Vector3,
 } from 'three';
-import { walls } from '../../core/games/archery/rules';
-import { createScatter } from '../../scene/outdoors/scatter';
+import { walls } from 'threepoint-games/archery/rules';
+import { createScatter } from '../scene/outdoors/scatter';
 import { field } from './field';
 
 /** A few blades that lean apart; they are lit like the ground they grow from. */

@@ -9,11 +9,11 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
-import type { Opening } from '../../core/games/ball/basket';
-import { ballRadius, basketRadius } from '../../core/games/ball/flight';
-import { fallsTo, type Launch, positionAt } from '../../core/games/ballistics';
-import { bothSides } from '../../scene/both-sides';
-import { disposeTree } from '../../scene/dispose-tree';
+import type { Opening } from 'threepoint-games/ball/basket';
+import { ballRadius, basketRadius } from 'threepoint-games/ball/flight';
+import { fallsTo, type Launch, positionAt } from 'threepoint-games/ballistics';
+import { bothSides } from '../scene/both-sides';
+import { disposeTree } from '../scene/dispose-tree';
 
 /** The way that a ball would go if it were thrown now, and where it would come down; arena frame. */
 export interface AimArc {

@@ -1,8 +1,8 @@
-import type { ServerState } from '../../net/server-presence';
-import { button, element } from '../../ui/element';
-import { createRoomLink } from '../../ui/invitation';
-import { ballRulesText, rulesList } from '../../ui/rules';
-import { toggle } from '../../ui/toggle';
+import type { ServerState } from 'threepoint-http/server-presence';
+import { button, element } from 'threepoint-ui/element';
+import { createRoomLink } from 'threepoint-ui/invitation';
+import { ballRulesText, rulesList } from 'threepoint-ui/rules';
+import { toggle } from 'threepoint-ui/toggle';
 import { otherPlayers, type Seated } from './other-players';
 import { createVoicesBar, type VoicesBarActions } from './voices-bar';
 import type { VoicesState } from './voices-state';

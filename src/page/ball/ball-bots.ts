@@ -1,20 +1,20 @@
-import { fingersOfButtons } from '../../avatar/hands/pressed-fingers';
-import type { Calibration } from '../../core/body/calibration';
-import { chestSpaceBody } from '../../core/body/skeleton';
-import { createEstimator } from '../../core/estimation/estimators';
-import type { PoseEstimator } from '../../core/estimation/pose-estimator';
-import type { BallAction, BallState } from '../../core/games/ball/ball-state';
-import type { Opening } from '../../core/games/ball/basket';
-import { type BallGestureFrame, type BallGestures, createBallGestures } from '../../core/games/ball/gestures';
-import { createHolder } from '../../core/games/ball/holder-motion';
-import type { Performed, PlayerBody } from '../../core/games/ball/player-postures';
-import { holderStation, stations } from '../../core/games/ball/stations';
-import { type BallBot, createThrower } from '../../core/games/ball/thrower-motion';
-import type { Buttons } from '../../core/games/button-presses';
-import { identity } from '../../core/math/quat';
-import { zero } from '../../core/math/vec3';
-import type { TrackingFrame } from '../../core/tracking/tracking-frame';
-import type { Connection, RoomView, Visitor } from '../../net/connection';
+import { fingersOfButtons } from 'threepoint/avatar/hands/pressed-fingers';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { chestSpaceBody } from 'threepoint/core/body/skeleton';
+import { createEstimator } from 'threepoint/core/estimation/estimators';
+import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
+import type { Buttons } from 'threepoint/core/input/button-presses';
+import { identity } from 'threepoint/core/math/quat';
+import { zero } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { BallAction, BallState } from 'threepoint-games/ball/ball-state';
+import type { Opening } from 'threepoint-games/ball/basket';
+import { type BallGestureFrame, type BallGestures, createBallGestures } from 'threepoint-games/ball/gestures';
+import { createHolder } from 'threepoint-games/ball/holder-motion';
+import type { Performed, PlayerBody } from 'threepoint-games/ball/player-postures';
+import { holderStation, stations } from 'threepoint-games/ball/stations';
+import { type BallBot, createThrower } from 'threepoint-games/ball/thrower-motion';
+import type { Connection, RoomView, Visitor } from 'threepoint-rooms/client/connection';
 
 /** A built-in player moves at least this often, however slowly pictures come: a throw is over in a fifth of a second. */
 const movesPerSecond = 60;

@@ -1,10 +1,10 @@
-import type { RoomTerms } from '../../core/protocol/messages';
-import type { SignedSeat } from '../../core/study/study-api';
-import type { AvatarExchange } from '../../net/avatar-exchange';
-import type { Connection, LocalClock, Visitor } from '../../net/connection';
-import { createLoopbackHost } from '../../net/loopback-connection';
-import type { VoiceTerms } from '../../net/voices/voice-terms';
-import { pageFolder } from '../../ui/page-folder';
+import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
+import type { Connection, LocalClock, Visitor } from 'threepoint-rooms/client/connection';
+import { createLoopbackHost } from 'threepoint-rooms/client/loopback-connection';
+import type { RoomTerms } from 'threepoint-rooms/protocol/messages';
+import type { VoiceTerms } from 'threepoint-rooms/voices/voice-terms';
+import type { SignedSeat } from 'threepoint-study/model/study-api';
+import { pageFolder } from 'threepoint-ui/page-folder';
 
 /** Makes one visitor's place in a room; `time`: the page's clock [s]. */
 export type Connect = (visitor: Visitor, time: number) => Connection;
@@ -32,7 +32,10 @@ export interface BallPlace {
  * The seat that a server assigns, of which it signs a pass; the pass is asked for anew when the first one has expired. All wear the same there.
  */
 export async function assignedSeat(seat: () => Promise<SignedSeat>, clock: LocalClock): Promise<BallPlace> {
-  const [{ createSocketConnection }, first] = await Promise.all([import('../../net/socket-connection'), seat()]);
+  const [{ createSocketConnection }, first] = await Promise.all([
+    import('threepoint-rooms/client/socket-connection'),
+    seat(),
+  ]);
   const pass = { token: async (afresh: boolean) => (afresh ? await seat() : first).token };
   const connect: Connect = (visitor) =>
     createSocketConnection({ url: pageFolder(), room: first.room, visitor, clock, pass });
@@ -53,10 +56,10 @@ export async function connectionsFor(
   }
   const [{ createSocketConnection }, { createRoomPass }, { createAvatarExchange }, { askVoiceTerms }] =
     await Promise.all([
-      import('../../net/socket-connection'),
-      import('../../net/room-pass'),
-      import('../../net/avatar-exchange'),
-      import('../../net/voices/voice-terms'),
+      import('threepoint-rooms/client/socket-connection'),
+      import('threepoint-rooms/client/room-pass'),
+      import('threepoint-rooms/client/avatar-exchange'),
+      import('threepoint-rooms/voices/voice-terms'),
     ]);
   const server = pageFolder();
   const person = createRoomPass(server, room, 'ball', tabStorage(), terms);

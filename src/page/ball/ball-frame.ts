@@ -1,14 +1,7 @@
-import type { AvatarPose } from '../../core/body/avatar-pose';
-import type { Calibration } from '../../core/body/calibration';
-import { type Fingers, unknownFingers } from '../../core/body/hand-shape';
-import type { BallEvent, BallRole, BallState } from '../../core/games/ball/ball-state';
-import { basketInHands, type Opening } from '../../core/games/ball/basket';
-import { ballRadius } from '../../core/games/ball/flight';
-import type { BallCue, BallPulse } from '../../core/games/ball/gestures';
-import { ballSecondsLeft, ballsLeft } from '../../core/games/ball/state-readings';
-import { isInZone } from '../../core/games/ball/stations';
-import type { Launch } from '../../core/games/ballistics';
-import { ballInPalm } from '../../core/games/fist';
+import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { type Fingers, unknownFingers } from 'threepoint/core/body/hand-shape';
+import { plainAvatar, type WornAvatar } from 'threepoint/core/body/worn-avatar';
 import {
   composeTransforms,
   type MutableTransform,
@@ -18,13 +11,20 @@ import {
   type Transform,
   transformPoint,
   transformSeen,
-} from '../../core/math/pose';
-import type { Side } from '../../core/math/side';
-import { length, type MutableVec3, type Vec3, vec3 } from '../../core/math/vec3';
-import { plainAvatar, type WornAvatar } from '../../core/protocol/worn-avatar';
-import type { TrackingFrame } from '../../core/tracking/tracking-frame';
-import type { Connection, ConnectionStatus, RoomView } from '../../net/connection';
-import type { RemotePlayer } from '../../net/remote-players';
+} from 'threepoint/core/math/pose';
+import type { Side } from 'threepoint/core/math/side';
+import { length, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { BallEvent, BallRole, BallState } from 'threepoint-games/ball/ball-state';
+import { basketInHands, type Opening } from 'threepoint-games/ball/basket';
+import { ballRadius } from 'threepoint-games/ball/flight';
+import type { BallCue, BallPulse } from 'threepoint-games/ball/gestures';
+import { ballSecondsLeft, ballsLeft } from 'threepoint-games/ball/state-readings';
+import { isInZone } from 'threepoint-games/ball/stations';
+import type { Launch } from 'threepoint-games/ballistics';
+import { ballInPalm } from 'threepoint-games/fist';
+import type { Connection, ConnectionStatus, RoomView } from 'threepoint-rooms/client/connection';
+import type { RemotePlayer } from 'threepoint-rooms/client/remote-players';
 import { seatLooks } from './court-plan';
 import { shownToEyes } from './personal-space';
 

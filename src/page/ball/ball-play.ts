@@ -1,27 +1,27 @@
-import type { AvatarPose } from '../../core/body/avatar-pose';
-import type { Calibration } from '../../core/body/calibration';
-import type { Fingers } from '../../core/body/hand-shape';
-import { createEstimator } from '../../core/estimation/estimators';
-import type { BallEvent } from '../../core/games/ball/ball-state';
-import type { BallCue, BallGestureFrame, BallGestures, BallPulse } from '../../core/games/ball/gestures';
-import type { Performed } from '../../core/games/ball/player-postures';
-import { holderStation } from '../../core/games/ball/stations';
+import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import type { Fingers } from 'threepoint/core/body/hand-shape';
+import type { WornAvatar } from 'threepoint/core/body/worn-avatar';
+import { createEstimator } from 'threepoint/core/estimation/estimators';
+import type { Buttons } from 'threepoint/core/input/button-presses';
+import { invertTransform, type Transform } from 'threepoint/core/math/pose';
+import { identity } from 'threepoint/core/math/quat';
+import type { Side } from 'threepoint/core/math/side';
+import { zero } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { BallEvent } from 'threepoint-games/ball/ball-state';
+import type { BallCue, BallGestureFrame, BallGestures, BallPulse } from 'threepoint-games/ball/gestures';
+import type { Performed } from 'threepoint-games/ball/player-postures';
+import { holderStation } from 'threepoint-games/ball/stations';
 import {
   type BallSteering,
   createSteeredHolder,
   createSteeredThrower,
   type SteeredPlayer,
-} from '../../core/games/ball/steered-players';
-import type { BallBot } from '../../core/games/ball/thrower-motion';
-import type { Buttons } from '../../core/games/button-presses';
-import { invertTransform, type Transform } from '../../core/math/pose';
-import { identity } from '../../core/math/quat';
-import type { Side } from '../../core/math/side';
-import { zero } from '../../core/math/vec3';
-import type { WornAvatar } from '../../core/protocol/worn-avatar';
-import type { TrackingFrame } from '../../core/tracking/tracking-frame';
-import type { Connection, ConnectionStatus, RoomView, Visitor, VoiceLine } from '../../net/connection';
-import { createRemotePlayers, type RemotePlayer } from '../../net/remote-players';
+} from 'threepoint-games/ball/steered-players';
+import type { BallBot } from 'threepoint-games/ball/thrower-motion';
+import type { Connection, ConnectionStatus, RoomView, Visitor, VoiceLine } from 'threepoint-rooms/client/connection';
+import { createRemotePlayers, type RemotePlayer } from 'threepoint-rooms/client/remote-players';
 import {
   actorFor,
   BallBots,

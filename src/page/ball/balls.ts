@@ -11,11 +11,6 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
-import type { BallPlace, BallState, TimedLaunch } from '../../core/games/ball/ball-state';
-import type { Opening } from '../../core/games/ball/basket';
-import { ballRadius, basketDepth, basketRadius } from '../../core/games/ball/flight';
-import { ballPosition } from '../../core/games/ball/state-readings';
-import { ballsPerRack } from '../../core/games/ball/stations';
 import {
   addScaled,
   copyVec3,
@@ -27,10 +22,15 @@ import {
   subtract,
   type Vec3,
   vec3,
-} from '../../core/math/vec3';
-import { disposeTree } from '../../scene/dispose-tree';
-import { painted } from '../../scene/painted-geometry';
-import type { Quality } from '../../scene/renderer';
+} from 'threepoint/core/math/vec3';
+import type { BallPlace, BallState, TimedLaunch } from 'threepoint-games/ball/ball-state';
+import type { Opening } from 'threepoint-games/ball/basket';
+import { ballRadius, basketDepth, basketRadius } from 'threepoint-games/ball/flight';
+import { ballPosition } from 'threepoint-games/ball/state-readings';
+import { ballsPerRack } from 'threepoint-games/ball/stations';
+import { disposeTree } from '../scene/dispose-tree';
+import { painted } from '../scene/painted-geometry';
+import type { Quality } from '../scene/renderer';
 import { createShadowDiscs, type ShadowDiscs } from './shadow-discs';
 
 /** Where a ball lies in a hand; null: the hand is not seen. */

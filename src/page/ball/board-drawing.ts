@@ -1,9 +1,9 @@
-import type { BallEvent, BallState } from '../../core/games/ball/ball-state';
-import { ballsLeft } from '../../core/games/ball/state-readings';
-import { rotationForRound } from '../../core/games/ball/stations';
-import { ink, paintCard, paintGround, signFont } from '../../scene/boards/lettering';
-import { paintScoreHeading } from '../../scene/boards/score-heading';
-import { paintButton, type SheetButton } from '../../scene/boards/sheet';
+import type { BallEvent, BallState } from 'threepoint-games/ball/ball-state';
+import { ballsLeft } from 'threepoint-games/ball/state-readings';
+import { rotationForRound } from 'threepoint-games/ball/stations';
+import { ink, paintCard, paintGround, signFont } from '../scene/boards/lettering';
+import { paintScoreHeading } from '../scene/boards/score-heading';
+import { paintButton, type SheetButton } from '../scene/boards/sheet';
 import { roleTexts, seatLooks } from './court-plan';
 
 /** A player on a seat, as boards and labels write of them. */

@@ -1,8 +1,8 @@
 import { Group } from 'three';
-import { createWoodenBoard } from '../../scene/boards/wooden-board';
-import { disposeTree } from '../../scene/dispose-tree';
-import { createDrawnTexture } from '../../scene/drawn-texture';
-import type { Quality } from '../../scene/renderer';
+import { createWoodenBoard } from '../scene/boards/wooden-board';
+import { disposeTree } from '../scene/dispose-tree';
+import { createDrawnTexture } from '../scene/drawn-texture';
+import type { Quality } from '../scene/renderer';
 import { boardSize, paintBoard, type Standing } from './board-drawing';
 import { court } from './court-plan';
 

@@ -1,8 +1,8 @@
-import type { BallEvent, Refusal } from '../../core/games/ball/ball-state';
-import type { BallCue } from '../../core/games/ball/gestures';
-import type { Pose } from '../../core/math/pose';
-import type { Vec3 } from '../../core/math/vec3';
-import { directionOf } from '../../scene/directions';
+import type { Pose } from 'threepoint/core/math/pose';
+import type { Vec3 } from 'threepoint/core/math/vec3';
+import type { BallEvent, Refusal } from 'threepoint-games/ball/ball-state';
+import type { BallCue } from 'threepoint-games/ball/gestures';
+import { directionOf } from '../scene/directions';
 import { nameOf, type Person } from './board-drawing';
 
 /** Who hears, and where the others are. */

@@ -9,11 +9,11 @@ import {
   Mesh,
   MeshLambertMaterial,
 } from 'three';
-import { ballRadius } from '../../core/games/ball/flight';
-import { createContactShadows } from '../../scene/outdoors/contact-shadows';
-import { createScatter } from '../../scene/outdoors/scatter';
-import { woodColor } from '../../scene/outdoors/wood';
-import { merged, painted } from '../../scene/painted-geometry';
+import { ballRadius } from 'threepoint-games/ball/flight';
+import { createContactShadows } from '../scene/outdoors/contact-shadows';
+import { createScatter } from '../scene/outdoors/scatter';
+import { woodColor } from '../scene/outdoors/wood';
+import { merged, painted } from '../scene/painted-geometry';
 import { court, seatLooks, trayOf } from './court-plan';
 
 /** Width, height, depth, or where the middle is [m]. */

@@ -1,4 +1,4 @@
-import { ballsPerRack, holderStation, rackPosition, stations, throwingDistance } from '../../core/games/ball/stations';
+import { ballsPerRack, holderStation, rackPosition, stations, throwingDistance } from 'threepoint-games/ball/stations';
 
 /** Where things of the court are, arena frame [m]: the throwers stand about the origin and throw along −Z. */
 export const court = {
@@ -28,7 +28,7 @@ export interface SeatLook {
   readonly ink: string;
   /** What is painted on the mark and beside the name. */
   readonly mark: string;
-  /** Colours of the avatar: one of `palettes` in src/avatar. */
+  /** Colours of the avatar: one of `palettes` in src/threepoint/avatar. */
   readonly palette: string;
 }
 

@@ -1,5 +1,5 @@
-import type { BallEvent, BallRole } from '../../core/games/ball/ball-state';
-import type { BallPulse } from '../../core/games/ball/gestures';
+import type { BallEvent, BallRole } from 'threepoint-games/ball/ball-state';
+import type { BallPulse } from 'threepoint-games/ball/gestures';
 
 /**
  * Pulses of what happens away from one's own hands: a catch is felt in the basket with both hands, and lightly by the thrower; the

@@ -1,5 +1,5 @@
-import type { BallState } from '../../core/games/ball/ball-state';
-import { ballSecondsLeft } from '../../core/games/ball/state-readings';
+import type { BallState } from 'threepoint-games/ball/ball-state';
+import { ballSecondsLeft } from 'threepoint-games/ball/state-readings';
 
 /** The clock of matches as it is shown: after the end of one it stands at what was left. */
 export function createMatchClock() {

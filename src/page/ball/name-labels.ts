@@ -1,9 +1,9 @@
 import { type CanvasTexture, Group, type Matrix4, Sprite, SpriteMaterial, Vector3 } from 'three';
-import { clamp } from '../../core/math/damper';
-import type { Vec3 } from '../../core/math/vec3';
-import { ink, signFont } from '../../scene/boards/lettering';
-import { createDrawnTexture } from '../../scene/drawn-texture';
-import type { Quality } from '../../scene/renderer';
+import { clamp } from 'threepoint/core/math/damper';
+import type { Vec3 } from 'threepoint/core/math/vec3';
+import { ink, signFont } from '../scene/boards/lettering';
+import { createDrawnTexture } from '../scene/drawn-texture';
+import type { Quality } from '../scene/renderer';
 import { nameOf, type Person } from './board-drawing';
 import { roleTexts, seatLooks } from './court-plan';
 

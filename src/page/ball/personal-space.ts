@@ -1,7 +1,7 @@
-import type { AvatarPose } from '../../core/body/avatar-pose';
-import { clamp } from '../../core/math/damper';
-import { type Transform, transformPoint } from '../../core/math/pose';
-import { type Vec3, vec3 } from '../../core/math/vec3';
+import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import { clamp } from 'threepoint/core/math/damper';
+import { type Transform, transformPoint } from 'threepoint/core/math/pose';
+import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
 
 /** Nearer to the own eyes than the first [m] another body begins to fade; at the second it is gone. */
 const fadesFrom = 0.5;

@@ -1,6 +1,6 @@
-import type { RemoteAvatars } from '../../avatar/remote-avatars';
-import type { Vec3 } from '../../core/math/vec3';
-import { plainAvatar, type WornAvatar } from '../../core/protocol/worn-avatar';
+import type { RemoteAvatars } from 'threepoint/avatar/remote-avatars';
+import { plainAvatar, type WornAvatar } from 'threepoint/core/body/worn-avatar';
+import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { BallPlay } from './ball-play';
 
 /** A player whom the tools may know of. */

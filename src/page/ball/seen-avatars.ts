@@ -1,9 +1,7 @@
-import { decoders } from '../../avatar/decoders/decoders';
-import { checkInWorker } from '../../avatar/file/check-in-worker';
-import { seenAvatarLimits } from '../../avatar/file/inspect-avatar';
-import { type LoadedAvatar, parseAvatar, parseChecked } from '../../avatar/load-avatar';
-import { PassingFault } from '../../core/errors/passing-fault';
-import { reasonOf } from '../../core/errors/reasons';
+import { decoders } from 'threepoint/avatar/decoders/decoders';
+import { checkInWorker } from 'threepoint/avatar/file/check-in-worker';
+import { seenAvatarLimits } from 'threepoint/avatar/file/inspect-avatar';
+import { type LoadedAvatar, parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
 import {
   type AvatarHash,
   bodyOf,
@@ -11,9 +9,11 @@ import {
   type OwnBody,
   plainAvatar,
   type WornAvatar,
-} from '../../core/protocol/worn-avatar';
-import type { AvatarExchange } from '../../net/avatar-exchange';
-import { type FileKind, readLimited } from '../../ui/limited-files';
+} from 'threepoint/core/body/worn-avatar';
+import { PassingFault } from 'threepoint/core/errors/passing-fault';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
+import { type FileKind, readLimited } from 'threepoint-ui/limited-files';
 
 /** The file of another person. */
 const seenFile: FileKind = { what: 'an avatar that others see', megabytes: seenAvatarLimits.megabytes };

@@ -7,8 +7,8 @@ import {
   type Object3D,
   PlaneGeometry,
 } from 'three';
-import { ballRadius } from '../../core/games/ball/flight';
-import type { Vec3 } from '../../core/math/vec3';
+import type { Vec3 } from 'threepoint/core/math/vec3';
+import { ballRadius } from 'threepoint-games/ball/flight';
 
 /** Soft dark discs on the floor under what flies, smaller and fainter the higher it is: where it will come down can be seen. */
 export interface ShadowDiscs {

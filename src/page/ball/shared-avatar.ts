@@ -1,13 +1,13 @@
-import { reasonOf } from '../../core/errors/reasons';
 import {
   type AvatarHash,
   mostAvatarBytes,
   type OwnAvatar,
   plainAvatar,
   type WornAvatar,
-} from '../../core/protocol/worn-avatar';
-import type { AvatarExchange } from '../../net/avatar-exchange';
-import type { RoomView } from '../../net/connection';
+} from 'threepoint/core/body/worn-avatar';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
+import type { RoomView } from 'threepoint-rooms/client/connection';
 
 /** What the wearer has on: one of ours by name, or a file. */
 export type OwnWear =

@@ -1,11 +1,11 @@
-import type { BallEvent, BallState, TimedLaunch } from '../../core/games/ball/ball-state';
-import { ballInAir } from '../../core/games/ball/flight';
-import type { BallCue } from '../../core/games/ball/gestures';
-import { ballSecondsLeft } from '../../core/games/ball/state-readings';
-import { holderStation, stations } from '../../core/games/ball/stations';
-import { clamp } from '../../core/math/damper';
-import { invertTransform, type Pose, type Transform, transformPoint, transformPose } from '../../core/math/pose';
-import { add, length, lerp, type Vec3, vec3 } from '../../core/math/vec3';
+import { clamp } from 'threepoint/core/math/damper';
+import { invertTransform, type Pose, type Transform, transformPoint, transformPose } from 'threepoint/core/math/pose';
+import { add, length, lerp, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { BallEvent, BallState, TimedLaunch } from 'threepoint-games/ball/ball-state';
+import { ballInAir } from 'threepoint-games/ball/flight';
+import type { BallCue } from 'threepoint-games/ball/gestures';
+import { ballSecondsLeft } from 'threepoint-games/ball/state-readings';
+import { holderStation, stations } from 'threepoint-games/ball/stations';
 import {
   type AudibleStage,
   createSoundStage,
@@ -13,8 +13,8 @@ import {
   type Recipe,
   type Recipes,
   type SoundStage,
-} from '../../scene/sound/sound-stage';
-import { bell, chime, click, warning, whoosh } from '../../scene/sound/synthesis';
+} from '../scene/sound/sound-stage';
+import { bell, chime, click, warning, whoosh } from '../scene/sound/synthesis';
 import type { Person } from './board-drawing';
 import { cueCaption, eventCaption, type Hearing } from './captions';
 import { bounce, caughtInWicker, knock, tick, whistle } from './synthesis';

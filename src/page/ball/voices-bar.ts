@@ -1,5 +1,5 @@
-import { button, element } from '../../ui/element';
-import { toggle } from '../../ui/toggle';
+import { button, element } from 'threepoint-ui/element';
+import { toggle } from 'threepoint-ui/toggle';
 import { hideLabel, muteLabel, type OtherPlayer, otherPlayers, type Seated } from './other-players';
 import { consentText, type VoicesState } from './voices-state';
 

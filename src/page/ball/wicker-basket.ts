@@ -10,10 +10,10 @@ import {
   Vector2,
   Vector3,
 } from 'three';
-import type { Opening } from '../../core/games/ball/basket';
-import { basketDepth, basketRadius, rimTube } from '../../core/games/ball/flight';
-import { disposeTree } from '../../scene/dispose-tree';
-import { merged, painted } from '../../scene/painted-geometry';
+import type { Opening } from 'threepoint-games/ball/basket';
+import { basketDepth, basketRadius, rimTube } from 'threepoint-games/ball/flight';
+import { disposeTree } from '../scene/dispose-tree';
+import { merged, painted } from '../scene/painted-geometry';
 
 /** The basket; its origin is the middle of the opening, which looks along +Y. */
 export interface WickerBasket {

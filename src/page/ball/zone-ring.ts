@@ -1,8 +1,8 @@
 import { Mesh, MeshBasicMaterial, RingGeometry } from 'three';
-import { zoneRadius } from '../../core/games/ball/stations';
-import { clamp } from '../../core/math/damper';
-import type { Vec3 } from '../../core/math/vec3';
-import { bothSides } from '../../scene/both-sides';
+import { clamp } from 'threepoint/core/math/damper';
+import type { Vec3 } from 'threepoint/core/math/vec3';
+import { zoneRadius } from 'threepoint-games/ball/stations';
+import { bothSides } from '../scene/both-sides';
 
 /** The edge of where throws and catches count: seen only by a player who comes near it; arena frame. */
 export interface ZoneRing {

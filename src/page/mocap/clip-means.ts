@@ -1,9 +1,9 @@
-import { firstLine, reasonOf } from '../../core/errors/reasons';
-import { createEstimator, networkOf } from '../../core/estimation/estimators';
-import type { EstimatorName } from '../../core/estimation/pose-estimator';
-import type { Replayable } from '../../core/tracking/recording';
-import type { BareBodyOptions } from '../../lib/bare-body';
-import { runWork, type WorkProgress } from '../../lib/run-work';
+import type { BareBodyOptions } from 'threepoint/api/bare-body';
+import { runWork, type WorkProgress } from 'threepoint/api/run-work';
+import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import { createEstimator, networkOf } from 'threepoint/core/estimation/estimators';
+import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
+import type { Replayable } from 'threepoint/core/tracking/recording';
 import { type JointErrors, meanErrors } from './joint-errors';
 import type { Truth } from './truth';
 

@@ -11,9 +11,9 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
-import type { Quat } from '../../core/math/quat';
-import type { Vec3 } from '../../core/math/vec3';
-import type { TruthJoint } from '../../core/mocap/skeleton-map';
+import type { Quat } from 'threepoint/core/math/quat';
+import type { Vec3 } from 'threepoint/core/math/vec3';
+import type { TruthJoint } from 'threepoint/core/mocap/skeleton-map';
 
 type Places = Readonly<Partial<Record<TruthJoint, Vec3>>>;
 

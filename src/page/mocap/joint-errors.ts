@@ -1,13 +1,13 @@
-import type { UpperBodyPose } from '../../core/body/avatar-pose';
-import type { Calibration } from '../../core/body/calibration';
-import { forwardKinematics, makeJointPoses } from '../../core/body/forward-kinematics';
-import { estimatedJoints } from '../../core/body/joints';
-import { skeletonFromCalibration } from '../../core/body/skeleton';
-import { estimateRecording } from '../../core/estimation/estimate-recording';
-import type { PoseEstimator } from '../../core/estimation/pose-estimator';
-import { distance, type Vec3 } from '../../core/math/vec3';
-import type { TruthJoint } from '../../core/mocap/skeleton-map';
-import type { Replayable } from '../../core/tracking/recording';
+import type { UpperBodyPose } from 'threepoint/core/body/avatar-pose';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics, makeJointPoses } from 'threepoint/core/body/forward-kinematics';
+import { estimatedJoints } from 'threepoint/core/body/joints';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { estimateRecording } from 'threepoint/core/estimation/estimate-recording';
+import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
+import { distance, type Vec3 } from 'threepoint/core/math/vec3';
+import type { TruthJoint } from 'threepoint/core/mocap/skeleton-map';
+import type { Replayable } from 'threepoint/core/tracking/recording';
 import type { Truth } from './truth';
 
 /** Distances [cm] between joints as drawn and as they were, in the order of `estimatedJoints`. */

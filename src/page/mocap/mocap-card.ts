@@ -1,8 +1,8 @@
-import { type EstimatedJoint, estimatedJoints } from '../../core/body/joints';
-import { type EstimatorName, threePointNames } from '../../core/estimation/pose-estimator';
-import type { WorkProgress } from '../../lib/run-work';
-import { button, element } from '../../ui/element';
-import { createRunningLine } from '../../ui/running-line';
+import type { WorkProgress } from 'threepoint/api/run-work';
+import { type EstimatedJoint, estimatedJoints } from 'threepoint/core/body/joints';
+import { type EstimatorName, threePointNames } from 'threepoint/core/estimation/pose-estimator';
+import { button, element } from 'threepoint-ui/element';
+import { createRunningLine } from 'threepoint-ui/running-line';
 import type { ClipMean } from './clip-means';
 import { type JointErrors, meanOf } from './joint-errors';
 import { type TruthPlace, truthPlaces } from './truth-places';

@@ -1,4 +1,4 @@
-import { nameOf } from '../../ui/limited-files';
+import { nameOf } from 'threepoint-ui/limited-files';
 
 /** A file of this device, or the address of one. */
 export type MocapFile = File | string;

@@ -1,7 +1,7 @@
-import { chunksOf } from '../../avatar/file/glb-chunks';
-import { firstLine, reasonOf } from '../../core/errors/reasons';
-import { type MocapSource, type PreparedMocap, prepareMocap } from '../../core/mocap/prepare-mocap';
-import { type FileKind, nameOf, readLimited } from '../../ui/limited-files';
+import { chunksOf } from 'threepoint/avatar/file/glb-chunks';
+import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import { type MocapSource, type PreparedMocap, prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
+import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
 import type { MocapFile, MocapFiles } from './mocap-files';
 
 /** What the worker says: how far it is [0, 1], what it read, or why it could not. */

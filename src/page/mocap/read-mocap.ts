@@ -1,7 +1,7 @@
-import type { PreparedMocap } from '../../core/mocap/prepare-mocap';
-import { secondsLeft } from '../../core/motion/work';
-import type { WorkOptions } from '../../lib/run-work';
-import { nameOf } from '../../ui/limited-files';
+import type { WorkOptions } from 'threepoint/api/run-work';
+import type { PreparedMocap } from 'threepoint/core/mocap/prepare-mocap';
+import { secondsLeft } from 'threepoint/core/motion/work';
+import { nameOf } from 'threepoint-ui/limited-files';
 import type { MocapFile, MocapFiles } from './mocap-files';
 import type { MocapAnswer } from './mocap-worker';
 

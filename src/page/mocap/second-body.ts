@@ -1,11 +1,11 @@
 import { Group, type Object3D } from 'three';
-import type { Avatar } from '../../avatar/avatar';
-import type { UpperBodyPose } from '../../core/body/avatar-pose';
-import type { Calibration } from '../../core/body/calibration';
-import type { EstimatorName } from '../../core/estimation/pose-estimator';
-import type { TrackingFrame } from '../../core/tracking/tracking-frame';
-import { BareBody, type BareBodyOptions } from '../../lib/bare-body';
-import { type MovingReplay, ReplayedBody } from '../../lib/replayed-body';
+import { BareBody, type BareBodyOptions } from 'threepoint/api/bare-body';
+import { type MovingReplay, ReplayedBody } from 'threepoint/api/replayed-body';
+import type { Avatar } from 'threepoint/avatar/avatar';
+import type { UpperBodyPose } from 'threepoint/core/body/avatar-pose';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
 export interface SecondBodyOptions {
   readonly scene: Object3D;

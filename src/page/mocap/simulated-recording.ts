@@ -1,10 +1,10 @@
-import type { TrackedPose } from '../../core/math/pose';
-import { normaliseQuat, quat } from '../../core/math/quat';
-import { vec3 } from '../../core/math/vec3';
-import { type MocapClip, mocapRateHz } from '../../core/mocap/prepare-mocap';
-import { trackedWidth } from '../../core/mocap/simulate-trackers';
-import type { Replayable, TrackingFrames } from '../../core/tracking/recording';
-import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { TrackedPose } from 'threepoint/core/math/pose';
+import { normaliseQuat, quat } from 'threepoint/core/math/quat';
+import { vec3 } from 'threepoint/core/math/vec3';
+import { type MocapClip, mocapRateHz } from 'threepoint/core/mocap/prepare-mocap';
+import { trackedWidth } from 'threepoint/core/mocap/simulate-trackers';
+import type { Replayable, TrackingFrames } from 'threepoint/core/tracking/recording';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
 /** What the trackers saw of a clip. A frame is made when it is asked for and not kept: half an hour of them would hold up the page. */
 class SimulatedFrames implements TrackingFrames {

@@ -1,5 +1,5 @@
-import { reasonOf } from '../../core/errors/reasons';
-import { pageFolder } from '../../ui/page-folder';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import { pageFolder } from 'threepoint-ui/page-folder';
 
 /** What this browser has of the page for a visit without a network: nothing yet, a copy on its way, a whole copy; or why it keeps none. */
 export type KeptState = 'nothing' | 'coming' | 'whole' | { readonly refused: string };

@@ -1,7 +1,7 @@
 import { PerspectiveCamera, Raycaster, Vector2, Vector3 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import type { Pose } from '../core/math/pose';
-import type { Ray } from '../core/math/ray';
+import type { Pose } from 'threepoint/core/math/pose';
+import type { Ray } from 'threepoint/core/math/ray';
 
 export const viewNames = ['third-person', 'front', 'first-person'] as const;
 /** third-person: orbits the body from behind. front: from where the mirror hangs. first-person: through the eyes. */

@@ -1,6 +1,6 @@
-import type { Pose } from '../core/math/pose';
-import { conjugate, rotate } from '../core/math/quat';
-import { subtract, type Vec3 } from '../core/math/vec3';
+import type { Pose } from 'threepoint/core/math/pose';
+import { conjugate, rotate } from 'threepoint/core/math/quat';
+import { subtract, type Vec3 } from 'threepoint/core/math/vec3';
 
 /** Where a point lies as seen from a head, in words; above and below do not matter. */
 export function directionOf(head: Pose<'arena'>, point: Vec3): string {

@@ -1,5 +1,5 @@
 import { Sprite, SpriteMaterial } from 'three';
-import { distance, type Vec3 } from '../core/math/vec3';
+import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { ink, signFont } from './boards/lettering';
 import { createDrawnTexture } from './drawn-texture';
 import type { Quality } from './renderer';

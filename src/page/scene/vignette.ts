@@ -1,7 +1,7 @@
 import { BackSide, Mesh, ShaderMaterial, SphereGeometry } from 'three';
-import { smoothstep } from '../core/math/damper';
-import type { Pose } from '../core/math/pose';
-import { showToEyesAlone } from './eye-layers';
+import { showToEyesAlone } from 'threepoint/avatar/eye-layers';
+import { smoothstep } from 'threepoint/core/math/damper';
+import type { Pose } from 'threepoint/core/math/pose';
 
 /** Seconds until the picture is whole again after a turn. */
 const openingSeconds = 0.4;

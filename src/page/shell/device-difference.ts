@@ -1,12 +1,12 @@
-import type { AvatarPose } from '../../core/body/avatar-pose';
-import type { Calibration } from '../../core/body/calibration';
-import { forwardKinematics, makeJointPoses } from '../../core/body/forward-kinematics';
-import { type EstimatedJoint, estimatedJoints } from '../../core/body/joints';
-import { type Skeleton, skeletonFromCalibration } from '../../core/body/skeleton';
-import { smoothingFactor } from '../../core/math/damper';
-import { distance, vec3 } from '../../core/math/vec3';
-import { deviceJoint } from '../../core/tracking/device-body';
-import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics, makeJointPoses } from 'threepoint/core/body/forward-kinematics';
+import { type EstimatedJoint, estimatedJoints } from 'threepoint/core/body/joints';
+import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { smoothingFactor } from 'threepoint/core/math/damper';
+import { distance, vec3 } from 'threepoint/core/math/vec3';
+import { deviceJoint } from 'threepoint/core/tracking/device-body';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
 /** Half-life of the mean [s]: long enough to be read. */
 const halfLife = 0.5;

@@ -1,7 +1,7 @@
-import type { Embodiment } from '../../core/study/embodiment';
-import { PhrasedError } from '../../core/study/phrases/phrases';
-import type { ImpairedTracking } from '../../core/tracking/impaired-tracking';
-import type { BareBody } from '../../lib/bare-body';
+import type { BareBody } from 'threepoint/api/bare-body';
+import type { ImpairedTracking } from 'threepoint/core/tracking/impaired-tracking';
+import type { Embodiment } from 'threepoint-study/model/embodiment';
+import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
 import type { SettingsWriter } from './settings';
 import type { ShownAvatar } from './shown-avatar';
 

@@ -1,6 +1,6 @@
-import type { AvatarPose } from '../../core/body/avatar-pose';
-import type { TrackingFrame } from '../../core/tracking/tracking-frame';
-import type { BareBody } from '../../lib/bare-body';
+import type { BareBody } from 'threepoint/api/bare-body';
+import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { FrameTiming } from './frame-timing';
 
 /** What of a frame is the page's; the loop calls each once, in this order. All of them hear the same time, the body's clock. */

@@ -1,5 +1,5 @@
-import { PhrasedError } from '../../core/study/phrases/phrases';
-import type { BareBody } from '../../lib/bare-body';
+import type { BareBody } from 'threepoint/api/bare-body';
+import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
 import type { Activities } from './activities';
 import { type EmbodyingParts, embody } from './embody';
 import type { FrameTiming } from './frame-timing';
@@ -28,7 +28,7 @@ export interface JoinStudyOptions extends EmbodyingParts {
 /** Takes part in a study: from now on it decides what is played and with which body. */
 export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy> {
   const { asked, switches, settings, writer, headset, activities, timing, body, wearer } = options;
-  const { createStudyRun } = await import('../study/study-run');
+  const { createStudyRun } = await import('threepoint-study/participant/study-run');
   writer.change({ startSignal: true });
   const archery = createArcheryRunner({
     async goToArchery(seconds) {

@@ -1,5 +1,5 @@
+import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
 import * as v from 'valibot';
-import type { BoneMap } from '../../avatar/humanoid/bone-names';
 import { boneMap, type PreferenceStore } from './preferences';
 
 /** The maps of so many files are remembered, the newest ones. */

@@ -1,7 +1,7 @@
-import { createInferenceWorker } from '../../inference/create-inference-worker';
-import type { BareBodyOptions } from '../../lib/bare-body';
-import type { Notices } from '../../ui/notices';
-import { pageFolder } from '../../ui/page-folder';
+import type { BareBodyOptions } from 'threepoint/api/bare-body';
+import { createInferenceWorker } from 'threepoint/onnx/create-inference-worker';
+import type { Notices } from 'threepoint-ui/notices';
+import { pageFolder } from 'threepoint-ui/page-folder';
 import type { PageLoading } from './page-loading';
 import type { Switches } from './switches';
 
@@ -19,7 +19,7 @@ export interface NetworkLoadingOptions {
 /** Brings networks by name, by the runtime. The code that runs them is asked for at once. */
 export function createNetworkLoader(options: NetworkLoadingOptions): BareBodyOptions['networks'] {
   const { provider, notices, loading } = options;
-  const networksArrive = import('../../lib/onnx').then(({ onnxNetworks }) =>
+  const networksArrive = import('threepoint/api/onnx').then(({ onnxNetworks }) =>
     onnxNetworks({
       modelUrl: contractAt,
       provider,

@@ -1,5 +1,5 @@
-import { firstLine, reasonOf } from '../../core/errors/reasons';
-import type { Notices } from '../../ui/notices';
+import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import type { Notices } from 'threepoint-ui/notices';
 import type { Studio } from '../studio/studio';
 import type { FrameTiming } from './frame-timing';
 import type { Headset } from './headset';

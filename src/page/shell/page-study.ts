@@ -1,4 +1,4 @@
-import type { StudyRun } from '../study/study-run';
+import type { StudyRun } from 'threepoint-study/participant/study-run';
 import type { ArcheryRunner } from './study-archery';
 import type { BallRunner } from './study-ball';
 

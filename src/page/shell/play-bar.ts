@@ -1,6 +1,6 @@
-import { button, element } from '../../ui/element';
-import { archeryRulesText, rulesList } from '../../ui/rules';
-import { toggle } from '../../ui/toggle';
+import { button, element } from 'threepoint-ui/element';
+import { archeryRulesText, rulesList } from 'threepoint-ui/rules';
+import { toggle } from 'threepoint-ui/toggle';
 import { type BallBarActions, type BallBarState, createBallBar } from '../ball/ball-bar';
 
 /** What people do here: look at themselves in the studio, or play. */

@@ -1,9 +1,9 @@
+import { type BoneName, boneNames } from 'threepoint/avatar/humanoid/bone-names';
+import { calibrationComplaint } from 'threepoint/core/body/calibration';
+import { avatarHash, ownBodies, skinTones } from 'threepoint/core/body/worn-avatar';
+import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
+import { handTiltsSchema } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { type BoneName, boneNames } from '../../avatar/humanoid/bone-names';
-import { calibrationComplaint } from '../../core/body/calibration';
-import { estimatorNames } from '../../core/estimation/pose-estimator';
-import { avatarHash, ownBodies, skinTones } from '../../core/protocol/worn-avatar';
-import { handTiltsSchema } from '../../core/study/validation';
 
 const calibration = v.pipe(
   v.object({

@@ -1,5 +1,5 @@
-import type { BareBody } from '../../lib/bare-body';
-import type { DesktopView } from '../../scene/desktop-view';
+import type { BareBody } from 'threepoint/api/bare-body';
+import type { DesktopView } from '../scene/desktop-view';
 import type { Recorder } from '../studio/recorder';
 import type { Activities } from './activities';
 import type { Controls } from './controls/controls';

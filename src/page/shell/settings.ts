@@ -1,5 +1,5 @@
-import type { Side } from '../../core/math/side';
-import { type OwnBody, plainAvatar, type SkinTone } from '../../core/protocol/worn-avatar';
+import { type OwnBody, plainAvatar, type SkinTone } from 'threepoint/core/body/worn-avatar';
+import type { Side } from 'threepoint/core/math/side';
 import type { PreferenceStore } from './preferences';
 import type { Switches } from './switches';
 

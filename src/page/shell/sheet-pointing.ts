@@ -1,4 +1,4 @@
-import type { DesktopView } from '../../scene/desktop-view';
+import type { DesktopView } from '../scene/desktop-view';
 import type { Activities } from './activities';
 import type { Headset } from './headset';
 import type { PageStudy } from './page-study';

@@ -1,15 +1,15 @@
-import type { Avatar } from '../../avatar/avatar';
-import { createDebugSkeleton } from '../../avatar/debug-skeleton';
-import { createMirror } from '../../avatar/mirror';
-import { createHeadLoss } from '../../avatar/rig/head-loss';
-import type { Pose } from '../../core/math/pose';
-import type { Side } from '../../core/math/side';
-import type { Vec3 } from '../../core/math/vec3';
-import type { TrackingFrame } from '../../core/tracking/tracking-frame';
-import { createDesktopView, type DesktopView, type Insets } from '../../scene/desktop-view';
-import { createHeadsetCamera, createRenderer, fitToWindow, type Quality } from '../../scene/renderer';
-import { createVignette, type Vignette } from '../../scene/vignette';
-import { createVrCaptions } from '../../ui/vr-captions';
+import type { Avatar } from 'threepoint/avatar/avatar';
+import { createDebugSkeleton } from 'threepoint/avatar/debug-skeleton';
+import { createMirror } from 'threepoint/avatar/mirror';
+import { createHeadLoss } from 'threepoint/avatar/rig/head-loss';
+import type { Pose } from 'threepoint/core/math/pose';
+import type { Side } from 'threepoint/core/math/side';
+import type { Vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { createVrCaptions } from 'threepoint-ui/vr-captions';
+import { createDesktopView, type DesktopView, type Insets } from '../scene/desktop-view';
+import { createHeadsetCamera, createRenderer, fitToWindow, type Quality } from '../scene/renderer';
+import { createVignette, type Vignette } from '../scene/vignette';
 import { createStudio, type Studio } from '../studio/studio';
 
 /** The user stands at the origin and looks along −Z, at the mirror [m]. */

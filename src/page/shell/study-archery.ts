@@ -1,6 +1,6 @@
-import { fullScore, matchTime } from '../../core/games/archery/rules';
+import { fullScore, matchTime } from 'threepoint-games/archery/rules';
+import type { TaskEnd, TaskEvent, TaskRunner } from 'threepoint-study/participant/task-runner';
 import type { ArcheryFrame } from '../archery/archery-play';
-import type { TaskEnd, TaskEvent, TaskRunner } from '../study/task-runner';
 
 /** What the study needs of the archery on the page. */
 export interface ArcheryHost {

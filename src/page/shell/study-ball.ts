@@ -1,6 +1,6 @@
+import type { TaskEnd, TaskEvent, TaskPlace, TaskRunner } from 'threepoint-study/participant/task-runner';
 import type { BallFrame } from '../ball/ball-frame';
 import type { BallPlay } from '../ball/ball-play';
-import type { TaskEnd, TaskEvent, TaskPlace, TaskRunner } from '../study/task-runner';
 
 /** What the study needs of the ball game on the page. */
 export interface BallHost {

@@ -1,9 +1,9 @@
+import { type EstimatorName, estimatorNames, threePointNames } from 'threepoint/core/estimation/pose-estimator';
 import * as v from 'valibot';
-import { type EstimatorName, estimatorNames, threePointNames } from '../../core/estimation/pose-estimator';
-import { type ViewName, viewNames } from '../../scene/desktop-view';
-import type { Quality } from '../../scene/renderer';
 import type { Outlook } from '../mocap/mocap-view';
 import { truthPlaces } from '../mocap/truth-places';
+import { type ViewName, viewNames } from '../scene/desktop-view';
+import type { Quality } from '../scene/renderer';
 import { type ActivityName, activityNames } from './play-bar';
 
 /** What the address asks for; null: nothing asked, the page decides. Listed in docs/page.md. */

@@ -1,9 +1,9 @@
-import type { Calibration } from '../../core/body/calibration';
-import { type Buttons, nothingPressed } from '../../core/games/button-presses';
-import type { TrackingFrame } from '../../core/tracking/tracking-frame';
-import type { BareBody } from '../../lib/bare-body';
-import type { Actor } from '../../xr/actor';
+import type { BareBody } from 'threepoint/api/bare-body';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Performance } from '../archery/archery-play';
+import type { Actor } from '../emulator/actor';
 import type { Recorder } from '../studio/recorder';
 import type { Activities } from './activities';
 import type { Headset } from './headset';

@@ -1,5 +1,5 @@
-import { firstLine, reasonOf } from '../../core/errors/reasons';
-import type { Notices } from '../../ui/notices';
+import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import type { Notices } from 'threepoint-ui/notices';
 
 /** The sound of a game. */
 export interface GameSound {

@@ -1,7 +1,7 @@
-import type { Calibration } from '../../core/body/calibration';
-import type { BareBody, CalibrationSource } from '../../lib/bare-body';
-import type { DesktopView } from '../../scene/desktop-view';
-import type { Notices } from '../../ui/notices';
+import type { BareBody, CalibrationSource } from 'threepoint/api/bare-body';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import type { Notices } from 'threepoint-ui/notices';
+import type { DesktopView } from '../scene/desktop-view';
 import type { Headset } from './headset';
 import type { PreferenceStore } from './preferences';
 import type { SettingsWriter } from './settings';

@@ -9,9 +9,9 @@ import {
   type WebGLRenderer,
   type WebGLRenderTarget,
 } from 'three';
-import { createBlobShadow } from '../../scene/blob-shadow';
-import type { Quality } from '../../scene/renderer';
-import type { DistantLight, Lighting } from '../../scene/surroundings';
+import { createBlobShadow } from 'threepoint/avatar/blob-shadow';
+import type { Quality } from '../scene/renderer';
+import type { DistantLight, Lighting } from '../scene/surroundings';
 
 /** How high above the floor the light that throws shadows aims [m]. */
 const aimHeight = 0.9;

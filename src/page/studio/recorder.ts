@@ -1,13 +1,13 @@
-import { type Calibration, calibrationComplaint } from '../../core/body/calibration';
-import { copyFingers } from '../../core/body/hand-shape';
+import { type Calibration, calibrationComplaint } from 'threepoint/core/body/calibration';
+import { copyFingers } from 'threepoint/core/body/hand-shape';
 import {
   parseRecording,
   type Replayable,
   recordingDuration,
   sampleRecording,
   writeRecording,
-} from '../../core/tracking/recording';
-import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+} from 'threepoint/core/tracking/recording';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
 /** Frames kept at most: a quarter of an hour at 120 Hz, some 50 MB, with a device's body 100. Longer recordings stop by themselves. */
 const most = 108_000;

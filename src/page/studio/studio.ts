@@ -13,8 +13,8 @@ import {
   SphereGeometry,
   type WebGLRenderer,
 } from 'three';
-import type { Quality } from '../../scene/renderer';
-import type { Lighting, Surroundings } from '../../scene/surroundings';
+import type { Quality } from '../scene/renderer';
+import type { Lighting, Surroundings } from '../scene/surroundings';
 import { Lights } from './lights';
 
 const horizon = new Color('#3a475d');

@@ -1,5 +1,5 @@
+import { type AvatarHash, avatarHash } from 'threepoint/core/body/worn-avatar';
 import * as v from 'valibot';
-import { type AvatarHash, avatarHash } from '../core/protocol/worn-avatar';
 import type { RoomPass } from './room-pass';
 
 /** What a server says of the store of its rooms. */

@@ -1,10 +1,10 @@
-import type { Calibration } from '../core/body/calibration';
-import type { BallDeed, BallEvent, BallState } from '../core/games/ball/ball-state';
-import type { Transform } from '../core/math/pose';
-import type { Farewell, SeatInfo } from '../core/protocol/messages';
-import type { PosePacket } from '../core/protocol/pose-packet';
-import type { SignalBody, Voice } from '../core/protocol/voice-messages';
-import type { WornAvatar } from '../core/protocol/worn-avatar';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import type { WornAvatar } from 'threepoint/core/body/worn-avatar';
+import type { Transform } from 'threepoint/core/math/pose';
+import type { BallDeed, BallEvent, BallState } from 'threepoint-games/ball/ball-state';
+import type { Farewell, SeatInfo } from '../protocol/messages';
+import type { PosePacket } from '../protocol/pose-packet';
+import type { SignalBody, Voice } from '../protocol/voice-messages';
 
 /** This page's clock, that of the tracked frames [s]; it never goes back. */
 export interface LocalClock {

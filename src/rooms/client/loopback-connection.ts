@@ -1,10 +1,10 @@
-import type { BallAction, BallOptions } from '../core/games/ball/ball-state';
-import { type BallGame, BallPolicy } from '../core/match-policies/ball-policy';
-import type { BallRoomMessage } from '../core/protocol/ball-messages';
-import type { ClientMessage, Farewell } from '../core/protocol/messages';
-import { encodeFrame } from '../core/protocol/pose-frame';
-import { Room, type RoomOptions } from '../core/room/room';
-import type { ClientId, RoomRefusal } from '../core/room/room-outlet';
+import type { BallRoomMessage } from 'threepoint-games/ball/ball-messages';
+import { type BallGame, BallPolicy } from 'threepoint-games/ball/ball-policy';
+import type { BallAction, BallOptions } from 'threepoint-games/ball/ball-state';
+import type { ClientMessage, Farewell } from '../protocol/messages';
+import { encodeFrame } from '../protocol/pose-frame';
+import { Room, type RoomOptions } from '../room/room';
+import type { ClientId, RoomRefusal } from '../room/room-outlet';
 import type { Connection, ConnectionStatus, ConnectionUpdate, Visitor } from './connection';
 import { RoomSession } from './room-session';
 

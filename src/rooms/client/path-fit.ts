@@ -1,5 +1,5 @@
-import { smoothstep } from '../core/math/damper';
-import type { PosePacket } from '../core/protocol/pose-packet';
+import { smoothstep } from 'threepoint/core/math/damper';
+import type { PosePacket } from '../protocol/pose-packet';
 
 /** A packet on a path: its time by the sender's clock, unwrapped [s], and by the page's clock when it came [s]. */
 export interface PathSample {

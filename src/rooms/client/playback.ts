@@ -1,6 +1,6 @@
-import { clamp, smoothingFactor, smoothstep } from '../core/math/damper';
-import { packetSecondsBetween } from '../core/protocol/packet-time';
-import type { PosePacket } from '../core/protocol/pose-packet';
+import { clamp, smoothingFactor, smoothstep } from 'threepoint/core/math/damper';
+import { packetSecondsBetween } from '../protocol/packet-time';
+import type { PosePacket } from '../protocol/pose-packet';
 import { PathFit, type PathSample } from './path-fit';
 import { ShownPlayer } from './shown-player';
 import { TransitWindow } from './transit-window';

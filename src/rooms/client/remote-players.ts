@@ -1,5 +1,5 @@
-import type { AvatarPose } from '../core/body/avatar-pose';
-import type { PosePacket } from '../core/protocol/pose-packet';
+import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import type { PosePacket } from '../protocol/pose-packet';
 import type { ArrivedPose } from './connection';
 import { Playback, type PlaybackReport } from './playback';
 

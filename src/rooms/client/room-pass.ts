@@ -1,4 +1,4 @@
-import type { RoomTerms } from '../core/protocol/messages';
+import type { RoomTerms } from '../protocol/messages';
 
 /** The signed pass that lets a page into a room. */
 export interface RoomPass {

@@ -1,12 +1,12 @@
-import { sameMeasures } from '../core/body/calibration';
-import { type Skeleton, skeletonFromCalibration } from '../core/body/skeleton';
-import type { BallDeed, BallEvent, BallState } from '../core/games/ball/ball-state';
-import { answersDeed, followBallEvent, predictDeed, withMatchTime } from '../core/games/ball/replica';
-import { arenaFromSeatFloor } from '../core/games/ball/stations';
-import type { Transform } from '../core/math/pose';
-import type { BallRoomMessage, SentBallGame } from '../core/protocol/ball-messages';
-import { unpackBall } from '../core/protocol/ball-snapshot';
-import { type SeatInfo, unpackSeatInfo, type Welcome } from '../core/protocol/messages';
+import { sameMeasures } from 'threepoint/core/body/calibration';
+import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import type { Transform } from 'threepoint/core/math/pose';
+import type { BallRoomMessage, SentBallGame } from 'threepoint-games/ball/ball-messages';
+import { unpackBall } from 'threepoint-games/ball/ball-snapshot';
+import type { BallDeed, BallEvent, BallState } from 'threepoint-games/ball/ball-state';
+import { answersDeed, followBallEvent, predictDeed, withMatchTime } from 'threepoint-games/ball/replica';
+import { arenaFromSeatFloor } from 'threepoint-games/ball/stations';
+import { type SeatInfo, unpackSeatInfo, type Welcome } from '../protocol/messages';
 
 /** What a Room has said of itself. */
 export interface KnownRoom

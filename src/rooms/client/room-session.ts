@@ -1,14 +1,14 @@
-import type { Calibration } from '../core/body/calibration';
-import { type Skeleton, skeletonFromCalibration } from '../core/body/skeleton';
-import type { BallDeed, BallEvent } from '../core/games/ball/ball-state';
-import type { Transform } from '../core/math/pose';
-import type { BallRoomMessage } from '../core/protocol/ball-messages';
-import { type ClientMessage, type Joining, toMillimetres } from '../core/protocol/messages';
-import { packetMs } from '../core/protocol/packet-time';
-import { decodePose, encodePose } from '../core/protocol/pose-codec';
-import { decodeFrame } from '../core/protocol/pose-frame';
-import type { SignalBody, Voice } from '../core/protocol/voice-messages';
-import { plainAvatar, type WornAvatar } from '../core/protocol/worn-avatar';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { plainAvatar, type WornAvatar } from 'threepoint/core/body/worn-avatar';
+import type { Transform } from 'threepoint/core/math/pose';
+import type { BallRoomMessage } from 'threepoint-games/ball/ball-messages';
+import type { BallDeed, BallEvent } from 'threepoint-games/ball/ball-state';
+import { type ClientMessage, type Joining, toMillimetres } from '../protocol/messages';
+import { packetMs } from '../protocol/packet-time';
+import { decodePose, encodePose } from '../protocol/pose-codec';
+import { decodeFrame } from '../protocol/pose-frame';
+import type { SignalBody, Voice } from '../protocol/voice-messages';
 import { createClockSync } from './clock-sync';
 import type {
   ArrivedPose,

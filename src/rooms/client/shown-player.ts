@@ -1,17 +1,17 @@
-import type { UpperBodyPose } from '../core/body/avatar-pose';
+import type { UpperBodyPose } from 'threepoint/core/body/avatar-pose';
 import {
   copyHandShape,
   type HandShape,
   type MutableHandShape,
   makeHandShape,
   mixHandShape,
-} from '../core/body/hand-shape';
-import { type JointName, jointNames } from '../core/body/joints';
-import { type MutablePose, makePose, type TrackedPose } from '../core/math/pose';
-import { copyQuat, type MutableQuat, normaliseQuat, type Quat, quat, setQuat, slerp } from '../core/math/quat';
-import type { Side } from '../core/math/side';
-import { addScaled, copyVec3, lerp, type MutableVec3, setVec3, vec3 } from '../core/math/vec3';
-import type { PosePacket } from '../core/protocol/pose-packet';
+} from 'threepoint/core/body/hand-shape';
+import { type JointName, jointNames } from 'threepoint/core/body/joints';
+import { type MutablePose, makePose, type TrackedPose } from 'threepoint/core/math/pose';
+import { copyQuat, type MutableQuat, normaliseQuat, type Quat, quat, setQuat, slerp } from 'threepoint/core/math/quat';
+import type { Side } from 'threepoint/core/math/side';
+import { addScaled, copyVec3, lerp, type MutableVec3, setVec3, vec3 } from 'threepoint/core/math/vec3';
+import type { PosePacket } from '../protocol/pose-packet';
 import type { PathFit, PathSample } from './path-fit';
 
 /** What is drawn of a player in one frame. */

@@ -1,7 +1,7 @@
 import { io, type Socket } from 'socket.io-client';
-import { ballRoomMessageFrom } from '../core/protocol/ball-messages';
-import { type ClientMessage, protocolVersion } from '../core/protocol/messages';
-import { frameEvent, messageEvent, pageParser, poseEvent } from '../core/protocol/small-frames';
+import { ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
+import { type ClientMessage, protocolVersion } from '../protocol/messages';
+import { frameEvent, messageEvent, pageParser, poseEvent } from '../protocol/small-frames';
 import { type BackOff, createBackOff } from './back-off';
 import type { Connection, ConnectionStatus, ConnectionUpdate, LocalClock, Visitor } from './connection';
 import type { RoomPass } from './room-pass';

@@ -1,12 +1,21 @@
-import { alongArm, clavicleRest, handBoneRotation, hingeAtRest } from '../body/arm-rotations';
-import type { UpperBodyPose } from '../body/avatar-pose';
-import type { JointPoses } from '../body/forward-kinematics';
-import { armBonesOf, type Skeleton } from '../body/skeleton';
-import { elbowFlexion } from '../body/two-bone-ik';
-import { clamp } from '../math/damper';
-import type { Pose } from '../math/pose';
-import { angleBetween, conjugate, multiply, type Quat, quat, rotate, twistAngle, twistOf } from '../math/quat';
-import type { Side } from '../math/side';
+import { alongArm, clavicleRest, handBoneRotation, hingeAtRest } from 'threepoint/core/body/arm-rotations';
+import type { UpperBodyPose } from 'threepoint/core/body/avatar-pose';
+import type { JointPoses } from 'threepoint/core/body/forward-kinematics';
+import { armBonesOf, type Skeleton } from 'threepoint/core/body/skeleton';
+import { elbowFlexion } from 'threepoint/core/body/two-bone-ik';
+import { clamp } from 'threepoint/core/math/damper';
+import type { Pose } from 'threepoint/core/math/pose';
+import {
+  angleBetween,
+  conjugate,
+  multiply,
+  type Quat,
+  quat,
+  rotate,
+  twistAngle,
+  twistOf,
+} from 'threepoint/core/math/quat';
+import type { Side } from 'threepoint/core/math/side';
 import {
   add,
   addScaled,
@@ -20,7 +29,7 @@ import {
   subtract,
   type Vec3,
   vec3,
-} from '../math/vec3';
+} from 'threepoint/core/math/vec3';
 import {
   type ArmSteps,
   type BodyBits,

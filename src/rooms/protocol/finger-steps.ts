@@ -1,5 +1,5 @@
-import { type FingerName, type HandShape, type MutableHandShape, makeHandShape } from '../body/hand-shape';
-import { clamp } from '../math/damper';
+import { type FingerName, type HandShape, type MutableHandShape, makeHandShape } from 'threepoint/core/body/hand-shape';
+import { clamp } from 'threepoint/core/math/damper';
 
 /** One number of a hand on the wire: even steps from `low` to `high`. */
 interface FingerField {

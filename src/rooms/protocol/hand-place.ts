@@ -1,4 +1,4 @@
-import { add, type MutableVec3, setVec3, type Vec3 } from '../math/vec3';
+import { add, type MutableVec3, setVec3, type Vec3 } from 'threepoint/core/math/vec3';
 import type { BitReader, BitWriter } from './bits';
 import { placeUnit } from './quantise';
 

@@ -1,8 +1,8 @@
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { avatarHash, isOwnAvatar, type OwnAvatar, type WornAvatar } from 'threepoint/core/body/worn-avatar';
 import * as v from 'valibot';
-import type { Calibration } from '../body/calibration';
 import { cleanName } from './names';
 import { packedVoice, packVoice, signalFrom, signalTo, unpackVoice, type Voice, voice } from './voice-messages';
-import { avatarHash, isOwnAvatar, type OwnAvatar, type WornAvatar } from './worn-avatar';
 
 /**
  * Bumped with every change that an older page or server would misunderstand: of these messages, of pose packets and of their frames, which each

@@ -1,4 +1,4 @@
-import { type Side, sides } from '../math/side';
+import { type Side, sides } from 'threepoint/core/math/side';
 import { type BitReader, type BitWriter, createBitReader, createBitWriter } from './bits';
 import { fingerFields } from './finger-steps';
 import { readHandPlace, writeHandPlace } from './hand-place';

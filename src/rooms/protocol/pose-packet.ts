@@ -1,5 +1,5 @@
-import type { AvatarPose } from '../body/avatar-pose';
-import type { Fingers } from '../body/hand-shape';
+import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import type { Fingers } from 'threepoint/core/body/hand-shape';
 
 /** Raised with every change of the layout or of the body proportions that packets are relative to; others are refused. */
 export const poseVersion = 4;

@@ -1,7 +1,7 @@
-import { clamp } from '../math/damper';
-import type { MutablePose, Pose, TrackedPose } from '../math/pose';
-import type { Side } from '../math/side';
-import { type MutableVec3, setVec3, type Vec3, vec3 } from '../math/vec3';
+import { clamp } from 'threepoint/core/math/damper';
+import type { MutablePose, Pose, TrackedPose } from 'threepoint/core/math/pose';
+import type { Side } from 'threepoint/core/math/side';
+import { type MutableVec3, setVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { type FingerSteps, makeFingerSteps } from './finger-steps';
 import { fromHandPlace, type HandPlaceSteps, makeHandPlaceSteps, toHandPlace } from './hand-place';
 import {

@@ -1,6 +1,6 @@
-import { clamp } from '../math/damper';
-import { type MutableQuat, normaliseQuat, type Quat, quat, setQuat } from '../math/quat';
-import { cross, type MutableVec3, normalise, setVec3, type Vec3, vec3 } from '../math/vec3';
+import { clamp } from 'threepoint/core/math/damper';
+import { type MutableQuat, normaliseQuat, type Quat, quat, setQuat } from 'threepoint/core/math/quat';
+import { cross, type MutableVec3, normalise, setVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { BitReader, BitWriter } from './bits';
 
 /** A place on the wire is a multiple of this [m]. */

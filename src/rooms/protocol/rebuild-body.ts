@@ -1,12 +1,18 @@
-import { alongArm, armBoneRotation, clavicleRest, elbowHinge, handBoneRotation } from '../body/arm-rotations';
-import { makeUpperBodyPose, type UpperBodyPose } from '../body/avatar-pose';
-import { headJointOf } from '../body/head-joint';
-import { writeLocalRotations } from '../body/local-rotations';
-import { armBonesOf, type Skeleton } from '../body/skeleton';
-import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../body/two-bone-ik';
-import { makePose, type Pose } from '../math/pose';
-import { fromAxisAngle, type MutableQuat, multiply, type Quat, quat, rotate } from '../math/quat';
-import { type Side, sides } from '../math/side';
+import {
+  alongArm,
+  armBoneRotation,
+  clavicleRest,
+  elbowHinge,
+  handBoneRotation,
+} from 'threepoint/core/body/arm-rotations';
+import { makeUpperBodyPose, type UpperBodyPose } from 'threepoint/core/body/avatar-pose';
+import { headJointOf } from 'threepoint/core/body/head-joint';
+import { writeLocalRotations } from 'threepoint/core/body/local-rotations';
+import { armBonesOf, type Skeleton } from 'threepoint/core/body/skeleton';
+import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from 'threepoint/core/body/two-bone-ik';
+import { makePose, type Pose } from 'threepoint/core/math/pose';
+import { fromAxisAngle, type MutableQuat, multiply, type Quat, quat, rotate } from 'threepoint/core/math/quat';
+import { type Side, sides } from 'threepoint/core/math/side';
 import {
   add,
   addScaled,
@@ -22,7 +28,7 @@ import {
   subtract,
   type Vec3,
   vec3,
-} from '../math/vec3';
+} from 'threepoint/core/math/vec3';
 import {
   type ArmSteps,
   type BodyBits,

@@ -1,5 +1,5 @@
-import type { Transform } from '../math/pose';
-import type { SeatAction } from '../tracking/seat-action';
+import type { Transform } from 'threepoint/core/math/pose';
+import type { SeatAction } from 'threepoint/core/tracking/seat-action';
 
 /** What a Room reads of the state of any game. */
 export interface MatchState {

@@ -1,8 +1,8 @@
-import { transformPoint, transformSeen } from '../math/pose';
+import { plainAvatar, type WornAvatar } from 'threepoint/core/body/worn-avatar';
+import { transformPoint, transformSeen } from 'threepoint/core/math/pose';
 import { type ClientMessage, type Joining, packSeatInfo, protocolVersion } from '../protocol/messages';
 import { decodePoints, makePoints } from '../protocol/pose-codec';
 import type { PointsPacket } from '../protocol/pose-packet';
-import { plainAvatar, type WornAvatar } from '../protocol/worn-avatar';
 import { MatchClock } from './match-clock';
 import type { HostedGame, MatchPolicy } from './match-policy';
 import { sendEvents } from './room-events';

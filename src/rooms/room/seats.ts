@@ -1,8 +1,8 @@
-import type { Calibration } from '../body/calibration';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import type { WornAvatar } from 'threepoint/core/body/worn-avatar';
+import type { SeatAction } from 'threepoint/core/tracking/seat-action';
 import type { SeatInfo } from '../protocol/messages';
 import type { Voice } from '../protocol/voice-messages';
-import type { WornAvatar } from '../protocol/worn-avatar';
-import type { SeatAction } from '../tracking/seat-action';
 import { PoseClaims } from './pose-claims';
 import type { ClientId, FreshPose } from './room-outlet';
 import { TokenBucket } from './token-bucket';

@@ -1,13 +1,13 @@
 import { createHash } from 'node:crypto';
 import type { IncomingMessage } from 'node:http';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
-import { avatarHash, mostAvatarBytes } from '../src/core/protocol/worn-avatar';
+import { avatarHash, mostAvatarBytes } from 'threepoint/core/body/worn-avatar';
+import { type Answer, done, HttpError, json } from 'threepoint-http/answer';
+import { readBody } from 'threepoint-http/body';
+import { clientAddressOf } from 'threepoint-http/client-address';
+import type { Call, Route } from 'threepoint-http/router';
 import type { AvatarOwner, AvatarStore, Reservation } from './avatar-store';
-import { clientAddressOf } from './client-address';
 import { guestPassOf } from './guest-pass';
-import { type Answer, done, HttpError, json } from './http/answer';
-import { readBody } from './http/body';
-import type { Call, Route } from './http/router';
 import type { RelayConfiguration } from './relay-configuration';
 import type { RelayMetrics } from './relay-metrics';
 import type { RoomTokens } from './room-tokens';

@@ -1,4 +1,4 @@
-import { type AvatarHash, mostAvatarBytes, type WornAvatar } from '../src/core/protocol/worn-avatar';
+import { type AvatarHash, mostAvatarBytes, type WornAvatar } from 'threepoint/core/body/worn-avatar';
 
 export interface AvatarStoreOptions {
   /** All files together, those on their way included [bytes]; 0: none is taken. */

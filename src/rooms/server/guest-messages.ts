@@ -1,6 +1,6 @@
 import type { Logger } from 'pino';
-import { type ClientMessage, clientMessageFrom, protocolVersion } from '../src/core/protocol/messages';
-import type { TokenBucket } from '../src/core/room/token-bucket';
+import { type ClientMessage, clientMessageFrom, protocolVersion } from '../protocol/messages';
+import type { TokenBucket } from '../room/token-bucket';
 import { dismiss, type Guest } from './guest';
 import type { HostedRooms } from './hosted-rooms';
 import type { RelayMetrics } from './relay-metrics';

@@ -1,5 +1,5 @@
-import { HttpError } from './http/answer';
-import type { Call } from './http/router';
+import { HttpError } from 'threepoint-http/answer';
+import type { Call } from 'threepoint-http/router';
 import type { RoomPass, RoomTokens } from './room-tokens';
 
 /** The pass that a request bears to the room that its address names (`?room=`); throws the refusal where it bears none. */

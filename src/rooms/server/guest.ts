@@ -1,11 +1,11 @@
 import type { Socket as NetSocket } from 'node:net';
 import type { Socket } from 'socket.io';
-import type { Farewell, RoomMessage } from '../src/core/protocol/messages';
-import { frameLength, writeFrame } from '../src/core/protocol/pose-frame';
-import { messageEvent } from '../src/core/protocol/small-frames';
-import type { HostedGame } from '../src/core/room/match-policy';
-import type { FreshPose } from '../src/core/room/room-outlet';
-import { TokenBucket } from '../src/core/room/token-bucket';
+import type { Farewell, RoomMessage } from '../protocol/messages';
+import { frameLength, writeFrame } from '../protocol/pose-frame';
+import { messageEvent } from '../protocol/small-frames';
+import type { HostedGame } from '../room/match-policy';
+import type { FreshPose } from '../room/room-outlet';
+import { TokenBucket } from '../room/token-bucket';
 import type { RelayConfiguration } from './relay-configuration';
 import type { RelayCounts } from './relay-metrics';
 import { hangUp } from './relay-transport';

@@ -1,8 +1,8 @@
 import { randomBytes } from 'node:crypto';
 import type { Logger } from 'pino';
-import type { RoomMessage } from '../src/core/protocol/messages';
-import type { HostedGame } from '../src/core/room/match-policy';
-import { Room, type RoomCensus } from '../src/core/room/room';
+import type { RoomMessage } from '../protocol/messages';
+import type { HostedGame } from '../room/match-policy';
+import { Room, type RoomCensus } from '../room/room';
 import { dismiss, type Guest, sendPoses, tell } from './guest';
 import { PoseSchedule, type PoseSender } from './pose-schedule';
 import type { RelayConfiguration } from './relay-configuration';

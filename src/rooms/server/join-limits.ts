@@ -1,8 +1,8 @@
 import type { IncomingMessage } from 'node:http';
 import type { Redis } from 'ioredis';
 import { type RateLimiterAbstract, RateLimiterMemory, RateLimiterRedis, RateLimiterRes } from 'rate-limiter-flexible';
-import { clientAddressOf } from './client-address';
-import { HttpError } from './http/answer';
+import { HttpError } from 'threepoint-http/answer';
+import { clientAddressOf } from 'threepoint-http/client-address';
 import type { RelayConfiguration } from './relay-configuration';
 import type { RelayMetrics } from './relay-metrics';
 

@@ -1,5 +1,5 @@
 import { performance } from 'node:perf_hooks';
-import { clamp } from '../src/core/math/damper';
+import { clamp } from 'threepoint/core/math/damper';
 
 /** A room that may have poses to send. */
 export interface PoseSender {

@@ -1,5 +1,5 @@
-import { ConfigurationError } from './configuration';
-import { weaknessOf } from './secret-bits';
+import { ConfigurationError } from 'threepoint-http/configuration-error';
+import { weaknessOf } from 'threepoint-http/secret-bits';
 import { type VoiceConfiguration, voiceConfigurationFrom, voiceEnvironment } from './voice-configuration';
 
 /** How the relay behaves, from the environment. */

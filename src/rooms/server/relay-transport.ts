@@ -5,19 +5,19 @@ import type { Duplex } from 'node:stream';
 import { Server as Engine } from 'engine.io';
 import type { Logger } from 'pino';
 import { Server, type Socket } from 'socket.io';
-import { longestMessage } from '../src/core/protocol/messages';
-import { relayParser } from '../src/core/protocol/small-frames';
-import { TokenBucket } from '../src/core/room/token-bucket';
-import { type ClientAddress, clientAddressOf } from './client-address';
-import { createSlotCounter } from './connection-limiter';
-import { HttpError, refusal, sendRawAnswer } from './http/answer';
-import { targetOf } from './http/target';
+import { HttpError, refusal, sendRawAnswer } from 'threepoint-http/answer';
+import { type ClientAddress, clientAddressOf } from 'threepoint-http/client-address';
+import { createSlotCounter } from 'threepoint-http/connection-limiter';
+import { createSitePolicy } from 'threepoint-http/site-policy';
+import { targetOf } from 'threepoint-http/target';
+import { handshakeMs } from 'threepoint-http/web-server';
+import { longestMessage } from '../protocol/messages';
+import { relayParser } from '../protocol/small-frames';
+import { TokenBucket } from '../room/token-bucket';
 import type { RelayConfiguration } from './relay-configuration';
 import type { RelayMetrics } from './relay-metrics';
 import { type ReceivingWebSocket, takeShortMessages } from './short-messages';
-import { createSitePolicy } from './site-policy';
 import { SlowReaders } from './slow-readers';
-import { handshakeMs } from './web-server';
 
 /** Where the relay is found on its server. */
 export const relayPath = '/relay';

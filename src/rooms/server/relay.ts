@@ -2,21 +2,21 @@ import { randomBytes } from 'node:crypto';
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname } from 'node:path';
 import { type Logger, pino } from 'pino';
+import type { ConnectionLimiter } from 'threepoint-http/connection-limiter';
+import type { Service } from 'threepoint-http/router';
+import type { UpgradeListener } from 'threepoint-http/web-server';
 import { AvatarRoutes } from './avatar-routes';
 import { AvatarStore } from './avatar-store';
-import type { ConnectionLimiter } from './connection-limiter';
-import type { Service } from './http/router';
 import { connectRedis, connectRedisPatiently, createOwnLobby, createRedisLobby } from './lobby';
 import { LobbyHall } from './lobby-hall';
 import type { RelayConfiguration } from './relay-configuration';
 import { createRelayMetrics, type RelayCensus } from './relay-metrics';
 import { RelayRoutes } from './relay-routes';
 import { createRelayTransport } from './relay-transport';
-import { type RoomKinds, shippedRoomKinds } from './room-kinds';
+import type { RoomKinds } from './room-kinds';
 import { createRoomTokens } from './room-tokens';
 import { createSocketHost, type SocketHost } from './socket-host';
 import { VoiceRoutes } from './voice-routes';
-import type { UpgradeListener } from './web-server';
 
 /** A relay for a server: its sockets and its part of the HTTP. */
 export interface Relay {
@@ -61,7 +61,7 @@ export function createRelay(
   configuration: RelayConfiguration,
   secret: string,
   connectionLimiter: ConnectionLimiter,
-  kinds: RoomKinds = shippedRoomKinds(configuration),
+  kinds: RoomKinds,
 ): Relay {
   const log = pino({ level: configuration.logLevel, base: { node: process.pid } });
   const now = (): number => performance.now() / 1000;

@@ -1,9 +1,9 @@
 import type { Logger } from 'pino';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
 import type { Server, Socket } from 'socket.io';
-import { messageEvent } from '../src/core/protocol/small-frames';
-import type { HostedGame } from '../src/core/room/match-policy';
-import type { Room } from '../src/core/room/room';
+import { messageEvent } from '../protocol/small-frames';
+import type { HostedGame } from '../room/match-policy';
+import type { Room } from '../room/room';
 import { createGuest, dismiss, type Guest } from './guest';
 import { GuestMessages } from './guest-messages';
 import { createHostedRooms, type RoomListing } from './hosted-rooms';

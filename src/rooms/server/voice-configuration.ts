@@ -1,4 +1,4 @@
-import { ConfigurationError } from './configuration';
+import { ConfigurationError } from 'threepoint-http/configuration-error';
 
 /** How pages of the rooms find a way to each other for their voices. */
 export interface VoiceConfiguration {

@@ -1,7 +1,7 @@
 import { createHash, createHmac } from 'node:crypto';
+import { type Answer, json } from 'threepoint-http/answer';
+import type { Call, Route } from 'threepoint-http/router';
 import { guestPassOf } from './guest-pass';
-import { type Answer, json } from './http/answer';
-import type { Call, Route } from './http/router';
 import type { RoomTokens } from './room-tokens';
 import type { VoiceConfiguration } from './voice-configuration';
 

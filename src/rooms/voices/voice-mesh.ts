@@ -1,4 +1,4 @@
-import type { SignalBody } from '../../core/protocol/voice-messages';
+import type { SignalBody } from '../protocol/voice-messages';
 import { VoicePeer } from './voice-peer';
 
 export interface VoiceMeshOptions {

@@ -1,4 +1,4 @@
-import { longestDescription, mostCandidates, type SignalBody } from '../../core/protocol/voice-messages';
+import { longestDescription, mostCandidates, type SignalBody } from '../protocol/voice-messages';
 
 export interface VoicePeerOptions {
   /** Gives way where both pages want to change their connection at once; the other one makes the first offer. */

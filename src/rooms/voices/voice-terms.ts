@@ -1,5 +1,5 @@
 import * as v from 'valibot';
-import type { RoomPass } from '../room-pass';
+import type { RoomPass } from '../client/room-pass';
 
 /** What a server says of the voices in one of its rooms. */
 export interface VoiceTerms {

@@ -2,12 +2,12 @@
 // public/studies/phrases.json, what the page says to participants, to be translated in a plan.
 import { writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { shippedPhrases } from '../src/core/study/phrases/phrases';
-import { planJsonSchema } from './study-check/plan-json-schema';
+import { shippedPhrases } from '../model/phrases/phrases';
+import { planJsonSchema } from './check/plan-json-schema';
 
 const write = (name: string, value: object) =>
   writeFileSync(
-    fileURLToPath(new URL(`../public/studies/${name}`, import.meta.url)),
+    fileURLToPath(new URL(`../../../public/studies/${name}`, import.meta.url)),
     `${JSON.stringify(value, null, 2)}\n`,
   );
 

@@ -1,6 +1,5 @@
-import { reasonOf } from '../core/errors/reasons';
-import type { SimulatedParticipant } from '../core/rehearsal/simulate-study';
-import type { Progress } from '../core/study/progress';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import type { Progress } from '../model/progress';
 import type {
   Claim,
   NumberedCommand,
@@ -13,8 +12,9 @@ import type {
   StudyCommand,
   StudyInfo,
   StudyListing,
-} from '../core/study/study-api';
-import type { StudyRecord } from '../core/study/study-record';
+} from '../model/study-api';
+import type { StudyRecord } from '../model/study-record';
+import type { SimulatedParticipant } from '../simulation/simulate-study';
 
 /** The server answered, and the answer is no. */
 export class ServerRefusal extends Error {

@@ -1,4 +1,5 @@
-import type { Calibration } from '../body/calibration';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { checked, text, ValidationError } from 'threepoint/core/validation/validation';
 import { checkedConsent } from './consent';
 import { checkedDemographics } from './demographics';
 import { currentStep, elapsedSeconds, type Progress, placeOf, runningOn } from './progress';
@@ -8,7 +9,6 @@ import type { MeantBlock } from './study-api';
 import { type Place, recordVersion, type StudyEvent, type StudyRecord } from './study-record';
 import { checkedOutcome, type TrialOutcome } from './trial-log';
 import { unwellBy } from './unwell';
-import { checked, text, ValidationError } from './validation';
 
 /** What participant, experimenter, game or clock report. */
 export type ProgressEvent =

@@ -1,6 +1,6 @@
-import { threePointNames } from '../estimation/pose-estimator';
-import { ownBodies } from '../protocol/worn-avatar';
-import { mostLatencyMs } from '../tracking/impaired-tracking';
+import { ownBodies } from 'threepoint/core/body/worn-avatar';
+import { threePointNames } from 'threepoint/core/estimation/pose-estimator';
+import { mostLatencyMs } from 'threepoint/core/tracking/impaired-tracking';
 import type { StudyPlan } from './plan';
 import { boolean, number, type Table, text } from './tidy-csv';
 

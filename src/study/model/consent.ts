@@ -1,5 +1,5 @@
+import { checked, numberBetween, text, ValidationError } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { checked, numberBetween, text, ValidationError } from './validation';
 import { languageTag } from './words';
 
 const consentSchema = v.object({

@@ -1,6 +1,6 @@
+import { checked, integerBetween, text } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
 import type { PlainKey } from './phrases/phrases';
-import { checked, integerBetween, text } from './validation';
 
 /** A question about participants; the page's phrases have its words. */
 export type DemographicField = { readonly id: keyof Demographics; readonly phrase: PlainKey } & (

@@ -1,8 +1,8 @@
+import { ownBodies } from 'threepoint/core/body/worn-avatar';
+import { type ThreePointName, threePointNames } from 'threepoint/core/estimation/pose-estimator';
+import { mostLatencyMs } from 'threepoint/core/tracking/impaired-tracking';
+import { numberBetween } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { type ThreePointName, threePointNames } from '../estimation/pose-estimator';
-import { ownBodies } from '../protocol/worn-avatar';
-import { mostLatencyMs } from '../tracking/impaired-tracking';
-import { numberBetween } from './validation';
 
 /** A method by the name that plans call it. */
 export const estimatorSchema = v.picklist(threePointNames, `expected one of ${threePointNames.join(', ')}`);

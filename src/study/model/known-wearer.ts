@@ -1,5 +1,5 @@
-import type { Calibration } from '../body/calibration';
-import type { Side } from '../math/side';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import type { Side } from 'threepoint/core/math/side';
 import type { Demographics } from './demographics';
 import type { StudyRecord } from './study-record';
 

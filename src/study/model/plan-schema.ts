@@ -1,10 +1,10 @@
+import { identifier, integerBetween, numberBetween, text } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
 import { embodimentFields, estimatorSchema } from './embodiment';
 import { phrasesSchema } from './phrases/phrase-schema';
 import { questionnaireSchema } from './questionnaire-schema';
 import { remoteSchema } from './remote-setup';
 import { askToStopSchema } from './unwell';
-import { identifier, integerBetween, numberBetween, text } from './validation';
 import { languageTag, words } from './words';
 
 export const planFormat = 'threepoint-study';

@@ -1,3 +1,4 @@
+import { checked, complaintsAbout, ValidationError } from 'threepoint/core/validation/validation';
 import type * as v from 'valibot';
 import { embodimentFieldsOf } from './embodiment';
 import { refusePhrases } from './phrases/phrase-schema';
@@ -10,7 +11,6 @@ import {
   shippedQuestionnaires,
 } from './questionnaires';
 import { refuseUnaskedLimits } from './unwell';
-import { checked, complaintsAbout, ValidationError } from './validation';
 import { inLanguage, missingLanguage, type Words } from './words';
 
 /** A study as its file says it. */

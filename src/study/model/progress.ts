@@ -1,8 +1,16 @@
+import {
+  checked,
+  identifier,
+  integerBetween,
+  numberBetween,
+  participantId,
+  text,
+  ValidationError,
+} from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
 import { checkedDraft } from './questionnaires';
 import type { Schedule, StudyStep } from './schedule';
 import type { Place } from './study-record';
-import { checked, identifier, integerBetween, numberBetween, participantId, text, ValidationError } from './validation';
 import { languageTag } from './words';
 
 export const progressVersion = 1;

@@ -1,5 +1,5 @@
+import { identifier, integerBetween, numberBetween, text } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { identifier, integerBetween, numberBetween, text } from './validation';
 import { words } from './words';
 
 const limit = 1_000_000;

@@ -1,3 +1,4 @@
+import { checked, ValidationError } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
 import type { AnswerForm, Question, QuestionnaireFile, Scale } from './questionnaire-schema';
 import { questionnaireSchema } from './questionnaire-schema';
@@ -7,7 +8,6 @@ import nasaTlx from './shipped/nasa-tlx.json' with { type: 'json' };
 import nasaTlxRaw from './shipped/nasa-tlx-raw.json' with { type: 'json' };
 import ssq from './shipped/ssq.json' with { type: 'json' };
 import systemUsability from './shipped/system-usability.json' with { type: 'json' };
-import { checked, ValidationError } from './validation';
 import { missingLanguage, type Words } from './words';
 
 /** A questionnaire whose questions all say how they are answered. */

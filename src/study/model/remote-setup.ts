@@ -1,6 +1,6 @@
+import { numberBetween, text } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
 import type { Phrases } from './phrases/phrases';
-import { numberBetween, text } from './validation';
 
 /** How a participant takes part with no one beside them. */
 export const remoteSchema = v.strictObject({

@@ -1,9 +1,9 @@
+import { ValidationError } from 'threepoint/core/validation/validation';
 import { cohortsByParticipant, groupsOf, ordersByGroup } from './allocation';
 import { type Embodiment, embodimentOf, type PartialEmbodiment } from './embodiment';
 import { participantsOf, questionnairesAfter, type StudyCondition, type StudyPlan, type StudyTask } from './plan';
 import { type Questionnaire, questionnaireNamed } from './questionnaires';
 import type { StopLimit } from './unwell';
-import { ValidationError } from './validation';
 
 interface StepOf<Kind extends string> {
   readonly kind: Kind;

@@ -1,4 +1,4 @@
-import { nextRandom, type RandomState } from '../math/random';
+import { nextRandom, type RandomState } from 'threepoint/core/math/random';
 
 /** A generator for one purpose: what is drawn for one task does not move when another task is added. */
 export function randomFor(seed: number, purpose: string): RandomState {

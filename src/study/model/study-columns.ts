@@ -1,4 +1,4 @@
-import { threePointNames } from '../estimation/pose-estimator';
+import { threePointNames } from 'threepoint/core/estimation/pose-estimator';
 import { type Demographics, demographicFields } from './demographics';
 import { eventTypes } from './study-record';
 import { boolean, number, text } from './tidy-csv';

@@ -1,10 +1,4 @@
-import * as v from 'valibot';
-import { threePointNames } from '../estimation/pose-estimator';
-import { checkedConsent } from './consent';
-import { checkedDemographics } from './demographics';
-import type { StudyPlan } from './plan';
-import { checkedAnswers, questionnaireNamed } from './questionnaires';
-import { checkedOutcome } from './trial-log';
+import { threePointNames } from 'threepoint/core/estimation/pose-estimator';
 import {
   checked,
   handTiltsSchema,
@@ -14,7 +8,13 @@ import {
   participantId,
   text,
   ValidationError,
-} from './validation';
+} from 'threepoint/core/validation/validation';
+import * as v from 'valibot';
+import { checkedConsent } from './consent';
+import { checkedDemographics } from './demographics';
+import type { StudyPlan } from './plan';
+import { checkedAnswers, questionnaireNamed } from './questionnaires';
+import { checkedOutcome } from './trial-log';
 import { languageTag } from './words';
 
 /** Of what is sent and stored; grows with every change of meaning. */

@@ -1,5 +1,5 @@
+import { numberBetween } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { numberBetween } from './validation';
 
 /** Pauses kept per trial; of a trial with more, no clock is told: a way from one to the other with gaps is none. */
 export const mostTrialPauses = 200;

@@ -1,7 +1,7 @@
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { checked, handTiltsSchema, integerBetween, numberBetween, text } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import type { Calibration } from '../body/calibration';
 import { type TrialClock, trialClockSchema } from './trial-clock';
-import { checked, handTiltsSchema, integerBetween, numberBetween, text } from './validation';
 
 /** Of what is recorded per trial; grows with every change of meaning. */
 export const trialVersion = 1;

@@ -1,7 +1,7 @@
+import { identifier, numberBetween, ValidationError } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
 import { scaleScore } from './questionnaire-scores';
 import { type Answers, isNumeric, type Questionnaire } from './questionnaires';
-import { identifier, numberBetween, ValidationError } from './validation';
 
 const limit = 1_000_000;
 const measure = v.pipe(

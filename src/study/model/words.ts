@@ -1,5 +1,5 @@
+import { text } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { text } from './validation';
 
 /** Text for participants: alike in all languages, or one for each. */
 export type Words = string | Readonly<Record<string, string>>;

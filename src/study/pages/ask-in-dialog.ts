@@ -1,4 +1,4 @@
-import { button, element } from '../ui/element';
+import { button, element } from 'threepoint-ui/element';
 
 /** What a dialog asks by, and the button that answers. */
 export interface Question {

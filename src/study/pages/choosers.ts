@@ -1,4 +1,4 @@
-import { element } from '../ui/element';
+import { element } from 'threepoint-ui/element';
 import { bar } from './result-cells';
 
 interface Choice {

@@ -1,6 +1,6 @@
-import { cohortTable } from '../core/study/cohort-table';
-import { type CohortComparison, type ComparedCohorts, compareCohorts } from '../core/study/compare-cohorts';
-import { element } from '../ui/element';
+import { element } from 'threepoint-ui/element';
+import { cohortTable } from '../model/cohort-table';
+import { type CohortComparison, type ComparedCohorts, compareCohorts } from '../model/compare-cohorts';
 import { cohortTesting, comparedTable } from './compared-tables';
 import { type Chart, meansFigure, questionCharts, scaleCharts, scoreCharts, stripFigure } from './comparison-figures';
 import { bar, csvButton, plannedNote } from './result-cells';

@@ -1,7 +1,7 @@
-import type { Interval } from '../core/statistics/summaries';
-import type { CohortComparison } from '../core/study/compare-cohorts';
-import type { Comparison } from '../core/study/compare-conditions';
-import type { Measured } from '../core/study/measures';
+import type { CohortComparison } from '../model/compare-cohorts';
+import type { Comparison } from '../model/compare-conditions';
+import type { Measured } from '../model/measures';
+import type { Interval } from '../statistics/summaries';
 import { fixed, meanCell, measureCell, none, pText } from './result-cells';
 import type { Compared, ShownResults } from './shown-results';
 import { type TableHead, type TableRow, tableNode } from './table';

@@ -1,10 +1,10 @@
-import type { CohortComparison } from '../core/study/compare-cohorts';
-import type { Comparison } from '../core/study/compare-conditions';
-import type { Measured } from '../core/study/measures';
-import { languagesOf } from '../core/study/plan';
-import type { AnswerForm } from '../core/study/questionnaire-schema';
-import { scaleRange } from '../core/study/questionnaire-scores';
-import { inLanguage } from '../core/study/words';
+import type { CohortComparison } from '../model/compare-cohorts';
+import type { Comparison } from '../model/compare-conditions';
+import type { Measured } from '../model/measures';
+import { languagesOf } from '../model/plan';
+import type { AnswerForm } from '../model/questionnaire-schema';
+import { scaleRange } from '../model/questionnaire-scores';
+import { inLanguage } from '../model/words';
 import { barChart, pairedChart, stripChart, type TwoSided } from './charts';
 import { figure } from './figure';
 import type { Compared } from './shown-results';

@@ -1,13 +1,13 @@
-import '../styles/document.css';
-import { reasonOf } from '../core/errors/reasons';
-import { statedInWords } from '../core/rehearsal/simulate-study';
-import type { StudyPlan } from '../core/study/plan';
-import type { StudyCommand, StudyInfo } from '../core/study/study-api';
-import { type ExperimenterClient, ServerRefusal } from '../net/study-client';
-import { offerDownload } from '../ui/downloads';
-import { element, pageElement } from '../ui/element';
-import { pageFolder } from '../ui/page-folder';
-import { sentence } from '../ui/phrases';
+import 'threepoint-ui/styles/document.css';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import { offerDownload } from 'threepoint-ui/downloads';
+import { element, pageElement } from 'threepoint-ui/element';
+import { pageFolder } from 'threepoint-ui/page-folder';
+import { sentence } from 'threepoint-ui/phrases';
+import { type ExperimenterClient, ServerRefusal } from '../client/study-client';
+import type { StudyPlan } from '../model/plan';
+import type { StudyCommand, StudyInfo } from '../model/study-api';
+import { statedInWords } from '../simulation/simulate-study';
 import {
   type NewStudy,
   type NewStudyActions,

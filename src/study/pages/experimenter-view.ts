@@ -1,9 +1,9 @@
-import { type StudyPlan, studyTitle } from '../core/study/plan';
-import { remarksOn } from '../core/study/plan-remarks';
-import type { ParticipantState, Receipt, StudyInfo } from '../core/study/study-api';
-import { button, element } from '../ui/element';
-import { leavePlan } from '../ui/left-plan';
-import { pageFolder } from '../ui/page-folder';
+import { button, element } from 'threepoint-ui/element';
+import { leavePlan } from 'threepoint-ui/left-plan';
+import { pageFolder } from 'threepoint-ui/page-folder';
+import { type StudyPlan, studyTitle } from '../model/plan';
+import { remarksOn } from '../model/plan-remarks';
+import type { ParticipantState, Receipt, StudyInfo } from '../model/study-api';
 import { type ParticipantActions, participantHeads, participantRow } from './participant-row';
 import { tableNode } from './table';
 

@@ -1,5 +1,5 @@
-import { offerDownload } from '../ui/downloads';
-import { button, element } from '../ui/element';
+import { offerDownload } from 'threepoint-ui/downloads';
+import { button, element } from 'threepoint-ui/element';
 import { pngOf, svgText } from './charts';
 
 /** A picture with its caption, which saves as SVG and PNG under the name of a file without its ending. */

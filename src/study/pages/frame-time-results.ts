@@ -1,7 +1,7 @@
-import { cohortIn } from '../core/study/exported-results';
-import { frameTimes } from '../core/study/frame-times';
-import { frameTimeTable } from '../core/study/result-tables';
-import { element } from '../ui/element';
+import { element } from 'threepoint-ui/element';
+import { cohortIn } from '../model/exported-results';
+import { frameTimes } from '../model/frame-times';
+import { frameTimeTable } from '../model/result-tables';
 import { bar, csvButton, fixed } from './result-cells';
 import type { ShownResults } from './shown-results';
 import { tableNode } from './table';

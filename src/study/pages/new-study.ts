@@ -1,5 +1,5 @@
-import { simulatedPlan } from '../core/rehearsal/simulate-study';
-import { checkedPlan, type StudyPlan } from '../core/study/plan';
+import { checkedPlan, type StudyPlan } from '../model/plan';
+import { simulatedPlan } from '../simulation/simulate-study';
 
 /** The plan in the text of a study's file, as it is begun; of a simulated one under a name that says so. Throws a sentence. */
 export function planToBegin(json: string, simulated: boolean): StudyPlan {

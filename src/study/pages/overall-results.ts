@@ -1,8 +1,8 @@
-import type { OverallComparison } from '../core/study/compare-all';
-import { comparedAsAWhole, overallComparisons } from '../core/study/exported-results';
-import type { Measure } from '../core/study/measures';
-import { effectsOf, overallTable } from '../core/study/result-tables';
-import { element } from '../ui/element';
+import { element } from 'threepoint-ui/element';
+import type { OverallComparison } from '../model/compare-all';
+import { comparedAsAWhole, overallComparisons } from '../model/exported-results';
+import type { Measure } from '../model/measures';
+import { effectsOf, overallTable } from '../model/result-tables';
 import { bar, csvButton, fixed, meanCell, measureCell, none, plannedNote, pText } from './result-cells';
 import type { ShownResults } from './shown-results';
 import { type TableRow, tableNode } from './table';

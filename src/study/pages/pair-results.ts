@@ -1,6 +1,6 @@
-import { type Comparison, compareConditions, type Results } from '../core/study/compare-conditions';
-import { comparisonTable } from '../core/study/result-tables';
-import { element } from '../ui/element';
+import { element } from 'threepoint-ui/element';
+import { type Comparison, compareConditions, type Results } from '../model/compare-conditions';
+import { comparisonTable } from '../model/result-tables';
 import { comparedTable, pairTesting } from './compared-tables';
 import { type Chart, meansFigure, pairsFigure, questionCharts, scaleCharts, scoreCharts } from './comparison-figures';
 import { bar, csvButton, plannedNote } from './result-cells';

@@ -1,6 +1,6 @@
-import { checkedPaperRows, paperDf, paperFrameTimes, paperScores, savedShare } from '../core/study/paper-tables';
-import { paperTable } from '../core/study/result-tables';
-import { element } from '../ui/element';
+import { element } from 'threepoint-ui/element';
+import { checkedPaperRows, paperDf, paperFrameTimes, paperScores, savedShare } from '../model/paper-tables';
+import { paperTable } from '../model/result-tables';
 import { csvButton, fixed, paperAboutOf, pText } from './result-cells';
 import { tableNode } from './table';
 

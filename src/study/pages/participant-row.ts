@@ -1,9 +1,9 @@
-import type { StudyPlan } from '../core/study/plan';
-import { clockText } from '../core/study/progress';
-import { type Schedule, scheduleFor } from '../core/study/schedule';
-import type { ParticipantState, StudyCommand } from '../core/study/study-api';
-import { studyLink } from '../net/study-link';
-import { button, element } from '../ui/element';
+import { button, element } from 'threepoint-ui/element';
+import { studyLink } from '../client/study-link';
+import type { StudyPlan } from '../model/plan';
+import { clockText } from '../model/progress';
+import { type Schedule, scheduleFor } from '../model/schedule';
+import type { ParticipantState, StudyCommand } from '../model/study-api';
 import type { TableRow } from './table';
 
 /** A page that has been silent for longer than this is lost [s]. */

@@ -1,5 +1,5 @@
-import type { StudyPlan } from '../core/study/plan';
-import { button, element } from '../ui/element';
+import { button, element } from 'threepoint-ui/element';
+import type { StudyPlan } from '../model/plan';
 import { askInDialog } from './ask-in-dialog';
 import type { Rehearsal } from './rehearse';
 

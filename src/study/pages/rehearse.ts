@@ -1,6 +1,6 @@
-import { modelsWith, rehearsalPlan, type StatedEffects, simulatedParticipants } from '../core/rehearsal/simulate-study';
-import { checkedPlan, participantsOf, type StudyPlan } from '../core/study/plan';
-import type { ExperimenterClient } from '../net/study-client';
+import type { ExperimenterClient } from '../client/study-client';
+import { checkedPlan, participantsOf, type StudyPlan } from '../model/plan';
+import { modelsWith, rehearsalPlan, type StatedEffects, simulatedParticipants } from '../simulation/simulate-study';
 
 /** How a study is rehearsed: the same seed and effects bring the same answers. */
 export interface Rehearsal {

@@ -1,9 +1,9 @@
-import type { Interval } from '../core/statistics/summaries';
-import type { Measured } from '../core/study/measures';
-import { shippedQuestionnaires } from '../core/study/questionnaires';
-import { type Table, tidyCsv } from '../core/study/tidy-csv';
-import { offerDownload } from '../ui/downloads';
-import { button, element } from '../ui/element';
+import { offerDownload } from 'threepoint-ui/downloads';
+import { button, element } from 'threepoint-ui/element';
+import type { Measured } from '../model/measures';
+import { shippedQuestionnaires } from '../model/questionnaires';
+import { type Table, tidyCsv } from '../model/tidy-csv';
+import type { Interval } from '../statistics/summaries';
 import type { ShownResults } from './shown-results';
 
 /** Where there is no number. */

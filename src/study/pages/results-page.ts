@@ -1,7 +1,7 @@
-import { reasonOf } from '../core/errors/reasons';
-import { studyTitle } from '../core/study/plan';
-import '../styles/document.css';
-import { button, element, pageElement } from '../ui/element';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import { studyTitle } from '../model/plan';
+import 'threepoint-ui/styles/document.css';
+import { button, element, pageElement } from 'threepoint-ui/element';
 import { paperCheck } from './paper-check';
 import { firstSelection, type Selection, simulatedNotice, studyResults } from './results-view';
 import type { ShownStudy } from './shown-results';

@@ -1,4 +1,4 @@
-import { button, element } from '../ui/element';
+import { button, element } from 'threepoint-ui/element';
 import { askInDialog } from './ask-in-dialog';
 
 /** What a dialog asks. */

@@ -1,12 +1,12 @@
-import type { Comparison } from '../core/study/compare-conditions';
-import { aboutIn, measuresIn, type StudyMeasures } from '../core/study/exported-results';
-import type { Measured } from '../core/study/measures';
-import { questionnairesOf, type StudyPlan, taskTitle } from '../core/study/plan';
-import { isPlanned } from '../core/study/planned';
-import type { Questionnaire } from '../core/study/questionnaires';
-import type { TableFacts } from '../core/study/result-tables';
-import type { PlanVersion } from '../core/study/study-api';
-import type { StudyRecord } from '../core/study/study-record';
+import type { Comparison } from '../model/compare-conditions';
+import { aboutIn, measuresIn, type StudyMeasures } from '../model/exported-results';
+import type { Measured } from '../model/measures';
+import { questionnairesOf, type StudyPlan, taskTitle } from '../model/plan';
+import { isPlanned } from '../model/planned';
+import type { Questionnaire } from '../model/questionnaires';
+import type { TableFacts } from '../model/result-tables';
+import type { PlanVersion } from '../model/study-api';
+import type { StudyRecord } from '../model/study-record';
 
 /** What the results are computed from. */
 export interface ShownStudy {

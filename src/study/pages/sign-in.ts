@@ -1,4 +1,4 @@
-import { button, element } from '../ui/element';
+import { button, element } from 'threepoint-ui/element';
 
 /** Where the token stays while the tab is open; never longer, for the computer may be a shared one. */
 const kept = 'threepoint-experimenter-token';

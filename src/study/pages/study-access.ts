@@ -1,9 +1,9 @@
-import { reasonOf } from '../core/errors/reasons';
-import type { RecordedStudy, StudyListing } from '../core/study/study-api';
-import { ServerPresence } from '../net/server-presence';
-import { createExperimenterClient, type ExperimenterClient, noStudiesHere } from '../net/study-client';
-import { button, element } from '../ui/element';
-import { pageFolder } from '../ui/page-folder';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import { ServerPresence } from 'threepoint-http/server-presence';
+import { button, element } from 'threepoint-ui/element';
+import { pageFolder } from 'threepoint-ui/page-folder';
+import { createExperimenterClient, type ExperimenterClient, noStudiesHere } from '../client/study-client';
+import type { RecordedStudy, StudyListing } from '../model/study-api';
 import { forgetToken, keptToken, signInForm } from './sign-in';
 import { studySelect } from './study-select';
 

@@ -1,7 +1,7 @@
 import { strFromU8, unzipSync } from 'fflate';
-import { reasonOf } from '../core/errors/reasons';
-import { type StudyPlan, storedPlan } from '../core/study/plan';
-import { checkedRecord, type StudyRecord } from '../core/study/study-record';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import { type StudyPlan, storedPlan } from '../model/plan';
+import { checkedRecord, type StudyRecord } from '../model/study-record';
 
 /** A study as an export holds it. */
 export interface OpenedStudy {

@@ -1,5 +1,5 @@
-import type { StudyListing } from '../core/study/study-api';
-import { element } from '../ui/element';
+import { element } from 'threepoint-ui/element';
+import type { StudyListing } from '../model/study-api';
 
 /** The studies of a server, to choose one from; `choose` gets its id, or an empty text. `none`: what the list says without any. */
 export function studySelect(

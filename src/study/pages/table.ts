@@ -1,4 +1,4 @@
-import { element } from '../ui/element';
+import { element } from 'threepoint-ui/element';
 
 /** A cell: text, or a node of one's own. */
 export type TableCell = string | Node;

@@ -1,6 +1,6 @@
-import { scheduleFor } from '../core/study/schedule';
-import type { MeantBlock } from '../core/study/study-api';
-import { element } from '../ui/element';
+import { element } from 'threepoint-ui/element';
+import { scheduleFor } from '../model/schedule';
+import type { MeantBlock } from '../model/study-api';
 import { type OpenStudy, planOf } from './experimenter-view';
 import { askForSentence } from './sentence-dialog';
 

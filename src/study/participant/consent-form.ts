@@ -1,6 +1,6 @@
-import { type Phrases, phrasesOf } from '../../core/study/phrases/phrases';
-import { inLanguage } from '../../core/study/words';
-import { button, element } from '../../ui/element';
+import { button, element } from 'threepoint-ui/element';
+import { type Phrases, phrasesOf } from '../model/phrases/phrases';
+import { inLanguage } from '../model/words';
 import { complaintLine, type FormOf, paragraphs } from './form-parts';
 import { languageChoice } from './language-choice';
 

@@ -1,6 +1,6 @@
-import { type DemographicField, demographicFields } from '../../core/study/demographics';
-import type { Phrases } from '../../core/study/phrases/phrases';
-import { button, element } from '../../ui/element';
+import { button, element } from 'threepoint-ui/element';
+import { type DemographicField, demographicFields } from '../model/demographics';
+import type { Phrases } from '../model/phrases/phrases';
 import { complaintLine, type FormOf } from './form-parts';
 
 type Given = string | number | undefined;

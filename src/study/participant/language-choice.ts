@@ -1,4 +1,4 @@
-import { element } from '../../ui/element';
+import { element } from 'threepoint-ui/element';
 
 /** A choice of languages, each in its own words; `onChoice` hears of the one chosen. */
 export interface LanguageChoice {

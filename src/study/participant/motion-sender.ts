@@ -1,4 +1,4 @@
-import { ServerRefusal, ServerUnreachable } from '../../net/study-client';
+import { ServerRefusal, ServerUnreachable } from '../client/study-client';
 import type { SessionStore } from './session-store';
 
 /** After recordings that did not arrive so many exchanges pass at most before they are sent again: each may be 16 MiB. */

@@ -1,5 +1,5 @@
-import type { Phrases } from '../../core/study/phrases/phrases';
-import { button, element } from '../../ui/element';
+import { button, element } from 'threepoint-ui/element';
+import type { Phrases } from '../model/phrases/phrases';
 import type { ScreenEnds, ScreenField, ScreenPoint, ScreenQuestion } from './study-screen';
 
 type FieldOf<Kind extends ScreenField['kind']> = Extract<ScreenField, { kind: Kind }>;

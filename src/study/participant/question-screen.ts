@@ -1,7 +1,7 @@
-import type { Phrases } from '../../core/study/phrases/phrases';
-import type { AnswerForm, Question } from '../../core/study/questionnaire-schema';
-import { type Answers, pointsOf, typedAnswer, unanswered } from '../../core/study/questionnaires';
-import { inLanguage, type Words } from '../../core/study/words';
+import type { Phrases } from '../model/phrases/phrases';
+import type { AnswerForm, Question } from '../model/questionnaire-schema';
+import { type Answers, pointsOf, typedAnswer, unanswered } from '../model/questionnaires';
+import { inLanguage, type Words } from '../model/words';
 import type { ScreenEnds, ScreenField, ScreenQuestion } from './study-screen';
 import type { ScreenActions, StudySituation } from './study-situation';
 

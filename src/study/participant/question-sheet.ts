@@ -1,4 +1,4 @@
-import { fillRounded, vrColors, vrFont, wrap } from '../../ui/vr-panel';
+import { fillRounded, vrColors, vrFont, wrap } from 'threepoint-ui/vr-panel';
 import { keyTargets } from './sheet-keys';
 import { inner, margin, type Target, width } from './sheet-target';
 import type { ScreenField, ScreenQuestion } from './study-screen';

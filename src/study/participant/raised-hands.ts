@@ -1,4 +1,4 @@
-import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
 /** How far above the eyes [m], and for how long [s]. */
 const above = 0.1;

@@ -1,6 +1,6 @@
-import { reasonOf } from '../../core/errors/reasons';
-import { refusals } from '../../core/study/advance';
-import { PhrasedError, type Phrases } from '../../core/study/phrases/phrases';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import { refusals } from '../model/advance';
+import { PhrasedError, type Phrases } from '../model/phrases/phrases';
 
 /** What was thrown, for a participant to read; what has no words of its own is technical, and stays in English. */
 export const reasonFor = (error: unknown, phrases: Phrases): string =>

@@ -1,5 +1,5 @@
-import type { StudyRecord } from '../../core/study/study-record';
-import { ServerRefusal } from '../../net/study-client';
+import { ServerRefusal } from '../client/study-client';
+import type { StudyRecord } from '../model/study-record';
 import type { SessionStore } from './session-store';
 
 type Send = (records: readonly StudyRecord[]) => Promise<readonly string[]>;

@@ -1,4 +1,4 @@
-import type { PanelTarget } from '../../ui/vr-touch';
+import type { PanelTarget } from 'threepoint-ui/vr-touch';
 import type { ScreenButton } from './study-screen';
 
 /** The sheet [pixels], and how many of them are a metre. */

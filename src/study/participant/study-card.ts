@@ -1,5 +1,5 @@
-import type { Phrases } from '../../core/study/phrases/phrases';
-import { button, element } from '../../ui/element';
+import { button, element } from 'threepoint-ui/element';
+import type { Phrases } from '../model/phrases/phrases';
 import { formNodes, formNote } from './form-nodes';
 import { paragraphs } from './form-parts';
 import { dotNodes, questionNodes } from './question-card';

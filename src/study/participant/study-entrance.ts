@@ -1,8 +1,8 @@
-import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../../core/study/phrases/phrases';
-import type { PublicStudy } from '../../core/study/study-api';
-import { inLanguage } from '../../core/study/words';
-import { NoStudyServer, ServerRefusal } from '../../net/study-client';
-import { sentence } from '../../ui/phrases';
+import { sentence } from 'threepoint-ui/phrases';
+import { NoStudyServer, ServerRefusal } from '../client/study-client';
+import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../model/phrases/phrases';
+import type { PublicStudy } from '../model/study-api';
+import { inLanguage } from '../model/words';
 import type { ParticipantSession } from './participant-session';
 import { reasonFor } from './reasons';
 import type { Opened } from './study-opening';

@@ -1,7 +1,7 @@
-import type { Calibration } from '../../core/body/calibration';
-import type { Side } from '../../core/math/side';
-import type { Embodiment } from '../../core/study/embodiment';
-import type { DeviceFault } from '../../core/study/remote-setup';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import type { Side } from 'threepoint/core/math/side';
+import type { Embodiment } from '../model/embodiment';
+import type { DeviceFault } from '../model/remote-setup';
 import type { TrialHost } from './study-trial';
 import type { TaskRunner } from './task-runner';
 

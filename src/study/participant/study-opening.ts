@@ -1,8 +1,8 @@
-import { PhrasedError } from '../../core/study/phrases/phrases';
-import { isLater, type Progress } from '../../core/study/progress';
-import { scheduleFor } from '../../core/study/schedule';
-import type { PublicStudy } from '../../core/study/study-api';
-import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../../net/study-client';
+import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../client/study-client';
+import { PhrasedError } from '../model/phrases/phrases';
+import { isLater, type Progress } from '../model/progress';
+import { scheduleFor } from '../model/schedule';
+import type { PublicStudy } from '../model/study-api';
 import {
   createParticipantSession,
   type ParticipantSession,

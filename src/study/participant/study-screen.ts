@@ -1,4 +1,4 @@
-import type { Phrases } from '../../core/study/phrases/phrases';
+import type { Phrases } from '../model/phrases/phrases';
 
 /** Letters and words on the keys of the sheet. */
 export interface KeyLabels {

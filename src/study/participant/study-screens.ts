@@ -1,9 +1,9 @@
-import type { Phrases } from '../../core/study/phrases/phrases';
-import { taskTitle } from '../../core/study/plan';
-import { clockText, type Progress } from '../../core/study/progress';
-import type { RemoteTerms } from '../../core/study/remote-setup';
-import type { StudyStep } from '../../core/study/schedule';
-import { inLanguage } from '../../core/study/words';
+import type { Phrases } from '../model/phrases/phrases';
+import { taskTitle } from '../model/plan';
+import { clockText, type Progress } from '../model/progress';
+import type { RemoteTerms } from '../model/remote-setup';
+import type { StudyStep } from '../model/schedule';
+import { inLanguage } from '../model/words';
 import { screenQuestions } from './answering';
 import { calibrationScreen } from './calibration-screens';
 import type { Safekeeping } from './participant-session';

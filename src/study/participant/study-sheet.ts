@@ -1,4 +1,4 @@
-import { fillRounded, vrColors, vrFont, wrap } from '../../ui/vr-panel';
+import { fillRounded, vrColors, vrFont, wrap } from 'threepoint-ui/vr-panel';
 import { paintQuestion, questionTargets } from './question-sheet';
 import { height, inner, margin, type Target, width } from './sheet-target';
 import type { ScreenButton, StudyScreen } from './study-screen';

@@ -1,7 +1,7 @@
-import type { ProgressEvent } from '../../core/study/advance';
-import type { Question } from '../../core/study/questionnaire-schema';
-import type { Answer } from '../../core/study/questionnaires';
-import type { CalibrationStep } from '../../ui/calibration-dialog';
+import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
+import type { ProgressEvent } from '../model/advance';
+import type { Question } from '../model/questionnaire-schema';
+import type { Answer } from '../model/questionnaires';
 import type { ParticipantSession } from './participant-session';
 import type { Prepared } from './trial-preparation';
 

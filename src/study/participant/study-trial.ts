@@ -1,11 +1,11 @@
-import type { Calibration } from '../../core/body/calibration';
-import type { EstimatorName } from '../../core/estimation/pose-estimator';
-import type { Schedule, StudyStep } from '../../core/study/schedule';
-import { mostMotionBytes } from '../../core/study/study-api';
-import { TrialSeconds } from '../../core/study/trial-clock';
-import { createTrialLog, type FrameListener, type TrialLog, type TrialOutcome } from '../../core/study/trial-log';
-import { cutRecording } from '../../core/tracking/recording';
-import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
+import { cutRecording } from 'threepoint/core/tracking/recording';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { Schedule, StudyStep } from '../model/schedule';
+import { mostMotionBytes } from '../model/study-api';
+import { TrialSeconds } from '../model/trial-clock';
+import { createTrialLog, type FrameListener, type TrialLog, type TrialOutcome } from '../model/trial-log';
 import type { TaskEnd, TaskRunner } from './task-runner';
 
 /** The steps that are played. */

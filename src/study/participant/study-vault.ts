@@ -1,8 +1,8 @@
 import { type DBSchema, type IDBPDatabase, openDB } from 'idb';
-import type { KnownWearer } from '../../core/study/known-wearer';
-import type { StudyPlan } from '../../core/study/plan';
-import type { Progress } from '../../core/study/progress';
-import type { StudyRecord } from '../../core/study/study-record';
+import type { KnownWearer } from '../model/known-wearer';
+import type { StudyPlan } from '../model/plan';
+import type { Progress } from '../model/progress';
+import type { StudyRecord } from '../model/study-record';
 
 /** A session as this device remembers it. */
 export interface KeptSession extends KnownWearer {

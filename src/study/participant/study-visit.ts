@@ -1,5 +1,5 @@
-import type { TrackingFrame } from '../../core/tracking/tracking-frame';
-import type { ParticipantClient } from '../../net/study-client';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { ParticipantClient } from '../client/study-client';
 import { RunningStudy } from './running-study';
 import { StudyEntrance } from './study-entrance';
 import type { StudyHost } from './study-host';

@@ -1,4 +1,4 @@
-import { reasonOf } from '../../core/errors/reasons';
+import { reasonOf } from 'threepoint/core/errors/reasons';
 import type { PlayedStep } from './study-trial';
 
 /** How far the game and the body of a step are. */

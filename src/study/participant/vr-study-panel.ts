@@ -1,8 +1,8 @@
 import { Group, Vector3 } from 'three';
-import { wrapAngle } from '../../core/math/angle';
-import { createVrPanel } from '../../ui/vr-panel';
-import type { Pointer } from '../../ui/vr-pointers';
-import { createPanelTouch } from '../../ui/vr-touch';
+import { wrapAngle } from 'threepoint/core/math/angle';
+import { createVrPanel } from 'threepoint-ui/vr-panel';
+import type { Pointer } from 'threepoint-ui/vr-pointers';
+import { createPanelTouch } from 'threepoint-ui/vr-touch';
 import { height, pixelsPerMetre, type Target, width } from './sheet-target';
 import type { StudyScreen } from './study-screen';
 import { paintSheet, targetsOf } from './study-sheet';

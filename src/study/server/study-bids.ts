@@ -1,4 +1,4 @@
-import { reasonOf } from '../src/core/errors/reasons';
+import { reasonOf } from 'threepoint/core/errors/reasons';
 import {
   bidsChannelFrames,
   bidsChannels,
@@ -6,12 +6,12 @@ import {
   bidsMotionSidecar,
   bidsTable,
   bidsVersion,
-} from '../src/core/motion/write-bids';
-import { type StudyPlan, studyTitle } from '../src/core/study/plan';
-import type { DemographicsRecord, StudyRecord, TrialRecord } from '../src/core/study/study-record';
-import { voidedBlocks } from '../src/core/study/study-tables';
-import { recordingTime } from '../src/core/study/trial-clock';
-import { parseRecording, type Recording } from '../src/core/tracking/recording';
+} from 'threepoint/core/motion/write-bids';
+import { parseRecording, type Recording } from 'threepoint/core/tracking/recording';
+import { type StudyPlan, studyTitle } from '../model/plan';
+import type { DemographicsRecord, StudyRecord, TrialRecord } from '../model/study-record';
+import { voidedBlocks } from '../model/study-tables';
+import { recordingTime } from '../model/trial-clock';
 import type { MotionFile } from './study-motion';
 
 /** What the data set is made of. */

@@ -1,4 +1,4 @@
-import type { StudyCommand } from '../src/core/study/study-api';
+import type { StudyCommand } from '../model/study-api';
 import { StoreRefusal, type StudyDatabase } from './study-database';
 import type { StudyPlaces } from './study-places';
 

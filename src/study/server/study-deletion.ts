@@ -1,4 +1,4 @@
-import type { Receipt } from '../src/core/study/study-api';
+import type { Receipt } from '../model/study-api';
 import type { StudyCommands } from './study-commands';
 import { StoreRefusal, type StudyDatabase } from './study-database';
 import type { StudyMotion } from './study-motion';

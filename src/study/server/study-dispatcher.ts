@@ -1,4 +1,4 @@
-import type { Answer } from './http/answer';
+import type { Answer } from 'threepoint-http/answer';
 import { StoreRefusal } from './study-database';
 import { refusalOf, type StudyRequest, type StudyRoute, type StudyRoutes } from './study-routes';
 import type { StudyStore } from './study-store';

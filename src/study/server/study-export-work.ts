@@ -1,4 +1,4 @@
-import type { PlanVersion, StudyInfo } from '../src/core/study/study-api';
+import type { PlanVersion, StudyInfo } from '../model/study-api';
 import { type ExportContent, exportZip } from './study-export';
 import type { ExportOrder } from './study-exporter';
 import { unpacked } from './study-motion';

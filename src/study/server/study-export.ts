@@ -1,12 +1,12 @@
 import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
 import { strToU8, type Zippable, zipSync } from 'fflate';
-import { resultTables } from '../src/core/study/exported-results';
-import { type StudyPlan, studyTitle } from '../src/core/study/plan';
-import type { StudyRecord } from '../src/core/study/study-record';
-import { studyTables } from '../src/core/study/study-tables';
-import { codebookOf, type Table, tidyCsv } from '../src/core/study/tidy-csv';
-import type { Software } from './software';
+import type { Software } from 'threepoint-http/software';
+import { resultTables } from '../model/exported-results';
+import { type StudyPlan, studyTitle } from '../model/plan';
+import type { StudyRecord } from '../model/study-record';
+import { studyTables } from '../model/study-tables';
+import { codebookOf, type Table, tidyCsv } from '../model/tidy-csv';
 import { bidsDataset } from './study-bids';
 import type { MotionFile } from './study-motion';
 import type { ServedSoftware } from './study-software';
@@ -40,7 +40,7 @@ const simulatedNotice =
 /** The analysis in other languages, as it lies beside this file. */
 const analysisFiles = () =>
   ['analyse.py', 'analyse.R', 'requirements.txt'].map(
-    (name) => [`analysis/${name}`, readFileSync(new URL(`./study-analysis/${name}`, import.meta.url), 'utf8')] as const,
+    (name) => [`analysis/${name}`, readFileSync(new URL(`./analysis/${name}`, import.meta.url), 'utf8')] as const,
   );
 
 function readme(content: ExportContent, leftOut: readonly string[], whole: boolean): string {

@@ -1,8 +1,8 @@
 import { type ChildProcess, spawn } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
-import type { Software } from './software';
+import type { Software } from 'threepoint-http/software';
+import { shortageOf } from 'threepoint-http/thread-calls';
 import { StoreRefusal } from './study-database';
-import { shortageOf } from './thread-calls';
 
 /** What an export is asked for; its process reads the content from the database. */
 export interface ExportOrder {

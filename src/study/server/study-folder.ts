@@ -1,10 +1,10 @@
 import { randomBytes } from 'node:crypto';
 import { chmodSync, existsSync, mkdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { reasonOf } from '../src/core/errors/reasons';
-import { ConfigurationError } from './configuration';
-import { weaknessOf } from './secret-bits';
-import type { Software } from './software';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import { ConfigurationError } from 'threepoint-http/configuration-error';
+import { weaknessOf } from 'threepoint-http/secret-bits';
+import type { Software } from 'threepoint-http/software';
 import { FolderLock, FolderTaken, StoreRefusal, sqliteCodeOf } from './study-database';
 import { DatabaseProblem } from './study-schema';
 import { openStudyStore, type StudyStore } from './study-store';

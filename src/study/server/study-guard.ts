@@ -1,8 +1,8 @@
 import { createHash, timingSafeEqual } from 'node:crypto';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
-import { createAuthThrottle, type Guess, TooManyGuesses, type WrongGuess } from './auth-throttle';
-import { type ClientAddress, requiredAddress } from './client-address';
-import { HttpError } from './http/answer';
+import { HttpError } from 'threepoint-http/answer';
+import { createAuthThrottle, type Guess, TooManyGuesses, type WrongGuess } from 'threepoint-http/auth-throttle';
+import { type ClientAddress, requiredAddress } from 'threepoint-http/client-address';
 import { normalisedCode } from './study-schema';
 import type { StudyStore } from './study-store';
 

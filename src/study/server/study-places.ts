@@ -1,6 +1,6 @@
 import { createHash, randomBytes, timingSafeEqual } from 'node:crypto';
-import { isLater, type Progress, resumed, sinceReport } from '../src/core/study/progress';
-import { scheduleFor } from '../src/core/study/schedule';
+import { isLater, type Progress, resumed, sinceReport } from '../model/progress';
+import { scheduleFor } from '../model/schedule';
 import { StoreRefusal, type StudyDatabase } from './study-database';
 import type { StudyPlans } from './study-plans';
 import { newCode, normalisedCode } from './study-schema';

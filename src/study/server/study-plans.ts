@@ -1,7 +1,7 @@
-import { togetherWith } from '../src/core/study/allocation';
-import { checkedPlan, participantsOf, type StudyPlan, storedPlan } from '../src/core/study/plan';
-import type { PlanVersion, StudyInfo } from '../src/core/study/study-api';
-import { ValidationError } from '../src/core/study/validation';
+import { ValidationError } from 'threepoint/core/validation/validation';
+import { togetherWith } from '../model/allocation';
+import { checkedPlan, participantsOf, type StudyPlan, storedPlan } from '../model/plan';
+import type { PlanVersion, StudyInfo } from '../model/study-api';
 import { StoreRefusal, type StudyDatabase } from './study-database';
 import { newCode } from './study-schema';
 

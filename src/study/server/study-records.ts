@@ -1,4 +1,4 @@
-import { recordVersion, type StudyRecord } from '../src/core/study/study-record';
+import { recordVersion, type StudyRecord } from '../model/study-record';
 import { StoreRefusal, type StudyDatabase } from './study-database';
 import { notConsented, type StudyPlaces } from './study-places';
 import type { StudyPlans } from './study-plans';

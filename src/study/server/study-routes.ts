@@ -1,8 +1,4 @@
-import * as v from 'valibot';
-import { wearerIn } from '../src/core/study/known-wearer';
-import { checkedPlan, languagesOf, type StudyPlan, studyTitle } from '../src/core/study/plan';
-import { mostMotionBytes, type PlanVersion, type StudyInfo } from '../src/core/study/study-api';
-import { checkedRecord } from '../src/core/study/study-record';
+import { parseRecording } from 'threepoint/core/tracking/recording';
 import {
   checked,
   identifier,
@@ -10,12 +6,16 @@ import {
   participantId,
   text,
   ValidationError,
-} from '../src/core/study/validation';
-import { parseRecording } from '../src/core/tracking/recording';
-import type { ClientAddress } from './client-address';
-import { type Answer, done, HttpError, json } from './http/answer';
-import { jsonOf, refusalOf as knownRefusalOf, type Route, textOf } from './http/router';
-import type { Software } from './software';
+} from 'threepoint/core/validation/validation';
+import { type Answer, done, HttpError, json } from 'threepoint-http/answer';
+import type { ClientAddress } from 'threepoint-http/client-address';
+import { jsonOf, refusalOf as knownRefusalOf, type Route, textOf } from 'threepoint-http/router';
+import type { Software } from 'threepoint-http/software';
+import * as v from 'valibot';
+import { wearerIn } from '../model/known-wearer';
+import { checkedPlan, languagesOf, type StudyPlan, studyTitle } from '../model/plan';
+import { mostMotionBytes, type PlanVersion, type StudyInfo } from '../model/study-api';
+import { checkedRecord } from '../model/study-record';
 import { StoreRefusal } from './study-database';
 import { exportName } from './study-export';
 import type { Exporter } from './study-exporter';

@@ -1,10 +1,23 @@
 import { createHmac, randomBytes } from 'node:crypto';
-import { ballKind } from '../src/core/protocol/ball-messages';
-import type { StudyPlan } from '../src/core/study/plan';
-import { scheduleFor } from '../src/core/study/schedule';
-import type { PlayedTogether, SignedSeat } from '../src/core/study/study-api';
-import { ValidationError } from '../src/core/study/validation';
-import type { RoomTokens } from './room-tokens';
+import { ValidationError } from 'threepoint/core/validation/validation';
+import type { StudyPlan } from '../model/plan';
+import { scheduleFor } from '../model/schedule';
+import type { PlayedTogether, SignedSeat } from '../model/study-api';
+
+/** A participant's place in a room, as the server's rooms read it from a signed token. */
+export interface SeatClaim {
+  /** Identifies the participant, the same on every device; nobody else can derive it. */
+  readonly identity: string;
+  readonly room: string;
+  /** The game of the room. */
+  readonly kind: string;
+  readonly terms: { readonly seconds: number; readonly pausable: boolean };
+  /** Seat null: a place among the spectators. */
+  readonly assigned: { readonly seat: number | null; readonly name: string };
+}
+
+/** Returns the claim as signed text that the server's rooms accept. */
+export type SignSeat = (claim: SeatClaim) => Promise<string>;
 
 /** Signs participants, and them alone, into the rooms of their trials. */
 export interface StudySeats {
@@ -13,7 +26,7 @@ export interface StudySeats {
 }
 
 /** `secret`: names rooms, so that no one can know the name of one beforehand; the same in every process of a fleet. */
-export function createStudySeats(secret: string, tokens: Pick<RoomTokens, 'sign'>): StudySeats {
+export function createStudySeats(secret: string, signSeat: SignSeat): StudySeats {
   const nameOf = (purpose: string, ...parts: readonly unknown[]): string =>
     createHmac('sha256', secret)
       .update(JSON.stringify([purpose, ...parts]))
@@ -31,11 +44,11 @@ export function createStudySeats(secret: string, tokens: Pick<RoomTokens, 'sign'
       }
       const group = schedule.groups[played.task];
       const room = `study.${nameOf('room of a study', plan.id, id, run, group?.number)}`;
-      const token = await tokens.sign({
+      const token = await signSeat({
         // The same person on every device and after every reload: the seat is theirs.
         identity: watching ? randomBytes(12).toString('base64url') : nameOf('participant', plan.id, participant),
         room,
-        kind: ballKind,
+        kind: task.game,
         terms: { seconds: played.seconds, pausable: true },
         assigned: watching
           ? { seat: null, name: 'Experimenter' }

@@ -1,17 +1,19 @@
 import type { IncomingMessage } from 'node:http';
 import type { Worker } from 'node:worker_threads';
-import { reasonOf } from '../src/core/errors/reasons';
-import { findClientAddress } from './client-address';
-import { ConfigurationError } from './configuration';
-import { type Answer, HttpError } from './http/answer';
-import type { Call, Route, Service } from './http/router';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import { type Answer, HttpError } from 'threepoint-http/answer';
+import { findClientAddress } from 'threepoint-http/client-address';
+import { ConfigurationError } from 'threepoint-http/configuration-error';
+import type { Call, Route, Service } from 'threepoint-http/router';
+import { shortageOf, startThread, ThreadCalls, ThreadUnavailable } from 'threepoint-http/thread-calls';
 import type { StudyDispatcher, StudyOutcome } from './study-dispatcher';
 import type { StudyAccess } from './study-guard';
 import { retryAfterSeconds, type StudyRequest, type StudyRoute } from './study-routes';
-import type { OpenedStudies, StudyThreadApi, StudyThreadOptions } from './study-thread-work';
-import { shortageOf, startThread, ThreadCalls, ThreadUnavailable } from './thread-calls';
+import type { OpenedStudies, StudyThreadApi, StudyThreadOptions } from './study-thread';
 
 export interface StudyServiceOptions extends StudyThreadOptions {
+  /** The script of the thread, which calls serveStudies. */
+  readonly thread: URL;
   /** Seconds since 1970. */
   readonly now: () => number;
   /** Believe what a proxy in front says of a client's address. */
@@ -57,9 +59,9 @@ class StudyThread {
 
   /** Starts the thread; throws where it cannot open the folder. */
   async open(): Promise<Exclude<OpenedStudies, { readonly problem: string }>> {
-    const { directory, token, software, secret, now, log } = this.#options;
+    const { directory, token, software, secret, now, log, thread } = this.#options;
     this.#startedAt = performance.now();
-    const worker = startThread(new URL('./study-thread-worker.mjs', import.meta.url));
+    const worker = startThread(thread);
     const calls = new ThreadCalls<StudyThreadApi>(worker, limits, log);
     this.#worker = worker;
     this.#calls = calls;

@@ -1,4 +1,4 @@
-import type { Software } from './software';
+import type { Software } from 'threepoint-http/software';
 import type { StudyDatabase } from './study-database';
 
 /** Software and since when it served the studies, in seconds since 1970. */

@@ -1,6 +1,6 @@
-import { currentStep, remainingSeconds, resumed, sinceReport } from '../src/core/study/progress';
-import { scheduleFor } from '../src/core/study/schedule';
-import type { ParticipantState, PlanVersion } from '../src/core/study/study-api';
+import { currentStep, remainingSeconds, resumed, sinceReport } from '../model/progress';
+import { scheduleFor } from '../model/schedule';
+import type { ParticipantState, PlanVersion } from '../model/study-api';
 import { StudyCommands } from './study-commands';
 import { type DatabaseOptions, StudyDatabase } from './study-database';
 import { StudyDeletion } from './study-deletion';

@@ -1,16 +1,15 @@
 import { join } from 'node:path';
-import { parentPort } from 'node:worker_threads';
-import { reasonOf } from '../src/core/errors/reasons';
-import type { WrongGuess } from './auth-throttle';
-import { ConfigurationError } from './configuration';
-import { createRoomTokens } from './room-tokens';
+import type { MessagePort } from 'node:worker_threads';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import type { WrongGuess } from 'threepoint-http/auth-throttle';
+import { ConfigurationError } from 'threepoint-http/configuration-error';
+import { answerCalls, logFrom } from 'threepoint-http/thread-calls';
 import { StudyDispatcher, type StudyOutcome } from './study-dispatcher';
 import { createExporter } from './study-exporter';
 import { openStudyFolder, type StudyFolder, type StudyFolderOptions } from './study-folder';
 import { createStudyRoutes, type StudyRequest, type StudyRoute } from './study-routes';
-import { createStudySeats } from './study-seats';
+import { createStudySeats, type SignSeat } from './study-seats';
 import type { StudyStore } from './study-store';
-import { answerCalls, logFrom } from './thread-calls';
 
 // The thread that has the studies: their database, the secrets that open them and the rules of who may what. Nothing that takes it long, or
 // that a disk does not finish, holds up the thread of the sockets.
@@ -39,18 +38,16 @@ export type StudyThreadApi = {
   close(): void;
 };
 
-const port = parentPort;
-if (!port) throw new Error('this file is the work of a thread');
-const log = logFrom(port);
-
 /** How often overwriting deleted data is tried again where it failed [ms]. */
 const forgetMs = 1000;
 
 const wrongGuess = ({ what, of, address, failures }: WrongGuess): string =>
   `study: a wrong ${what}${of === null ? '' : ` for "${of}"`} came from ${address}, number ${failures} within the hour`;
 
-/** A full disk or a locked database must not end a server that others use. */
-function expire(store: StudyStore, at: number): void {
+type Log = (line: string) => void;
+
+/** Deletes what is past its retention date. A full disk or a locked database must not end a server that others use. */
+function expire(store: StudyStore, at: number, log: Log): void {
   const again = 'which is tried again within the hour';
   try {
     const receipts = store.deletion.deleteExpired(at, ({ study, participant }, error) => {
@@ -66,7 +63,7 @@ function expire(store: StudyStore, at: number): void {
 }
 
 /** Overwrites deleted data as soon as it can be. */
-function keepForgetting(store: StudyStore): NodeJS.Timeout {
+function keepForgetting(store: StudyStore, log: Log): NodeJS.Timeout {
   let isHeld = false;
   return setInterval(() => {
     const wasHeld = isHeld;
@@ -80,60 +77,67 @@ function keepForgetting(store: StudyStore): NodeJS.Timeout {
   }, forgetMs);
 }
 
-interface Serving {
+interface OpenFolder {
   readonly folder: StudyFolder;
   readonly dispatcher: StudyDispatcher;
   readonly forgetting: NodeJS.Timeout;
 }
 
-let serving: Serving | null = null;
-/** The time of the newest request: the clock of the process is that of its main thread. */
-let newest = 0;
+/** Makes the signer of seats from the secret of the server; `now`: seconds since 1970. */
+export type CreateSignSeat = (secret: string, now: () => number) => SignSeat;
 
-function open({ secret, ...options }: StudyThreadOptions, at: number): OpenedStudies {
-  newest = at;
-  try {
-    const folder = openStudyFolder(options, at, log);
-    const { store, experimenterToken, tokenFile } = folder;
-    const { directory, software } = options;
-    const routes = createStudyRoutes({
-      ...{ store, experimenterToken, software },
-      seats: createStudySeats(
-        secret,
-        createRoomTokens(secret, () => newest),
-      ),
-      makeZip: createExporter(join(directory, 'studies.db')),
-      onWrongGuess: (guess) => log(wrongGuess(guess)),
-    });
-    const dispatcher = new StudyDispatcher({ routes, store, log });
-    serving = { folder, dispatcher, forgetting: keepForgetting(store) };
-    return { routes: routes.routes.map(({ handle: _, ...rest }) => rest), tokenFile };
-  } catch (error) {
-    if (error instanceof ConfigurationError) return { problem: error.message };
-    throw error;
+/** Answers the calls that arrive on the port of this thread until the process ends. */
+export function serveStudies(port: MessagePort, createSignSeat: CreateSignSeat): void {
+  const log = logFrom(port);
+  let serving: OpenFolder | null = null;
+  // The time of the newest request: the clock of the process is that of its main thread.
+  let newest = 0;
+
+  function open({ secret, ...options }: StudyThreadOptions, at: number): OpenedStudies {
+    newest = at;
+    try {
+      const folder = openStudyFolder(options, at, log);
+      const { store, experimenterToken, tokenFile } = folder;
+      const { directory, software } = options;
+      const routes = createStudyRoutes({
+        ...{ store, experimenterToken, software },
+        seats: createStudySeats(
+          secret,
+          createSignSeat(secret, () => newest),
+        ),
+        makeZip: createExporter(join(directory, 'studies.db')),
+        onWrongGuess: (guess) => log(wrongGuess(guess)),
+      });
+      const dispatcher = new StudyDispatcher({ routes, store, log });
+      serving = { folder, dispatcher, forgetting: keepForgetting(store, log) };
+      return { routes: routes.routes.map(({ handle: _, ...rest }) => rest), tokenFile };
+    } catch (error) {
+      if (error instanceof ConfigurationError) return { problem: error.message };
+      throw error;
+    }
   }
-}
 
-function opened(): Serving {
-  if (!serving) throw new Error('the studies are not open');
-  return serving;
-}
+  function opened(): OpenFolder {
+    if (!serving) throw new Error('the studies are not open');
+    return serving;
+  }
 
-answerCalls<StudyThreadApi>(port, {
-  open,
-  admit(route, request) {
-    newest = request.at;
-    return opened().dispatcher.admit(route, request);
-  },
-  handle(route, request, body) {
-    newest = request.at;
-    return opened().dispatcher.handle(route, request, body);
-  },
-  expire: (at) => expire(opened().folder.store, at),
-  close() {
-    const { folder, forgetting } = opened();
-    clearInterval(forgetting);
-    folder.close();
-    serving = null;
-  },
-});
+  answerCalls<StudyThreadApi>(port, {
+    open,
+    admit(route, request) {
+      newest = request.at;
+      return opened().dispatcher.admit(route, request);
+    },
+    handle(route, request, body) {
+      newest = request.at;
+      return opened().dispatcher.handle(route, request, body);
+    },
+    expire: (at) => expire(opened().folder.store, at, log),
+    close() {
+      const { folder, forgetting } = opened();
+      clearInterval(forgetting);
+      folder.close();
+      serving = null;
+    },
+  });
+}

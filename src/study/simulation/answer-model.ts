@@ -1,5 +1,5 @@
-import type { Question } from '../study/questionnaire-schema';
-import { type Answer, type Answers, nearestOn, type Questionnaire } from '../study/questionnaires';
+import type { Question } from '../model/questionnaire-schema';
+import { type Answer, type Answers, nearestOn, type Questionnaire } from '../model/questionnaires';
 import type { RandomSource } from './random-source';
 
 /**

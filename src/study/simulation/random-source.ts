@@ -1,5 +1,5 @@
-import { nextRandom, type RandomState } from '../math/random';
-import { randomFor } from '../study/shuffle';
+import { nextRandom, type RandomState } from 'threepoint/core/math/random';
+import { randomFor } from '../model/shuffle';
 
 /** A seeded source of numbers for the models: its state moves with every number taken. */
 export interface RandomSource {

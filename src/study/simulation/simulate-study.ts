@@ -1,13 +1,13 @@
-import { advance, type ProgressEvent } from '../study/advance';
-import { cohortsByParticipant } from '../study/allocation';
-import type { Demographics } from '../study/demographics';
-import { participantsOf, type StudyPlan } from '../study/plan';
-import { begin, currentStep, type Progress, resumed } from '../study/progress';
-import { type Schedule, type StudyStep, scheduleFor } from '../study/schedule';
-import type { StudyRecord } from '../study/study-record';
-import type { TrialOutcome } from '../study/trial-log';
-import { ValidationError } from '../study/validation';
-import type { Words } from '../study/words';
+import { ValidationError } from 'threepoint/core/validation/validation';
+import { advance, type ProgressEvent } from '../model/advance';
+import { cohortsByParticipant } from '../model/allocation';
+import type { Demographics } from '../model/demographics';
+import { participantsOf, type StudyPlan } from '../model/plan';
+import { begin, currentStep, type Progress, resumed } from '../model/progress';
+import { type Schedule, type StudyStep, scheduleFor } from '../model/schedule';
+import type { StudyRecord } from '../model/study-record';
+import type { TrialOutcome } from '../model/trial-log';
+import type { Words } from '../model/words';
 import { type AnswerModel, answerModelWith, drawAnswers, drawPerson } from './answer-model';
 import {
   drawArchery,

@@ -1,6 +1,6 @@
 import betainc from '@stdlib/math-base-special-betainc';
 import normalCdf from '@stdlib/stats-base-dists-normal-cdf';
-import { bisect } from '../math/bisection';
+import { bisect } from 'threepoint/core/math/bisection';
 import type { Interval } from './summaries';
 
 /** Terms of a series that are so small, behind its greatest, add nothing to a double. */

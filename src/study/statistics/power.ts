@@ -1,4 +1,4 @@
-import { normalNumbers } from '../math/random';
+import { normalNumbers } from 'threepoint/core/math/random';
 import { rankSumPs, standardError } from './between-tests';
 import { signedRankP } from './paired-tests';
 import { ranksOf } from './ranks';

@@ -1,5 +1,5 @@
 import normalCdf from '@stdlib/stats-base-dists-normal-cdf';
-import { bisect } from '../math/bisection';
+import { bisect } from 'threepoint/core/math/bisection';
 import { type Interval, roundingOf } from './summaries';
 
 /**

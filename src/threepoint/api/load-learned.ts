@@ -1,8 +1,8 @@
-import contract from '../../public/models/learned.json';
+import contract from '../../../public/models/learned.json';
 import type { NetworkName } from '../core/estimation/estimators';
 import { createPlainRegressor, weightsOf } from '../core/estimation/learned-network';
 import type { ModelContract, PoseRegressor } from '../core/estimation/pose-regressor';
-import { fetchFile } from '../inference/model-files';
+import { fetchFile } from '../onnx/model-files';
 
 export interface LearnedOptions {
   /** Where another contract (.json) lies, its weights beside it; in Node on the disk as well (`file:`). Default: the weights that the package brings, whose contract is built in. */
@@ -12,7 +12,7 @@ export interface LearnedOptions {
 }
 
 /** Stated where a bundler looks for files: it copies the weights and puts their address here. */
-const ownWeights = () => new URL('../../public/models/learned.bin', import.meta.url);
+const ownWeights = () => new URL('../../../public/models/learned.bin', import.meta.url);
 
 /**
  * The learned network without a runtime: 91 kB, answered within the frame. Rejects with a sentence that says what is wrong with which file.
@@ -20,7 +20,7 @@ const ownWeights = () => new URL('../../public/models/learned.bin', import.meta.
 export async function loadLearned({ modelUrl, onProgress }: LearnedOptions = {}): Promise<PoseRegressor> {
   const progress = onProgress ? { onProgress } : {};
   if (modelUrl !== undefined) {
-    const { loadPlainRegressor } = await import('../inference/load-plain-regressor');
+    const { loadPlainRegressor } = await import('../onnx/load-plain-regressor');
     return loadPlainRegressor(String(modelUrl), progress);
   }
   const own = contract as unknown as ModelContract;

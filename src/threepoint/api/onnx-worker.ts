@@ -1,2 +1,2 @@
 // "threepoint/onnx-worker": what a worker of `createWorker` runs.
-import '../inference/inference-worker';
+import '../onnx/inference-worker';

@@ -1,10 +1,10 @@
 // "threepoint/onnx": the networks by onnxruntime-web, on WebAssembly or WebGPU, in a worker where one is given.
 import type { NetworkName } from '../core/estimation/estimators';
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
-import { loadRegressor } from '../inference/load-regressor';
-import type { ExecutionProvider, WasmPaths } from '../inference/session';
+import { loadRegressor } from '../onnx/load-regressor';
+import type { ExecutionProvider, WasmPaths } from '../onnx/session';
 
-export type { ExecutionProvider, WasmPaths } from '../inference/session';
+export type { ExecutionProvider, WasmPaths } from '../onnx/session';
 
 export interface OnnxOptions {
   /** Where a network's contract (.json) lies, its .onnx file beside it: the package's folder models/, served by the page. */

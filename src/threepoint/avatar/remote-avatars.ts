@@ -2,13 +2,13 @@ import { Group, type Mesh, type MeshBasicMaterial, type Object3D, type PlaneGeom
 import type { AvatarPose } from '../core/body/avatar-pose';
 import { type Calibration, sameMeasures } from '../core/body/calibration';
 import type { Fingers } from '../core/body/hand-shape';
+import { bodyOf, isAvatarHash, isOwnAvatar, plainAvatar, toneOf, type WornAvatar } from '../core/body/worn-avatar';
 import { PassingFault } from '../core/errors/passing-fault';
 import { type MutableTransform, makeTransform, type Transform, transformPoint } from '../core/math/pose';
 import { copyQuat } from '../core/math/quat';
 import { copyVec3, type Vec3 } from '../core/math/vec3';
-import { bodyOf, isAvatarHash, isOwnAvatar, plainAvatar, toneOf, type WornAvatar } from '../core/protocol/worn-avatar';
-import { createBlobShadow } from '../scene/blob-shadow';
 import { type Avatar, createAvatarBetweenFrames } from './avatar';
+import { createBlobShadow } from './blob-shadow';
 import type { LoadedAvatar } from './load-avatar';
 
 /** Another person as they are to be drawn in this frame. */

@@ -1,5 +1,5 @@
 import type { HandShape } from '../core/body/hand-shape';
-import { allReleased, type HandButtons } from '../core/games/button-presses';
+import { allReleased, type HandButtons } from '../core/input/button-presses';
 import type { Pose, TrackedPose } from '../core/math/pose';
 import { conjugate, fromAxisAngle, multiply, rotate } from '../core/math/quat';
 import { type Side, sides } from '../core/math/side';

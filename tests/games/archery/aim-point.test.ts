@@ -1,7 +1,7 @@
+import { distance, length, normalise, subtract, vec3 } from 'threepoint/core/math/vec3';
+import { aimPoint } from 'threepoint-games/archery/aim-point';
+import { archeryRules } from 'threepoint-games/archery/rules';
 import { expect, test } from 'vitest';
-import { aimPoint } from '../../../../src/core/games/archery/aim-point';
-import { archeryRules } from '../../../../src/core/games/archery/rules';
-import { distance, length, normalise, subtract, vec3 } from '../../../../src/core/math/vec3';
 
 const { targets } = archeryRules.start(['archer'], 1);
 const eyes = vec3(-1.2, 2, 3);

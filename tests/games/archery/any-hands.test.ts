@@ -1,10 +1,10 @@
 import fc from 'fast-check';
+import type { Side } from 'threepoint/core/math/side';
+import { length } from 'threepoint/core/math/vec3';
+import { maximumDraw } from 'threepoint-games/archery/bow';
+import { createArcheryGestures, defaultArcheryGestureSettings } from 'threepoint-games/archery/gestures';
 import { describe, expect, test } from 'vitest';
-import { maximumDraw } from '../../../../src/core/games/archery/bow';
-import { createArcheryGestures, defaultArcheryGestureSettings } from '../../../../src/core/games/archery/gestures';
-import type { Side } from '../../../../src/core/math/side';
-import { length } from '../../../../src/core/math/vec3';
-import { evenly, rotation, seed } from '../../arbitraries';
+import { evenly, rotation, seed } from '../../threepoint/core/arbitraries';
 import { posed } from './bowman';
 
 const sides: readonly Side[] = ['left', 'right'];

@@ -1,11 +1,11 @@
 import fc from 'fast-check';
+import { addScaled, length, vec3 } from 'threepoint/core/math/vec3';
+import type { ArcheryAction, ArcheryState } from 'threepoint-games/archery/archery-state';
+import { arrowLength, maximumDraw, minimumDraw } from 'threepoint-games/archery/bow';
+import { archeryRules, releaseInterval } from 'threepoint-games/archery/rules';
 import { describe, expect, test } from 'vitest';
-import type { ArcheryAction, ArcheryState } from '../../../../src/core/games/archery/archery-state';
-import { arrowLength, maximumDraw, minimumDraw } from '../../../../src/core/games/archery/bow';
-import { archeryRules, releaseInterval } from '../../../../src/core/games/archery/rules';
-import { addScaled, length, vec3 } from '../../../../src/core/math/vec3';
-import { seed } from '../../arbitraries';
-import { numbersIn } from '../../numbers-in';
+import { seed } from '../../threepoint/core/arbitraries';
+import { numbersIn } from '../../threepoint/core/numbers-in';
 import { highShot, shotAt, start, tickSeconds, told } from './shots';
 
 describe('what no archer can do', () => {

@@ -1,18 +1,18 @@
-import type { BowView } from '../../../../src/core/games/archery/archery-state';
-import { arrowRestHeight, braceHeight } from '../../../../src/core/games/archery/bow';
+import { allReleased, type Button, type Buttons, type HandButtons } from 'threepoint/core/input/button-presses';
+import type { TrackedPose } from 'threepoint/core/math/pose';
+import { identity } from 'threepoint/core/math/quat';
+import { otherSide, type Side } from 'threepoint/core/math/side';
+import { add, addScaled, cross, normalise, reject, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { BowView } from 'threepoint-games/archery/archery-state';
+import { arrowRestHeight, braceHeight } from 'threepoint-games/archery/bow';
 import {
   type ArcheryGestureSettings,
   createArcheryGestures,
   defaultArcheryGestureSettings,
   type GestureFrame,
-} from '../../../../src/core/games/archery/gestures';
-import { allReleased, type Button, type Buttons, type HandButtons } from '../../../../src/core/games/button-presses';
-import { wristAround } from '../../../../src/core/games/fist';
-import type { TrackedPose } from '../../../../src/core/math/pose';
-import { identity } from '../../../../src/core/math/quat';
-import { otherSide, type Side } from '../../../../src/core/math/side';
-import { add, addScaled, cross, normalise, reject, up, type Vec3, vec3 } from '../../../../src/core/math/vec3';
-import type { TrackingFrame } from '../../../../src/core/tracking/tracking-frame';
+} from 'threepoint-games/archery/gestures';
+import { wristAround } from 'threepoint-games/fist';
 
 /** What an archer does in one frame who holds the bow out and has the other hand on the line of the arrow. */
 export interface Posed {

@@ -1,6 +1,6 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
-import type { Target } from '../../../../src/core/games/archery/archery-state';
+import { addScaled, distance, dot, length, normalise, scale, subtract, vec3 } from 'threepoint/core/math/vec3';
+import type { Target } from 'threepoint-games/archery/archery-state';
 import {
   arrowLength,
   arrowMass,
@@ -9,18 +9,12 @@ import {
   maximumDraw,
   minimumDraw,
   stiffness,
-} from '../../../../src/core/games/archery/bow';
-import {
-  firstHit,
-  reachesGround,
-  reachesTarget,
-  reachesWall,
-  releaseTowards,
-} from '../../../../src/core/games/archery/flight';
-import { walls } from '../../../../src/core/games/archery/rules';
-import { gravity, type Launch, launchTowards, positionAt, velocityAt } from '../../../../src/core/games/ballistics';
-import { addScaled, distance, dot, length, normalise, scale, subtract, vec3 } from '../../../../src/core/math/vec3';
-import { direction, evenly, seed } from '../../arbitraries';
+} from 'threepoint-games/archery/bow';
+import { firstHit, reachesGround, reachesTarget, reachesWall, releaseTowards } from 'threepoint-games/archery/flight';
+import { walls } from 'threepoint-games/archery/rules';
+import { gravity, type Launch, launchTowards, positionAt, velocityAt } from 'threepoint-games/ballistics';
+import { describe, expect, test } from 'vitest';
+import { direction, evenly, seed } from '../../threepoint/core/arbitraries';
 
 const launch: fc.Arbitrary<Launch> = fc
   .record({

@@ -1,13 +1,13 @@
+import { allReleased, type Button, createButtonPresses } from 'threepoint/core/input/button-presses';
+import type { Transform } from 'threepoint/core/math/pose';
+import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
+import type { Side } from 'threepoint/core/math/side';
+import { add, addScaled, distance, dot, normalise, up, vec3 } from 'threepoint/core/math/vec3';
+import { arrowLength, arrowRestHeight, braceHeight, maximumDraw } from 'threepoint-games/archery/bow';
+import { holdSeconds } from 'threepoint-games/archery/held-bow';
+import { archeryRules } from 'threepoint-games/archery/rules';
+import { fistOf } from 'threepoint-games/fist';
 import { describe, expect, test } from 'vitest';
-import { arrowLength, arrowRestHeight, braceHeight, maximumDraw } from '../../../../src/core/games/archery/bow';
-import { holdSeconds } from '../../../../src/core/games/archery/held-bow';
-import { archeryRules } from '../../../../src/core/games/archery/rules';
-import { allReleased, type Button, createButtonPresses } from '../../../../src/core/games/button-presses';
-import { fistOf } from '../../../../src/core/games/fist';
-import type { Transform } from '../../../../src/core/math/pose';
-import { fromAxisAngle, rotate } from '../../../../src/core/math/quat';
-import type { Side } from '../../../../src/core/math/side';
-import { add, addScaled, distance, dot, normalise, up, vec3 } from '../../../../src/core/math/vec3';
 import { bowAt, bowman, posed } from './bowman';
 
 const sides: readonly Side[] = ['left', 'right'];

@@ -1,13 +1,13 @@
 import fc from 'fast-check';
+import { rotate } from 'threepoint/core/math/quat';
+import { otherSide, type Side } from 'threepoint/core/math/side';
+import { add, cross, distance, length, normalise, up, vec3 } from 'threepoint/core/math/vec3';
+import { braceHeight } from 'threepoint-games/archery/bow';
+import { oneHandedDraw, oneHandedDrawSpeed } from 'threepoint-games/archery/nocked-arrow';
+import { archeryRules } from 'threepoint-games/archery/rules';
+import { wristAround } from 'threepoint-games/fist';
 import { describe, expect, test } from 'vitest';
-import { braceHeight } from '../../../../src/core/games/archery/bow';
-import { oneHandedDraw, oneHandedDrawSpeed } from '../../../../src/core/games/archery/nocked-arrow';
-import { archeryRules } from '../../../../src/core/games/archery/rules';
-import { wristAround } from '../../../../src/core/games/fist';
-import { rotate } from '../../../../src/core/math/quat';
-import { otherSide, type Side } from '../../../../src/core/math/side';
-import { add, cross, distance, length, normalise, up, vec3 } from '../../../../src/core/math/vec3';
-import { evenly, seed, vector } from '../../arbitraries';
+import { evenly, seed, vector } from '../../threepoint/core/arbitraries';
 import { bowAt, bowman } from './bowman';
 import { shotWithOneHand } from './one-handed-round';
 

@@ -1,10 +1,10 @@
-import type { ArcheryState } from '../../../../src/core/games/archery/archery-state';
-import { arrowRestHeight, braceHeight } from '../../../../src/core/games/archery/bow';
-import { releaseTowards } from '../../../../src/core/games/archery/flight';
-import { oneHandedDraw } from '../../../../src/core/games/archery/nocked-arrow';
-import { archeryRules } from '../../../../src/core/games/archery/rules';
-import { otherSide, type Side } from '../../../../src/core/math/side';
-import { addScaled, normalise, reject, up, type Vec3, vec3 } from '../../../../src/core/math/vec3';
+import { otherSide, type Side } from 'threepoint/core/math/side';
+import { addScaled, normalise, reject, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { ArcheryState } from 'threepoint-games/archery/archery-state';
+import { arrowRestHeight, braceHeight } from 'threepoint-games/archery/bow';
+import { releaseTowards } from 'threepoint-games/archery/flight';
+import { oneHandedDraw } from 'threepoint-games/archery/nocked-arrow';
+import { archeryRules } from 'threepoint-games/archery/rules';
 import { bowman } from './bowman';
 
 /** Where the knuckles of a hand with the bow there must point for its arrow to hit. */

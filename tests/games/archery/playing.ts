@@ -1,21 +1,16 @@
-import { createArcher } from '../../../../src/core/games/archery/archer-motion';
-import type { ArcherBody } from '../../../../src/core/games/archery/archer-postures';
-import type {
-  ArcheryAction,
-  ArcheryEvent,
-  ArcheryOptions,
-  ArcheryState,
-} from '../../../../src/core/games/archery/archery-state';
+import type { Buttons } from 'threepoint/core/input/button-presses';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { createArcher } from 'threepoint-games/archery/archer-motion';
+import type { ArcherBody } from 'threepoint-games/archery/archer-postures';
+import type { ArcheryAction, ArcheryEvent, ArcheryOptions, ArcheryState } from 'threepoint-games/archery/archery-state';
 import {
   type BowCue,
   createArcheryGestures,
   defaultArcheryGestureSettings,
   type GestureFrame,
-} from '../../../../src/core/games/archery/gestures';
-import { archeryRules, delayed, isArmed } from '../../../../src/core/games/archery/rules';
-import type { Buttons } from '../../../../src/core/games/button-presses';
-import { createMatch } from '../../../../src/core/games/match';
-import type { TrackingFrame } from '../../../../src/core/tracking/tracking-frame';
+} from 'threepoint-games/archery/gestures';
+import { archeryRules, delayed, isArmed } from 'threepoint-games/archery/rules';
+import { createMatch } from 'threepoint-games/match';
 
 /** What happened in a round that was played. */
 export interface Round {

@@ -1,11 +1,11 @@
 import fc from 'fast-check';
+import { distance, vec3 } from 'threepoint/core/math/vec3';
+import type { ArcheryAction, ArcheryState } from 'threepoint-games/archery/archery-state';
+import { maximumDraw } from 'threepoint-games/archery/bow';
+import { archeryRules, delayed } from 'threepoint-games/archery/rules';
+import { createMatch } from 'threepoint-games/match';
 import { describe, expect, test } from 'vitest';
-import type { ArcheryAction, ArcheryState } from '../../../../src/core/games/archery/archery-state';
-import { maximumDraw } from '../../../../src/core/games/archery/bow';
-import { archeryRules, delayed } from '../../../../src/core/games/archery/rules';
-import { createMatch } from '../../../../src/core/games/match';
-import { distance, vec3 } from '../../../../src/core/math/vec3';
-import { evenly, seed } from '../../arbitraries';
+import { evenly, seed } from '../../threepoint/core/arbitraries';
 import { shotAt, start, tickSeconds } from './shots';
 
 /** Ticks of an archer who moves about and shoots now and then, mostly well. */

@@ -1,11 +1,11 @@
 import fc from 'fast-check';
+import { dot, length, normalise, scale, subtract, vec3 } from 'threepoint/core/math/vec3';
+import type { ArcheryAction } from 'threepoint-games/archery/archery-state';
+import { arrowSpeed } from 'threepoint-games/archery/bow';
+import { firstHit } from 'threepoint-games/archery/flight';
+import { delayed, matchTime, secondsLeft, walls, zone } from 'threepoint-games/archery/rules';
 import { describe, expect, test } from 'vitest';
-import type { ArcheryAction } from '../../../../src/core/games/archery/archery-state';
-import { arrowSpeed } from '../../../../src/core/games/archery/bow';
-import { firstHit } from '../../../../src/core/games/archery/flight';
-import { delayed, matchTime, secondsLeft, walls, zone } from '../../../../src/core/games/archery/rules';
-import { dot, length, normalise, scale, subtract, vec3 } from '../../../../src/core/math/vec3';
-import { evenly, seed } from '../../arbitraries';
+import { evenly, seed } from '../../threepoint/core/arbitraries';
 import { highShot, shotAt, start, tickSeconds, told, wideOf } from './shots';
 
 describe('the range', () => {

@@ -1,13 +1,8 @@
-import type {
-  ArcheryAction,
-  ArcheryEvent,
-  ArcheryOptions,
-  ArcheryState,
-} from '../../../../src/core/games/archery/archery-state';
-import { arrowLength } from '../../../../src/core/games/archery/bow';
-import { releaseTowards } from '../../../../src/core/games/archery/flight';
-import { archeryRules } from '../../../../src/core/games/archery/rules';
-import { add, addScaled, normalise, type Vec3, vec3 } from '../../../../src/core/math/vec3';
+import { add, addScaled, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { ArcheryAction, ArcheryEvent, ArcheryOptions, ArcheryState } from 'threepoint-games/archery/archery-state';
+import { arrowLength } from 'threepoint-games/archery/bow';
+import { releaseTowards } from 'threepoint-games/archery/flight';
+import { archeryRules } from 'threepoint-games/archery/rules';
 
 export const { tickSeconds } = archeryRules;
 

@@ -1,15 +1,15 @@
 import fc from 'fast-check';
+import { createIk } from 'threepoint/core/estimation/estimators';
+import { rotate } from 'threepoint/core/math/quat';
+import { distance, length, subtract, vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { BallAction, BallEvent, BallState } from 'threepoint-games/ball/ball-state';
+import { type BallGestures, createBallGestures } from 'threepoint-games/ball/gestures';
+import { createHolder } from 'threepoint-games/ball/holder-motion';
+import { ballRules } from 'threepoint-games/ball/rules';
+import { stations, zoneRadius } from 'threepoint-games/ball/stations';
+import { type BallBot, createThrower } from 'threepoint-games/ball/thrower-motion';
 import { describe, expect, it } from 'vitest';
-import { createIk } from '../../../../src/core/estimation/estimators';
-import type { BallAction, BallEvent, BallState } from '../../../../src/core/games/ball/ball-state';
-import { type BallGestures, createBallGestures } from '../../../../src/core/games/ball/gestures';
-import { createHolder } from '../../../../src/core/games/ball/holder-motion';
-import { ballRules } from '../../../../src/core/games/ball/rules';
-import { stations, zoneRadius } from '../../../../src/core/games/ball/stations';
-import { type BallBot, createThrower } from '../../../../src/core/games/ball/thrower-motion';
-import { rotate } from '../../../../src/core/math/quat';
-import { distance, length, subtract, vec3 } from '../../../../src/core/math/vec3';
-import type { TrackingFrame } from '../../../../src/core/tracking/tracking-frame';
 
 interface Match {
   readonly state: BallState;

@@ -1,12 +1,12 @@
 import fc from 'fast-check';
+import { nextRandom } from 'threepoint/core/math/random';
+import { add, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { BallAction } from 'threepoint-games/ball/ball-state';
+import { ballRules } from 'threepoint-games/ball/rules';
+import { ballMatchTime } from 'threepoint-games/ball/state-readings';
+import { rackPosition } from 'threepoint-games/ball/stations';
 import { expect, test } from 'vitest';
-import type { BallAction } from '../../../../src/core/games/ball/ball-state';
-import { ballRules } from '../../../../src/core/games/ball/rules';
-import { ballMatchTime } from '../../../../src/core/games/ball/state-readings';
-import { rackPosition } from '../../../../src/core/games/ball/stations';
-import { nextRandom } from '../../../../src/core/math/random';
-import { add, type Vec3, vec3 } from '../../../../src/core/math/vec3';
-import { evenly, seed } from '../../arbitraries';
+import { evenly, seed } from '../../threepoint/core/arbitraries';
 import { headOf, hold, inFront, leftThrower, stand, tickSeconds, told, velocityTo } from './playing';
 
 test('1,000 throws end the same at round trips of 0 to 200 ms as at none', { tags: ['full'] }, () => {

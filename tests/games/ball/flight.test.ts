@@ -1,17 +1,4 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
-import type { Basket, TimedLaunch } from '../../../../src/core/games/ball/ball-state';
-import {
-  ballInAir,
-  ballOnFloor,
-  ballRadius,
-  basketDepth,
-  basketRadius,
-  floorBounceOf,
-  meetsBasket,
-  touchesFloor,
-} from '../../../../src/core/games/ball/flight';
-import { gravity, positionAt, velocityAt } from '../../../../src/core/games/ballistics';
 import {
   add,
   addScaled,
@@ -25,8 +12,21 @@ import {
   subtract,
   type Vec3,
   vec3,
-} from '../../../../src/core/math/vec3';
-import { direction, evenly, seed, vector } from '../../arbitraries';
+} from 'threepoint/core/math/vec3';
+import type { Basket, TimedLaunch } from 'threepoint-games/ball/ball-state';
+import {
+  ballInAir,
+  ballOnFloor,
+  ballRadius,
+  basketDepth,
+  basketRadius,
+  floorBounceOf,
+  meetsBasket,
+  touchesFloor,
+} from 'threepoint-games/ball/flight';
+import { gravity, positionAt, velocityAt } from 'threepoint-games/ballistics';
+import { describe, expect, test } from 'vitest';
+import { direction, evenly, seed, vector } from '../../threepoint/core/arbitraries';
 
 const still = (position: Vec3, normal = vec3(0, 1, 0), seconds = 5): [Basket, Basket] => [
   { at: 0, position, normal },

@@ -1,16 +1,10 @@
-import type {
-  BallAction,
-  BallDeed,
-  BallEvent,
-  BallOptions,
-  BallState,
-} from '../../../../src/core/games/ball/ball-state';
-import { ballRules } from '../../../../src/core/games/ball/rules';
-import { rackPosition, stations } from '../../../../src/core/games/ball/stations';
-import { gravity } from '../../../../src/core/games/ballistics';
-import { wristAround } from '../../../../src/core/games/fist';
-import type { Pose } from '../../../../src/core/math/pose';
-import { add, addScaled, normalise, scale, subtract, type Vec3, vec3 } from '../../../../src/core/math/vec3';
+import type { Pose } from 'threepoint/core/math/pose';
+import { add, addScaled, normalise, scale, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { BallAction, BallDeed, BallEvent, BallOptions, BallState } from 'threepoint-games/ball/ball-state';
+import { ballRules } from 'threepoint-games/ball/rules';
+import { rackPosition, stations } from 'threepoint-games/ball/stations';
+import { gravity } from 'threepoint-games/ballistics';
+import { wristAround } from 'threepoint-games/fist';
 
 export const { tickSeconds } = ballRules;
 

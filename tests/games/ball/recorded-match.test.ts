@@ -1,11 +1,11 @@
+import { nextRandom } from 'threepoint/core/math/random';
+import { add, vec3 } from 'threepoint/core/math/vec3';
+import type { BallAction, BallEvent, BallState } from 'threepoint-games/ball/ball-state';
+import { ballRules } from 'threepoint-games/ball/rules';
+import { rackPosition } from 'threepoint-games/ball/stations';
 import { describe, expect, test } from 'vitest';
-import type { BallAction, BallEvent, BallState } from '../../../../src/core/games/ball/ball-state';
-import { ballRules } from '../../../../src/core/games/ball/rules';
-import { rackPosition } from '../../../../src/core/games/ball/stations';
-import { nextRandom } from '../../../../src/core/math/random';
-import { add, vec3 } from '../../../../src/core/math/vec3';
-import { seed } from '../../arbitraries';
-import { numbersIn } from '../../numbers-in';
+import { seed } from '../../threepoint/core/arbitraries';
+import { numbersIn } from '../../threepoint/core/numbers-in';
 import { headOf, hold, inFront, stand, tickSeconds, velocityTo } from './playing';
 
 /** A whole game of random deeds, some of them impossible, told as ticks. */

@@ -1,15 +1,15 @@
 import fc from 'fast-check';
+import { add, distance, length, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { BallAction } from 'threepoint-games/ball/ball-state';
+import { basketInHands, gripRadius } from 'threepoint-games/ball/basket';
+import { armReach, fastestThrow, longestDelay } from 'threepoint-games/ball/deeds';
+import { ballRadius } from 'threepoint-games/ball/flight';
+import { ballRules } from 'threepoint-games/ball/rules';
+import { ballPosition, ballSecondsLeft, ballsLeft } from 'threepoint-games/ball/state-readings';
+import { rackPosition, stations, throwingDistance } from 'threepoint-games/ball/stations';
+import { wristAround } from 'threepoint-games/fist';
 import { describe, expect, test } from 'vitest';
-import type { BallAction } from '../../../../src/core/games/ball/ball-state';
-import { basketInHands, gripRadius } from '../../../../src/core/games/ball/basket';
-import { armReach, fastestThrow, longestDelay } from '../../../../src/core/games/ball/deeds';
-import { ballRadius } from '../../../../src/core/games/ball/flight';
-import { ballRules } from '../../../../src/core/games/ball/rules';
-import { ballPosition, ballSecondsLeft, ballsLeft } from '../../../../src/core/games/ball/state-readings';
-import { rackPosition, stations, throwingDistance } from '../../../../src/core/games/ball/stations';
-import { wristAround } from '../../../../src/core/games/fist';
-import { add, distance, length, type Vec3, vec3 } from '../../../../src/core/math/vec3';
-import { evenly, seed, vector } from '../../arbitraries';
+import { evenly, seed, vector } from '../../threepoint/core/arbitraries';
 import {
   headOf,
   hold,

@@ -1,20 +1,20 @@
-import { describe, expect, test } from 'vitest';
-import type { BallState, TimedLaunch } from '../../../../src/core/games/ball/ball-state';
-import { createBallGestures } from '../../../../src/core/games/ball/gestures';
-import { createHolder } from '../../../../src/core/games/ball/holder-motion';
-import type { PlayerBody } from '../../../../src/core/games/ball/player-postures';
-import { ballRules } from '../../../../src/core/games/ball/rules';
-import { stations } from '../../../../src/core/games/ball/stations';
+import { transformPoint } from 'threepoint/core/math/pose';
+import { distance, normalise, subtract, vec3 } from 'threepoint/core/math/vec3';
+import type { BallState, TimedLaunch } from 'threepoint-games/ball/ball-state';
+import { createBallGestures } from 'threepoint-games/ball/gestures';
+import { createHolder } from 'threepoint-games/ball/holder-motion';
+import type { PlayerBody } from 'threepoint-games/ball/player-postures';
+import { ballRules } from 'threepoint-games/ball/rules';
+import { stations } from 'threepoint-games/ball/stations';
 import {
   type BallSteering,
   createSteeredHolder,
   createSteeredThrower,
   type SteeredPlayer,
-} from '../../../../src/core/games/ball/steered-players';
-import { type BallBot, createThrower } from '../../../../src/core/games/ball/thrower-motion';
-import { fallsTo, positionAt } from '../../../../src/core/games/ballistics';
-import { transformPoint } from '../../../../src/core/math/pose';
-import { distance, normalise, subtract, vec3 } from '../../../../src/core/math/vec3';
+} from 'threepoint-games/ball/steered-players';
+import { type BallBot, createThrower } from 'threepoint-games/ball/thrower-motion';
+import { fallsTo, positionAt } from 'threepoint-games/ballistics';
+import { describe, expect, test } from 'vitest';
 
 const bodyAt = (player: number): PlayerBody => ({ eyeHeight: 1.6, arenaFromFloor: stations[player]! });
 

@@ -1,11 +1,11 @@
 import { Scene } from 'three';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { nothingPressed } from 'threepoint/core/input/button-presses';
+import { normalise, vec3 } from 'threepoint/core/math/vec3';
+import { createArcheryActivity } from 'threepoint-page/archery/archery-activity';
+import { settlingSeconds } from 'threepoint-page/scene/boards/sheet';
 import { expect, test } from 'vitest';
-import { createArcheryActivity } from '../../../src/app/archery/archery-activity';
-import { defaultCalibration } from '../../../src/core/body/calibration';
-import { nothingPressed } from '../../../src/core/games/button-presses';
-import { normalise, vec3 } from '../../../src/core/math/vec3';
-import { settlingSeconds } from '../../../src/scene/boards/sheet';
-import { posed } from '../../core/games/archery/bowman';
+import { posed } from '../../games/archery/bowman';
 import { drawNowhere } from '../shell/drawing-in-node';
 
 drawNowhere();

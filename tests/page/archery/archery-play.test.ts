@@ -1,10 +1,10 @@
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { allReleased } from 'threepoint/core/input/button-presses';
+import { vec3 } from 'threepoint/core/math/vec3';
+import { createPageClock } from 'threepoint/core/tracking/page-clock';
+import { createArcheryPlay, probeOf } from 'threepoint-page/archery/archery-play';
 import { expect, test } from 'vitest';
-import { createArcheryPlay, probeOf } from '../../../src/app/archery/archery-play';
-import { defaultCalibration } from '../../../src/core/body/calibration';
-import { allReleased } from '../../../src/core/games/button-presses';
-import { vec3 } from '../../../src/core/math/vec3';
-import { createPageClock } from '../../../src/core/tracking/page-clock';
-import { type Posed, posed } from '../../core/games/archery/bowman';
+import { type Posed, posed } from '../../games/archery/bowman';
 
 const frameMs = 1000 / 72;
 

@@ -1,11 +1,11 @@
+import { addScaled, distance, dot, normalise, reject, subtract, vec3 } from 'threepoint/core/math/vec3';
+import type { Arrow, Landing } from 'threepoint-games/archery/archery-state';
+import { arrowLength } from 'threepoint-games/archery/bow';
+import { positionAt, velocityAt } from 'threepoint-games/ballistics';
+import { arrowPose } from 'threepoint-page/archery/arrow-pose';
+import { arrowGeometry, createArrows } from 'threepoint-page/archery/arrows';
+import { createTrails } from 'threepoint-page/archery/trails';
 import { describe, expect, it } from 'vitest';
-import { arrowPose } from '../../../src/app/archery/arrow-pose';
-import { arrowGeometry, createArrows } from '../../../src/app/archery/arrows';
-import { createTrails } from '../../../src/app/archery/trails';
-import type { Arrow, Landing } from '../../../src/core/games/archery/archery-state';
-import { arrowLength } from '../../../src/core/games/archery/bow';
-import { positionAt, velocityAt } from '../../../src/core/games/ballistics';
-import { addScaled, distance, dot, normalise, reject, subtract, vec3 } from '../../../src/core/math/vec3';
 
 const release = { time: 2, position: vec3(0, 1.5, -0.8), velocity: vec3(1, 3, -30) };
 const after = 0.3;

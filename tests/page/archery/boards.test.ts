@@ -1,12 +1,12 @@
 import { Color } from 'three';
+import { vec3 } from 'threepoint/core/math/vec3';
+import type { ArcheryState, Arrow, Landing } from 'threepoint-games/archery/archery-state';
+import { archeryRules } from 'threepoint-games/archery/rules';
+import { onRestartButton } from 'threepoint-page/archery/result-panel';
+import { arrowResult, boardText } from 'threepoint-page/archery/scoreboard-drawing';
+import { ringColor, rings } from 'threepoint-page/archery/target-rings';
+import { scoredBy } from 'threepoint-page/archery/target-stands';
 import { describe, expect, it } from 'vitest';
-import { onRestartButton } from '../../../src/app/archery/result-panel';
-import { arrowResult, boardText } from '../../../src/app/archery/scoreboard-drawing';
-import { ringColor, rings } from '../../../src/app/archery/target-rings';
-import { scoredBy } from '../../../src/app/archery/target-stands';
-import type { ArcheryState, Arrow, Landing } from '../../../src/core/games/archery/archery-state';
-import { archeryRules } from '../../../src/core/games/archery/rules';
-import { vec3 } from '../../../src/core/math/vec3';
 
 const shot = (id: number, landing: Partial<Landing> | null): Arrow => ({
   id,

@@ -1,7 +1,7 @@
-import type { BowView } from '../../../src/core/games/archery/archery-state';
-import { arrowRestHeight, braceHeight } from '../../../src/core/games/archery/bow';
-import { identity, type Quat, rotate } from '../../../src/core/math/quat';
-import { add, type Vec3, vec3 } from '../../../src/core/math/vec3';
+import { identity, type Quat, rotate } from 'threepoint/core/math/quat';
+import { add, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { BowView } from 'threepoint-games/archery/archery-state';
+import { arrowRestHeight, braceHeight } from 'threepoint-games/archery/bow';
 
 /** A bow held at a place, its string pulled straight back by `draw` [m] and aside by `slip`, in the bow's own axes. */
 export function bowView(

@@ -1,11 +1,11 @@
 import fc from 'fast-check';
 import { type BufferAttribute, Mesh } from 'three';
+import { distance, vec3 } from 'threepoint/core/math/vec3';
+import { braceHeight, maximumDraw } from 'threepoint-games/archery/bow';
+import { createBow } from 'threepoint-page/archery/bow';
+import { stringBow } from 'threepoint-page/archery/limb-shape';
 import { describe, expect, it } from 'vitest';
-import { createBow } from '../../../src/app/archery/bow';
-import { stringBow } from '../../../src/app/archery/limb-shape';
-import { braceHeight, maximumDraw } from '../../../src/core/games/archery/bow';
-import { distance, vec3 } from '../../../src/core/math/vec3';
-import { fromEulerYxz } from '../../core/euler-angles';
+import { fromEulerYxz } from '../../threepoint/core/euler-angles';
 import { bowView } from './bow-view';
 
 const draws = fc.double({ min: 0, max: maximumDraw, noNaN: true });

@@ -1,11 +1,11 @@
+import { fromAxisAngle, identity } from 'threepoint/core/math/quat';
+import { up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { Arrow, Landing, Target } from 'threepoint-games/archery/archery-state';
+import { archeryRules } from 'threepoint-games/archery/rules';
+import { eventCaption } from 'threepoint-page/archery/captions';
+import { createSounds } from 'threepoint-page/archery/sounds';
+import { directionOf } from 'threepoint-page/scene/directions';
 import { describe, expect, it } from 'vitest';
-import { eventCaption } from '../../../src/app/archery/captions';
-import { createSounds } from '../../../src/app/archery/sounds';
-import type { Arrow, Landing, Target } from '../../../src/core/games/archery/archery-state';
-import { archeryRules } from '../../../src/core/games/archery/rules';
-import { fromAxisAngle, identity } from '../../../src/core/math/quat';
-import { up, type Vec3, vec3 } from '../../../src/core/math/vec3';
-import { directionOf } from '../../../src/scene/directions';
 
 const target = (x: number, z: number, points: number): Target => ({
   centre: vec3(x, 1.4, z),

@@ -1,7 +1,7 @@
+import { vec3 } from 'threepoint/core/math/vec3';
+import type { Arrow, Landing } from 'threepoint-games/archery/archery-state';
+import { eventHaptics } from 'threepoint-page/archery/haptics';
 import { describe, expect, it } from 'vitest';
-import { eventHaptics } from '../../../src/app/archery/haptics';
-import type { Arrow, Landing } from '../../../src/core/games/archery/archery-state';
-import { vec3 } from '../../../src/core/math/vec3';
 
 const hit = (points: number, target: number | null = 1) => {
   const landing: Landing = {

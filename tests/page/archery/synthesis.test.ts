@@ -1,6 +1,6 @@
+import { creak, earth, rattle, thud, twang } from 'threepoint-page/archery/synthesis';
+import { bell, chime, click, warning, whoosh } from 'threepoint-page/scene/sound/synthesis';
 import { describe, expect, it } from 'vitest';
-import { creak, earth, rattle, thud, twang } from '../../../src/app/archery/synthesis';
-import { bell, chime, click, warning, whoosh } from '../../../src/scene/sound/synthesis';
 
 const rate = 48000;
 const sounds = {

@@ -1,17 +1,18 @@
 // @module-tag full
+
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { unknownFingers } from 'threepoint/core/body/hand-shape';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { createEstimator } from 'threepoint/core/estimation/estimators';
+import { allReleased, type Buttons } from 'threepoint/core/input/button-presses';
+import { distance, type Vec3 } from 'threepoint/core/math/vec3';
+import { type BallPlay, createBallPlay } from 'threepoint-page/ball/ball-play';
+import { createRoomPass } from 'threepoint-rooms/client/room-pass';
+import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
 import { afterAll, expect, test } from 'vitest';
-import { type BallPlay, createBallPlay } from '../../../src/app/ball/ball-play';
-import { defaultCalibration } from '../../../src/core/body/calibration';
-import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
-import { unknownFingers } from '../../../src/core/body/hand-shape';
-import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import { createEstimator } from '../../../src/core/estimation/estimators';
-import { allReleased, type Buttons } from '../../../src/core/games/button-presses';
-import { distance, type Vec3 } from '../../../src/core/math/vec3';
-import { createRoomPass } from '../../../src/net/room-pass';
-import { createSocketConnection } from '../../../src/net/socket-connection';
-import { poseOf } from '../../core/estimation/drawn';
-import { type RunningRelay, startRelay } from '../../server/running-relay';
+import { type RunningRelay, startRelay } from '../../rooms/server/running-relay';
+import { poseOf } from '../../threepoint/core/estimation/drawn';
 
 const released: Buttons = { left: allReleased, right: allReleased };
 const closing: (() => Promise<void>)[] = [];

@@ -1,14 +1,14 @@
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { unknownFingers } from 'threepoint/core/body/hand-shape';
+import { createEstimator } from 'threepoint/core/estimation/estimators';
+import { allReleased, type Buttons } from 'threepoint/core/input/button-presses';
+import { distance } from 'threepoint/core/math/vec3';
+import type { BallEvent, BallOptions } from 'threepoint-games/ball/ball-state';
+import type { BallSteering } from 'threepoint-games/ball/steered-players';
+import { type BallPlay, createBallPlay } from 'threepoint-page/ball/ball-play';
+import { createLoopbackHost } from 'threepoint-rooms/client/loopback-connection';
 import { describe, expect, it } from 'vitest';
-import { type BallPlay, createBallPlay } from '../../../src/app/ball/ball-play';
-import { defaultCalibration } from '../../../src/core/body/calibration';
-import { unknownFingers } from '../../../src/core/body/hand-shape';
-import { createEstimator } from '../../../src/core/estimation/estimators';
-import type { BallEvent, BallOptions } from '../../../src/core/games/ball/ball-state';
-import type { BallSteering } from '../../../src/core/games/ball/steered-players';
-import { allReleased, type Buttons } from '../../../src/core/games/button-presses';
-import { distance } from '../../../src/core/math/vec3';
-import { createLoopbackHost } from '../../../src/net/loopback-connection';
-import { poseOf } from '../../core/estimation/drawn';
+import { poseOf } from '../../threepoint/core/estimation/drawn';
 
 /** Half of what a headset draws: every frame costs a solved body for each player. */
 const usualHz = 36;

@@ -1,9 +1,9 @@
 import { Group } from 'three';
+import { identity } from 'threepoint/core/math/quat';
+import { vec3, zero } from 'threepoint/core/math/vec3';
+import { ballRules } from 'threepoint-games/ball/rules';
+import { type BallScene, createBallView } from 'threepoint-page/ball/ball-view';
 import { expect, test } from 'vitest';
-import { type BallScene, createBallView } from '../../../src/app/ball/ball-view';
-import { ballRules } from '../../../src/core/games/ball/rules';
-import { identity } from '../../../src/core/math/quat';
-import { vec3, zero } from '../../../src/core/math/vec3';
 import { drawNowhere } from '../shell/drawing-in-node';
 
 drawNowhere();

@@ -1,10 +1,10 @@
 import { InstancedMesh, Matrix4, Vector3 } from 'three';
+import { distance, vec3 } from 'threepoint/core/math/vec3';
+import { ballInAir, touchesFloor } from 'threepoint-games/ball/flight';
+import { ballRules, defaultBallOptions } from 'threepoint-games/ball/rules';
+import { createBalls } from 'threepoint-page/ball/balls';
 import { describe, expect, test } from 'vitest';
-import { createBalls } from '../../../src/app/ball/balls';
-import { ballInAir, touchesFloor } from '../../../src/core/games/ball/flight';
-import { ballRules, defaultBallOptions } from '../../../src/core/games/ball/rules';
-import { distance, vec3 } from '../../../src/core/math/vec3';
-import { velocityTo } from '../../net/people';
+import { velocityTo } from '../../rooms/client/people';
 
 /** The look of each ball that is drawn, and the side of the court it lies on: −1 left, 1 right. */
 function drawn(count: number): { readonly look: number; readonly side: number }[] {

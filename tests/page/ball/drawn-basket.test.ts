@@ -1,11 +1,11 @@
+import { nothingPressed } from 'threepoint/core/input/button-presses';
+import type { Pose, TrackedPose } from 'threepoint/core/math/pose';
+import type { Side } from 'threepoint/core/math/side';
+import { add, distance, vec3 } from 'threepoint/core/math/vec3';
+import { createBallPlay } from 'threepoint-page/ball/ball-play';
+import { createLoopbackHost } from 'threepoint-rooms/client/loopback-connection';
 import { expect, test } from 'vitest';
-import { createBallPlay } from '../../../src/app/ball/ball-play';
-import { nothingPressed } from '../../../src/core/games/button-presses';
-import type { Pose, TrackedPose } from '../../../src/core/math/pose';
-import type { Side } from '../../../src/core/math/side';
-import { add, distance, vec3 } from '../../../src/core/math/vec3';
-import { createLoopbackHost } from '../../../src/net/loopback-connection';
-import { holding, opening, shownAt, visitor } from '../../net/people';
+import { holding, opening, shownAt, visitor } from '../../rooms/client/people';
 
 type Wrists = Readonly<Record<Side, Pose<'arena'> | null>>;
 

@@ -1,16 +1,16 @@
+import { allReleased, type Buttons } from 'threepoint/core/input/button-presses';
+import type { Pose } from 'threepoint/core/math/pose';
+import type { Side } from 'threepoint/core/math/side';
+import { addScaled, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { BallRoomMessage } from 'threepoint-games/ball/ball-messages';
+import { holdSeconds } from 'threepoint-games/ball/gestures';
+import { createBallPlay } from 'threepoint-page/ball/ball-play';
+import type { ConnectionStatus, ConnectionUpdate } from 'threepoint-rooms/client/connection';
+import { RoomSession } from 'threepoint-rooms/client/room-session';
+import type { ClientMessage } from 'threepoint-rooms/protocol/messages';
 import { describe, expect, test } from 'vitest';
-import { createBallPlay } from '../../../src/app/ball/ball-play';
-import { holdSeconds } from '../../../src/core/games/ball/gestures';
-import { allReleased, type Buttons } from '../../../src/core/games/button-presses';
-import type { Pose } from '../../../src/core/math/pose';
-import type { Side } from '../../../src/core/math/side';
-import { addScaled, type Vec3, vec3 } from '../../../src/core/math/vec3';
-import type { BallRoomMessage } from '../../../src/core/protocol/ball-messages';
-import type { ClientMessage } from '../../../src/core/protocol/messages';
-import type { ConnectionStatus, ConnectionUpdate } from '../../../src/net/connection';
-import { RoomSession } from '../../../src/net/room-session';
-import { toldRoom } from '../../core/room/told-room';
-import { atRack, fists, holding, opening, shownAt, visitor } from '../../net/people';
+import { atRack, fists, holding, opening, shownAt, visitor } from '../../rooms/client/people';
+import { toldRoom } from '../../rooms/room/told-room';
 
 type Told = ReturnType<typeof toldRoom>;
 

@@ -1,5 +1,5 @@
+import { hideLabel, muteLabel, otherPlayers, type Seated } from 'threepoint-page/ball/other-players';
 import { describe, expect, it } from 'vitest';
-import { hideLabel, muteLabel, otherPlayers, type Seated } from '../../../src/app/ball/other-players';
 
 const seated = (seat: number, change: Partial<Seated> = {}): Seated => ({
   ...{ seat, name: `Player ${seat}`, role: 'Right thrower' },

@@ -1,5 +1,5 @@
+import { PersonMarks } from 'threepoint-page/ball/person-marks';
 import { describe, expect, it } from 'vitest';
-import { PersonMarks } from '../../../src/app/ball/person-marks';
 
 const person = (name: string) => ({ name, bot: false });
 const bot = (name: string) => ({ name, bot: true });

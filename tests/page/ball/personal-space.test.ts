@@ -1,8 +1,8 @@
+import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import { identity } from 'threepoint/core/math/quat';
+import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { shownToEyes } from 'threepoint-page/ball/personal-space';
 import { describe, expect, test } from 'vitest';
-import { shownToEyes } from '../../../src/app/ball/personal-space';
-import type { AvatarPose } from '../../../src/core/body/avatar-pose';
-import { identity } from '../../../src/core/math/quat';
-import { type Vec3, vec3 } from '../../../src/core/math/vec3';
 
 const tracked = (position: Vec3) => ({ position, orientation: identity, tracking: 'tracked' as const });
 const standing = (hand: Vec3 | null = null): AvatarPose => ({

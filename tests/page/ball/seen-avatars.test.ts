@@ -1,10 +1,10 @@
 import { createHash } from 'node:crypto';
 import { createServer, type RequestListener } from 'node:http';
 import type { AddressInfo } from 'node:net';
+import type { AvatarHash } from 'threepoint/core/body/worn-avatar';
+import { PassingFault } from 'threepoint/core/errors/passing-fault';
+import { SeenAvatars } from 'threepoint-page/ball/seen-avatars';
 import { expect, onTestFinished, test } from 'vitest';
-import { SeenAvatars } from '../../../src/app/ball/seen-avatars';
-import { PassingFault } from '../../../src/core/errors/passing-fault';
-import type { AvatarHash } from '../../../src/core/protocol/worn-avatar';
 import { collectGarbage } from '../../collect-garbage';
 
 const hash = createHash('sha256').update('an avatar').digest('base64url') as AvatarHash;

@@ -1,8 +1,8 @@
+import { Voices } from 'threepoint-page/ball/voices';
+import { createLoopbackHost } from 'threepoint-rooms/client/loopback-connection';
+import type { VoiceTerms } from 'threepoint-rooms/voices/voice-terms';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
-import { Voices } from '../../../src/app/ball/voices';
-import { createLoopbackHost } from '../../../src/net/loopback-connection';
-import type { VoiceTerms } from '../../../src/net/voices/voice-terms';
-import { visitor } from '../../net/people';
+import { visitor } from '../../rooms/client/people';
 
 const told: VoiceTerms = { voices: true, iceServers: [], goodFor: null };
 

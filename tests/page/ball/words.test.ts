@@ -1,4 +1,7 @@
-import { describe, expect, it } from 'vitest';
+import { identity } from 'threepoint/core/math/quat';
+import { vec3 } from 'threepoint/core/math/vec3';
+import type { BallEvent, BallPlace, BallState } from 'threepoint-games/ball/ball-state';
+import { ballRules } from 'threepoint-games/ball/rules';
 import {
   catchesOf,
   lineOfEvent,
@@ -9,16 +12,13 @@ import {
   seatOfButton,
   waitingFor,
   waitingLine,
-} from '../../../src/app/ball/board-drawing';
-import { cueCaption, eventCaption } from '../../../src/app/ball/captions';
-import { eventHaptics } from '../../../src/app/ball/haptics';
-import { createMatchClock } from '../../../src/app/ball/match-clock';
-import { labelScale } from '../../../src/app/ball/name-labels';
-import type { BallEvent, BallPlace, BallState } from '../../../src/core/games/ball/ball-state';
-import { ballRules } from '../../../src/core/games/ball/rules';
-import { identity } from '../../../src/core/math/quat';
-import { vec3 } from '../../../src/core/math/vec3';
-import { createSettling, settlingSeconds } from '../../../src/scene/boards/sheet';
+} from 'threepoint-page/ball/board-drawing';
+import { cueCaption, eventCaption } from 'threepoint-page/ball/captions';
+import { eventHaptics } from 'threepoint-page/ball/haptics';
+import { createMatchClock } from 'threepoint-page/ball/match-clock';
+import { labelScale } from 'threepoint-page/ball/name-labels';
+import { createSettling, settlingSeconds } from 'threepoint-page/scene/boards/sheet';
+import { describe, expect, it } from 'vitest';
 
 const person = (name: string, more: Partial<Person> = {}): Person => ({
   name,

@@ -1,22 +1,22 @@
-import { describe, expect, test } from 'vitest';
-import { drive } from '../../../bench/evaluate/drive';
-import { addClip, emptyMeasures, report, reportNames } from '../../../bench/evaluate/measures';
-import type { RecordedFrame } from '../../../bench/evaluate/recordings';
-import { meanErrors, meanOf } from '../../../src/app/mocap/joint-errors';
-import { pairFiles } from '../../../src/app/mocap/mocap-files';
-import { recordingOf } from '../../../src/app/mocap/simulated-recording';
-import { Truth } from '../../../src/app/mocap/truth';
-import { createEstimator } from '../../../src/core/estimation/estimators';
-import { mocapRateHz, prepareMocap } from '../../../src/core/mocap/prepare-mocap';
-import { finishWork } from '../../../src/core/motion/work';
+import { createEstimator } from 'threepoint/core/estimation/estimators';
+import { mocapRateHz, prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
+import { finishWork } from 'threepoint/core/motion/work';
 import {
   parseRecording,
   type Replayable,
   recordingDuration,
   sampleRecording,
   writeRecording,
-} from '../../../src/core/tracking/recording';
-import { goldenMocap, sourceOf } from '../../core/mocap/golden-mocap';
+} from 'threepoint/core/tracking/recording';
+import { meanErrors, meanOf } from 'threepoint-page/mocap/joint-errors';
+import { pairFiles } from 'threepoint-page/mocap/mocap-files';
+import { recordingOf } from 'threepoint-page/mocap/simulated-recording';
+import { Truth } from 'threepoint-page/mocap/truth';
+import { describe, expect, test } from 'vitest';
+import { drive } from '../../../bench/evaluate/drive';
+import { addClip, emptyMeasures, report, reportNames } from '../../../bench/evaluate/measures';
+import type { RecordedFrame } from '../../../bench/evaluate/recordings';
+import { goldenMocap, sourceOf } from '../../threepoint/core/mocap/golden-mocap';
 
 const clip = finishWork(prepareMocap(sourceOf(goldenMocap[0]!))).clips[0]!;
 

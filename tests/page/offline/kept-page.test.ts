@@ -1,5 +1,5 @@
+import { KeptPage } from 'threepoint-page/offline/kept-page';
 import { beforeEach, expect, test, vi } from 'vitest';
-import { KeptPage } from '../../../src/app/offline/kept-page';
 
 beforeEach(() => {
   vi.stubGlobal('location', { href: 'https://a.example/threepoint/?play=ball' });

@@ -1,10 +1,10 @@
 import { DoubleSide, type Material, Mesh, type Object3D } from 'three';
+import { createBackstop } from 'threepoint-page/archery/backstop';
+import { createTrails } from 'threepoint-page/archery/trails';
+import { createZone } from 'threepoint-page/archery/zone';
+import { createAimArc } from 'threepoint-page/ball/aim-arc';
+import { createZoneRing } from 'threepoint-page/ball/zone-ring';
 import { expect, test } from 'vitest';
-import { createBackstop } from '../../src/app/archery/backstop';
-import { createTrails } from '../../src/app/archery/trails';
-import { createZone } from '../../src/app/archery/zone';
-import { createAimArc } from '../../src/app/ball/aim-arc';
-import { createZoneRing } from '../../src/app/ball/zone-ring';
 
 test('what is transparent and seen from both sides is drawn in one pass, so that its program is not looked up anew in every frame', () => {
   const drawn: Object3D[] = [

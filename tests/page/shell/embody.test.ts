@@ -1,9 +1,9 @@
+import type { OwnBody } from 'threepoint/core/body/worn-avatar';
+import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
+import { ImpairedTracking } from 'threepoint/core/tracking/impaired-tracking';
+import { type EmbodyingParts, embody } from 'threepoint-page/shell/embody';
+import type { Settings } from 'threepoint-page/shell/settings';
 import { describe, expect, test } from 'vitest';
-import { type EmbodyingParts, embody } from '../../../src/app/shell/embody';
-import type { Settings } from '../../../src/app/shell/settings';
-import type { EstimatorName } from '../../../src/core/estimation/pose-estimator';
-import type { OwnBody } from '../../../src/core/protocol/worn-avatar';
-import { ImpairedTracking } from '../../../src/core/tracking/impaired-tracking';
 
 const head = {
   position: { x: 0, y: 1.6, z: 0 },

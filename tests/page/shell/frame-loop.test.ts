@@ -1,9 +1,9 @@
+import { Body } from 'threepoint/api/body';
+import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { createFrameLoop, type FrameParts } from 'threepoint-page/shell/frame-loop';
+import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
 import { describe, expect, test } from 'vitest';
-import { createFrameLoop, type FrameParts } from '../../../src/app/shell/frame-loop';
-import { createFrameTiming } from '../../../src/app/shell/frame-timing';
-import type { AvatarPose } from '../../../src/core/body/avatar-pose';
-import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
-import { Body } from '../../../src/lib/body';
 
 const head = {
   position: { x: 0, y: 1.6, z: 0 },

@@ -1,5 +1,5 @@
+import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
 import { describe, expect, test } from 'vitest';
-import { createFrameTiming } from '../../../src/app/shell/frame-timing';
 
 /** A clock that a test turns by hand [ms]. */
 function handClock() {

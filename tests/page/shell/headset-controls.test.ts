@@ -1,19 +1,19 @@
 import { Group, Vector3 } from 'three';
-import { afterAll, describe, expect, test, vi } from 'vitest';
-import type { OtherPlayer } from '../../../src/app/ball/other-players';
-import { HeadsetControls } from '../../../src/app/shell/controls/headset-controls';
-import { PageStudy } from '../../../src/app/shell/page-study';
-import { createSettings, SettingsWriter } from '../../../src/app/shell/settings';
-import { readSwitches } from '../../../src/app/shell/switches';
+import type { OtherPlayer } from 'threepoint-page/ball/other-players';
+import { HeadsetControls } from 'threepoint-page/shell/controls/headset-controls';
+import { PageStudy } from 'threepoint-page/shell/page-study';
+import { createSettings, SettingsWriter } from 'threepoint-page/shell/settings';
+import { readSwitches } from 'threepoint-page/shell/switches';
 import {
   menuButtons,
   menuHeight,
   noticesTop,
   type VrMenuActions,
   type VrMenuState,
-} from '../../../src/app/shell/vr-menu/menu-buttons';
-import type { CalibrationStep } from '../../../src/ui/calibration-dialog';
-import type { Pointer } from '../../../src/ui/vr-pointers';
+} from 'threepoint-page/shell/vr-menu/menu-buttons';
+import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
+import type { Pointer } from 'threepoint-ui/vr-pointers';
+import { afterAll, describe, expect, test, vi } from 'vitest';
 import { drawNowhere } from './drawing-in-node';
 
 drawNowhere();

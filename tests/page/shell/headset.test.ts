@@ -1,5 +1,5 @@
+import { Headset, type HeadsetOptions } from 'threepoint-page/shell/headset';
 import { afterEach, describe, expect, test, vi } from 'vitest';
-import { Headset, type HeadsetOptions } from '../../../src/app/shell/headset';
 
 /** Emulated devices that were installed in place of the browser's own. */
 let installed = 0;

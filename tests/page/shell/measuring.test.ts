@@ -1,14 +1,14 @@
+import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
+import { nothingPressed } from 'threepoint/core/input/button-presses';
+import type { TrackedPose } from 'threepoint/core/math/pose';
+import { vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { createActor } from 'threepoint-page/emulator/actor';
+import type { Emulator } from 'threepoint-page/emulator/emulator';
+import { Measuring } from 'threepoint-page/shell/controls/measuring';
+import { TrackingSource } from 'threepoint-page/shell/tracking-source';
+import { Recorder } from 'threepoint-page/studio/recorder';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
-import { Measuring } from '../../../src/app/shell/controls/measuring';
-import { TrackingSource } from '../../../src/app/shell/tracking-source';
-import { Recorder } from '../../../src/app/studio/recorder';
-import { type Calibration, defaultCalibration } from '../../../src/core/body/calibration';
-import { nothingPressed } from '../../../src/core/games/button-presses';
-import type { TrackedPose } from '../../../src/core/math/pose';
-import { vec3 } from '../../../src/core/math/vec3';
-import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
-import { createActor } from '../../../src/xr/actor';
-import type { Emulator } from '../../../src/xr/emulator';
 
 /** As much of an element as the dialog needs. */
 class Element extends EventTarget {

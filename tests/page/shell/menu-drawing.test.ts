@@ -1,5 +1,3 @@
-import { encode } from 'uqr';
-import { describe, expect, test } from 'vitest';
 import {
   type MenuButton,
   menuButtons,
@@ -9,9 +7,11 @@ import {
   type ShownInvitation,
   type VrMenuActions,
   type VrMenuState,
-} from '../../../src/app/shell/vr-menu/menu-buttons';
-import { drawMenu } from '../../../src/app/shell/vr-menu/menu-drawing';
-import { qrCode } from '../../../src/ui/qr-code';
+} from 'threepoint-page/shell/vr-menu/menu-buttons';
+import { drawMenu } from 'threepoint-page/shell/vr-menu/menu-drawing';
+import { qrCode } from 'threepoint-ui/qr-code';
+import { encode } from 'uqr';
+import { describe, expect, test } from 'vitest';
 
 const address = 'https://play.example.org/?play=ball&room=meadow';
 

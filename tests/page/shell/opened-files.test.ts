@@ -1,10 +1,10 @@
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { writeRecording } from 'threepoint/core/tracking/recording';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { OpenedFiles } from 'threepoint-page/shell/controls/opened-files';
+import { Recorder } from 'threepoint-page/studio/recorder';
+import type { Notice } from 'threepoint-ui/notices';
 import { describe, expect, test } from 'vitest';
-import { OpenedFiles } from '../../../src/app/shell/controls/opened-files';
-import { Recorder } from '../../../src/app/studio/recorder';
-import type { Calibration } from '../../../src/core/body/calibration';
-import { writeRecording } from '../../../src/core/tracking/recording';
-import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
-import type { Notice } from '../../../src/ui/notices';
 
 const person: Calibration = { eyeHeight: 1.72, armSpan: 1.7 };
 

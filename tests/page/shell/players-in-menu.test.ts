@@ -1,6 +1,6 @@
 import { Vector3 } from 'three';
-import { describe, expect, test } from 'vitest';
-import type { OtherPlayer } from '../../../src/app/ball/other-players';
+import { stations } from 'threepoint-games/ball/stations';
+import type { OtherPlayer } from 'threepoint-page/ball/other-players';
 import {
   menuButtons,
   menuHeight,
@@ -8,12 +8,12 @@ import {
   menuWidth,
   type VrMenuActions,
   type VrMenuState,
-} from '../../../src/app/shell/vr-menu/menu-buttons';
-import { drawMenu } from '../../../src/app/shell/vr-menu/menu-drawing';
-import { VrMenu } from '../../../src/app/shell/vr-menu/vr-menu';
-import { stations } from '../../../src/core/games/ball/stations';
-import { longestName } from '../../../src/core/protocol/names';
-import type { Pointer } from '../../../src/ui/vr-pointers';
+} from 'threepoint-page/shell/vr-menu/menu-buttons';
+import { drawMenu } from 'threepoint-page/shell/vr-menu/menu-drawing';
+import { VrMenu } from 'threepoint-page/shell/vr-menu/vr-menu';
+import { longestName } from 'threepoint-rooms/protocol/names';
+import type { Pointer } from 'threepoint-ui/vr-pointers';
+import { describe, expect, test } from 'vitest';
 import { drawNowhere } from './drawing-in-node';
 
 drawNowhere();

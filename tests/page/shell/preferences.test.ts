@@ -1,8 +1,8 @@
 import fc from 'fast-check';
+import { armSpanRange, eyeHeightRange } from 'threepoint/core/body/calibration';
+import { createPreferenceStore, parsePreferences } from 'threepoint-page/shell/preferences';
 import { describe, expect, test } from 'vitest';
-import { createPreferenceStore, parsePreferences } from '../../../src/app/shell/preferences';
-import { armSpanRange, eyeHeightRange } from '../../../src/core/body/calibration';
-import { evenly } from '../../core/arbitraries';
+import { evenly } from '../../threepoint/core/arbitraries';
 
 function memory(): Pick<Storage, 'getItem' | 'setItem'> {
   const items = new Map<string, string>();

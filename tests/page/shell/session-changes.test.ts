@@ -1,10 +1,10 @@
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
+import type { Headset } from 'threepoint-page/shell/headset';
+import { SessionChanges, type SessionChangesOptions } from 'threepoint-page/shell/session-changes';
+import { Recorder } from 'threepoint-page/studio/recorder';
 import { afterEach, expect, test, vi } from 'vitest';
-import { createFrameTiming } from '../../../src/app/shell/frame-timing';
-import type { Headset } from '../../../src/app/shell/headset';
-import { SessionChanges, type SessionChangesOptions } from '../../../src/app/shell/session-changes';
-import { Recorder } from '../../../src/app/studio/recorder';
-import { defaultCalibration } from '../../../src/core/body/calibration';
-import { actorFrame } from '../../../src/core/tracking/actor-motion';
 
 afterEach(() => vi.unstubAllGlobals());
 

@@ -1,12 +1,12 @@
 import { readFileSync } from 'node:fs';
 import { type Material, type Mesh, MeshStandardMaterial, type Object3D, Scene } from 'three';
+import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
+import type { WorkerAnswer, WorkerQuestion } from 'threepoint/avatar/file/check-worker';
+import { palettes, skinColors } from 'threepoint/avatar/palettes';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { ShownAvatar } from 'threepoint-page/shell/shown-avatar';
 import { afterEach, describe, expect, test, vi } from 'vitest';
-import { ShownAvatar } from '../../../src/app/shell/shown-avatar';
-import { checkAvatar } from '../../../src/avatar/file/check-avatar';
-import type { WorkerAnswer, WorkerQuestion } from '../../../src/avatar/file/check-worker';
-import { palettes, skinColors } from '../../../src/avatar/palettes';
-import { defaultCalibration } from '../../../src/core/body/calibration';
-import { builtRig } from '../../avatar/built-rig';
+import { builtRig } from '../../threepoint/avatar/built-rig';
 
 const file = readFileSync(new URL('../../../public/avatars/woman.vrm', import.meta.url));
 const bytes = () =>

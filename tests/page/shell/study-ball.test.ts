@@ -1,14 +1,19 @@
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { unknownFingers } from 'threepoint/core/body/hand-shape';
+import { createEstimator } from 'threepoint/core/estimation/estimators';
+import { allReleased, type Buttons } from 'threepoint/core/input/button-presses';
+import { createBallPlay } from 'threepoint-page/ball/ball-play';
+import { createBallRunner } from 'threepoint-page/shell/study-ball';
+import type { Connection, ConnectionStatus, Visitor } from 'threepoint-rooms/client/connection';
+import { createLoopbackHost } from 'threepoint-rooms/client/loopback-connection';
+import {
+  type FinishedTrial,
+  type PlayedStep,
+  type PlayedTrial,
+  playTrial,
+} from 'threepoint-study/participant/study-trial';
 import { expect, test } from 'vitest';
-import { createBallPlay } from '../../../src/app/ball/ball-play';
-import { createBallRunner } from '../../../src/app/shell/study-ball';
-import { type FinishedTrial, type PlayedStep, type PlayedTrial, playTrial } from '../../../src/app/study/study-trial';
-import { defaultCalibration } from '../../../src/core/body/calibration';
-import { unknownFingers } from '../../../src/core/body/hand-shape';
-import { createEstimator } from '../../../src/core/estimation/estimators';
-import { allReleased, type Buttons } from '../../../src/core/games/button-presses';
-import type { Connection, ConnectionStatus, Visitor } from '../../../src/net/connection';
-import { createLoopbackHost } from '../../../src/net/loopback-connection';
-import { poseOf } from '../../core/estimation/drawn';
+import { poseOf } from '../../threepoint/core/estimation/drawn';
 
 const released: Buttons = { left: allReleased, right: allReleased };
 const people = ['P01', 'P02', 'P03'];

@@ -1,14 +1,14 @@
+import { BareBody } from 'threepoint/api/bare-body';
+import { ReplayedBody } from 'threepoint/api/replayed-body';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { nothingPressed } from 'threepoint/core/input/button-presses';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import { createActor } from 'threepoint-page/emulator/actor';
+import { TrackingSource } from 'threepoint-page/shell/tracking-source';
+import { Recorder } from 'threepoint-page/studio/recorder';
 import { expect, test } from 'vitest';
-import { TrackingSource } from '../../../src/app/shell/tracking-source';
-import { Recorder } from '../../../src/app/studio/recorder';
-import { defaultCalibration } from '../../../src/core/body/calibration';
-import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
-import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import { nothingPressed } from '../../../src/core/games/button-presses';
-import { actorFrame } from '../../../src/core/tracking/actor-motion';
-import { BareBody } from '../../../src/lib/bare-body';
-import { ReplayedBody } from '../../../src/lib/replayed-body';
-import { createActor } from '../../../src/xr/actor';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 

@@ -1,5 +1,5 @@
+import { wakeSound } from 'threepoint-page/shell/wake-sound';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
-import { wakeSound } from '../../../src/app/shell/wake-sound';
 
 let page = new EventTarget();
 let userActivation = { hasBeenActive: false };

@@ -9,11 +9,11 @@ import {
   type WebGLRenderer,
   type WebGLRenderTarget,
 } from 'three';
+import { identity } from 'threepoint/core/math/quat';
+import { zero } from 'threepoint/core/math/vec3';
+import { daylight } from 'threepoint-page/scene/outdoors/daylight';
+import { createStudio } from 'threepoint-page/studio/studio';
 import { expect, test } from 'vitest';
-import { createStudio } from '../../../src/app/studio/studio';
-import { identity } from '../../../src/core/math/quat';
-import { zero } from '../../../src/core/math/vec3';
-import { daylight } from '../../../src/scene/outdoors/daylight';
 
 type Held = BufferGeometry | WebGLRenderTarget;
 

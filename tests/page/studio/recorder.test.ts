@@ -1,6 +1,6 @@
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { Recorder } from 'threepoint-page/studio/recorder';
 import { describe, expect, test } from 'vitest';
-import { Recorder } from '../../../src/app/studio/recorder';
-import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 
 const source = { device: 'emulated headset', rateHz: 72, calibration: { eyeHeight: 1.6, armSpan: 1.4 } };
 

@@ -1,6 +1,6 @@
+import { createBackOff } from 'threepoint-rooms/client/back-off';
+import { bannerText, connectionText } from 'threepoint-rooms/client/banner';
 import { describe, expect, test } from 'vitest';
-import { createBackOff } from '../../src/net/back-off';
-import { bannerText, connectionText } from '../../src/net/banner';
 
 describe('trying again', () => {
   test('waits longer after every failure, at most 4.5 s, and starts over after a success', () => {

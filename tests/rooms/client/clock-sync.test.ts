@@ -1,7 +1,7 @@
 import fc from 'fast-check';
+import { createClockSync } from 'threepoint-rooms/client/clock-sync';
 import { describe, expect, test } from 'vitest';
-import { createClockSync } from '../../src/net/clock-sync';
-import { tell } from '../tell';
+import { tell } from '../../tell';
 
 /** Asks for `seconds` from `start` on; one way takes `there()` and the other `back()` [s]. Returns when it was within 10 ms for good. */
 function follow(

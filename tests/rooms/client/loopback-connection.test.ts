@@ -1,7 +1,7 @@
+import type { BallAction } from 'threepoint-games/ball/ball-state';
+import { ballRules } from 'threepoint-games/ball/rules';
+import { createLoopbackHost, type LoopbackOptions } from 'threepoint-rooms/client/loopback-connection';
 import { describe, expect, test } from 'vitest';
-import type { BallAction } from '../../src/core/games/ball/ball-state';
-import { ballRules } from '../../src/core/games/ball/rules';
-import { createLoopbackHost, type LoopbackOptions } from '../../src/net/loopback-connection';
 import { atRack, createPerson, fists, holding, opening, releaseOf, visitor } from './people';
 
 /** Three people in a room of this page, frame by frame at 72 Hz. */

@@ -1,14 +1,14 @@
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { unknownFingers } from '../../src/core/body/hand-shape';
-import type { BallDeed, BallEvent } from '../../src/core/games/ball/ball-state';
-import { rackPosition, stations } from '../../src/core/games/ball/stations';
-import { gravity } from '../../src/core/games/ballistics';
-import { wristAround } from '../../src/core/games/fist';
-import { invertTransform, type Pose, transformPose } from '../../src/core/math/pose';
-import { identity } from '../../src/core/math/quat';
-import type { Side } from '../../src/core/math/side';
-import { add, addScaled, scale, subtract, type Vec3, vec3 } from '../../src/core/math/vec3';
-import type { Connection, ConnectionUpdate, ShownPose, Visitor } from '../../src/net/connection';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { unknownFingers } from 'threepoint/core/body/hand-shape';
+import { invertTransform, type Pose, transformPose } from 'threepoint/core/math/pose';
+import { identity } from 'threepoint/core/math/quat';
+import type { Side } from 'threepoint/core/math/side';
+import { add, addScaled, scale, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { BallDeed, BallEvent } from 'threepoint-games/ball/ball-state';
+import { rackPosition, stations } from 'threepoint-games/ball/stations';
+import { gravity } from 'threepoint-games/ballistics';
+import { wristAround } from 'threepoint-games/fist';
+import type { Connection, ConnectionUpdate, ShownPose, Visitor } from 'threepoint-rooms/client/connection';
 
 export const visitor = (name: string, more: Partial<Visitor> = {}): Visitor => ({
   name,

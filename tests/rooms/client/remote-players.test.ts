@@ -1,18 +1,18 @@
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { unknownFingers } from 'threepoint/core/body/hand-shape';
+import { createIk } from 'threepoint/core/estimation/estimators';
+import { angleBetween, fromAxisAngle, identity } from 'threepoint/core/math/quat';
+import { randomNumbers } from 'threepoint/core/math/random';
+import { distance, up, vec3 } from 'threepoint/core/math/vec3';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import { firstDelay, longestExtrapolation, type PlaybackReport } from 'threepoint-rooms/client/playback';
+import { createRemotePlayers } from 'threepoint-rooms/client/remote-players';
+import { packetMs } from 'threepoint-rooms/protocol/packet-time';
+import type { PosePacket } from 'threepoint-rooms/protocol/pose-packet';
 import { describe, expect, test } from 'vitest';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { unknownFingers } from '../../src/core/body/hand-shape';
-import { createIk } from '../../src/core/estimation/estimators';
-import { angleBetween, fromAxisAngle, identity } from '../../src/core/math/quat';
-import { randomNumbers } from '../../src/core/math/random';
-import { distance, up, vec3 } from '../../src/core/math/vec3';
-import { packetMs } from '../../src/core/protocol/packet-time';
-import type { PosePacket } from '../../src/core/protocol/pose-packet';
-import { actorFrame } from '../../src/core/tracking/actor-motion';
-import { firstDelay, longestExtrapolation, type PlaybackReport } from '../../src/net/playback';
-import { createRemotePlayers } from '../../src/net/remote-players';
-import { poseOf } from '../core/estimation/drawn';
-import { isNightly } from '../nightly';
-import { tell } from '../tell';
+import { isNightly } from '../../nightly';
+import { tell } from '../../tell';
+import { poseOf } from '../../threepoint/core/estimation/drawn';
 
 /** A person whose head goes along x at 1 m/s, hands beside it. */
 function walker(time: number, more: Partial<PosePacket> = {}, lostLeft = false): PosePacket {

@@ -1,11 +1,11 @@
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import type { BallRoomMessage } from 'threepoint-games/ball/ball-messages';
+import { type BallGame, BallPolicy } from 'threepoint-games/ball/ball-policy';
+import type { ConnectionStatus, ConnectionUpdate } from 'threepoint-rooms/client/connection';
+import { RoomSession } from 'threepoint-rooms/client/room-session';
+import type { ClientMessage } from 'threepoint-rooms/protocol/messages';
+import { Room } from 'threepoint-rooms/room/room';
 import { expect, test } from 'vitest';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { type BallGame, BallPolicy } from '../../src/core/match-policies/ball-policy';
-import type { BallRoomMessage } from '../../src/core/protocol/ball-messages';
-import type { ClientMessage } from '../../src/core/protocol/messages';
-import { Room } from '../../src/core/room/room';
-import type { ConnectionStatus, ConnectionUpdate } from '../../src/net/connection';
-import { RoomSession } from '../../src/net/room-session';
 import { visitor } from './people';
 
 /** A client whose wire takes as long as the test wants: what the Room says waits until it is delivered. */

@@ -1,6 +1,6 @@
 import { describe, expect, test } from 'vitest';
-import { seenOver, type Way } from '../../bench/relay/ages';
-import { tell } from '../tell';
+import { seenOver, type Way } from '../../../bench/relay/ages';
+import { tell } from '../../tell';
 
 const seconds = 60;
 

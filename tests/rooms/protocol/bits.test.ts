@@ -1,7 +1,7 @@
 import fc from 'fast-check';
+import { createBitReader, createBitWriter } from 'threepoint-rooms/protocol/bits';
 import { expect, test } from 'vitest';
-import { createBitReader, createBitWriter } from '../../../src/core/protocol/bits';
-import { seed } from '../arbitraries';
+import { seed } from '../../threepoint/core/arbitraries';
 
 const numbers = fc.array(
   fc.integer({ min: 1, max: 24 }).chain((bits) => fc.record({ bits: fc.constant(bits), value: fc.nat(2 ** bits - 1) })),

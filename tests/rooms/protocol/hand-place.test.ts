@@ -1,15 +1,15 @@
 import fc from 'fast-check';
-import { expect, test } from 'vitest';
-import { distance, type Vec3, vec3 } from '../../../src/core/math/vec3';
-import { createBitReader, createBitWriter } from '../../../src/core/protocol/bits';
+import { distance, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { createBitReader, createBitWriter } from 'threepoint-rooms/protocol/bits';
 import {
   fromHandPlace,
   makeHandPlaceSteps,
   readHandPlace,
   toHandPlace,
   writeHandPlace,
-} from '../../../src/core/protocol/hand-place';
-import { evenly, seed, vector } from '../arbitraries';
+} from 'threepoint-rooms/protocol/hand-place';
+import { expect, test } from 'vitest';
+import { evenly, seed, vector } from '../../threepoint/core/arbitraries';
 
 /** What a receiver makes of a hand, in five bytes. */
 function received(head: Vec3, hand: Vec3): Vec3 {

@@ -1,8 +1,8 @@
 import { createHash } from 'node:crypto';
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
-import { defaultCalibration } from '../../../src/core/body/calibration';
-import { ballActionFrom, ballRoomMessageFrom } from '../../../src/core/protocol/ball-messages';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { ownAvatarOf, ownBodies, plainAvatar, skinTones } from 'threepoint/core/body/worn-avatar';
+import { ballActionFrom, ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
 import {
   type ClientMessage,
   clientMessageFrom,
@@ -10,13 +10,13 @@ import {
   packSeatInfo,
   protocolVersion,
   unpackSeatInfo,
-} from '../../../src/core/protocol/messages';
-import { cleanName } from '../../../src/core/protocol/names';
-import { encodeFrame } from '../../../src/core/protocol/pose-frame';
-import { poseVersion } from '../../../src/core/protocol/pose-packet';
-import { pageParser, relayParser, type SocketPacket } from '../../../src/core/protocol/small-frames';
-import { longestDescription, mostCandidates } from '../../../src/core/protocol/voice-messages';
-import { ownAvatarOf, ownBodies, plainAvatar, skinTones } from '../../../src/core/protocol/worn-avatar';
+} from 'threepoint-rooms/protocol/messages';
+import { cleanName } from 'threepoint-rooms/protocol/names';
+import { encodeFrame } from 'threepoint-rooms/protocol/pose-frame';
+import { poseVersion } from 'threepoint-rooms/protocol/pose-packet';
+import { pageParser, relayParser, type SocketPacket } from 'threepoint-rooms/protocol/small-frames';
+import { longestDescription, mostCandidates } from 'threepoint-rooms/protocol/voice-messages';
+import { describe, expect, test } from 'vitest';
 import { measured } from '../../reliability/measured';
 import { noPackets } from './no-packets';
 

@@ -1,15 +1,9 @@
 import fc from 'fast-check';
+import { unknownFingers } from 'threepoint/core/body/hand-shape';
+import { mostSeats } from 'threepoint-rooms/protocol/messages';
+import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
+import { decodeFrame, encodeFrame, frameLength, type SeatPose, writeFrame } from 'threepoint-rooms/protocol/pose-frame';
 import { beforeAll, describe, expect, test } from 'vitest';
-import { unknownFingers } from '../../../src/core/body/hand-shape';
-import { mostSeats } from '../../../src/core/protocol/messages';
-import { encodePose } from '../../../src/core/protocol/pose-codec';
-import {
-  decodeFrame,
-  encodeFrame,
-  frameLength,
-  type SeatPose,
-  writeFrame,
-} from '../../../src/core/protocol/pose-frame';
 import { packetOf, senders } from './sent-bodies';
 
 const seed = 20261122;

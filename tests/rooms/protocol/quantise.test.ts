@@ -1,8 +1,7 @@
 import fc from 'fast-check';
-import { expect, test } from 'vitest';
-import { angleBetween } from '../../../src/core/math/quat';
-import { dot } from '../../../src/core/math/vec3';
-import { createBitReader, createBitWriter } from '../../../src/core/protocol/bits';
+import { angleBetween } from 'threepoint/core/math/quat';
+import { dot } from 'threepoint/core/math/vec3';
+import { createBitReader, createBitWriter } from 'threepoint-rooms/protocol/bits';
 import {
   fromDirectionSteps,
   fromQuatSteps,
@@ -17,8 +16,9 @@ import {
   writeDirection,
   writeQuat,
   writeStep,
-} from '../../../src/core/protocol/quantise';
-import { direction, number, rotation, seed } from '../arbitraries';
+} from 'threepoint-rooms/protocol/quantise';
+import { expect, test } from 'vitest';
+import { direction, number, rotation, seed } from '../../threepoint/core/arbitraries';
 
 const degrees = 180 / Math.PI;
 

@@ -1,18 +1,18 @@
 import fc from 'fast-check';
-import type { Calibration } from '../../../src/core/body/calibration';
-import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import { createIk } from '../../../src/core/estimation/estimators';
-import type { PoseEstimator } from '../../../src/core/estimation/pose-estimator';
-import type { TrackedPose } from '../../../src/core/math/pose';
-import { fromAxisAngle, multiply } from '../../../src/core/math/quat';
-import { up, vec3 } from '../../../src/core/math/vec3';
-import { packetMs } from '../../../src/core/protocol/packet-time';
-import type { PosePacket } from '../../../src/core/protocol/pose-packet';
-import { actorFrame } from '../../../src/core/tracking/actor-motion';
-import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
-import { evenly, rotation, standpoint, vector } from '../arbitraries';
-import { show } from '../estimation/drawn';
-import { movingPerson, transformFrame, withHand } from '../estimation/moving-person';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { createIk } from 'threepoint/core/estimation/estimators';
+import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
+import type { TrackedPose } from 'threepoint/core/math/pose';
+import { fromAxisAngle, multiply } from 'threepoint/core/math/quat';
+import { up, vec3 } from 'threepoint/core/math/vec3';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { packetMs } from 'threepoint-rooms/protocol/packet-time';
+import type { PosePacket } from 'threepoint-rooms/protocol/pose-packet';
+import { evenly, rotation, standpoint, vector } from '../../threepoint/core/arbitraries';
+import { show } from '../../threepoint/core/estimation/drawn';
+import { movingPerson, transformFrame, withHand } from '../../threepoint/core/estimation/moving-person';
 
 export const calibrationOf = fc
   .tuple(evenly(0.95, 2.1), evenly(0.82, 1.05))

@@ -1,7 +1,7 @@
-import { createMatch } from '../../../src/core/games/match';
-import { identity } from '../../../src/core/math/quat';
-import { vec3 } from '../../../src/core/math/vec3';
-import type { HostedGame, MatchAction, MatchPolicy, MatchState } from '../../../src/core/room/match-policy';
+import { identity } from 'threepoint/core/math/quat';
+import { vec3 } from 'threepoint/core/math/vec3';
+import { createMatch } from 'threepoint-games/match';
+import type { HostedGame, MatchAction, MatchPolicy, MatchState } from 'threepoint-rooms/room/match-policy';
 
 interface CountingState extends MatchState {
   readonly total: number;

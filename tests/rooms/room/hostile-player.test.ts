@@ -1,10 +1,10 @@
+import { distance, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { ClientMessage } from 'threepoint-rooms/protocol/messages';
+import { packetMs } from 'threepoint-rooms/protocol/packet-time';
+import { decodePoints } from 'threepoint-rooms/protocol/pose-codec';
+import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
+import { fastestHead } from 'threepoint-rooms/room/pose-claims';
 import { describe, expect, test } from 'vitest';
-import { distance, type Vec3, vec3 } from '../../../src/core/math/vec3';
-import type { ClientMessage } from '../../../src/core/protocol/messages';
-import { packetMs } from '../../../src/core/protocol/packet-time';
-import { decodePoints } from '../../../src/core/protocol/pose-codec';
-import { decodeFrame } from '../../../src/core/protocol/pose-frame';
-import { fastestHead } from '../../../src/core/room/pose-claims';
 import { measured } from '../../reliability/measured';
 import { poseOf } from './posed-head';
 import { toldRoom } from './told-room';

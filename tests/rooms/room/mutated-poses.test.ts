@@ -1,17 +1,17 @@
 import fc from 'fast-check';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { randomNumbers } from 'threepoint/core/math/random';
+import { distance } from 'threepoint/core/math/vec3';
+import { packetMs } from 'threepoint-rooms/protocol/packet-time';
+import { decodePose, encodePose } from 'threepoint-rooms/protocol/pose-codec';
+import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
 import { expect, test } from 'vitest';
-import type { Calibration } from '../../../src/core/body/calibration';
-import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
-import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import { randomNumbers } from '../../../src/core/math/random';
-import { distance } from '../../../src/core/math/vec3';
-import { packetMs } from '../../../src/core/protocol/packet-time';
-import { decodePose, encodePose } from '../../../src/core/protocol/pose-codec';
-import { decodeFrame } from '../../../src/core/protocol/pose-frame';
 import { isNightly } from '../../nightly';
 import { measured } from '../../reliability/measured';
-import { seed } from '../arbitraries';
-import { numbersIn } from '../numbers-in';
+import { seed } from '../../threepoint/core/arbitraries';
+import { numbersIn } from '../../threepoint/core/numbers-in';
 import { packetOf, senders } from '../protocol/sent-bodies';
 import { toldRoom } from './told-room';
 

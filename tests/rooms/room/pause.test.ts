@@ -1,7 +1,7 @@
+import { ballMatchTime, ballSecondsLeft } from 'threepoint-games/ball/state-readings';
+import { poseMemory } from 'threepoint-rooms/room/pose-claims';
 import { describe, expect, test } from 'vitest';
-import { ballMatchTime, ballSecondsLeft } from '../../../src/core/games/ball/state-readings';
-import { poseMemory } from '../../../src/core/room/pose-claims';
-import { atRack, fists, holding, opening, releaseOf, velocityTo } from '../../net/people';
+import { atRack, fists, holding, opening, releaseOf, velocityTo } from '../client/people';
 import { toldRoom } from './told-room';
 
 /** A room that may be paused, its match under way. */

@@ -1,6 +1,6 @@
+import { vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
-import { vec3 } from '../../../src/core/math/vec3';
-import { fists } from '../../net/people';
+import { fists } from '../client/people';
 import { packetAt, toldRoom } from './told-room';
 
 describe('of poses the Room does not believe', () => {

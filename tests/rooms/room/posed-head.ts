@@ -1,9 +1,9 @@
-import { defaultCalibration } from '../../../src/core/body/calibration';
-import { unknownFingers } from '../../../src/core/body/hand-shape';
-import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import { identity } from '../../../src/core/math/quat';
-import { add, type Vec3, vec3 } from '../../../src/core/math/vec3';
-import { encodePose } from '../../../src/core/protocol/pose-codec';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { unknownFingers } from 'threepoint/core/body/hand-shape';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { identity } from 'threepoint/core/math/quat';
+import { add, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 

@@ -1,17 +1,17 @@
 import fc from 'fast-check';
+import { randomNumbers } from 'threepoint/core/math/random';
+import { addScaled, isFiniteVec3, vec3 } from 'threepoint/core/math/vec3';
+import { ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
+import { packBall, unpackBall } from 'threepoint-games/ball/ball-snapshot';
+import type { BallDeed, BallState } from 'threepoint-games/ball/ball-state';
+import { clientMessageFrom, mostSeats } from 'threepoint-rooms/protocol/messages';
+import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
+import { relayParser } from 'threepoint-rooms/protocol/small-frames';
+import { Room } from 'threepoint-rooms/room/room';
 import { describe, expect, test } from 'vitest';
-import type { BallDeed, BallState } from '../../../src/core/games/ball/ball-state';
-import { randomNumbers } from '../../../src/core/math/random';
-import { addScaled, isFiniteVec3, vec3 } from '../../../src/core/math/vec3';
-import { ballRoomMessageFrom } from '../../../src/core/protocol/ball-messages';
-import { packBall, unpackBall } from '../../../src/core/protocol/ball-snapshot';
-import { clientMessageFrom, mostSeats } from '../../../src/core/protocol/messages';
-import { decodeFrame } from '../../../src/core/protocol/pose-frame';
-import { relayParser } from '../../../src/core/protocol/small-frames';
-import { Room } from '../../../src/core/room/room';
-import { atRack, fists, holding, opening, releaseOf, velocityTo } from '../../net/people';
 import { isNightly } from '../../nightly';
 import { tell } from '../../tell';
+import { atRack, fists, holding, opening, releaseOf, velocityTo } from '../client/people';
 import { countingPolicy } from './counting-game';
 import { joining, packetAt, toldRoom } from './told-room';
 

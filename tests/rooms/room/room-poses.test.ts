@@ -1,6 +1,6 @@
+import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
 import { describe, expect, test } from 'vitest';
-import { decodeFrame } from '../../../src/core/protocol/pose-frame';
-import { fists, opening, releaseOf } from '../../net/people';
+import { fists, opening, releaseOf } from '../client/people';
 import { packetAt, toldRoom } from './told-room';
 
 describe('poses and stillness of a room', () => {

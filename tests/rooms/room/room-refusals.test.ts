@@ -1,8 +1,8 @@
+import { vec3 } from 'threepoint/core/math/vec3';
+import type { BallDeed } from 'threepoint-games/ball/ball-state';
+import { clientMessageFrom } from 'threepoint-rooms/protocol/messages';
 import { describe, expect, test } from 'vitest';
-import type { BallDeed } from '../../../src/core/games/ball/ball-state';
-import { vec3 } from '../../../src/core/math/vec3';
-import { clientMessageFrom } from '../../../src/core/protocol/messages';
-import { atRack, fists, opening, releaseOf, velocityTo } from '../../net/people';
+import { atRack, fists, opening, releaseOf, velocityTo } from '../client/people';
 import { toldRoom } from './told-room';
 
 describe('what the Room refuses', () => {

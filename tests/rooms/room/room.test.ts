@@ -1,14 +1,14 @@
 import fc from 'fast-check';
+import { BallPolicy } from 'threepoint-games/ball/ball-policy';
+import { packBall, unpackBall } from 'threepoint-games/ball/ball-snapshot';
+import type { BallState } from 'threepoint-games/ball/ball-state';
+import { followBallEvent } from 'threepoint-games/ball/replica';
+import { ballRules } from 'threepoint-games/ball/rules';
+import { clientMessageFrom, protocolVersion, unpackSeatInfo } from 'threepoint-rooms/protocol/messages';
+import { Room } from 'threepoint-rooms/room/room';
+import { seatHoldSeconds } from 'threepoint-rooms/room/seats';
 import { describe, expect, test } from 'vitest';
-import type { BallState } from '../../../src/core/games/ball/ball-state';
-import { followBallEvent } from '../../../src/core/games/ball/replica';
-import { ballRules } from '../../../src/core/games/ball/rules';
-import { BallPolicy } from '../../../src/core/match-policies/ball-policy';
-import { packBall, unpackBall } from '../../../src/core/protocol/ball-snapshot';
-import { clientMessageFrom, protocolVersion, unpackSeatInfo } from '../../../src/core/protocol/messages';
-import { Room } from '../../../src/core/room/room';
-import { seatHoldSeconds } from '../../../src/core/room/seats';
-import { atRack, fists, opening, releaseOf, velocityTo } from '../../net/people';
+import { atRack, fists, opening, releaseOf, velocityTo } from '../client/people';
 import { joining, toldRoom } from './told-room';
 
 const presence = (told: ReturnType<typeof toldRoom>, seat: number) => {

@@ -1,8 +1,8 @@
+import type { RoomMessage } from 'threepoint-rooms/protocol/messages';
+import { Room } from 'threepoint-rooms/room/room';
+import type { FreshPose, RoomRefusal } from 'threepoint-rooms/room/room-outlet';
 import { expect, test } from 'vitest';
-import type { RoomMessage } from '../../../src/core/protocol/messages';
-import { Room } from '../../../src/core/room/room';
-import type { FreshPose, RoomRefusal } from '../../../src/core/room/room-outlet';
-import { fists, opening } from '../../net/people';
+import { fists, opening } from '../client/people';
 import { type CountingGame, countingPolicy } from './counting-game';
 import { joining, packetAt } from './told-room';
 

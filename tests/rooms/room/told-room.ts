@@ -1,17 +1,17 @@
-import { defaultCalibration } from '../../../src/core/body/calibration';
-import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import type { BallAction, BallDeed, BallEvent, BallOptions, BallState } from '../../../src/core/games/ball/ball-state';
-import { arenaFromSeatFloor } from '../../../src/core/games/ball/stations';
-import { type BallGame, BallPolicy } from '../../../src/core/match-policies/ball-policy';
-import { type BallRoomMessage, ballRoomMessageFrom } from '../../../src/core/protocol/ball-messages';
-import type { Joining } from '../../../src/core/protocol/messages';
-import { packetMs } from '../../../src/core/protocol/packet-time';
-import { encodePose } from '../../../src/core/protocol/pose-codec';
-import { encodeFrame } from '../../../src/core/protocol/pose-frame';
-import { plainAvatar } from '../../../src/core/protocol/worn-avatar';
-import { Room, type RoomOptions } from '../../../src/core/room/room';
-import type { RoomRefusal } from '../../../src/core/room/room-outlet';
-import { fists, holding, opening, releaseOf, shownAt } from '../../net/people';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { plainAvatar } from 'threepoint/core/body/worn-avatar';
+import { type BallRoomMessage, ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
+import { type BallGame, BallPolicy } from 'threepoint-games/ball/ball-policy';
+import type { BallAction, BallDeed, BallEvent, BallOptions, BallState } from 'threepoint-games/ball/ball-state';
+import { arenaFromSeatFloor } from 'threepoint-games/ball/stations';
+import type { Joining } from 'threepoint-rooms/protocol/messages';
+import { packetMs } from 'threepoint-rooms/protocol/packet-time';
+import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
+import { encodeFrame } from 'threepoint-rooms/protocol/pose-frame';
+import { Room, type RoomOptions } from 'threepoint-rooms/room/room';
+import type { RoomRefusal } from 'threepoint-rooms/room/room-outlet';
+import { fists, holding, opening, releaseOf, shownAt } from '../client/people';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 

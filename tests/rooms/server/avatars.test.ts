@@ -1,14 +1,14 @@
 import { createHash, randomBytes } from 'node:crypto';
 import { request as httpRequest } from 'node:http';
+import { mostAvatarBytes } from 'threepoint/core/body/worn-avatar';
+import { createAvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
+import { createRoomPass } from 'threepoint-rooms/client/room-pass';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';
-import { mostAvatarBytes } from '../../src/core/protocol/worn-avatar';
-import { createAvatarExchange } from '../../src/net/avatar-exchange';
-import { createRoomPass } from '../../src/net/room-pass';
-import { changed } from '../avatar/glb';
-import { paperPlan } from '../core/study/studies';
-import { measured } from '../reliability/measured';
+import { measured } from '../../reliability/measured';
+import { paperPlan } from '../../study/model/studies';
+import { studySeats } from '../../study/server/running-studies';
+import { changed } from '../../threepoint/avatar/glb';
 import { type RunningRelay, rawGuest, startRelay, tokenFor, until } from './running-relay';
-import { studySeats } from './running-studies';
 
 const megabyte = 2 ** 20;
 let relay: RunningRelay;

@@ -1,17 +1,17 @@
 import { fork } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import { expect, onTestFinished, test } from 'vitest';
-import type { ClientAnswer, Heard, Load, Meeting } from '../../bench/relay/conversation';
-import { isNightly } from '../nightly';
-import { measured } from '../reliability/measured';
-import { heardFrom, kill } from './child-process';
+import type { ClientAnswer, Heard, Load, Meeting } from '../../../bench/relay/conversation';
+import { isNightly } from '../../nightly';
+import { measured } from '../../reliability/measured';
+import { heardFrom, kill } from '../../server/child-process';
 import { forkRelay } from './relay-child';
 import { testSecret } from './running-relay';
 
 const crowd = { rooms: isNightly ? 200 : 20, seconds: isNightly ? 600 : 5 };
 /** Before it, so that the code is compiled and every buffer has been used once. */
 const warmUp = { rooms: 20, seconds: 3 };
-const clientsScript = fileURLToPath(new URL('../../bench/relay/clients.ts', import.meta.url));
+const clientsScript = fileURLToPath(new URL('../../../bench/relay/clients.ts', import.meta.url));
 
 interface Census {
   readonly rooms: number;

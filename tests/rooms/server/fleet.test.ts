@@ -6,15 +6,15 @@ import { connect, createServer } from 'node:net';
 import { monitorEventLoopDelay } from 'node:perf_hooks';
 import { fileURLToPath } from 'node:url';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
-import { isNightly } from '../nightly';
-import { tell } from '../tell';
-import { installed } from './installed';
+import { isNightly } from '../../nightly';
+import { installed } from '../../server/installed';
+import { tell } from '../../tell';
 import { forkRelay } from './relay-child';
 import { arrive, pause, testSecret, until } from './running-relay';
 
 const programs = { haproxy: installed('haproxy'), redis: installed('redis-server') };
 const missing = Object.values(programs).includes(null);
-const config = fileURLToPath(new URL('../../deploy/haproxy.cfg', import.meta.url));
+const config = fileURLToPath(new URL('../../../deploy/haproxy.cfg', import.meta.url));
 
 async function freePort(): Promise<number> {
   const server = createServer().listen(0, '127.0.0.1');

@@ -1,9 +1,9 @@
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { plainAvatar } from 'threepoint/core/body/worn-avatar';
+import { protocolVersion } from 'threepoint-rooms/protocol/messages';
+import { lobbyNamespace } from 'threepoint-rooms/server/lobby-hall';
 import { expect, onTestFinished, test } from 'vitest';
 import { WebSocket } from 'ws';
-import { lobbyNamespace } from '../../server/lobby-hall';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { protocolVersion } from '../../src/core/protocol/messages';
-import { plainAvatar } from '../../src/core/protocol/worn-avatar';
 import { rawGuest, startRelay, until } from './running-relay';
 
 /** More than any connection may send at once, by far. */

@@ -1,6 +1,6 @@
+import { PoseSchedule } from 'threepoint-rooms/server/pose-schedule';
+import { createTicker } from 'threepoint-rooms/server/tick';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
-import { PoseSchedule } from '../../server/pose-schedule';
-import { createTicker } from '../../server/tick';
 
 beforeEach(() => {
   vi.useFakeTimers();

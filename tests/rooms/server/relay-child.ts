@@ -1,6 +1,6 @@
 import { fork } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
-import { heardFrom, kill } from './child-process';
+import { heardFrom, kill } from '../../server/child-process';
 
 /** What a relay's process tells of itself. */
 export interface RelayMeasure {

@@ -1,18 +1,19 @@
 // @module-tag full
+
+import { plainAvatar } from 'threepoint/core/body/worn-avatar';
+import { nextRandom } from 'threepoint/core/math/random';
+import { ballKind } from 'threepoint-games/ball/ball-messages';
+import { createRemotePlayers } from 'threepoint-rooms/client/remote-players';
+import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
+import { protocolVersion } from 'threepoint-rooms/protocol/messages';
+import { packetMs } from 'threepoint-rooms/protocol/packet-time';
+import { createRoomTokens } from 'threepoint-rooms/server/room-tokens';
 import { afterEach, describe, expect, test } from 'vitest';
 import { WebSocket } from 'ws';
-import { createRoomTokens } from '../../server/room-tokens';
-import { nextRandom } from '../../src/core/math/random';
-import { ballKind } from '../../src/core/protocol/ball-messages';
-import { protocolVersion } from '../../src/core/protocol/messages';
-import { packetMs } from '../../src/core/protocol/packet-time';
-import { plainAvatar } from '../../src/core/protocol/worn-avatar';
-import { createRemotePlayers } from '../../src/net/remote-players';
-import { createSocketConnection } from '../../src/net/socket-connection';
-import { collectGarbage } from '../collect-garbage';
-import { fists, holding, opening, releaseOf, visitor } from '../net/people';
-import { isNightly } from '../nightly';
-import { percentile, tell } from '../tell';
+import { collectGarbage } from '../../collect-garbage';
+import { isNightly } from '../../nightly';
+import { percentile, tell } from '../../tell';
+import { fists, holding, opening, releaseOf, visitor } from '../client/people';
 import { forkRelay } from './relay-child';
 import { arrive, poseBytes, rawGuest, seconds, startRelay, testSecret, tokenFor, until } from './running-relay';
 import { createSlowWay } from './slow-way';

@@ -1,8 +1,8 @@
 import { SignJWT } from 'jose';
+import { clientAddressOf } from 'threepoint-http/client-address';
+import { relayConfigurationFrom } from 'threepoint-rooms/server/relay-configuration';
+import { createRoomTokens } from 'threepoint-rooms/server/room-tokens';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
-import { clientAddressOf } from '../../server/client-address';
-import { relayConfigurationFrom } from '../../server/relay-configuration';
-import { createRoomTokens } from '../../server/room-tokens';
 import { type RunningRelay, rawGuest, rawSocket, startRelay, testSecret, tokenFor, until } from './running-relay';
 
 let server: RunningRelay;

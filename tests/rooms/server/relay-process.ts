@@ -1,6 +1,6 @@
 // A relay in a process of its own, so that it can be killed and its memory and its event loop measured.
 import { monitorEventLoopDelay } from 'node:perf_hooks';
-import { collectGarbage } from '../collect-garbage';
+import { collectGarbage } from '../../collect-garbage';
 import { startRelay } from './running-relay';
 
 const lag = monitorEventLoopDelay({ resolution: 5 });

@@ -1,10 +1,10 @@
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import type { BallState } from 'threepoint-games/ball/ball-state';
+import { bannerText } from 'threepoint-rooms/client/banner';
+import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
+import { messageEvent } from 'threepoint-rooms/protocol/small-frames';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import type { BallState } from '../../src/core/games/ball/ball-state';
-import { messageEvent } from '../../src/core/protocol/small-frames';
-import { bannerText } from '../../src/net/banner';
-import type { ConnectionStatus } from '../../src/net/connection';
-import { atRack, fists, holding, opening, releaseOf } from '../net/people';
+import { atRack, fists, holding, opening, releaseOf } from '../client/people';
 import { arrive, type RunningRelay, rawSocket, startRelay, tokenFor, until } from './running-relay';
 
 let server: RunningRelay;

@@ -1,10 +1,10 @@
+import { scheduleFor } from 'threepoint-study/model/schedule';
 import { expect, onTestFinished, test } from 'vitest';
-import { scheduleFor } from '../../src/core/study/schedule';
-import { paperPlan, session } from '../core/study/studies';
-import { fists, holding, opening, releaseOf } from '../net/people';
-import { measured } from '../reliability/measured';
+import { measured } from '../../reliability/measured';
+import { experimenterToken, forkServer } from '../../server/server-child';
+import { paperPlan, session } from '../../study/model/studies';
+import { fists, holding, opening, releaseOf } from '../client/people';
 import { arrive, tokenFor, until } from './running-relay';
-import { experimenterToken, forkServer } from './server-child';
 import { createSlowWay } from './slow-way';
 
 const hour = 3600;

@@ -1,7 +1,7 @@
+import { randomNumbers } from 'threepoint/core/math/random';
+import { type ReceivingWebSocket, takeShortMessages } from 'threepoint-rooms/server/short-messages';
 import { describe, expect, test } from 'vitest';
 import * as ws from 'ws';
-import { type ReceivingWebSocket, takeShortMessages } from '../../server/short-messages';
-import { randomNumbers } from '../../src/core/math/random';
 
 const chance = randomNumbers(20261123);
 const below = (end: number): number => Math.floor(chance() * end);

@@ -1,10 +1,10 @@
 import { createHmac } from 'node:crypto';
+import type { SignalBody } from 'threepoint-rooms/protocol/voice-messages';
+import { relayConfigurationFrom } from 'threepoint-rooms/server/relay-configuration';
 import { afterAll, beforeAll, describe, expect, onTestFinished, test } from 'vitest';
-import { relayConfigurationFrom } from '../../server/relay-configuration';
-import type { SignalBody } from '../../src/core/protocol/voice-messages';
-import { paperPlan } from '../core/study/studies';
+import { paperPlan } from '../../study/model/studies';
+import { studySeats } from '../../study/server/running-studies';
 import { arrive, type RunningRelay, rawGuest, startRelay, tokenFor, until } from './running-relay';
-import { studySeats } from './running-studies';
 
 const offer: SignalBody = { description: { type: 'offer', sdp: 'v=0\r\n' } };
 const turnSecret = 'turn-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';

@@ -1,6 +1,6 @@
+import { KeptTerms } from 'threepoint-rooms/voices/kept-terms';
+import type { VoiceTerms } from 'threepoint-rooms/voices/voice-terms';
 import { describe, expect, test } from 'vitest';
-import { KeptTerms } from '../../src/net/voices/kept-terms';
-import type { VoiceTerms } from '../../src/net/voices/voice-terms';
 
 /** A server that gives numbered passes, each good for so long [s]; null: it has no relay. */
 function serverOf(goodFor: number | null) {

@@ -2,16 +2,16 @@ import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { planJsonSchema } from 'threepoint-study/cli/check/plan-json-schema';
+import { shippedPhrases } from 'threepoint-study/model/phrases/phrases';
+import { checkedPlan, planComplaints, type StudyTask } from 'threepoint-study/model/plan';
+import { durationOf, outlineOf } from 'threepoint-study/model/plan-outline';
+import { orderCounts } from 'threepoint-study/model/plan-remarks';
 import { describe, expect, test } from 'vitest';
-import { planJsonSchema } from '../../scripts/study-check/plan-json-schema';
-import { shippedPhrases } from '../../src/core/study/phrases/phrases';
-import { checkedPlan, planComplaints, type StudyTask } from '../../src/core/study/plan';
-import { durationOf, outlineOf } from '../../src/core/study/plan-outline';
-import { orderCounts } from '../../src/core/study/plan-remarks';
-import { examplePlan, paperFile, paperPlan } from '../core/study/studies';
-import { directoryWith } from '../temporary-directory';
+import { directoryWith } from '../../temporary-directory';
+import { examplePlan, paperFile, paperPlan } from '../model/studies';
 
-const root = fileURLToPath(new URL('../..', import.meta.url));
+const root = fileURLToPath(new URL('../../..', import.meta.url));
 const read = (path: string) => readFileSync(join(root, path), 'utf8');
 
 describe('the schema for editors', () => {

@@ -1,13 +1,13 @@
-import { expect, test } from 'vitest';
-import { requestMs } from '../../server/web-server';
+import { requestMs } from 'threepoint-http/web-server';
 import {
   createParticipantClient,
   motionPatienceMs,
   NoStudyServer,
   ServerRefusal,
   ServerUnreachable,
-} from '../../src/net/study-client';
-import { answeringHost, says } from './answering-host';
+} from 'threepoint-study/client/study-client';
+import { expect, test } from 'vitest';
+import { answeringHost, says } from '../../rooms/client/answering-host';
 
 const clientOf = async (status: number, body: string) =>
   createParticipantClient((await answeringHost(says(status, body))).folder);

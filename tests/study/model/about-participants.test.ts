@@ -1,6 +1,6 @@
+import { checkedConsent } from 'threepoint-study/model/consent';
+import { checkedDemographics, demographicFields } from 'threepoint-study/model/demographics';
 import { describe, expect, test } from 'vitest';
-import { checkedConsent } from '../../../src/core/study/consent';
-import { checkedDemographics, demographicFields } from '../../../src/core/study/demographics';
 import { aWomanOf26 } from './studies';
 
 describe('demographics', () => {

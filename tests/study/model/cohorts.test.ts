@@ -1,10 +1,10 @@
 import fc from 'fast-check';
+import { cohortsByParticipant, groupsOf, ordersByGroup } from 'threepoint-study/model/allocation';
+import { checkedPlan, participantsOf, type StudyCohort, type StudyTask } from 'threepoint-study/model/plan';
+import { cohortCounts, orderCounts, remarksOn } from 'threepoint-study/model/plan-remarks';
+import { scheduleFor } from 'threepoint-study/model/schedule';
 import { describe, expect, test } from 'vitest';
-import { cohortsByParticipant, groupsOf, ordersByGroup } from '../../../src/core/study/allocation';
-import { checkedPlan, participantsOf, type StudyCohort, type StudyTask } from '../../../src/core/study/plan';
-import { cohortCounts, orderCounts, remarksOn } from '../../../src/core/study/plan-remarks';
-import { scheduleFor } from '../../../src/core/study/schedule';
-import { seed } from '../arbitraries';
+import { seed } from '../../threepoint/core/arbitraries';
 import { paperPlan } from './studies';
 
 const bodies = (count: number): StudyCohort[] =>

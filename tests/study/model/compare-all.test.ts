@@ -1,6 +1,6 @@
+import { compareAll } from 'threepoint-study/model/compare-all';
+import { answerMeasures } from 'threepoint-study/model/measures';
 import { expect, test } from 'vitest';
-import { compareAll } from '../../../src/core/study/compare-all';
-import { answerMeasures } from '../../../src/core/study/measures';
 import { chicks, plantGrowth, roundingTimes } from '../statistics/data-sets';
 import { rowsOf } from './answered';
 

@@ -1,11 +1,11 @@
+import { type CohortComparison, compareCohorts } from 'threepoint-study/model/compare-cohorts';
+import { measuresIn, resultTables } from 'threepoint-study/model/exported-results';
+import { frameTimes } from 'threepoint-study/model/frame-times';
+import { answerMeasures } from 'threepoint-study/model/measures';
+import { checkedPlan } from 'threepoint-study/model/plan';
+import { modelsWith, simulateStudy } from 'threepoint-study/simulation/simulate-study';
+import { holm } from 'threepoint-study/statistics/holm';
 import { describe, expect, test } from 'vitest';
-import { modelsWith, simulateStudy } from '../../../src/core/rehearsal/simulate-study';
-import { holm } from '../../../src/core/statistics/holm';
-import { type CohortComparison, compareCohorts } from '../../../src/core/study/compare-cohorts';
-import { measuresIn, resultTables } from '../../../src/core/study/exported-results';
-import { frameTimes } from '../../../src/core/study/frame-times';
-import { answerMeasures } from '../../../src/core/study/measures';
-import { checkedPlan } from '../../../src/core/study/plan';
 import { expectAsInR } from '../statistics/as-in-r';
 import { chicks, plantGrowth } from '../statistics/data-sets';
 import { rowsOf } from './answered';

@@ -1,18 +1,18 @@
-import { describe, expect, test } from 'vitest';
+import { ordersByGroup } from 'threepoint-study/model/allocation';
+import type { AnswerRow } from 'threepoint-study/model/answer-tables';
+import { compareAnswers, compareScores } from 'threepoint-study/model/compare-conditions';
+import { questionnairesOf, type StudyTask } from 'threepoint-study/model/plan';
+import type { TrialRow } from 'threepoint-study/model/study-tables';
 import {
   type AnswerModel,
   answerModelWith,
   drawAnswers,
   drawPerson,
   nullAnswerModel,
-} from '../../../src/core/rehearsal/answer-model';
-import { randomSource } from '../../../src/core/rehearsal/random-source';
-import { signedRankTest } from '../../../src/core/statistics/paired-tests';
-import { ordersByGroup } from '../../../src/core/study/allocation';
-import type { AnswerRow } from '../../../src/core/study/answer-tables';
-import { compareAnswers, compareScores } from '../../../src/core/study/compare-conditions';
-import { questionnairesOf, type StudyTask } from '../../../src/core/study/plan';
-import type { TrialRow } from '../../../src/core/study/study-tables';
+} from 'threepoint-study/simulation/answer-model';
+import { randomSource } from 'threepoint-study/simulation/random-source';
+import { signedRankTest } from 'threepoint-study/statistics/paired-tests';
+import { describe, expect, test } from 'vitest';
 import { threeRounds } from '../statistics/data-sets';
 import { paperPlan } from './studies';
 

@@ -1,13 +1,13 @@
+import { compareAnswers } from 'threepoint-study/model/compare-conditions';
+import { checkedPlan, languagesOf, participantsOf, type StudyPlan } from 'threepoint-study/model/plan';
+import { resumed } from 'threepoint-study/model/progress';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import { checkedRecord, type StudyRecord } from 'threepoint-study/model/study-record';
+import { answersIn, scalesIn, studyTables } from 'threepoint-study/model/study-tables';
+import { nullAnswerModel } from 'threepoint-study/simulation/answer-model';
+import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
+import { simulateStudy } from 'threepoint-study/simulation/simulate-study';
 import { describe, expect, test } from 'vitest';
-import { nullAnswerModel } from '../../../src/core/rehearsal/answer-model';
-import { statedPerformanceModel } from '../../../src/core/rehearsal/performance-model';
-import { simulateStudy } from '../../../src/core/rehearsal/simulate-study';
-import { compareAnswers } from '../../../src/core/study/compare-conditions';
-import { checkedPlan, languagesOf, participantsOf, type StudyPlan } from '../../../src/core/study/plan';
-import { resumed } from '../../../src/core/study/progress';
-import { scheduleFor } from '../../../src/core/study/schedule';
-import { checkedRecord, type StudyRecord } from '../../../src/core/study/study-record';
-import { answersIn, scalesIn, studyTables } from '../../../src/core/study/study-tables';
 import { examplePlan, paperPlan, session } from './studies';
 
 const plan = examplePlan();

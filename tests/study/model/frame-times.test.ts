@@ -1,6 +1,6 @@
+import { frameTimes } from 'threepoint-study/model/frame-times';
+import type { StudyRecord, TrialRecord } from 'threepoint-study/model/study-record';
 import { expect, test } from 'vitest';
-import { frameTimes } from '../../../src/core/study/frame-times';
-import type { StudyRecord, TrialRecord } from '../../../src/core/study/study-record';
 import { outcomeOf } from './studies';
 
 function trial(participant: string, condition: string | null, frames: readonly number[], run = 1): TrialRecord {

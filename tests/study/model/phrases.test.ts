@@ -1,7 +1,6 @@
-import { describe, expect, test } from 'vitest';
-import type { Phrase } from '../../../src/core/study/phrases/catalogue';
-import { english } from '../../../src/core/study/phrases/english';
-import { german } from '../../../src/core/study/phrases/german';
+import type { Phrase } from 'threepoint-study/model/phrases/catalogue';
+import { english } from 'threepoint-study/model/phrases/english';
+import { german } from 'threepoint-study/model/phrases/german';
 import {
   gapsIn,
   missingKeys,
@@ -10,9 +9,10 @@ import {
   phraseKeys,
   phrasesOf,
   preferredLanguage,
-} from '../../../src/core/study/phrases/phrases';
-import { checkedPlan, planComplaints } from '../../../src/core/study/plan';
-import { remarksOn } from '../../../src/core/study/plan-remarks';
+} from 'threepoint-study/model/phrases/phrases';
+import { checkedPlan, planComplaints } from 'threepoint-study/model/plan';
+import { remarksOn } from 'threepoint-study/model/plan-remarks';
+import { describe, expect, test } from 'vitest';
 import { examplePlan } from './studies';
 
 const formsOf = (phrase: Phrase): readonly string[] => (typeof phrase === 'string' ? [phrase] : Object.values(phrase));

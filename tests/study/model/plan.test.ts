@@ -1,9 +1,9 @@
 import fc from 'fast-check';
+import { groupsOf, ordersByGroup, ordersOf } from 'threepoint-study/model/allocation';
+import { checkedPlan, parsePlan, participantsOf, type StudyPlan, type StudyTask } from 'threepoint-study/model/plan';
+import { blindLabel, scheduleFor } from 'threepoint-study/model/schedule';
 import { describe, expect, test } from 'vitest';
-import { groupsOf, ordersByGroup, ordersOf } from '../../../src/core/study/allocation';
-import { checkedPlan, parsePlan, participantsOf, type StudyPlan, type StudyTask } from '../../../src/core/study/plan';
-import { blindLabel, scheduleFor } from '../../../src/core/study/schedule';
-import { seed } from '../arbitraries';
+import { seed } from '../../threepoint/core/arbitraries';
 import { paperFile, paperPlan } from './studies';
 
 const orderNames = (plan: StudyPlan, task: StudyTask) =>

@@ -1,10 +1,10 @@
+import { compareConditions } from 'threepoint-study/model/compare-conditions';
+import { measuresIn, overallComparisons, resultTables } from 'threepoint-study/model/exported-results';
+import { checkedPlan } from 'threepoint-study/model/plan';
+import { remarksOn } from 'threepoint-study/model/plan-remarks';
+import { modelsWith, simulateStudy } from 'threepoint-study/simulation/simulate-study';
+import { holm } from 'threepoint-study/statistics/holm';
 import { expect, test } from 'vitest';
-import { modelsWith, simulateStudy } from '../../../src/core/rehearsal/simulate-study';
-import { holm } from '../../../src/core/statistics/holm';
-import { compareConditions } from '../../../src/core/study/compare-conditions';
-import { measuresIn, overallComparisons, resultTables } from '../../../src/core/study/exported-results';
-import { checkedPlan } from '../../../src/core/study/plan';
-import { remarksOn } from '../../../src/core/study/plan-remarks';
 import { examplePlan, latencyPlan } from './studies';
 
 const plan = latencyPlan({ participants: 6 });

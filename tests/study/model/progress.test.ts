@@ -1,6 +1,5 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
-import type { ProgressEvent } from '../../../src/core/study/advance';
+import type { ProgressEvent } from 'threepoint-study/model/advance';
 import {
   begin,
   clockText,
@@ -9,10 +8,11 @@ import {
   reported,
   resumed,
   sinceReport,
-} from '../../../src/core/study/progress';
-import { scheduleFor } from '../../../src/core/study/schedule';
-import { checkedRecord } from '../../../src/core/study/study-record';
-import { seed } from '../arbitraries';
+} from 'threepoint-study/model/progress';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import { checkedRecord } from 'threepoint-study/model/study-record';
+import { describe, expect, test } from 'vitest';
+import { seed } from '../../threepoint/core/arbitraries';
 import { aWomanOf26, outcomeOf, paperPlan, session } from './studies';
 
 const schedule = scheduleFor(paperPlan(), 'P02');

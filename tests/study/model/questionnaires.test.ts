@@ -1,8 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { describe, expect, test } from 'vitest';
-import type { QuestionnaireFile } from '../../../src/core/study/questionnaire-schema';
-import { scaleRange, scaleScore } from '../../../src/core/study/questionnaire-scores';
+import type { QuestionnaireFile } from 'threepoint-study/model/questionnaire-schema';
+import { scaleRange, scaleScore } from 'threepoint-study/model/questionnaire-scores';
 import {
   type Answers,
   checkedAnswers,
@@ -12,7 +11,8 @@ import {
   shippedQuestionnaires,
   typedAnswer,
   unanswered,
-} from '../../../src/core/study/questionnaires';
+} from 'threepoint-study/model/questionnaires';
+import { describe, expect, test } from 'vitest';
 
 const shipped = (id: string): Questionnaire => {
   const found = shippedQuestionnaires[id];

@@ -1,13 +1,13 @@
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { advance, type ProgressEvent } from '../../../src/core/study/advance';
-import { parsePlan, type StudyPlan } from '../../../src/core/study/plan';
-import { begin, currentStep, type Progress } from '../../../src/core/study/progress';
-import type { AnswerForm } from '../../../src/core/study/questionnaire-schema';
-import { type Answer, nearestOn } from '../../../src/core/study/questionnaires';
-import type { Schedule, StudyStep } from '../../../src/core/study/schedule';
-import type { StudyRecord } from '../../../src/core/study/study-record';
-import { createTrialLog, type TrialOutcome } from '../../../src/core/study/trial-log';
+import { advance, type ProgressEvent } from 'threepoint-study/model/advance';
+import { parsePlan, type StudyPlan } from 'threepoint-study/model/plan';
+import { begin, currentStep, type Progress } from 'threepoint-study/model/progress';
+import type { AnswerForm } from 'threepoint-study/model/questionnaire-schema';
+import { type Answer, nearestOn } from 'threepoint-study/model/questionnaires';
+import type { Schedule, StudyStep } from 'threepoint-study/model/schedule';
+import type { StudyRecord } from 'threepoint-study/model/study-record';
+import { createTrialLog, type TrialOutcome } from 'threepoint-study/model/trial-log';
 
 export const paperFile = readFileSync(
   fileURLToPath(new URL('../../../public/studies/paper.json', import.meta.url)),

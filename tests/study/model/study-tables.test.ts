@@ -1,8 +1,8 @@
+import { participantsOf } from 'threepoint-study/model/plan';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import { answersIn, studyTables, trialsIn } from 'threepoint-study/model/study-tables';
+import { tidyCsv } from 'threepoint-study/model/tidy-csv';
 import { describe, expect, test } from 'vitest';
-import { participantsOf } from '../../../src/core/study/plan';
-import { scheduleFor } from '../../../src/core/study/schedule';
-import { answersIn, studyTables, trialsIn } from '../../../src/core/study/study-tables';
-import { tidyCsv } from '../../../src/core/study/tidy-csv';
 import { paperPlan, session } from './studies';
 
 const plan = paperPlan();

@@ -1,8 +1,8 @@
 import fc from 'fast-check';
+import { csvRows } from 'threepoint-study/cli/verify/csv-rows';
+import { codebookOf, type Table, text, tidyCsv } from 'threepoint-study/model/tidy-csv';
 import { describe, expect, test } from 'vitest';
-import { csvRows } from '../../../scripts/study-verify/csv-rows';
-import { codebookOf, type Table, text, tidyCsv } from '../../../src/core/study/tidy-csv';
-import { seed } from '../arbitraries';
+import { seed } from '../../threepoint/core/arbitraries';
 
 const tableOf = (...cells: Table['rows'][number][string][]): Table => ({
   name: 'remarks',

@@ -1,14 +1,14 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
-import { scheduleFor } from '../../../src/core/study/schedule';
-import { checkedRecord, longestRecord } from '../../../src/core/study/study-record';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import { checkedRecord, longestRecord } from 'threepoint-study/model/study-record';
 import {
   checkedOutcome,
   createDurationStatistics,
   createTrialLog,
   mostTrialEvents,
-} from '../../../src/core/study/trial-log';
-import { number, seed } from '../arbitraries';
+} from 'threepoint-study/model/trial-log';
+import { describe, expect, test } from 'vitest';
+import { number, seed } from '../../threepoint/core/arbitraries';
 import { outcomeOf, paperPlan, session } from './studies';
 
 const device = { name: 'Test headset', refreshRateHz: 90, input: 'controllers' } as const;

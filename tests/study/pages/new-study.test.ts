@@ -1,6 +1,6 @@
+import { planToBegin } from 'threepoint-study/pages/new-study';
 import { expect, test } from 'vitest';
-import { planToBegin } from '../../src/pages/new-study';
-import { examplePlan } from '../core/study/studies';
+import { examplePlan } from '../model/studies';
 import { now, servedStudies } from '../server/running-studies';
 
 test('a study is begun as simulated with any name that a plan may have, and is called so in each of its languages', async () => {

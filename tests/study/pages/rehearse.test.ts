@@ -1,9 +1,9 @@
+import { createExperimenterClient } from 'threepoint-study/client/study-client';
+import { measuresIn, overallComparisons } from 'threepoint-study/model/exported-results';
+import { answersIn, trialsIn } from 'threepoint-study/model/study-tables';
+import { rehearse } from 'threepoint-study/pages/rehearse';
 import { expect, test } from 'vitest';
-import { measuresIn, overallComparisons } from '../../src/core/study/exported-results';
-import { answersIn, trialsIn } from '../../src/core/study/study-tables';
-import { createExperimenterClient } from '../../src/net/study-client';
-import { rehearse } from '../../src/pages/rehearse';
-import { examplePlan, latencyPlan } from '../core/study/studies';
+import { examplePlan, latencyPlan } from '../model/studies';
 import { experimenter, now, servedStudies } from '../server/running-studies';
 
 const effects = { answers: { 'late-200': -1.5 }, scores: {} };

@@ -1,10 +1,10 @@
+import { compareConditions } from 'threepoint-study/model/compare-conditions';
+import { checkedPlan, type StudyTask } from 'threepoint-study/model/plan';
+import { scaleCharts } from 'threepoint-study/pages/comparison-figures';
+import { shownResults } from 'threepoint-study/pages/shown-results';
+import { modelsWith, simulateStudy } from 'threepoint-study/simulation/simulate-study';
 import { expect, test } from 'vitest';
-import { modelsWith, simulateStudy } from '../../src/core/rehearsal/simulate-study';
-import { compareConditions } from '../../src/core/study/compare-conditions';
-import { checkedPlan, type StudyTask } from '../../src/core/study/plan';
-import { scaleCharts } from '../../src/pages/comparison-figures';
-import { shownResults } from '../../src/pages/shown-results';
-import { latencyPlan } from '../core/study/studies';
+import { latencyPlan } from '../model/studies';
 
 test('two tasks that participants read alike stand side by side in a figure, each with its id', () => {
   const [task] = latencyPlan().tasks as [StudyTask];

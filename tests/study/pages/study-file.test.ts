@@ -1,16 +1,16 @@
 import { strToU8, zipSync } from 'fflate';
+import { compareAnswers } from 'threepoint-study/model/compare-conditions';
+import { comparisonTable, paperTable } from 'threepoint-study/model/result-tables';
+import { answersIn } from 'threepoint-study/model/study-tables';
+import { tidyCsv } from 'threepoint-study/model/tidy-csv';
+import { shownResults } from 'threepoint-study/pages/shown-results';
+import { openStudyFile } from 'threepoint-study/pages/study-file';
+import { exportZip } from 'threepoint-study/server/study-export';
+import { nullAnswerModel } from 'threepoint-study/simulation/answer-model';
+import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
+import { simulatedPlan, simulateStudy } from 'threepoint-study/simulation/simulate-study';
 import { expect, test } from 'vitest';
-import { exportZip } from '../../server/study-export';
-import { nullAnswerModel } from '../../src/core/rehearsal/answer-model';
-import { statedPerformanceModel } from '../../src/core/rehearsal/performance-model';
-import { simulatedPlan, simulateStudy } from '../../src/core/rehearsal/simulate-study';
-import { compareAnswers } from '../../src/core/study/compare-conditions';
-import { comparisonTable, paperTable } from '../../src/core/study/result-tables';
-import { answersIn } from '../../src/core/study/study-tables';
-import { tidyCsv } from '../../src/core/study/tidy-csv';
-import { shownResults } from '../../src/pages/shown-results';
-import { openStudyFile } from '../../src/pages/study-file';
-import { paperPlan } from '../core/study/studies';
+import { paperPlan } from '../model/studies';
 import { testSoftware } from '../server/running-studies';
 
 const plan = simulatedPlan(paperPlan());

@@ -1,6 +1,6 @@
 import fc from 'fast-check';
+import { swarm } from 'threepoint-study/pages/swarm';
 import { expect, test } from 'vitest';
-import { swarm } from '../../src/pages/swarm';
 
 const apart = (values: readonly number[], beside: readonly number[]) => {
   let least = Number.POSITIVE_INFINITY;

@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import { aWomanOf26 } from '../../core/study/studies';
+import { aWomanOf26 } from '../model/studies';
 import { agree, canStart, measure, play } from './participant-steps';
 import { browser } from './study-browser';
 import { type StudyServer, studyServer } from './study-server';

@@ -1,15 +1,15 @@
+import { plainAvatar } from 'threepoint/core/body/worn-avatar';
+import { assignedSeat } from 'threepoint-page/ball/ball-connections';
+import { relayConfigurationFrom } from 'threepoint-rooms/server/relay-configuration';
+import { createExperimenterClient, createParticipantClient } from 'threepoint-study/client/study-client';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import type { ParticipantState } from 'threepoint-study/model/study-api';
 import { expect, onTestFinished, test, vi } from 'vitest';
-import { relayConfigurationFrom } from '../../../server/relay-configuration';
 import { startServer } from '../../../server/start';
-import { assignedSeat } from '../../../src/app/ball/ball-connections';
-import { plainAvatar } from '../../../src/core/protocol/worn-avatar';
-import { scheduleFor } from '../../../src/core/study/schedule';
-import type { ParticipantState } from '../../../src/core/study/study-api';
-import { createExperimenterClient, createParticipantClient } from '../../../src/net/study-client';
-import { paperPlan } from '../../core/study/studies';
-import { visitor } from '../../net/people';
-import { testSecret, until } from '../../server/running-relay';
+import { visitor } from '../../rooms/client/people';
+import { testSecret, until } from '../../rooms/server/running-relay';
 import { directoryWith } from '../../temporary-directory';
+import { paperPlan } from '../model/studies';
 
 const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 const trial = { step: 'ball/1/trial-1', run: 1 };

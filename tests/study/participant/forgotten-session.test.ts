@@ -1,5 +1,5 @@
+import { openStudyVault } from 'threepoint-study/participant/study-vault';
 import { expect, test } from 'vitest';
-import { openStudyVault } from '../../../src/app/study/study-vault';
 import { beforeTheQuestions } from './participant-steps';
 import { studyServer } from './study-server';
 

@@ -1,13 +1,13 @@
 import 'fake-indexeddb/auto';
-import { expect } from 'vitest';
+import { createParticipantClient } from 'threepoint-study/client/study-client';
 import {
   createParticipantSession,
   type ParticipantSession,
   startSession,
-} from '../../../src/app/study/participant-session';
-import { openStudyVault, type StudyVault } from '../../../src/app/study/study-vault';
-import { createParticipantClient } from '../../../src/net/study-client';
-import { aWomanOf26, outcomeOf, paperPlan } from '../../core/study/studies';
+} from 'threepoint-study/participant/participant-session';
+import { openStudyVault, type StudyVault } from 'threepoint-study/participant/study-vault';
+import { expect } from 'vitest';
+import { aWomanOf26, outcomeOf, paperPlan } from '../model/studies';
 
 const plan = paperPlan();
 

@@ -1,9 +1,9 @@
 import { request as httpRequest } from 'node:http';
+import { writeRecording } from 'threepoint/core/tracking/recording';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { unpacked } from 'threepoint-study/server/study-motion';
 import { expect, test } from 'vitest';
-import { unpacked } from '../../../server/study-motion';
-import { writeRecording } from '../../../src/core/tracking/recording';
-import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
-import { answeringHost } from '../../net/answering-host';
+import { answeringHost } from '../../rooms/client/answering-host';
 import { calibration, device, toTheFirstQuestion } from './participant-device';
 import { type StudyServer, studyServer } from './study-server';
 

@@ -1,7 +1,7 @@
+import { createParticipantClient } from 'threepoint-study/client/study-client';
+import { isLater } from 'threepoint-study/model/progress';
+import { createParticipantSession, startSession } from 'threepoint-study/participant/participant-session';
 import { afterEach, expect, test, vi } from 'vitest';
-import { createParticipantSession, startSession } from '../../../src/app/study/participant-session';
-import { isLater } from '../../../src/core/study/progress';
-import { createParticipantClient } from '../../../src/net/study-client';
 import { calibration, device, toTheFirstQuestion, toTheFirstRest } from './participant-device';
 import { studyServer } from './study-server';
 

@@ -1,5 +1,5 @@
 import { expect } from 'vitest';
-import { aWomanOf26 } from '../../core/study/studies';
+import { aWomanOf26 } from '../model/studies';
 import { browser, type Tab } from './study-browser';
 import type { StudyServer } from './study-server';
 

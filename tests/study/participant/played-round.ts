@@ -1,7 +1,7 @@
-import { createArcheryPlay } from '../../../src/app/archery/archery-play';
-import { createArcheryRunner } from '../../../src/app/shell/study-archery';
-import { type FinishedTrial, playTrial } from '../../../src/app/study/study-trial';
-import { defaultCalibration } from '../../../src/core/body/calibration';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { createArcheryPlay } from 'threepoint-page/archery/archery-play';
+import { createArcheryRunner } from 'threepoint-page/shell/study-archery';
+import { type FinishedTrial, playTrial } from 'threepoint-study/participant/study-trial';
 
 export const frameSeconds = 1 / 72;
 export const epoch = 1_800_000_000;

@@ -1,9 +1,9 @@
+import { planComplaints } from 'threepoint-study/model/plan';
+import { outlineOf } from 'threepoint-study/model/plan-outline';
+import { planFrom } from 'threepoint-study/participant/preview/plan-source';
+import { PreviewWalk } from 'threepoint-study/participant/preview/preview-walk';
 import { describe, expect, test } from 'vitest';
-import { planFrom } from '../../../src/app/study/preview/plan-source';
-import { PreviewWalk } from '../../../src/app/study/preview/preview-walk';
-import { planComplaints } from '../../../src/core/study/plan';
-import { outlineOf } from '../../../src/core/study/plan-outline';
-import { examplePlan, latencyPlan, paperPlan } from '../../core/study/studies';
+import { examplePlan, latencyPlan, paperPlan } from '../model/studies';
 
 const walkOf = (plan = examplePlan(), participant = 'P01') =>
   new PreviewWalk({

@@ -1,14 +1,14 @@
+import { phrasesOf } from 'threepoint-study/model/phrases/phrases';
+import { begin } from 'threepoint-study/model/progress';
+import type { Question } from 'threepoint-study/model/questionnaire-schema';
+import { type Answer, type Answers, shippedQuestionnaires, typedAnswer } from 'threepoint-study/model/questionnaires';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import type { ParticipantSession } from 'threepoint-study/participant/participant-session';
+import { questionPart } from 'threepoint-study/participant/question-screen';
+import { questionTargets } from 'threepoint-study/participant/question-sheet';
+import { height, width } from 'threepoint-study/participant/sheet-target';
 import { describe, expect, test } from 'vitest';
-import type { ParticipantSession } from '../../../src/app/study/participant-session';
-import { questionPart } from '../../../src/app/study/question-screen';
-import { questionTargets } from '../../../src/app/study/question-sheet';
-import { height, width } from '../../../src/app/study/sheet-target';
-import { phrasesOf } from '../../../src/core/study/phrases/phrases';
-import { begin } from '../../../src/core/study/progress';
-import type { Question } from '../../../src/core/study/questionnaire-schema';
-import { type Answer, type Answers, shippedQuestionnaires, typedAnswer } from '../../../src/core/study/questionnaires';
-import { scheduleFor } from '../../../src/core/study/schedule';
-import { examplePlan } from '../../core/study/studies';
+import { examplePlan } from '../model/studies';
 
 const plan = examplePlan();
 const schedule = scheduleFor(plan, 'P01');

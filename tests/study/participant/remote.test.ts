@@ -1,8 +1,8 @@
+import { Phrases } from 'threepoint-study/model/phrases/phrases';
+import { setupFaults } from 'threepoint-study/model/remote-setup';
+import { safekeepingText } from 'threepoint-study/participant/study-screens';
 import { describe, expect, test } from 'vitest';
-import { safekeepingText } from '../../../src/app/study/study-screens';
-import { Phrases } from '../../../src/core/study/phrases/phrases';
-import { setupFaults } from '../../../src/core/study/remote-setup';
-import { aWomanOf26 } from '../../core/study/studies';
+import { aWomanOf26 } from '../model/studies';
 import { agree, canStart } from './participant-steps';
 import { browser, type Tab } from './study-browser';
 import { studyServer } from './study-server';

@@ -1,20 +1,20 @@
 import 'fake-indexeddb/auto';
 import { IDBFactory } from 'fake-indexeddb';
+import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
+import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
+import type { Side } from 'threepoint/core/math/side';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { createParticipantClient } from 'threepoint-study/client/study-client';
+import type { Embodiment } from 'threepoint-study/model/embodiment';
+import type { DeviceFault } from 'threepoint-study/model/remote-setup';
+import type { FrameListener } from 'threepoint-study/model/trial-log';
+import type { Invited, StudyForm } from 'threepoint-study/participant/study-form';
+import type { StudyHost } from 'threepoint-study/participant/study-host';
+import type { StudyAddressBar, StudyDisplay, StudyPage } from 'threepoint-study/participant/study-page';
+import type { StudyScreen } from 'threepoint-study/participant/study-screen';
+import { StudyVisit } from 'threepoint-study/participant/study-visit';
+import type { TaskEnd, TaskEvent, TaskPlace, TaskRunner } from 'threepoint-study/participant/task-runner';
 import { expect, onTestFinished, vi } from 'vitest';
-import type { Invited, StudyForm } from '../../../src/app/study/study-form';
-import type { StudyHost } from '../../../src/app/study/study-host';
-import type { StudyAddressBar, StudyDisplay, StudyPage } from '../../../src/app/study/study-page';
-import type { StudyScreen } from '../../../src/app/study/study-screen';
-import { StudyVisit } from '../../../src/app/study/study-visit';
-import type { TaskEnd, TaskEvent, TaskPlace, TaskRunner } from '../../../src/app/study/task-runner';
-import { type Calibration, defaultCalibration } from '../../../src/core/body/calibration';
-import type { EstimatorName } from '../../../src/core/estimation/pose-estimator';
-import type { Side } from '../../../src/core/math/side';
-import type { Embodiment } from '../../../src/core/study/embodiment';
-import type { DeviceFault } from '../../../src/core/study/remote-setup';
-import type { FrameListener } from '../../../src/core/study/trial-log';
-import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
-import { createParticipantClient } from '../../../src/net/study-client';
 import type { StudyServer } from './study-server';
 
 /** A clock that stands until the test lets time pass, and what is to be done by it. */

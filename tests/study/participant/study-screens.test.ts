@@ -1,13 +1,13 @@
+import { createParticipantClient } from 'threepoint-study/client/study-client';
+import type { ProgressEvent } from 'threepoint-study/model/advance';
+import { Phrases } from 'threepoint-study/model/phrases/phrases';
+import { typedAnswer } from 'threepoint-study/model/questionnaires';
+import { createParticipantSession, startSession } from 'threepoint-study/participant/participant-session';
+import type { StudyScreen } from 'threepoint-study/participant/study-screen';
+import { safekeepingText, screenOf } from 'threepoint-study/participant/study-screens';
+import type { ScreenActions, StudySituation } from 'threepoint-study/participant/study-situation';
 import { describe, expect, test } from 'vitest';
-import { createParticipantSession, startSession } from '../../../src/app/study/participant-session';
-import type { StudyScreen } from '../../../src/app/study/study-screen';
-import { safekeepingText, screenOf } from '../../../src/app/study/study-screens';
-import type { ScreenActions, StudySituation } from '../../../src/app/study/study-situation';
-import type { ProgressEvent } from '../../../src/core/study/advance';
-import { Phrases } from '../../../src/core/study/phrases/phrases';
-import { typedAnswer } from '../../../src/core/study/questionnaires';
-import { createParticipantClient } from '../../../src/net/study-client';
-import { aWomanOf26, outcomeOf, paperPlan } from '../../core/study/studies';
+import { aWomanOf26, outcomeOf, paperPlan } from '../model/studies';
 
 const plan = paperPlan();
 const consent = { type: 'consent', version: plan.consent.version, motion: false } as const;

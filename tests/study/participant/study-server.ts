@@ -1,13 +1,13 @@
 import { join } from 'node:path';
+import { createRouter, noPage } from 'threepoint-http/router';
+import { serve, type WebServer } from 'threepoint-http/web-server';
+import { createExperimenterClient } from 'threepoint-study/client/study-client';
+import type { StudyPlan } from 'threepoint-study/model/plan';
+import { openStudyStore } from 'threepoint-study/server/study-store';
 import { onTestFinished } from 'vitest';
-import { createRouter, noPage } from '../../../server/http/router';
-import { openStudyStore } from '../../../server/study-store';
-import { serve, type WebServer } from '../../../server/web-server';
-import type { StudyPlan } from '../../../src/core/study/plan';
-import { createExperimenterClient } from '../../../src/net/study-client';
-import { paperPlan } from '../../core/study/studies';
-import { studiesInThisThread } from '../../server/running-studies';
 import { directoryWith } from '../../temporary-directory';
+import { paperPlan } from '../model/studies';
+import { studiesInThisThread } from '../server/running-studies';
 
 const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 

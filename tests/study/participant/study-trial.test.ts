@@ -1,9 +1,9 @@
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { parseRecording } from 'threepoint/core/tracking/recording';
+import { mostMotionBytes } from 'threepoint-study/model/study-api';
+import { recordingTime } from 'threepoint-study/model/trial-clock';
+import { playTrial } from 'threepoint-study/participant/study-trial';
 import { describe, expect, test } from 'vitest';
-import { playTrial } from '../../../src/app/study/study-trial';
-import { defaultCalibration } from '../../../src/core/body/calibration';
-import { mostMotionBytes } from '../../../src/core/study/study-api';
-import { recordingTime } from '../../../src/core/study/trial-clock';
-import { parseRecording } from '../../../src/core/tracking/recording';
 import { epoch, frameSeconds, playedRound } from './played-round';
 import { OneShotGame } from './study-browser';
 

@@ -1,7 +1,7 @@
+import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
+import { openStudyVault } from 'threepoint-study/participant/study-vault';
 import { describe, expect, test } from 'vitest';
-import { openStudyVault } from '../../../src/app/study/study-vault';
-import { estimatorNames } from '../../../src/core/estimation/pose-estimator';
-import { aWomanOf26 } from '../../core/study/studies';
+import { aWomanOf26 } from '../model/studies';
 import { agree, beforeTheQuestions, beforeTheRound, canStart, measure, play } from './participant-steps';
 import { browser, ofAnother, type Tab } from './study-browser';
 import { type StudyServer, studyServer } from './study-server';

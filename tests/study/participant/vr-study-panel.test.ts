@@ -1,8 +1,8 @@
+import { Phrases } from 'threepoint-study/model/phrases/phrases';
+import type { StudyScreen } from 'threepoint-study/participant/study-screen';
+import { createVrStudyPanel } from 'threepoint-study/participant/vr-study-panel';
 import { expect, test } from 'vitest';
-import type { StudyScreen } from '../../../src/app/study/study-screen';
-import { createVrStudyPanel } from '../../../src/app/study/vr-study-panel';
-import { Phrases } from '../../../src/core/study/phrases/phrases';
-import { drawNowhere } from '../shell/drawing-in-node';
+import { drawNowhere } from '../../page/shell/drawing-in-node';
 
 drawNowhere();
 

@@ -1,9 +1,9 @@
-import type { ExportContent } from '../../server/study-export';
-import { answerModelWith } from '../../src/core/rehearsal/answer-model';
-import { statedPerformanceModel } from '../../src/core/rehearsal/performance-model';
-import { simulatedPlan, simulateStudy } from '../../src/core/rehearsal/simulate-study';
-import { checkedPlan, type StudyPlan } from '../../src/core/study/plan';
-import { examplePlan, paperPlan } from '../core/study/studies';
+import { checkedPlan, type StudyPlan } from 'threepoint-study/model/plan';
+import type { ExportContent } from 'threepoint-study/server/study-export';
+import { answerModelWith } from 'threepoint-study/simulation/answer-model';
+import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
+import { simulatedPlan, simulateStudy } from 'threepoint-study/simulation/simulate-study';
+import { examplePlan, paperPlan } from '../model/studies';
 import { now, testSoftware } from './running-studies';
 
 const late = (latencyMs: number) =>

@@ -1,17 +1,17 @@
 import { spawn } from 'node:child_process';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { recordVersion, type StudyRecord } from 'threepoint-study/model/study-record';
+import { openStudyStore } from 'threepoint-study/server/study-store';
 import { describe, expect, onTestFinished, test } from 'vitest';
-import { openStudyStore } from '../../server/study-store';
-import { recordVersion, type StudyRecord } from '../../src/core/study/study-record';
-import { paperPlan } from '../core/study/studies';
-import { isNightly } from '../nightly';
-import { measured } from '../reliability/measured';
-import { directoryWith } from '../temporary-directory';
-import { heardFrom, kill } from './child-process';
-import { installed } from './installed';
-import { arrive, pause, until } from './running-relay';
-import { experimenterToken, forkServer } from './server-child';
+import { isNightly } from '../../nightly';
+import { measured } from '../../reliability/measured';
+import { arrive, pause, until } from '../../rooms/server/running-relay';
+import { heardFrom, kill } from '../../server/child-process';
+import { installed } from '../../server/installed';
+import { experimenterToken, forkServer } from '../../server/server-child';
+import { directoryWith } from '../../temporary-directory';
+import { paperPlan } from '../model/studies';
 
 const now = 1_800_000_000;
 /** How long the disk hangs, or another program holds the lock [s]. */

@@ -4,18 +4,19 @@ import { fileURLToPath } from 'node:url';
 import { isDeepStrictEqual } from 'node:util';
 import { DatabaseSync } from '@photostructure/sqlite';
 import { rolldown } from 'rolldown';
-import { openStudyStore } from '../../server/study-store';
-import { type RandomSource, randomSource } from '../../src/core/rehearsal/random-source';
-import { participantsOf, type StudyPlan } from '../../src/core/study/plan';
-import { type Schedule, scheduleFor } from '../../src/core/study/schedule';
-import type { ParticipantState } from '../../src/core/study/study-api';
-import type { StudyRecord } from '../../src/core/study/study-record';
-import { paperPlan, session } from '../core/study/studies';
-import { directoryWith } from '../temporary-directory';
-import { heardFrom, isAlive, kill } from './child-process';
+import { participantsOf, type StudyPlan } from 'threepoint-study/model/plan';
+import { type Schedule, scheduleFor } from 'threepoint-study/model/schedule';
+import type { ParticipantState } from 'threepoint-study/model/study-api';
+import type { StudyRecord } from 'threepoint-study/model/study-record';
+import { openStudyStore } from 'threepoint-study/server/study-store';
+import { type RandomSource, randomSource } from 'threepoint-study/simulation/random-source';
+import { sourceResolution } from '../../../scripts/source-condition.mjs';
+import { heardFrom, isAlive, kill } from '../../server/child-process';
+import { directoryWith } from '../../temporary-directory';
+import { paperPlan, session } from '../model/studies';
 
 const experimenter = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
-const root = fileURLToPath(new URL('../..', import.meta.url));
+const root = fileURLToPath(new URL('../../..', import.meta.url));
 
 /** What kills found; every list is empty where nothing was lost. */
 export interface KillReport {
@@ -38,11 +39,12 @@ async function bundledServer(): Promise<string> {
   const folder = join(root, '.cache/study-process');
   const bundle = await rolldown({
     input: {
-      'study-process': join(root, 'tests/server/study-process.ts'),
+      'study-process': join(root, 'tests/study/server/study-process.ts'),
       'study-thread-worker': join(root, 'server/study-thread-work.ts'),
     },
     platform: 'node',
-    external: [/^[^./]/],
+    resolve: sourceResolution('node'),
+    external: (id) => /^[^./]/.test(id) && !id.startsWith('threepoint'),
     logLevel: 'silent',
   });
   await bundle.write({ dir: folder, format: 'esm', entryFileNames: '[name].mjs' });
@@ -162,7 +164,9 @@ interface Server {
 }
 
 async function started(file: string, directory: string): Promise<Server> {
-  const child = fork(file, [directory], { env: { ...process.env, EXPERIMENTER_TOKEN: experimenter } });
+  const child = fork(file, [directory, './study-thread-worker.mjs'], {
+    env: { ...process.env, EXPERIMENTER_TOKEN: experimenter },
+  });
   const { port } = await heardFrom<{ port: number }>(child);
   const ask: Ask = (method, path, token, body) =>
     fetch(`http://127.0.0.1:${port}/api/studies${path}`, {

@@ -1,20 +1,20 @@
 import { join } from 'node:path';
+import type { WrongGuess } from 'threepoint-http/auth-throttle';
+import { GroupCommit } from 'threepoint-http/group-commit';
+import { createRouter, noPage } from 'threepoint-http/router';
+import { serve } from 'threepoint-http/web-server';
+import { createRoomTokens } from 'threepoint-rooms/server/room-tokens';
+import type { StudyPlan } from 'threepoint-study/model/plan';
+import { StudyDispatcher } from 'threepoint-study/server/study-dispatcher';
+import { createExporter } from 'threepoint-study/server/study-exporter';
+import { createStudyRoutes } from 'threepoint-study/server/study-routes';
+import { createStudySeats } from 'threepoint-study/server/study-seats';
+import { createStudyService } from 'threepoint-study/server/study-service';
+import { openStudyStore, type StudyStore } from 'threepoint-study/server/study-store';
 import { expect, onTestFinished } from 'vitest';
-import type { WrongGuess } from '../../server/auth-throttle';
-import { GroupCommit } from '../../server/group-commit';
-import { createRouter, noPage } from '../../server/http/router';
-import { createRoomTokens } from '../../server/room-tokens';
-import { StudyDispatcher } from '../../server/study-dispatcher';
-import { createExporter } from '../../server/study-exporter';
-import { createStudyRoutes } from '../../server/study-routes';
-import { createStudySeats } from '../../server/study-seats';
-import { createStudyService } from '../../server/study-service';
-import { openStudyStore, type StudyStore } from '../../server/study-store';
-import { serve } from '../../server/web-server';
-import type { StudyPlan } from '../../src/core/study/plan';
-import { paperPlan } from '../core/study/studies';
-import { directoryWith } from '../temporary-directory';
-import { testSecret } from './running-relay';
+import { testSecret } from '../../rooms/server/running-relay';
+import { directoryWith } from '../../temporary-directory';
+import { paperPlan } from '../model/studies';
 
 export const experimenter = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 export const now = 1_800_000_000;
@@ -25,10 +25,9 @@ const software = {
 };
 /** What an export says of the program that served it. */
 export const testSoftware = { exportedBy: software, served: [{ since: now, ...software }] };
-export const studySeats = createStudySeats(
-  testSecret,
-  createRoomTokens(testSecret, () => Date.now() / 1000),
-);
+/** The script of the thread that the server starts for its studies. */
+export const studyThread = new URL('../../../server/study-thread-worker.mjs', import.meta.url);
+export const studySeats = createStudySeats(testSecret, createRoomTokens(testSecret, () => Date.now() / 1000).sign);
 
 interface InThisThread {
   readonly store: StudyStore;

@@ -1,10 +1,10 @@
 import { join } from 'node:path';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import type { StudyRecord } from 'threepoint-study/model/study-record';
+import { openStudyStore, type StudyStore } from 'threepoint-study/server/study-store';
 import { onTestFinished } from 'vitest';
-import { openStudyStore, type StudyStore } from '../../server/study-store';
-import { scheduleFor } from '../../src/core/study/schedule';
-import type { StudyRecord } from '../../src/core/study/study-record';
-import { paperPlan, session } from '../core/study/studies';
-import { directoryWith } from '../temporary-directory';
+import { directoryWith } from '../../temporary-directory';
+import { paperPlan, session } from '../model/studies';
 import { now } from './running-studies';
 
 /** A store in a file of its own, or in this one; closed when the test ends. */

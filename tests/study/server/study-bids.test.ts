@@ -1,15 +1,15 @@
 import { spawnSync } from 'node:child_process';
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
+import { parseRecording, type Recording } from 'threepoint/core/tracking/recording';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import type { StudyRecord } from 'threepoint-study/model/study-record';
+import { bidsDataset } from 'threepoint-study/server/study-bids';
 import { beforeAll, describe, expect, test } from 'vitest';
-import { bidsDataset } from '../../server/study-bids';
-import { scheduleFor } from '../../src/core/study/schedule';
-import type { StudyRecord } from '../../src/core/study/study-record';
-import { parseRecording, type Recording } from '../../src/core/tracking/recording';
-import { epoch, frameSeconds, playedRound, type RoundTroubles } from '../app/study/played-round';
-import { paperPlan, session } from '../core/study/studies';
-import { directoryWith } from '../temporary-directory';
-import { installed } from './installed';
+import { installed } from '../../server/installed';
+import { directoryWith } from '../../temporary-directory';
+import { paperPlan, session } from '../model/studies';
+import { epoch, frameSeconds, playedRound, type RoundTroubles } from '../participant/played-round';
 
 const troubles: readonly RoundTroubles[] = [
   {},

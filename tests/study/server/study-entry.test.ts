@@ -1,9 +1,9 @@
 import { connect } from 'node:net';
+import { participantsOf } from 'threepoint-study/model/plan';
+import { openPlacesPerHour } from 'threepoint-study/server/study-guard';
 import { describe, expect, test } from 'vitest';
-import { openPlacesPerHour } from '../../server/study-guard';
-import { participantsOf } from '../../src/core/study/plan';
-import { paperPlan } from '../core/study/studies';
-import { measured } from '../reliability/measured';
+import { measured } from '../../reliability/measured';
+import { paperPlan } from '../model/studies';
 import { type Asked, experimenter, servedPaperStudy } from './running-studies';
 
 const claimPath = (participant: string) => `/api/studies/paper/participants/${participant}/claim`;

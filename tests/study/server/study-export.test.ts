@@ -1,8 +1,8 @@
 import { strFromU8, unzipSync } from 'fflate';
+import { exportZip } from 'threepoint-study/server/study-export';
+import { unpacked } from 'threepoint-study/server/study-motion';
+import type { StudyStore } from 'threepoint-study/server/study-store';
 import { describe, expect, test } from 'vitest';
-import { exportZip } from '../../server/study-export';
-import { unpacked } from '../../server/study-motion';
-import type { StudyStore } from '../../server/study-store';
 import { now, testSoftware } from './running-studies';
 import { completed, withPaperStudy } from './stored-studies';
 

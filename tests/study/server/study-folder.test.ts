@@ -1,22 +1,23 @@
 import { chmodSync, existsSync, mkdirSync, renameSync, rmSync, statSync, truncateSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
+import { createRouter, noPage } from 'threepoint-http/router';
+import { serve } from 'threepoint-http/web-server';
+import { openStudyService } from 'threepoint-study/server/study-service';
+import { openStudyStore } from 'threepoint-study/server/study-store';
 import { describe, expect, onTestFinished, test } from 'vitest';
-import { createRouter, noPage } from '../../server/http/router';
-import { openStudyService } from '../../server/study-service';
-import { openStudyStore } from '../../server/study-store';
-import { serve } from '../../server/web-server';
-import { paperPlan } from '../core/study/studies';
-import { measured } from '../reliability/measured';
-import { directoryWith } from '../temporary-directory';
+import { measured } from '../../reliability/measured';
+import { testSecret } from '../../rooms/server/running-relay';
+import { directoryWith } from '../../temporary-directory';
+import { paperPlan } from '../model/studies';
 import { withoutInvitations } from './older-databases';
-import { testSecret } from './running-relay';
-import { experimenter, testSoftware } from './running-studies';
+import { experimenter, studyThread, testSoftware } from './running-studies';
 
 /** The studies of this folder on a port of loopback, until the test is over; throws what a start throws. */
 async function started(directory: string) {
   const lines: string[] = [];
   const studies = await openStudyService({
+    thread: studyThread,
     ...{ directory, token: experimenter, secret: testSecret, software: testSoftware.exportedBy },
     now: () => 1e9,
     trustProxy: false,

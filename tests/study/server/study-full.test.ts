@@ -4,15 +4,15 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
 import { DatabaseSync } from '@photostructure/sqlite';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import { recordVersion, type StudyRecord } from 'threepoint-study/model/study-record';
+import { openStudyStore } from 'threepoint-study/server/study-store';
 import { describe, expect, onTestFinished, test } from 'vitest';
-import { openStudyStore } from '../../server/study-store';
-import { scheduleFor } from '../../src/core/study/schedule';
-import { recordVersion, type StudyRecord } from '../../src/core/study/study-record';
-import { paperPlan, session } from '../core/study/studies';
-import { directoryWith } from '../temporary-directory';
+import { directoryWith } from '../../temporary-directory';
+import { paperPlan, session } from '../model/studies';
 
 const now = 1_800_000_000;
-const root = fileURLToPath(new URL('../..', import.meta.url));
+const root = fileURLToPath(new URL('../../..', import.meta.url));
 
 function consented(participant: string): StudyRecord[] {
   const schedule = scheduleFor(paperPlan(), participant);
@@ -79,7 +79,7 @@ describe('storage that is full', () => {
         process.execPath,
         '--import',
         'tsx',
-        'tests/server/study-writer.ts',
+        'tests/study/server/study-writer.ts',
         file,
         '1',
       ],

@@ -1,10 +1,10 @@
 import { strFromU8, strToU8, unzipSync, zipSync } from 'fflate';
+import { csvRows } from 'threepoint-study/cli/verify/csv-rows';
+import { verifyExport } from 'threepoint-study/cli/verify/verify-export';
+import type { StudyRecord } from 'threepoint-study/model/study-record';
+import { type ExportContent, exportFiles, exportZip } from 'threepoint-study/server/study-export';
 import { beforeAll, describe, expect, test } from 'vitest';
-import { csvRows } from '../../scripts/study-verify/csv-rows';
-import { verifyExport } from '../../scripts/study-verify/verify-export';
-import { type ExportContent, exportFiles, exportZip } from '../../server/study-export';
-import type { StudyRecord } from '../../src/core/study/study-record';
-import { playedRound } from '../app/study/played-round';
+import { playedRound } from '../participant/played-round';
 import { designs, exportedStudy } from './exported-studies';
 
 /** A whole study of three conditions, with one recording of motion. */

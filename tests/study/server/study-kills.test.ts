@@ -1,6 +1,6 @@
 // @module-tag full
 import { expect, test } from 'vitest';
-import { tell } from '../tell';
+import { tell } from '../../tell';
 import { killedStudy } from './killed-study';
 
 /** By night a thousand (STUDY_KILLS). */

@@ -2,13 +2,13 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { gunzipSync } from 'node:zlib';
 import { DatabaseSync } from '@photostructure/sqlite';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import { unpacked } from 'threepoint-study/server/study-motion';
+import { openStudyStore } from 'threepoint-study/server/study-store';
 import { describe, expect, onTestFinished, test } from 'vitest';
-import { unpacked } from '../../server/study-motion';
-import { openStudyStore } from '../../server/study-store';
-import { scheduleFor } from '../../src/core/study/schedule';
-import { latencyPlan, session } from '../core/study/studies';
-import { measured } from '../reliability/measured';
-import { directoryWith } from '../temporary-directory';
+import { measured } from '../../reliability/measured';
+import { directoryWith } from '../../temporary-directory';
+import { latencyPlan, session } from '../model/studies';
 import { withoutInvitations, withoutPlanVersions } from './older-databases';
 import { type Anything, experimenter, servedStudies } from './running-studies';
 
@@ -74,7 +74,7 @@ test('a database from before versions of plans keeps every plan and participant,
  * finished and begun, P07 has withdrawn. P01 of "pairs" plays archery in pairs, which plans of today may not ask for.
  */
 describe('a database that the first version of the program wrote', () => {
-  const golden = (name: string) => readFileSync(new URL(`../golden/${name}`, import.meta.url));
+  const golden = (name: string) => readFileSync(new URL(`../../golden/${name}`, import.meta.url));
   const sent = JSON.parse(golden('first-studies.json').toString()) as Anything;
 
   async function served() {

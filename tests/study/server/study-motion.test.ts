@@ -1,6 +1,6 @@
+import { unpacked } from 'threepoint-study/server/study-motion';
 import { describe, expect, test } from 'vitest';
-import { unpacked } from '../../server/study-motion';
-import { paperPlan } from '../core/study/studies';
+import { paperPlan } from '../model/studies';
 import { now } from './running-studies';
 import { completed, opened, withPaperStudy } from './stored-studies';
 

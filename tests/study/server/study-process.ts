@@ -1,10 +1,12 @@
 // The studies' part of the server in a process of its own, to be killed. Its argument is the folder of its files.
-import { createRouter, noPage } from '../../server/http/router';
-import { openStudyService } from '../../server/study-service';
-import { serve } from '../../server/web-server';
+import { createRouter, noPage } from 'threepoint-http/router';
+import { serve } from 'threepoint-http/web-server';
+import { openStudyService } from 'threepoint-study/server/study-service';
 
 const secret = 'a secret of the tests, long enough for them';
 const { service } = await openStudyService({
+  // A bundle of this file has the thread's script next to it.
+  thread: new URL(process.argv[3] ?? '../../../server/study-thread-worker.mjs', import.meta.url),
   directory: process.argv[2] as string,
   token: process.env.EXPERIMENTER_TOKEN ?? null,
   software: { name: 'threepoint', version: '0.1.0', weights: [] },

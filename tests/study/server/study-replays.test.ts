@@ -1,10 +1,10 @@
+import { writeRecording } from 'threepoint/core/tracking/recording';
+import { begin, type Progress } from 'threepoint-study/model/progress';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import type { StudyRecord } from 'threepoint-study/model/study-record';
 import { describe, expect, test } from 'vitest';
-import { begin, type Progress } from '../../src/core/study/progress';
-import { scheduleFor } from '../../src/core/study/schedule';
-import type { StudyRecord } from '../../src/core/study/study-record';
-import { writeRecording } from '../../src/core/tracking/recording';
-import { paperPlan, session } from '../core/study/studies';
-import { measured } from '../reliability/measured';
+import { measured } from '../../reliability/measured';
+import { paperPlan, session } from '../model/studies';
 import { experimenter, now, servedPaperStudy } from './running-studies';
 import { completed } from './stored-studies';
 

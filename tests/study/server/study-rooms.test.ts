@@ -1,17 +1,25 @@
 import { io } from 'socket.io-client';
+import { createRoomPass } from 'threepoint-rooms/client/room-pass';
+import { pageParser } from 'threepoint-rooms/protocol/small-frames';
+import { createRoomTokens } from 'threepoint-rooms/server/room-tokens';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import { createStudySeats } from 'threepoint-study/server/study-seats';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';
-import { createRoomTokens } from '../../server/room-tokens';
-import { createStudySeats } from '../../server/study-seats';
-import { pageParser } from '../../src/core/protocol/small-frames';
-import { scheduleFor } from '../../src/core/study/schedule';
-import { createRoomPass } from '../../src/net/room-pass';
-import { paperPlan } from '../core/study/studies';
-import { measured } from '../reliability/measured';
-import { type RunningRelay, rawGuest, rawSocket, startRelay, testSecret, tokenFor, until } from './running-relay';
+import { measured } from '../../reliability/measured';
+import {
+  type RunningRelay,
+  rawGuest,
+  rawSocket,
+  startRelay,
+  testSecret,
+  tokenFor,
+  until,
+} from '../../rooms/server/running-relay';
+import { paperPlan } from '../model/studies';
 
 const plan = paperPlan();
 const tokens = createRoomTokens(testSecret, () => Date.now() / 1000);
-const seats = createStudySeats(testSecret, tokens);
+const seats = createStudySeats(testSecret, tokens.sign);
 const step = 'ball/1/trial-1';
 const trial = { step, run: 1 };
 /** The three of P01's group, in the order of their seats. */
@@ -145,7 +153,7 @@ describe('the room of a trial', () => {
       seatOf(far),
       seats.sign(plan, 'P01', { step, run: 2 }, false),
       seats.sign(plan, 'P01', { step: 'ball/2/trial-1', run: 1 }, false),
-      createStudySeats(`${testSecret}2`, tokens).sign(plan, 'P01', trial, false),
+      createStudySeats(`${testSecret}2`, tokens.sign).sign(plan, 'P01', trial, false),
     ]);
     expect(new Set([...rooms, ...different.map(({ room }) => room)]).size).toBe(5);
     for (const { room } of different) expect(room).toMatch(/^study\.[0-9a-f]{24}$/);

@@ -1,13 +1,13 @@
 import { strFromU8, unzipSync } from 'fflate';
+import { writeRecording } from 'threepoint/core/tracking/recording';
+import { begin } from 'threepoint-study/model/progress';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import type { StudyRecord } from 'threepoint-study/model/study-record';
+import { unpacked } from 'threepoint-study/server/study-motion';
+import { bodyLimits } from 'threepoint-study/server/study-routes';
 import { describe, expect, test } from 'vitest';
-import { unpacked } from '../../server/study-motion';
-import { bodyLimits } from '../../server/study-routes';
-import { begin } from '../../src/core/study/progress';
-import { scheduleFor } from '../../src/core/study/schedule';
-import type { StudyRecord } from '../../src/core/study/study-record';
-import { writeRecording } from '../../src/core/tracking/recording';
-import { paperPlan, session } from '../core/study/studies';
-import { measured } from '../reliability/measured';
+import { measured } from '../../reliability/measured';
+import { paperPlan, session } from '../model/studies';
 import { experimenter, now, servedPaperStudy, servedStudies } from './running-studies';
 
 function completed(participant: string, motion = false): StudyRecord[] {

@@ -1,20 +1,21 @@
 import { readFileSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
+import { createRouter, noPage } from 'threepoint-http/router';
+import { serve } from 'threepoint-http/web-server';
+import { openStudyService } from 'threepoint-study/server/study-service';
+import { openStudyStore } from 'threepoint-study/server/study-store';
 import { expect, onTestFinished, test, vi } from 'vitest';
-import { createRouter, noPage } from '../../server/http/router';
-import { openStudyService } from '../../server/study-service';
-import { openStudyStore } from '../../server/study-store';
-import { serve } from '../../server/web-server';
-import { paperPlan } from '../core/study/studies';
-import { directoryWith } from '../temporary-directory';
-import { testSecret, until } from './running-relay';
-import { testSoftware } from './running-studies';
+import { testSecret, until } from '../../rooms/server/running-relay';
+import { directoryWith } from '../../temporary-directory';
+import { paperPlan } from '../model/studies';
+import { studyThread, testSoftware } from './running-studies';
 
 const day = 86_400;
 
 async function served(directory: string, now: () => number, log: (line: string) => void = () => undefined) {
   const service = await openStudyService({
+    thread: studyThread,
     directory,
     token: null,
     now,

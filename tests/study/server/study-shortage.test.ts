@@ -2,14 +2,14 @@ import { once } from 'node:events';
 import { Agent, request as httpRequest, type IncomingMessage } from 'node:http';
 import { connect } from 'node:net';
 import { join } from 'node:path';
+import { recordVersion, type StudyRecord } from 'threepoint-study/model/study-record';
+import { openStudyStore } from 'threepoint-study/server/study-store';
 import { expect, onTestFinished, test } from 'vitest';
-import { openStudyStore } from '../../server/study-store';
-import { recordVersion, type StudyRecord } from '../../src/core/study/study-record';
-import { paperPlan } from '../core/study/studies';
-import { measured } from '../reliability/measured';
-import { directoryWith } from '../temporary-directory';
-import { pause } from './running-relay';
-import { experimenterToken, forkServer } from './server-child';
+import { measured } from '../../reliability/measured';
+import { pause } from '../../rooms/server/running-relay';
+import { experimenterToken, forkServer } from '../../server/server-child';
+import { directoryWith } from '../../temporary-directory';
+import { paperPlan } from '../model/studies';
 
 /** A folder of a server with a study in which P01 has stored so many remarks of 2 kB. */
 function studyWith(remarks: number) {

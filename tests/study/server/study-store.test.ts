@@ -1,13 +1,13 @@
 import { copyFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
+import { begin, reported } from 'threepoint-study/model/progress';
+import { scheduleFor } from 'threepoint-study/model/schedule';
+import type { StudyRecord } from 'threepoint-study/model/study-record';
+import { openStudyStore } from 'threepoint-study/server/study-store';
 import { describe, expect, test } from 'vitest';
-import { openStudyStore } from '../../server/study-store';
-import { begin, reported } from '../../src/core/study/progress';
-import { scheduleFor } from '../../src/core/study/schedule';
-import type { StudyRecord } from '../../src/core/study/study-record';
-import { paperPlan, session } from '../core/study/studies';
-import { directoryWith } from '../temporary-directory';
+import { directoryWith } from '../../temporary-directory';
+import { paperPlan, session } from '../model/studies';
 import { now } from './running-studies';
 import { completed, opened, withPaperStudy } from './stored-studies';
 

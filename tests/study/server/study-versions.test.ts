@@ -1,9 +1,9 @@
 import { strFromU8, unzipSync } from 'fflate';
+import { togetherWith } from 'threepoint-study/model/allocation';
+import type { StudyPlan } from 'threepoint-study/model/plan';
+import { scheduleFor } from 'threepoint-study/model/schedule';
 import { describe, expect, test } from 'vitest';
-import { togetherWith } from '../../src/core/study/allocation';
-import type { StudyPlan } from '../../src/core/study/plan';
-import { scheduleFor } from '../../src/core/study/schedule';
-import { latencyPlan, paperPlan, session } from '../core/study/studies';
+import { latencyPlan, paperPlan, session } from '../model/studies';
 import { experimenter, now, servedStudies } from './running-studies';
 
 const later = latencyPlan({ title: 'A body that follows much later' });

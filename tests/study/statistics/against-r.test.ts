@@ -1,12 +1,12 @@
 import fc from 'fast-check';
+import { type Effect, varianceAnalysis } from 'threepoint-study/statistics/analysis-of-variance';
+import { rankSumCounts, rankSumTest, welchTest } from 'threepoint-study/statistics/between-tests';
+import { noncentralF, noncentralT } from 'threepoint-study/statistics/noncentral';
+import { pairedTTest, signedRankTest } from 'threepoint-study/statistics/paired-tests';
+import { friedmanTest, kruskalWallisTest } from 'threepoint-study/statistics/rank-analyses';
+import { meanOf } from 'threepoint-study/statistics/summaries';
 import { describe, expect, test } from 'vitest';
-import { type Effect, varianceAnalysis } from '../../../src/core/statistics/analysis-of-variance';
-import { rankSumCounts, rankSumTest, welchTest } from '../../../src/core/statistics/between-tests';
-import { noncentralF, noncentralT } from '../../../src/core/statistics/noncentral';
-import { pairedTTest, signedRankTest } from '../../../src/core/statistics/paired-tests';
-import { friedmanTest, kruskalWallisTest } from '../../../src/core/statistics/rank-analyses';
-import { meanOf } from '../../../src/core/statistics/summaries';
-import { evenly, seed } from '../arbitraries';
+import { evenly, seed } from '../../threepoint/core/arbitraries';
 import { expectAsInR } from './as-in-r';
 import {
   chicks,

@@ -1,10 +1,10 @@
 // @module-tag full
 import { spawnSync } from 'node:child_process';
+import { normalNumbers } from 'threepoint/core/math/random';
+import { rankSumTest, welchTest } from 'threepoint-study/statistics/between-tests';
+import { pairedTTest, signedRankTest } from 'threepoint-study/statistics/paired-tests';
+import { meanOf } from 'threepoint-study/statistics/summaries';
 import { expect, test } from 'vitest';
-import { normalNumbers } from '../../../src/core/math/random';
-import { rankSumTest, welchTest } from '../../../src/core/statistics/between-tests';
-import { pairedTTest, signedRankTest } from '../../../src/core/statistics/paired-tests';
-import { meanOf } from '../../../src/core/statistics/summaries';
 import { installed } from '../../server/installed';
 import { expectAsInR } from './as-in-r';
 import { chicks, depression, insectSprays, ozone, placenta, plantGrowth, sleep, threeRounds } from './data-sets';

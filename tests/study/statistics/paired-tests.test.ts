@@ -1,9 +1,9 @@
 import fc from 'fast-check';
+import { holm } from 'threepoint-study/statistics/holm';
+import { pairedTTest, signedRankTest } from 'threepoint-study/statistics/paired-tests';
+import { meanSummary, twoSidedP } from 'threepoint-study/statistics/summaries';
 import { describe, expect, test } from 'vitest';
-import { holm } from '../../../src/core/statistics/holm';
-import { pairedTTest, signedRankTest } from '../../../src/core/statistics/paired-tests';
-import { meanSummary, twoSidedP } from '../../../src/core/statistics/summaries';
-import { number, seed } from '../arbitraries';
+import { number, seed } from '../../threepoint/core/arbitraries';
 import { depression, sleep } from './data-sets';
 
 describe('the paired t-test', () => {

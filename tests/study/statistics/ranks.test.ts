@@ -1,11 +1,11 @@
 import fc from 'fast-check';
+import { rankSumTest } from 'threepoint-study/statistics/between-tests';
+import { signedRankTest } from 'threepoint-study/statistics/paired-tests';
+import { friedmanTest, kruskalWallisTest } from 'threepoint-study/statistics/rank-analyses';
+import { ranksOf } from 'threepoint-study/statistics/ranks';
+import { meanOf } from 'threepoint-study/statistics/summaries';
 import { describe, expect, test } from 'vitest';
-import { rankSumTest } from '../../../src/core/statistics/between-tests';
-import { signedRankTest } from '../../../src/core/statistics/paired-tests';
-import { friedmanTest, kruskalWallisTest } from '../../../src/core/statistics/rank-analyses';
-import { ranksOf } from '../../../src/core/statistics/ranks';
-import { meanOf } from '../../../src/core/statistics/summaries';
-import { seed } from '../arbitraries';
+import { seed } from '../../threepoint/core/arbitraries';
 
 type Rounds = readonly number[];
 

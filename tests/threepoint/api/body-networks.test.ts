@@ -1,6 +1,6 @@
+import { Body } from 'threepoint/api/body';
+import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
 import { describe, expect, test } from 'vitest';
-import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
-import { Body } from '../../src/lib/body';
 import { openPlainModel } from '../core/estimation/shipped-models';
 import { at, calibration, observed } from './observed-body';
 import { openPorts } from './open-ports';

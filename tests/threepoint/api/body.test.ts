@@ -1,11 +1,11 @@
+import { Body } from 'threepoint/api/body';
+import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { distance } from 'threepoint/core/math/vec3';
+import { createPageClock } from 'threepoint/core/tracking/page-clock';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { describe, expect, test } from 'vitest';
-import { type Calibration, defaultCalibration } from '../../src/core/body/calibration';
-import { forwardKinematics } from '../../src/core/body/forward-kinematics';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { distance } from '../../src/core/math/vec3';
-import { createPageClock } from '../../src/core/tracking/page-clock';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
-import { Body } from '../../src/lib/body';
 import { at, calibration, observed } from './observed-body';
 
 /** Stands upright at this height of the eyes [m]. */

@@ -1,9 +1,9 @@
+import { EstimatorChoice } from 'threepoint/api/estimator-choice';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { createEstimator, networkOf } from 'threepoint/core/estimation/estimators';
+import { type EstimatorName, estimatorNames, type PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
+import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
 import { describe, expect, test } from 'vitest';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { createEstimator, networkOf } from '../../src/core/estimation/estimators';
-import { type EstimatorName, estimatorNames, type PoseEstimator } from '../../src/core/estimation/pose-estimator';
-import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
-import { EstimatorChoice } from '../../src/lib/estimator-choice';
 import { openPlainModel } from '../core/estimation/shipped-models';
 
 const head = {

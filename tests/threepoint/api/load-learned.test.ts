@@ -1,12 +1,12 @@
+import { Body } from 'threepoint/api/body';
+import { exportMotion } from 'threepoint/api/export-motion';
+import { loadLearned } from 'threepoint/api/load-learned';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import type { Recording } from 'threepoint/core/tracking/recording';
 import { expect, test, vi } from 'vitest';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { actorFrame } from '../../src/core/tracking/actor-motion';
-import type { Recording } from '../../src/core/tracking/recording';
-import { Body } from '../../src/lib/body';
-import { exportMotion } from '../../src/lib/export-motion';
-import { loadLearned } from '../../src/lib/load-learned';
 
-const models = new URL('../../public/models/', import.meta.url);
+const models = new URL('../../../public/models/', import.meta.url);
 
 test('a program of Node has the learned network from the disk, without a word of where it lies', async () => {
   const told: string[] = [];

@@ -1,12 +1,12 @@
 import { readFileSync } from 'node:fs';
 import { createServer, type Server } from 'node:http';
 import type { AddressInfo } from 'node:net';
+import { Body } from 'threepoint/api/body';
+import { loadLearned } from 'threepoint/api/load-learned';
+import { onnxNetworks } from 'threepoint/api/onnx';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { afterAll, beforeAll, expect, test } from 'vitest';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { actorFrame } from '../../src/core/tracking/actor-motion';
-import { Body } from '../../src/lib/body';
-import { loadLearned } from '../../src/lib/load-learned';
-import { onnxNetworks } from '../../src/lib/onnx';
 
 let server: Server;
 let models = '';
@@ -14,7 +14,7 @@ let models = '';
 beforeAll(async () => {
   server = createServer((request, response) => {
     const name = request.url?.split('/').at(-1) ?? '';
-    response.end(readFileSync(new URL(`../../public/models/${name}`, import.meta.url)));
+    response.end(readFileSync(new URL(`../../../public/models/${name}`, import.meta.url)));
   });
   await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
   models = `http://127.0.0.1:${(server.address() as AddressInfo).port}/any/folder`;

@@ -1,7 +1,7 @@
+import { installBodyTracking } from 'threepoint/api/polyfill';
+import { fromAxisAngle } from 'threepoint/core/math/quat';
+import { up } from 'threepoint/core/math/vec3';
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
-import { fromAxisAngle } from '../../src/core/math/quat';
-import { up } from '../../src/core/math/vec3';
-import { installBodyTracking } from '../../src/lib/polyfill';
 import { fakeHeadset } from '../xr/fake-headset';
 
 type Fake = ReturnType<typeof fakeHeadset>;

@@ -1,14 +1,14 @@
+import { Body } from 'threepoint/api/body';
+import { ReplayedBody } from 'threepoint/api/replayed-body';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { estimatedJoints } from 'threepoint/core/body/joints';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
+import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import { distance } from 'threepoint/core/math/vec3';
+import { Recorder } from 'threepoint-page/studio/recorder';
 import { describe, expect, test, vi } from 'vitest';
-import { Recorder } from '../../src/app/studio/recorder';
-import type { Calibration } from '../../src/core/body/calibration';
-import { forwardKinematics } from '../../src/core/body/forward-kinematics';
-import { estimatedJoints } from '../../src/core/body/joints';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import type { EstimatorName } from '../../src/core/estimation/pose-estimator';
-import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
-import { distance } from '../../src/core/math/vec3';
-import { Body } from '../../src/lib/body';
-import { ReplayedBody } from '../../src/lib/replayed-body';
 import { movingPerson } from '../core/estimation/moving-person';
 import { openPlainModel } from '../core/estimation/shipped-models';
 

@@ -1,11 +1,11 @@
+import { Body } from 'threepoint/api/body';
+import { SeenFrames } from 'threepoint/api/seen-frames';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
+import type { TrackedPose } from 'threepoint/core/math/pose';
+import { deviceBodySize } from 'threepoint/core/tracking/device-body';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { describe, expect, test } from 'vitest';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import type { EstimatorName } from '../../src/core/estimation/pose-estimator';
-import type { TrackedPose } from '../../src/core/math/pose';
-import { deviceBodySize } from '../../src/core/tracking/device-body';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
-import { Body } from '../../src/lib/body';
-import { SeenFrames } from '../../src/lib/seen-frames';
 import { movingPerson } from '../core/estimation/moving-person';
 import { openPlainModel } from '../core/estimation/shipped-models';
 import { numbersIn } from '../core/numbers-in';

@@ -1,13 +1,13 @@
 import fc from 'fast-check';
+import { Body } from 'threepoint/api/body';
+import { copyAvatarPose } from 'threepoint/core/body/avatar-pose';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { jointNames } from 'threepoint/core/body/joints';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import type { TrackedPose } from 'threepoint/core/math/pose';
+import { identity } from 'threepoint/core/math/quat';
+import { distance, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { expect, test } from 'vitest';
-import { copyAvatarPose } from '../../src/core/body/avatar-pose';
-import { forwardKinematics } from '../../src/core/body/forward-kinematics';
-import { jointNames } from '../../src/core/body/joints';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import type { TrackedPose } from '../../src/core/math/pose';
-import { identity } from '../../src/core/math/quat';
-import { distance, type Vec3, vec3 } from '../../src/core/math/vec3';
-import { Body } from '../../src/lib/body';
 import { evenly, seed } from '../core/arbitraries';
 import { openPlainModel } from '../core/estimation/shipped-models';
 

@@ -1,9 +1,9 @@
+import { avatarMotion, loadAvatar } from 'threepoint/api/three';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { createIk } from 'threepoint/core/estimation/estimators';
+import { distance } from 'threepoint/core/math/vec3';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { createIk } from '../../src/core/estimation/estimators';
-import { distance } from '../../src/core/math/vec3';
-import { actorFrame } from '../../src/core/tracking/actor-motion';
-import { avatarMotion, loadAvatar } from '../../src/lib/three';
 import { changed, mannequin } from '../avatar/glb';
 import { poseOf } from '../core/estimation/drawn';
 

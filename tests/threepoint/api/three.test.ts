@@ -1,14 +1,14 @@
 import { Group, type Mesh } from 'three';
+import type { BodyTracker } from 'threepoint/api/three';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { identity } from 'threepoint/core/math/quat';
+import { distance } from 'threepoint/core/math/vec3';
+import { toXRBody } from 'threepoint/core/motion/xr-body';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { afterEach, describe, expect, test, vi } from 'vitest';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { forwardKinematics } from '../../src/core/body/forward-kinematics';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { identity } from '../../src/core/math/quat';
-import { distance } from '../../src/core/math/vec3';
-import { toXRBody } from '../../src/core/motion/xr-body';
-import { actorFrame } from '../../src/core/tracking/actor-motion';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
-import type { BodyTracker } from '../../src/lib/three';
 import { controller } from '../xr/fake-headset';
 import { begin, left, right } from './three-session';
 

@@ -1,14 +1,14 @@
 import { SkinnedMesh, Vector3 } from 'three';
+import { type Avatar, createAvatar } from 'threepoint/avatar/avatar';
+import { parseAvatar } from 'threepoint/avatar/load-avatar';
+import { type AvatarPose, makeUpperBodyPose } from 'threepoint/core/body/avatar-pose';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { makePose } from 'threepoint/core/math/pose';
+import { copyQuat, fromAxisAngle, multiply, type Quat, quat } from 'threepoint/core/math/quat';
+import { down, forward, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { beforeAll, describe, expect, test } from 'vitest';
-import { type Avatar, createAvatar } from '../../src/avatar/avatar';
-import { parseAvatar } from '../../src/avatar/load-avatar';
-import { type AvatarPose, makeUpperBodyPose } from '../../src/core/body/avatar-pose';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { makePose } from '../../src/core/math/pose';
-import { copyQuat, fromAxisAngle, multiply, type Quat, quat } from '../../src/core/math/quat';
-import { down, forward, type Vec3, vec3 } from '../../src/core/math/vec3';
-import { tell } from '../tell';
+import { tell } from '../../tell';
 import { mannequin } from './glb';
 
 const along = vec3(-1, 0, 0);

@@ -3,10 +3,10 @@ import { createVRMAnimationClip, type VRMAnimation, VRMAnimationLoaderPlugin } f
 import { validateBytes } from 'gltf-validator';
 import { type Object3D, Quaternion, Vector3 } from 'three';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import { avatarClip } from 'threepoint/avatar/avatar-clip';
+import { turnPoint } from 'threepoint/core/motion/skeleton';
+import { writeVrma } from 'threepoint/core/motion/write-vrma';
 import { describe, expect, test } from 'vitest';
-import { avatarClip } from '../../src/avatar/avatar-clip';
-import { turnPoint } from '../../src/core/motion/skeleton';
-import { writeVrma } from '../../src/core/motion/write-vrma';
 import { actingPerson, bytesOf, contortedPerson } from '../core/motion/moved-person';
 import { playerOf } from '../core/motion/play-clip';
 import { builtRig } from './built-rig';

@@ -1,12 +1,12 @@
 import { readFileSync } from 'node:fs';
 import { Group, type Mesh, type Object3D, Quaternion, Vector3 } from 'three';
+import { type Avatar, createAvatar } from 'threepoint/avatar/avatar';
+import { type LoadedAvatar, parseAvatar } from 'threepoint/avatar/load-avatar';
+import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
+import { createIk } from 'threepoint/core/estimation/estimators';
+import { fromAxisAngle, identity } from 'threepoint/core/math/quat';
+import { up } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
-import { type Avatar, createAvatar } from '../../src/avatar/avatar';
-import { type LoadedAvatar, parseAvatar } from '../../src/avatar/load-avatar';
-import { type Calibration, defaultCalibration } from '../../src/core/body/calibration';
-import { createIk } from '../../src/core/estimation/estimators';
-import { fromAxisAngle, identity } from '../../src/core/math/quat';
-import { up } from '../../src/core/math/vec3';
 import { poseOf } from '../core/estimation/drawn';
 import { changed } from './glb';
 
@@ -164,7 +164,7 @@ describe('eyes', () => {
         };
       },
       undefined,
-      readFileSync(new URL('../../public/avatars/woman.vrm', import.meta.url)),
+      readFileSync(new URL('../../../public/avatars/woman.vrm', import.meta.url)),
     );
     const { vrm } = await parseAvatar(bytes, 'painted-eyes.vrm');
     const avatar = createAvatar({ name: 'painted-eyes.vrm', vrm, nodeIndices: new Map() });
@@ -266,7 +266,7 @@ describe('a mouth', () => {
   test.each(['viseme_aa', 'jawOpen', 'mouthOpen'])(
     'of a file without expressions moves by its shape %s, and by one alone',
     async (name) => {
-      const file = readFileSync(new URL('../../public/avatars/woman.vrm', import.meta.url));
+      const file = readFileSync(new URL('../../../public/avatars/woman.vrm', import.meta.url));
       const bytes = changed(
         (json) => {
           delete (json.extensions.VRMC_vrm as unknown as Record<string, unknown>).expressions;

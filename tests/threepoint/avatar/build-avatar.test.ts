@@ -2,9 +2,9 @@ import { readFileSync } from 'node:fs';
 import { NodeIO, type Primitive } from '@gltf-transform/core';
 import { validateBytes } from 'gltf-validator';
 import { beforeAll, describe, expect, test } from 'vitest';
-import { figures } from '../../scripts/build-avatar/bodies';
-import { buildBody } from '../../scripts/build-avatar/build-body';
-import { isNightly } from '../nightly';
+import { figures } from '../../../tools/avatars/build/bodies';
+import { buildBody } from '../../../tools/avatars/build/build-body';
+import { isNightly } from '../../nightly';
 
 interface Vertex {
   readonly position: readonly number[];
@@ -14,7 +14,7 @@ interface Vertex {
 }
 
 describe.each(figures.map((figure) => [figure.name, figure] as const))('the %s', (name, figure) => {
-  const file = readFileSync(new URL(`../../public/avatars/${name}.vrm`, import.meta.url));
+  const file = readFileSync(new URL(`../../../public/avatars/${name}.vrm`, import.meta.url));
 
   /** All triangles of all primitives, each corner by a key of its position: seams between materials close again. */
   let corners: string[] = [];

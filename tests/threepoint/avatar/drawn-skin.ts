@@ -1,11 +1,11 @@
 import { readFileSync } from 'node:fs';
 import { SkinnedMesh, Vector3 } from 'three';
-import { type Avatar, createAvatar } from '../../src/avatar/avatar';
-import { Holding } from '../../src/avatar/hands/holding';
-import { parseAvatar } from '../../src/avatar/load-avatar';
-import { type MutableHandShape, makeHandShape } from '../../src/core/body/hand-shape';
-import { makePose, type Pose } from '../../src/core/math/pose';
-import type { Side } from '../../src/core/math/side';
+import { type Avatar, createAvatar } from 'threepoint/avatar/avatar';
+import { Holding } from 'threepoint/avatar/hands/holding';
+import { parseAvatar } from 'threepoint/avatar/load-avatar';
+import { type MutableHandShape, makeHandShape } from 'threepoint/core/body/hand-shape';
+import { makePose, type Pose } from 'threepoint/core/math/pose';
+import type { Side } from 'threepoint/core/math/side';
 
 /** A person of 1.70 m. */
 export const wearer = { eyeHeight: 1.59, armSpan: 1.39 };
@@ -19,7 +19,7 @@ type Grasp = (holding: Holding, side: Side, wrist: Pose<'floor'>, target: Mutabl
 
 /** A body of ours on that person. */
 export async function ownBody(body: string): Promise<Avatar> {
-  const file = readFileSync(new URL(`../../public/avatars/${body}.vrm`, import.meta.url));
+  const file = readFileSync(new URL(`../../../public/avatars/${body}.vrm`, import.meta.url));
   const bytes = file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer;
   const avatar = createAvatar(await parseAvatar(bytes, `${body}.vrm`));
   avatar.fitTo(wearer);

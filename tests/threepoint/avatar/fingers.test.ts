@@ -1,7 +1,6 @@
 import { Group, type Object3D, SkinnedMesh, Vector3 } from 'three';
-import { afterEach, describe, expect, test, vi } from 'vitest';
-import { type Avatar, createAvatar } from '../../src/avatar/avatar';
-import { parseAvatar } from '../../src/avatar/load-avatar';
+import { type Avatar, createAvatar } from 'threepoint/avatar/avatar';
+import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import {
   closedHand,
   type FingerName,
@@ -9,13 +8,14 @@ import {
   flatHand,
   type HandShape,
   relaxedHand,
-} from '../../src/core/body/hand-shape';
-import { makePose, type Pose } from '../../src/core/math/pose';
-import { fromAxisAngle, rotate } from '../../src/core/math/quat';
-import type { Side } from '../../src/core/math/side';
-import { addScaled, distance, normalise, type Vec3, vec3 } from '../../src/core/math/vec3';
-import { createTracker } from '../../src/xr/tracker';
-import { tell } from '../tell';
+} from 'threepoint/core/body/hand-shape';
+import { makePose, type Pose } from 'threepoint/core/math/pose';
+import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
+import type { Side } from 'threepoint/core/math/side';
+import { addScaled, distance, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { createTracker } from 'threepoint/xr/tracker';
+import { afterEach, describe, expect, test, vi } from 'vitest';
+import { tell } from '../../tell';
 import { fakeHeadset } from '../xr/fake-headset';
 import { jointAt, type RecordedHand, recordedHands, trackedHand } from '../xr/recorded-hands';
 import { changed, mannequin } from './glb';

@@ -1,6 +1,6 @@
+import { createHeadLoss } from 'threepoint/avatar/rig/head-loss';
 import { describe, expect, test } from 'vitest';
-import { createHeadLoss } from '../../src/avatar/rig/head-loss';
-import { measured } from '../reliability/measured';
+import { measured } from '../../reliability/measured';
 
 describe('a body whose head is lost', () => {
   test('stays solid for a moment, then fades to a quarter, and is whole in the first frame that sees it', () => {

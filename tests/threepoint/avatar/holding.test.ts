@@ -1,14 +1,14 @@
+import { Holding } from 'threepoint/avatar/hands/holding';
+import { averageHand, fingerPoints, makeFingerPoints, scaledHand } from 'threepoint/core/body/hand-geometry';
+import { fingerNames, makeHandShape } from 'threepoint/core/body/hand-shape';
+import { type Pose, transformPoint } from 'threepoint/core/math/pose';
+import { identity } from 'threepoint/core/math/quat';
+import type { Side } from 'threepoint/core/math/side';
+import { distance, dot, forward, length, reject, subtract, up, vec3 } from 'threepoint/core/math/vec3';
+import { basketInHands, gripRadius } from 'threepoint-games/ball/basket';
+import { basketRadius, rimTube } from 'threepoint-games/ball/flight';
+import { wristAround } from 'threepoint-games/fist';
 import { expect, test } from 'vitest';
-import { Holding } from '../../src/avatar/hands/holding';
-import { averageHand, fingerPoints, makeFingerPoints, scaledHand } from '../../src/core/body/hand-geometry';
-import { fingerNames, makeHandShape } from '../../src/core/body/hand-shape';
-import { basketInHands, gripRadius } from '../../src/core/games/ball/basket';
-import { basketRadius, rimTube } from '../../src/core/games/ball/flight';
-import { wristAround } from '../../src/core/games/fist';
-import { type Pose, transformPoint } from '../../src/core/math/pose';
-import { identity } from '../../src/core/math/quat';
-import type { Side } from '../../src/core/math/side';
-import { distance, dot, forward, length, reject, subtract, up, vec3 } from '../../src/core/math/vec3';
 
 const wrists: Readonly<Record<Side, Pose<'floor'>>> = {
   left: wristAround('left', vec3(-gripRadius, 1.1, -0.4), forward, up),

@@ -1,10 +1,10 @@
+import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
+import { imageSize } from 'threepoint/avatar/file/image-size';
+import { avatarLimits, inspectAvatar } from 'threepoint/avatar/file/inspect-avatar';
+import { gltfFaults } from 'threepoint/avatar/file/validate-gltf';
+import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
 import { afterAll, describe, expect, test } from 'vitest';
-import { checkAvatar } from '../../src/avatar/file/check-avatar';
-import { imageSize } from '../../src/avatar/file/image-size';
-import { avatarLimits, inspectAvatar } from '../../src/avatar/file/inspect-avatar';
-import { gltfFaults } from '../../src/avatar/file/validate-gltf';
-import { parseAvatar, parseChecked } from '../../src/avatar/load-avatar';
-import { measured } from '../reliability/measured';
+import { measured } from '../../reliability/measured';
 import { changed, type GltfJson, mannequin } from './glb';
 
 const look = (bytes: ArrayBuffer) => inspectAvatar(new Uint8Array(bytes), 'person.vrm');

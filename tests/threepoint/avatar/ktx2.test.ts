@@ -1,9 +1,9 @@
 import { execFile } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
+import { functionOfText } from 'threepoint/avatar/decoders/basis-functions';
+import { inspectAvatar } from 'threepoint/avatar/file/inspect-avatar';
 import { describe, expect, test } from 'vitest';
-import { functionOfText } from '../../src/avatar/decoders/basis-functions';
-import { inspectAvatar } from '../../src/avatar/file/inspect-avatar';
 import { changed } from './glb';
 import { type Colour, etc1sPicture, ktx2Picture, packedColours, zstdPicture } from './ktx2-picture';
 

@@ -1,11 +1,11 @@
 import type { Object3D } from 'three';
+import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
+import { seenAvatarLimits } from 'threepoint/avatar/file/inspect-avatar';
+import { parseChecked } from 'threepoint/avatar/load-avatar';
+import { randomNumbers } from 'threepoint/core/math/random';
 import { expect, onTestFinished, test, vi } from 'vitest';
-import { checkAvatar } from '../../src/avatar/file/check-avatar';
-import { seenAvatarLimits } from '../../src/avatar/file/inspect-avatar';
-import { parseChecked } from '../../src/avatar/load-avatar';
-import { randomNumbers } from '../../src/core/math/random';
-import { isNightly } from '../nightly';
-import { measured } from '../reliability/measured';
+import { isNightly } from '../../nightly';
+import { measured } from '../../reliability/measured';
 import { builtRig } from './built-rig';
 import { changed, type GltfJson, glbOf, mannequin, partsOf } from './glb';
 import { vroid } from './rig-namings';

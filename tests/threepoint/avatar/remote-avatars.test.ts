@@ -1,17 +1,11 @@
 import { readFileSync } from 'node:fs';
 import { Mesh, type MeshStandardMaterial, SkinnedMesh } from 'three';
-import { describe, expect, onTestFinished, test } from 'vitest';
-import { parseAvatar } from '../../src/avatar/load-avatar';
-import { createRemoteAvatars, type RemoteAvatars, type SeenPerson } from '../../src/avatar/remote-avatars';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { forwardKinematics } from '../../src/core/body/forward-kinematics';
-import { unknownFingers } from '../../src/core/body/hand-shape';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { PassingFault } from '../../src/core/errors/passing-fault';
-import { createIk } from '../../src/core/estimation/estimators';
-import { transformPoint } from '../../src/core/math/pose';
-import { fromAxisAngle } from '../../src/core/math/quat';
-import { distance, up, vec3 } from '../../src/core/math/vec3';
+import { parseAvatar } from 'threepoint/avatar/load-avatar';
+import { createRemoteAvatars, type RemoteAvatars, type SeenPerson } from 'threepoint/avatar/remote-avatars';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { unknownFingers } from 'threepoint/core/body/hand-shape';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import {
   type AvatarHash,
   bodyOf,
@@ -20,12 +14,18 @@ import {
   ownAvatarOf,
   plainAvatar,
   type WornAvatar,
-} from '../../src/core/protocol/worn-avatar';
-import { actorFrame } from '../../src/core/tracking/actor-motion';
+} from 'threepoint/core/body/worn-avatar';
+import { PassingFault } from 'threepoint/core/errors/passing-fault';
+import { createIk } from 'threepoint/core/estimation/estimators';
+import { transformPoint } from 'threepoint/core/math/pose';
+import { fromAxisAngle } from 'threepoint/core/math/quat';
+import { distance, up, vec3 } from 'threepoint/core/math/vec3';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import { describe, expect, onTestFinished, test } from 'vitest';
 import { poseOf } from '../core/estimation/drawn';
 
 function bytesOf(body: OwnBody): ArrayBuffer {
-  const file = readFileSync(new URL(`../../public/avatars/${body}.vrm`, import.meta.url));
+  const file = readFileSync(new URL(`../../../public/avatars/${body}.vrm`, import.meta.url));
   return file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer;
 }
 const estimator = createIk(defaultCalibration);

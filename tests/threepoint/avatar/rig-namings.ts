@@ -1,4 +1,4 @@
-import type { BoneName } from '../../src/avatar/humanoid/bone-names';
+import type { BoneName } from 'threepoint/avatar/humanoid/bone-names';
 
 /** What a file calls a bone. */
 export type NameOf = (bone: BoneName) => string;

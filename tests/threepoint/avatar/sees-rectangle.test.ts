@@ -1,7 +1,7 @@
 import { Matrix4, PerspectiveCamera, Quaternion, Vector3 } from 'three';
+import { seesRectangle } from 'threepoint/avatar/sees-rectangle';
+import { nextRandom } from 'threepoint/core/math/random';
 import { expect, test } from 'vitest';
-import { seesRectangle } from '../../src/avatar/sees-rectangle';
-import { nextRandom } from '../../src/core/math/random';
 
 const width = 1.5;
 const height = 2.15;

@@ -1,7 +1,7 @@
+import { createStepping, type Feet, type FootGoal, type Stance } from 'threepoint/avatar/legs/stepping';
+import type { Side } from 'threepoint/core/math/side';
+import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
-import { createStepping, type Feet, type FootGoal, type Stance } from '../../src/avatar/legs/stepping';
-import type { Side } from '../../src/core/math/side';
-import { distance, type Vec3 } from '../../src/core/math/vec3';
 
 const stance: Stance = { ankleHeight: 0.08, legLength: 0.85 };
 type Goals = Record<Side, FootGoal>;

@@ -2,9 +2,9 @@
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { runInThisContext } from 'node:vm';
-import { functionOfText } from '../../src/avatar/decoders/basis-functions';
+import { functionOfText } from 'threepoint/avatar/decoders/basis-functions';
 
-const folder = new URL('../../node_modules/three/examples/jsm/libs/basis/', import.meta.url);
+const folder = new URL('../../../node_modules/three/examples/jsm/libs/basis/', import.meta.url);
 const script = readFileSync(new URL('basis_transcoder.js', folder), 'utf8').replace(/if \(typeof exports[\s\S]*$/, '');
 const compiles = (() => {
   try {

@@ -1,8 +1,8 @@
 import { type Mesh, type MeshStandardMaterial, Texture } from 'three';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import { chunksOf } from 'threepoint/avatar/file/glb-chunks';
+import { viewsOfFile } from 'threepoint/avatar/file/views-of-file';
 import { describe, expect, test, vi } from 'vitest';
-import { chunksOf } from '../../src/avatar/file/glb-chunks';
-import { viewsOfFile } from '../../src/avatar/file/views-of-file';
 import { glbOf, padded } from './glb';
 
 const places = new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0.25, 0.5, -2]);

@@ -1,7 +1,7 @@
-import type { LegProportions } from '../../src/avatar/legs/leg-posture';
-import type { GaitPoints } from '../../src/core/estimation/gait-features';
-import { fromAxisAngle, identity } from '../../src/core/math/quat';
-import { up, vec3 } from '../../src/core/math/vec3';
+import type { LegProportions } from 'threepoint/avatar/legs/leg-posture';
+import type { GaitPoints } from 'threepoint/core/estimation/gait-features';
+import { fromAxisAngle, identity } from 'threepoint/core/math/quat';
+import { up, vec3 } from 'threepoint/core/math/vec3';
 
 export const eyeHeight = 1.6;
 export const proportions: LegProportions = {

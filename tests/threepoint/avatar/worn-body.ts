@@ -1,15 +1,15 @@
 import { type SkinnedMesh, Vector3 } from 'three';
+import { type Avatar, createAvatar } from 'threepoint/avatar/avatar';
+import type { BoneName } from 'threepoint/avatar/humanoid/bone-names';
+import { type LoadedAvatar, parseAvatar } from 'threepoint/avatar/load-avatar';
+import { handBoneRotation } from 'threepoint/core/body/arm-rotations';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { createIk } from 'threepoint/core/estimation/estimators';
+import { rotate } from 'threepoint/core/math/quat';
+import { distance, down, vec3 } from 'threepoint/core/math/vec3';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { expect } from 'vitest';
-import { type Avatar, createAvatar } from '../../src/avatar/avatar';
-import type { BoneName } from '../../src/avatar/humanoid/bone-names';
-import { type LoadedAvatar, parseAvatar } from '../../src/avatar/load-avatar';
-import { handBoneRotation } from '../../src/core/body/arm-rotations';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { createIk } from '../../src/core/estimation/estimators';
-import { rotate } from '../../src/core/math/quat';
-import { distance, down, vec3 } from '../../src/core/math/vec3';
-import { actorFrame } from '../../src/core/tracking/actor-motion';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import { poseOf } from '../core/estimation/drawn';
 import { boxHalf, builtRig, type RigOptions } from './built-rig';
 

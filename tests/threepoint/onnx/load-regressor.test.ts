@@ -1,12 +1,12 @@
 import { readFileSync } from 'node:fs';
 import { createServer, type Server } from 'node:http';
 import type { AddressInfo } from 'node:net';
+import { loadPlainRegressor } from 'threepoint/onnx/load-plain-regressor';
+import { loadRegressor } from 'threepoint/onnx/load-regressor';
+import { parseContract } from 'threepoint/onnx/model-contract';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
-import { loadPlainRegressor } from '../../src/inference/load-plain-regressor';
-import { loadRegressor } from '../../src/inference/load-regressor';
-import { parseContract } from '../../src/inference/model-contract';
 
-const model = (name: string) => readFileSync(new URL(`../../public/models/${name}`, import.meta.url));
+const model = (name: string) => readFileSync(new URL(`../../../public/models/${name}`, import.meta.url));
 const contract = JSON.parse(model('learned.json').toString()) as Record<string, unknown>;
 
 /** Files by path, served as a page's server would; what is absent is a 404. */

@@ -1,6 +1,6 @@
+import { startRegressor } from 'threepoint/onnx/load-regressor';
+import type { Answer, Question } from 'threepoint/onnx/worker-messages';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
-import { startRegressor } from '../../src/inference/load-regressor';
-import type { Answer, Question } from '../../src/inference/worker-messages';
 import { readShipped } from '../core/estimation/shipped-models';
 
 beforeEach(() => {

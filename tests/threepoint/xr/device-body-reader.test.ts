@@ -1,11 +1,11 @@
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { identity } from 'threepoint/core/math/quat';
+import { vec3 } from 'threepoint/core/math/vec3';
+import { XRBodyPoser } from 'threepoint/core/motion/xr-body';
+import { deviceJoint, deviceJointNames } from 'threepoint/core/tracking/device-body';
+import { DeviceBodyReader } from 'threepoint/xr/device-body-reader';
+import { createTracker } from 'threepoint/xr/tracker';
 import { describe, expect, test } from 'vitest';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { identity } from '../../src/core/math/quat';
-import { vec3 } from '../../src/core/math/vec3';
-import { XRBodyPoser } from '../../src/core/motion/xr-body';
-import { deviceJoint, deviceJointNames } from '../../src/core/tracking/device-body';
-import { DeviceBodyReader } from '../../src/xr/device-body-reader';
-import { createTracker } from '../../src/xr/tracker';
 import { fakeHeadset, type Seen } from './fake-headset';
 
 /** The specification's joints, as a device lists them. */

@@ -1,8 +1,8 @@
+import { composeTransforms, invertTransform, type Pose, transformPose } from 'threepoint/core/math/pose';
+import { identity, type Quat, rotate } from 'threepoint/core/math/quat';
+import type { Side } from 'threepoint/core/math/side';
+import { type Vec3, vec3, zero } from 'threepoint/core/math/vec3';
 import { vi } from 'vitest';
-import { composeTransforms, invertTransform, type Pose, transformPose } from '../../src/core/math/pose';
-import { identity, type Quat, rotate } from '../../src/core/math/quat';
-import type { Side } from '../../src/core/math/side';
-import { type Vec3, vec3, zero } from '../../src/core/math/vec3';
 
 type Place = Pose<'floor'>;
 export type Seen = (Place & { readonly emulated?: boolean }) | null;

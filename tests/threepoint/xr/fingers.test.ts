@@ -1,9 +1,9 @@
+import { fingerNames, type HandShape, relaxedHand } from 'threepoint/core/body/hand-shape';
+import type { Pose } from 'threepoint/core/math/pose';
+import { fromAxisAngle } from 'threepoint/core/math/quat';
+import { normalise, vec3 } from 'threepoint/core/math/vec3';
+import { createTracker } from 'threepoint/xr/tracker';
 import { afterEach, describe, expect, test, vi } from 'vitest';
-import { fingerNames, type HandShape, relaxedHand } from '../../src/core/body/hand-shape';
-import type { Pose } from '../../src/core/math/pose';
-import { fromAxisAngle } from '../../src/core/math/quat';
-import { normalise, vec3 } from '../../src/core/math/vec3';
-import { createTracker } from '../../src/xr/tracker';
 import { controller, fakeHeadset, type Input } from './fake-headset';
 import { recordedHands, trackedHand } from './recorded-hands';
 

@@ -1,7 +1,7 @@
 import { WebXRController } from 'three/src/renderers/webxr/WebXRController.js';
+import { giveFramesToEvents } from 'threepoint/xr/frameless-events';
 import { expect, test } from 'vitest';
-import { giveFramesToEvents } from '../../src/xr/frameless-events';
-import { measured } from '../reliability/measured';
+import { measured } from '../../reliability/measured';
 
 /** A session whose frames are called by hand; three's controller listens to it as three's manager of sessions has it listen. */
 function headset() {

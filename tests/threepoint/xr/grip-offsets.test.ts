@@ -1,8 +1,8 @@
 import fc from 'fast-check';
+import { rotate } from 'threepoint/core/math/quat';
+import { distance, dot, vec3 } from 'threepoint/core/math/vec3';
+import { genericFit, gripFromWrist, handleFit, wristFromGrip } from 'threepoint/xr/grip-offsets';
 import { describe, expect, test } from 'vitest';
-import { rotate } from '../../src/core/math/quat';
-import { distance, dot, vec3 } from '../../src/core/math/vec3';
-import { genericFit, gripFromWrist, handleFit, wristFromGrip } from '../../src/xr/grip-offsets';
 import { fromEulerYxz } from '../core/euler-angles';
 
 const angle = fc.double({ min: -3, max: 3, noNaN: true });

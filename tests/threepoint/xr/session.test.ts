@@ -1,6 +1,6 @@
+import { describeXrSupport, requestVrSession } from 'threepoint/xr/session';
 import { afterEach, describe, expect, test, vi } from 'vitest';
-import { describeXrSupport, requestVrSession } from '../../src/xr/session';
-import { measured } from '../reliability/measured';
+import { measured } from '../../reliability/measured';
 
 /** A browser with this much of WebXR. */
 function browser({ secure = true, xr }: { secure?: boolean; xr?: Partial<XRSystem> }) {

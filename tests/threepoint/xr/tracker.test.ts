@@ -1,9 +1,9 @@
+import type { Pose } from 'threepoint/core/math/pose';
+import { angleBetween, fromAxisAngle, identity } from 'threepoint/core/math/quat';
+import { distance, up, vec3 } from 'threepoint/core/math/vec3';
+import { createTracker, type Tracker } from 'threepoint/xr/tracker';
 import { afterEach, describe, expect, test, vi } from 'vitest';
-import type { Pose } from '../../src/core/math/pose';
-import { angleBetween, fromAxisAngle, identity } from '../../src/core/math/quat';
-import { distance, up, vec3 } from '../../src/core/math/vec3';
-import { createTracker, type Tracker } from '../../src/xr/tracker';
-import { measured } from '../reliability/measured';
+import { measured } from '../../reliability/measured';
 import { bareHand, controller, fakeHeadset } from './fake-headset';
 
 const at = (x: number, y: number, z: number): Pose<'floor'> => ({ position: vec3(x, y, z), orientation: identity });

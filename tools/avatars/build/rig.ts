@@ -1,8 +1,8 @@
-import { fingerBones } from '../../src/core/body/finger-bones';
-import averageHand from '../../src/core/body/hand-geometry.json';
-import type { FingerName } from '../../src/core/body/hand-shape';
-import { type JointName, parentOf } from '../../src/core/body/joints';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
+import { fingerBones } from 'threepoint/core/body/finger-bones';
+import averageHand from 'threepoint/core/body/hand-geometry.json';
+import type { FingerName } from 'threepoint/core/body/hand-shape';
+import { type JointName, parentOf } from 'threepoint/core/body/joints';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import type { Point } from './signed-distance';
 
 /** A bone of the humanoid: its VRM name, its parent's, and where its joint is in T-pose [m], facing +Z, left = +X. */

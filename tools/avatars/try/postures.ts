@@ -1,6 +1,6 @@
-import { fromAxes, identity, type Quat } from '../../src/core/math/quat';
-import { cross, down, forward, normalise, right, scale, up, type Vec3, vec3 } from '../../src/core/math/vec3';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import { fromAxes, identity, type Quat } from 'threepoint/core/math/quat';
+import { cross, down, forward, normalise, right, scale, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
 const left = scale(right, -1);
 const inwards = { left: right, right: left };

@@ -1,14 +1,14 @@
 // The page of `npm run avatars:try`: one file in, a sheet of pictures out.
 import { AmbientLight, Color, DirectionalLight, GridHelper, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
-import { type Avatar, createAvatar } from '../../src/avatar/avatar';
-import { decoders } from '../../src/avatar/decoders/decoders';
-import { checkInWorker } from '../../src/avatar/file/check-in-worker';
-import { parseChecked } from '../../src/avatar/load-avatar';
-import { thirdPersonOnlyLayer } from '../../src/avatar/rig/body-meshes';
-import { defaultCalibration } from '../../src/core/body/calibration';
-import { reasonOf } from '../../src/core/errors/reasons';
-import { createIk } from '../../src/core/estimation/estimators';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import { type Avatar, createAvatar } from 'threepoint/avatar/avatar';
+import { decoders } from 'threepoint/avatar/decoders/decoders';
+import { checkInWorker } from 'threepoint/avatar/file/check-in-worker';
+import { parseChecked } from 'threepoint/avatar/load-avatar';
+import { thirdPersonOnlyLayer } from 'threepoint/avatar/rig/body-meshes';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import { createIk } from 'threepoint/core/estimation/estimators';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { postures } from './postures';
 
 /** A picture [pixels] on the sheet, and the line of text above all. */

@@ -1,4 +1,4 @@
-import { randomNumbers } from '../../core/math/random';
+import { randomNumbers } from 'threepoint/core/math/random';
 
 /** A stream of numbers in [0, 1), the same for the same seed, for placing what only decorates. */
 export function createScatter(seed: number): (low?: number, high?: number) => number {

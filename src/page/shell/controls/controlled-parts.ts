@@ -1,6 +1,6 @@
-import type { BareBody, BareBodyOptions } from '../../../lib/bare-body';
-import type { ServerPresence } from '../../../net/server-presence';
-import type { Notices } from '../../../ui/notices';
+import type { BareBody, BareBodyOptions } from 'threepoint/api/bare-body';
+import type { ServerPresence } from 'threepoint-http/server-presence';
+import type { Notices } from 'threepoint-ui/notices';
 import type { Recorder } from '../../studio/recorder';
 import type { Activities } from '../activities';
 import type { DeviceDifference } from '../device-difference';

@@ -1,8 +1,8 @@
-import type { TrackingFrame } from '../../../core/tracking/tracking-frame';
-import { acceptDroppedFiles } from '../../../ui/dropped-files';
-import { pageElement } from '../../../ui/element';
-import { createOverlay } from '../../../ui/overlay';
-import { createVrPointers } from '../../../ui/vr-pointers';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { acceptDroppedFiles } from 'threepoint-ui/dropped-files';
+import { pageElement } from 'threepoint-ui/element';
+import { createOverlay } from 'threepoint-ui/overlay';
+import { createVrPointers } from 'threepoint-ui/vr-pointers';
 import type { ControlledParts } from './controlled-parts';
 import { DesktopControls } from './desktop-controls';
 import { frameReport } from './frame-report';

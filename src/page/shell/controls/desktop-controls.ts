@@ -1,13 +1,13 @@
-import { palettes } from '../../../avatar/palettes';
+import { palettes } from 'threepoint/avatar/palettes';
 import {
   armSpanRange,
   fingertipSpanFromArmSpan,
   forearmRange,
   statureFromEyeHeight,
   statureRange,
-} from '../../../core/body/calibration';
-import { viewNames } from '../../../scene/desktop-view';
-import { listenToShortcuts, type Shortcuts } from '../../../ui/shortcuts';
+} from 'threepoint/core/body/calibration';
+import { listenToShortcuts, type Shortcuts } from 'threepoint-ui/shortcuts';
+import { viewNames } from '../../scene/desktop-view';
 import { estimatorOrder } from '../estimator-texts';
 import { createPanel, type Panel, type PanelActions } from '../panel/panel';
 import type { PanelState } from '../panel/panel-state';

@@ -1,4 +1,4 @@
-import type { FrameReport } from '../../../ui/overlay';
+import type { FrameReport } from 'threepoint-ui/overlay';
 import { estimatorTexts } from '../estimator-texts';
 import { stageNames } from '../frame-timing';
 import type { ControlledParts } from './controlled-parts';

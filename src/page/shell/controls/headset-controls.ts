@@ -1,8 +1,8 @@
-import type { BareBody } from '../../../lib/bare-body';
-import { linkTo } from '../../../ui/invitation';
-import type { FrameReport } from '../../../ui/overlay';
-import { qrCode } from '../../../ui/qr-code';
-import type { VrPointers } from '../../../ui/vr-pointers';
+import type { BareBody } from 'threepoint/api/bare-body';
+import { linkTo } from 'threepoint-ui/invitation';
+import type { FrameReport } from 'threepoint-ui/overlay';
+import { qrCode } from 'threepoint-ui/qr-code';
+import type { VrPointers } from 'threepoint-ui/vr-pointers';
 import { otherPlayers } from '../../ball/other-players';
 import { consentText, type VoicesState } from '../../ball/voices-state';
 import type { Activities } from '../activities';

@@ -1,9 +1,13 @@
-import { withForearm } from '../../../core/body/calibration';
-import type { TrackingFrame } from '../../../core/tracking/tracking-frame';
-import type { BareBody } from '../../../lib/bare-body';
-import { type CalibrationDialog, type CalibrationStep, createCalibrationDialog } from '../../../ui/calibration-dialog';
-import { type CalibrationGuide, createCalibrationGuide } from '../../../ui/calibration-guide';
-import type { Notices } from '../../../ui/notices';
+import type { BareBody } from 'threepoint/api/bare-body';
+import { withForearm } from 'threepoint/core/body/calibration';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import {
+  type CalibrationDialog,
+  type CalibrationStep,
+  createCalibrationDialog,
+} from 'threepoint-ui/calibration-dialog';
+import { type CalibrationGuide, createCalibrationGuide } from 'threepoint-ui/calibration-guide';
+import type { Notices } from 'threepoint-ui/notices';
 import type { Recorder } from '../../studio/recorder';
 import { Emitter } from '../emitter';
 import type { Headset } from '../headset';

@@ -1,10 +1,10 @@
-import { decoders } from '../../../avatar/decoders/decoders';
-import { firstLine, reasonOf } from '../../../core/errors/reasons';
-import type { BareBody, BareBodyOptions } from '../../../lib/bare-body';
-import type { MotionWriter } from '../../../lib/bare-export';
-import type { MotionFormat } from '../../../lib/motion-formats';
-import { offerDownload } from '../../../ui/downloads';
-import type { Notices } from '../../../ui/notices';
+import type { BareBody, BareBodyOptions } from 'threepoint/api/bare-body';
+import type { MotionWriter } from 'threepoint/api/bare-export';
+import type { MotionFormat } from 'threepoint/api/motion-formats';
+import { decoders } from 'threepoint/avatar/decoders/decoders';
+import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import { offerDownload } from 'threepoint-ui/downloads';
+import type { Notices } from 'threepoint-ui/notices';
 import type { Recorder } from '../../studio/recorder';
 import { estimatorTexts } from '../estimator-texts';
 import type { ExportChoice, ExportState } from '../panel/panel-state';
@@ -51,7 +51,7 @@ export class MotionExport {
     const { signal } = this.#giveUp;
     this.#tell({ name: stem, method: label, share: 0, secondsLeft: null });
     try {
-      const { exportMotionBare } = await import('../../../lib/bare-export');
+      const { exportMotionBare } = await import('threepoint/api/bare-export');
       const { extension, type, parts } = await exportMotionBare(recording, {
         to: await this.#formatOf(choice),
         unit: choice === 'bvh-cm' ? 'cm' : 'm',
@@ -74,7 +74,7 @@ export class MotionExport {
   async #formatOf(choice: ExportChoice): Promise<MotionFormat | MotionWriter> {
     if (choice !== 'glb') return choice === 'bvh-cm' ? 'bvh' : choice;
     const { avatar } = this.#options;
-    const { avatarClip } = await import('../../../avatar/avatar-clip');
+    const { avatarClip } = await import('threepoint/avatar/avatar-clip');
     return avatarClip(await avatar.file(), avatar.name, { decoders });
   }
 

@@ -1,9 +1,9 @@
-import type { BoneMap } from '../../../avatar/humanoid/bone-names';
-import { firstLine, reasonOf } from '../../../core/errors/reasons';
-import { isSkeletonMap } from '../../../core/mocap/is-skeleton-map';
-import type { BareBody } from '../../../lib/bare-body';
-import { type FileKind, nameOf, readLimited } from '../../../ui/limited-files';
-import type { Notices } from '../../../ui/notices';
+import type { BareBody } from 'threepoint/api/bare-body';
+import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
+import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import { isSkeletonMap } from 'threepoint/core/mocap/is-skeleton-map';
+import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
+import type { Notices } from 'threepoint-ui/notices';
 import type { Recorder } from '../../studio/recorder';
 import type { PageMocap } from '../page-mocap';
 import type { ShownAvatar } from '../shown-avatar';

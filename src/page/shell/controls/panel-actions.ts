@@ -1,5 +1,5 @@
-import { armSpanFromFingertipSpan, calibrationComplaint, eyeHeightFromStature } from '../../../core/body/calibration';
-import { offerDownload } from '../../../ui/downloads';
+import { armSpanFromFingertipSpan, calibrationComplaint, eyeHeightFromStature } from 'threepoint/core/body/calibration';
+import { offerDownload } from 'threepoint-ui/downloads';
 import type { PanelActions } from '../panel/panel';
 import type { AvatarActions, BodyActions, RecordingActions, ViewActions } from '../panel/panel-state';
 import type { ControlledParts } from './controlled-parts';

@@ -1,5 +1,5 @@
-import { pageElement } from '../../../ui/element';
-import { createInvitation, type Invitation } from '../../../ui/invitation';
+import { pageElement } from 'threepoint-ui/element';
+import { createInvitation, type Invitation } from 'threepoint-ui/invitation';
 import type { BallBarActions, BallBarState } from '../../ball/ball-bar';
 import { createPlayBar, type PlayActions, type PlayBar, type PlayState, type Shooter } from '../play-bar';
 import type { ControlledParts } from './controlled-parts';

@@ -1,4 +1,4 @@
-import { pageElement } from '../../../ui/element';
+import { pageElement } from 'threepoint-ui/element';
 import type { Stage } from '../stage';
 
 /** Of a window [CSS pixels], up to which the controls lie below the picture instead of beside it. */

@@ -1,10 +1,10 @@
-import { bodyLabels } from '../../../avatar/own-bodies';
-import { skinColors } from '../../../avatar/palettes';
-import { plainAvatar, skinTones } from '../../../core/protocol/worn-avatar';
-import { button, element } from '../../../ui/element';
-import { fileButton } from '../../../ui/file-button';
-import { createRunningLine } from '../../../ui/running-line';
-import { toggle } from '../../../ui/toggle';
+import { bodyLabels } from 'threepoint/avatar/own-bodies';
+import { skinColors } from 'threepoint/avatar/palettes';
+import { plainAvatar, skinTones } from 'threepoint/core/body/worn-avatar';
+import { button, element } from 'threepoint-ui/element';
+import { fileButton } from 'threepoint-ui/file-button';
+import { createRunningLine } from 'threepoint-ui/running-line';
+import { toggle } from 'threepoint-ui/toggle';
 import { createBonesForm } from './bones-form';
 import type { AvatarActions, PanelPage, PanelState } from './panel-state';
 

@@ -1,6 +1,6 @@
-import type { MeasureRange } from '../../../core/body/calibration';
-import { button, element } from '../../../ui/element';
-import { toggle } from '../../../ui/toggle';
+import type { MeasureRange } from 'threepoint/core/body/calibration';
+import { button, element } from 'threepoint-ui/element';
+import { toggle } from 'threepoint-ui/toggle';
 import { estimatorOrder, estimatorTexts } from '../estimator-texts';
 import type { BodyActions, PanelPage, PanelState } from './panel-state';
 

@@ -1,7 +1,7 @@
+import type { BoneMap, BoneName } from 'threepoint/avatar/humanoid/bone-names';
+import { neededBones } from 'threepoint/avatar/humanoid/humanoid';
+import { button, element } from 'threepoint-ui/element';
 import * as v from 'valibot';
-import type { BoneMap, BoneName } from '../../../avatar/humanoid/bone-names';
-import { neededBones } from '../../../avatar/humanoid/humanoid';
-import { button, element } from '../../../ui/element';
 import { boneMap } from '../preferences';
 import type { WaitingForBones } from '../shown-avatar';
 

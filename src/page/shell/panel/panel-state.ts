@@ -1,7 +1,7 @@
-import type { BoneMap } from '../../../avatar/humanoid/bone-names';
-import type { EstimatorName } from '../../../core/estimation/pose-estimator';
-import type { OwnBody, SkinTone } from '../../../core/protocol/worn-avatar';
-import type { ViewName } from '../../../scene/desktop-view';
+import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
+import type { OwnBody, SkinTone } from 'threepoint/core/body/worn-avatar';
+import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
+import type { ViewName } from '../../scene/desktop-view';
 import type { WaitingForBones } from '../shown-avatar';
 
 /** What the recorder is doing; seconds since its start, of how many. */

@@ -1,5 +1,5 @@
-import { button, element } from '../../../ui/element';
-import { createTabs } from '../../../ui/tabs';
+import { button, element } from 'threepoint-ui/element';
+import { createTabs } from 'threepoint-ui/tabs';
 import { createAvatarPage, type PaletteChoice } from './avatar-page';
 import { createBodyPage, type MeasureRanges } from './body-page';
 import type { AvatarActions, BodyActions, PanelState, RecordingActions, ViewActions } from './panel-state';

@@ -1,7 +1,7 @@
-import { button, element } from '../../../ui/element';
-import { fileButton } from '../../../ui/file-button';
-import { createRunningLine } from '../../../ui/running-line';
-import { toggle } from '../../../ui/toggle';
+import { button, element } from 'threepoint-ui/element';
+import { fileButton } from 'threepoint-ui/file-button';
+import { createRunningLine } from 'threepoint-ui/running-line';
+import { toggle } from 'threepoint-ui/toggle';
 import type { ExportChoice, ExportState, PanelPage, PanelState, RecorderState, RecordingActions } from './panel-state';
 
 const seconds = (value: number): string => `${value.toFixed(1)} s`;

@@ -1,6 +1,6 @@
-import { type ViewName, viewNames } from '../../../scene/desktop-view';
-import { button, element } from '../../../ui/element';
-import { toggle } from '../../../ui/toggle';
+import { button, element } from 'threepoint-ui/element';
+import { toggle } from 'threepoint-ui/toggle';
+import { type ViewName, viewNames } from '../../scene/desktop-view';
 import { estimatorOrder } from '../estimator-texts';
 import type { PanelPage, ViewActions } from './panel-state';
 

@@ -1,5 +1,5 @@
-import { differenceLines, type FrameReport, milliseconds, missedFrames } from '../../../ui/overlay';
-import { fillRounded, vrColors, vrFont } from '../../../ui/vr-panel';
+import { differenceLines, type FrameReport, milliseconds, missedFrames } from 'threepoint-ui/overlay';
+import { fillRounded, vrColors, vrFont } from 'threepoint-ui/vr-panel';
 
 /** The sheet of the frame times [pixels]. */
 export const frameTimesWidth = 520;

@@ -1,10 +1,10 @@
-import { labelOf } from '../../../avatar/own-bodies';
-import type { EstimatorName } from '../../../core/estimation/pose-estimator';
-import type { Side } from '../../../core/math/side';
-import { type OwnBody, ownBodies, plainAvatar, type SkinTone, skinTones } from '../../../core/protocol/worn-avatar';
-import type { CalibrationStep } from '../../../ui/calibration-dialog';
-import type { RoomLink } from '../../../ui/invitation';
-import type { QrCode } from '../../../ui/qr-code';
+import { labelOf } from 'threepoint/avatar/own-bodies';
+import { type OwnBody, ownBodies, plainAvatar, type SkinTone, skinTones } from 'threepoint/core/body/worn-avatar';
+import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
+import type { Side } from 'threepoint/core/math/side';
+import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
+import type { RoomLink } from 'threepoint-ui/invitation';
+import type { QrCode } from 'threepoint-ui/qr-code';
 import { hideLabel, muteLabel, type OtherPlayer } from '../../ball/other-players';
 import type { VoicesState } from '../../ball/voices-state';
 import { estimatorOrder, estimatorTexts } from '../estimator-texts';

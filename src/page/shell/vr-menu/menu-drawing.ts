@@ -1,6 +1,6 @@
-import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from '../../../ui/calibration-dialog';
-import { drawQrCode } from '../../../ui/qr-code';
-import { fillRounded, vrColors, vrFont, wrap } from '../../../ui/vr-panel';
+import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from 'threepoint-ui/calibration-dialog';
+import { drawQrCode } from 'threepoint-ui/qr-code';
+import { fillRounded, vrColors, vrFont, wrap } from 'threepoint-ui/vr-panel';
 import {
   type MenuButton,
   menuHeight,

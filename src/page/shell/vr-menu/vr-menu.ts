@@ -1,8 +1,8 @@
 import { Group } from 'three';
-import type { FrameReport } from '../../../ui/overlay';
-import { createVrPanel } from '../../../ui/vr-panel';
-import type { Pointer } from '../../../ui/vr-pointers';
-import { createPanelTouch } from '../../../ui/vr-touch';
+import type { FrameReport } from 'threepoint-ui/overlay';
+import { createVrPanel } from 'threepoint-ui/vr-panel';
+import type { Pointer } from 'threepoint-ui/vr-pointers';
+import { createPanelTouch } from 'threepoint-ui/vr-touch';
 import { drawFrameTimes, frameTimesHeight, frameTimesWidth } from './frame-times-drawing';
 import {
   type MenuButton,

@@ -1,5 +1,6 @@
 import { existsSync, readFileSync } from 'node:fs';
-import { embodimentInWords } from '../../src/core/study/embodiment';
+import { ValidationError } from 'threepoint/core/validation/validation';
+import { embodimentInWords } from '../../model/embodiment';
 import {
   languagesOf,
   parsePlan,
@@ -8,10 +9,9 @@ import {
   type StudyPlan,
   studyTitle,
   taskTitle,
-} from '../../src/core/study/plan';
-import { durationOf, outlineOf } from '../../src/core/study/plan-outline';
-import { cohortCounts, orderCounts, remarksOn } from '../../src/core/study/plan-remarks';
-import { ValidationError } from '../../src/core/study/validation';
+} from '../../model/plan';
+import { durationOf, outlineOf } from '../../model/plan-outline';
+import { cohortCounts, orderCounts, remarksOn } from '../../model/plan-remarks';
 
 const [file = '', participant] = process.argv.slice(2);
 

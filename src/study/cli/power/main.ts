@@ -1,6 +1,6 @@
+import { checked, integerBetween, numberBetween, ValidationError } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { mostSimulated, type PowerRow, powerTable } from '../../src/core/statistics/power';
-import { checked, integerBetween, numberBetween, ValidationError } from '../../src/core/study/validation';
+import { mostSimulated, type PowerRow, powerTable } from '../../statistics/power';
 
 const given = <Schema extends v.GenericSchema<number, number>>(schema: Schema, otherwise: string) =>
   v.pipe(v.optional(v.string(), otherwise), v.transform(Number), schema);

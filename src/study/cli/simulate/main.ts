@@ -1,19 +1,19 @@
 import { existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { softwareIn } from '../../server/software';
+import { ValidationError } from 'threepoint/core/validation/validation';
+import { softwareIn } from 'threepoint-http/software';
+import { compareCohorts } from '../../model/compare-cohorts';
+import { compareConditions } from '../../model/compare-conditions';
+import { measuresIn, overallComparisons, type StudyMeasures } from '../../model/exported-results';
+import { checkedPlan, parsePlan, type StudyPlan } from '../../model/plan';
+import type { StudyRecord } from '../../model/study-record';
 import { exportFiles, exportName, exportZip } from '../../server/study-export';
 import { openStudyStore } from '../../server/study-store';
-import { modelsWith, simulatedPlan, simulateStudy, statedInWords } from '../../src/core/rehearsal/simulate-study';
-import { compareCohorts } from '../../src/core/study/compare-cohorts';
-import { compareConditions } from '../../src/core/study/compare-conditions';
-import { measuresIn, overallComparisons, type StudyMeasures } from '../../src/core/study/exported-results';
-import { checkedPlan, parsePlan, type StudyPlan } from '../../src/core/study/plan';
-import type { StudyRecord } from '../../src/core/study/study-record';
-import { ValidationError } from '../../src/core/study/validation';
+import { modelsWith, simulatedPlan, simulateStudy, statedInWords } from '../../simulation/simulate-study';
 import { simulateOptions } from './options';
 
-const root = fileURLToPath(new URL('../..', import.meta.url));
+const root = fileURLToPath(new URL('../../../..', import.meta.url));
 /** When the first simulated participant begins: a fixed day, so that the same seed gives the same files. */
 const firstSession = Date.UTC(2026, 0, 5, 9) / 1000;
 

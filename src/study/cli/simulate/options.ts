@@ -1,7 +1,7 @@
 import { parseArgs } from 'node:util';
-import type { StatedEffects } from '../../src/core/rehearsal/simulate-study';
-import type { StudyPlan } from '../../src/core/study/plan';
-import { ValidationError } from '../../src/core/study/validation';
+import { ValidationError } from 'threepoint/core/validation/validation';
+import type { StudyPlan } from '../../model/plan';
+import type { StatedEffects } from '../../simulation/simulate-study';
 
 /** What the command line asks for, read but for what the plan must say. */
 export interface SimulateOptions {

@@ -1,8 +1,8 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { basename } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { softwareIn } from '../../server/software';
-import { reasonOf } from '../../src/core/errors/reasons';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import { softwareIn } from 'threepoint-http/software';
 import { verifyExport } from './verify-export';
 
 const [path = ''] = process.argv.slice(2);
@@ -12,7 +12,7 @@ const mostShown = 50;
 
 try {
   if (!existsSync(path)) throw new Error('there is no such file');
-  const here = softwareIn(fileURLToPath(new URL('../../public', import.meta.url)));
+  const here = softwareIn(fileURLToPath(new URL('../../../../public', import.meta.url)));
   const { complaints, files, records, exportedBy } = verifyExport(readFileSync(path));
   if (exportedBy.version !== here.version) {
     console.log(

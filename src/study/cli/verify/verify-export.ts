@@ -1,9 +1,9 @@
 import { createHash } from 'node:crypto';
 import { strFromU8, unzipSync } from 'fflate';
-import type { Software } from '../../server/software';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import type { Software } from 'threepoint-http/software';
+import { openStudyFile } from '../../pages/study-file';
 import { checksumsFile, type ExportContent, exportFiles, motionPath } from '../../server/study-export';
-import { reasonOf } from '../../src/core/errors/reasons';
-import { openStudyFile } from '../../src/pages/study-file';
 import { csvRows } from './csv-rows';
 
 export interface Verdict {

@@ -1,4 +1,4 @@
-import { calibrationFaults } from '../../tracking/calibration-faults';
+import { calibrationFaults } from 'threepoint/core/tracking/calibration-faults';
 
 /**
  * Every phrase that the page itself says to participants, by key. What stands in braces is filled in; a phrase with a number has the plural

@@ -1,5 +1,5 @@
+import { text, ValidationError } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { text, ValidationError } from '../validation';
 import { languageTag } from '../words';
 import type { GivenPhrases, Phrase, PhraseKey } from './catalogue';
 import { english } from './english';

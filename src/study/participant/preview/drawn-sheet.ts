@@ -1,4 +1,4 @@
-import { element } from '../../../ui/element';
+import { element } from 'threepoint-ui/element';
 import { height, type Target, width } from '../sheet-target';
 import type { StudyScreen } from '../study-screen';
 import { paintSheet, targetsOf } from '../study-sheet';

@@ -1,7 +1,7 @@
-import { embodimentInWords } from '../../../core/study/embodiment';
-import { languagesOf, type StudyPlan, taskTitle } from '../../../core/study/plan';
-import { blindLabel, type StudyStep, scheduleFor } from '../../../core/study/schedule';
-import { inLanguage } from '../../../core/study/words';
+import { embodimentInWords } from '../../model/embodiment';
+import { languagesOf, type StudyPlan, taskTitle } from '../../model/plan';
+import { blindLabel, type StudyStep, scheduleFor } from '../../model/schedule';
+import { inLanguage } from '../../model/words';
 
 /** Where a screen is met: a questionnaire can be answered at either. */
 export type PreviewPlace = 'desk' | 'headset' | 'either';

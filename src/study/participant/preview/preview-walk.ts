@@ -1,10 +1,10 @@
-import { advance, type ProgressEvent } from '../../../core/study/advance';
-import { embodimentInWords } from '../../../core/study/embodiment';
-import { type Phrases, phrasesOf } from '../../../core/study/phrases/phrases';
-import { languagesOf, type StudyPlan, taskTitle } from '../../../core/study/plan';
-import { begin, currentStep, type Progress } from '../../../core/study/progress';
-import { type Schedule, type StudyStep, scheduleFor } from '../../../core/study/schedule';
-import type { CalibrationStep } from '../../../ui/calibration-dialog';
+import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
+import { advance, type ProgressEvent } from '../../model/advance';
+import { embodimentInWords } from '../../model/embodiment';
+import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
+import { languagesOf, type StudyPlan, taskTitle } from '../../model/plan';
+import { begin, currentStep, type Progress } from '../../model/progress';
+import { type Schedule, type StudyStep, scheduleFor } from '../../model/schedule';
 import { Answering } from '../answering';
 import type { Safekeeping } from '../participant-session';
 import { refusalFor } from '../reasons';

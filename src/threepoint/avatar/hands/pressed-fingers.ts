@@ -1,5 +1,5 @@
 import { type HandShape, type MutableHandShape, makeHandShape, shapeOfClosing } from '../../core/body/hand-shape';
-import { type Buttons, type HandButtons, pressureOf } from '../../core/games/button-presses';
+import { type Buttons, type HandButtons, pressureOf } from '../../core/input/button-presses';
 import type { Side } from '../../core/math/side';
 
 /** The fingers of a hand of which only its buttons are known: a built-in player's, a mouse's. */

@@ -3,7 +3,7 @@
  *
  * V8 gives all literals `{ x, y, z }` of a program one hidden class. As long as only numbers are ever written into it, a vector's
  * numbers are stored in place; one literal `{ x: schema, y: schema, z: schema }` anywhere makes every number stored in any vector an
- * object of its own on the heap (tests/app/boxed-numbers.test.ts). The same holds for `Quat`.
+ * object of its own on the heap (tests/page/boxed-numbers.test.ts). The same holds for `Quat`.
  */
 export interface Vec3 {
   readonly x: number;

@@ -1,5 +1,4 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
 import {
   armSpanFromFingertipSpan,
   type Calibration,
@@ -13,7 +12,8 @@ import {
   statureFromEyeHeight,
   steepestGazePitch,
   withForearm,
-} from '../../../src/core/body/calibration';
+} from 'threepoint/core/body/calibration';
+import { describe, expect, test } from 'vitest';
 import { number, seed } from '../arbitraries';
 
 describe('measures of people', () => {

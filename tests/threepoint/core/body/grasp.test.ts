@@ -1,8 +1,8 @@
+import { closeRound, distanceToBall, distanceToRod } from 'threepoint/core/body/grasp';
+import { averageHand, fingerPoints, makeFingerPoints } from 'threepoint/core/body/hand-geometry';
+import { closedHand, type FingerName, fingerNames, makeHandShape } from 'threepoint/core/body/hand-shape';
+import { lerp, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
-import { closeRound, distanceToBall, distanceToRod } from '../../../src/core/body/grasp';
-import { averageHand, fingerPoints, makeFingerPoints } from '../../../src/core/body/hand-geometry';
-import { closedHand, type FingerName, fingerNames, makeHandShape } from '../../../src/core/body/hand-shape';
-import { lerp, type Vec3, vec3 } from '../../../src/core/math/vec3';
 
 const hand = averageHand(1.59);
 

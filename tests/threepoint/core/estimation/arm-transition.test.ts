@@ -1,6 +1,5 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
-import type { LimbBones } from '../../../src/core/body/two-bone-ik';
+import type { LimbBones } from 'threepoint/core/body/two-bone-ik';
 import {
   type ArmDirections,
   copyArmDirections,
@@ -9,8 +8,8 @@ import {
   makeArmTransition,
   startTransition,
   type WantedArm,
-} from '../../../src/core/estimation/arm-transition';
-import { fromAxisAngle, rotate } from '../../../src/core/math/quat';
+} from 'threepoint/core/estimation/arm-transition';
+import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
 import {
   add,
   addScaled,
@@ -23,7 +22,8 @@ import {
   up,
   type Vec3,
   vec3,
-} from '../../../src/core/math/vec3';
+} from 'threepoint/core/math/vec3';
+import { describe, expect, test } from 'vitest';
 import { evenly, seed } from '../arbitraries';
 
 const bones: LimbBones = { upper: 0.28, lower: 0.26 };

@@ -1,12 +1,10 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
-import { swivelAngle } from '../../../bench/evaluate/swivel-angle';
-import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
-import { estimatedJoints } from '../../../src/core/body/joints';
-import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import { createEstimator } from '../../../src/core/estimation/estimators';
-import type { JointPositions } from '../../../src/core/estimation/joint-positions';
-import { fromAxisAngle, multiply, twistAngle } from '../../../src/core/math/quat';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { estimatedJoints } from 'threepoint/core/body/joints';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { createEstimator } from 'threepoint/core/estimation/estimators';
+import type { JointPositions } from 'threepoint/core/estimation/joint-positions';
+import { fromAxisAngle, multiply, twistAngle } from 'threepoint/core/math/quat';
 import {
   add,
   addScaled,
@@ -18,7 +16,9 @@ import {
   up,
   type Vec3,
   vec3,
-} from '../../../src/core/math/vec3';
+} from 'threepoint/core/math/vec3';
+import { describe, expect, test } from 'vitest';
+import { swivelAngle } from '../../../../bench/evaluate/swivel-angle';
 import { evenly, seed } from '../arbitraries';
 import { completedFrame, fitted, type Joints, poseOf } from './drawn';
 import { standing, wristOrientation } from './moving-person';

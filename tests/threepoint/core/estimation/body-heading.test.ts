@@ -1,9 +1,9 @@
 import fc from 'fast-check';
+import { followBodyHeading, makeBodyHeading } from 'threepoint/core/estimation/body-heading';
+import { angleBetween, fromAxisAngle, multiply, type Quat, twistAngle } from 'threepoint/core/math/quat';
+import { up, vec3 } from 'threepoint/core/math/vec3';
+import { readHeading } from 'threepoint/core/tracking/heading';
 import { describe, expect, test } from 'vitest';
-import { followBodyHeading, makeBodyHeading } from '../../../src/core/estimation/body-heading';
-import { angleBetween, fromAxisAngle, multiply, type Quat, twistAngle } from '../../../src/core/math/quat';
-import { up, vec3 } from '../../../src/core/math/vec3';
-import { readHeading } from '../../../src/core/tracking/heading';
 import { number, rotation, seed } from '../arbitraries';
 import { fromEulerYxz } from '../euler-angles';
 

@@ -1,18 +1,18 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
-import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
-import { chestSpaceBody, skeletonFromCalibration } from '../../../src/core/body/skeleton';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { chestSpaceBody, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import {
   type CompletedHand,
   completeHands,
   makeCompleteHandsState,
   resetCompleteHands,
-} from '../../../src/core/estimation/complete-hands';
-import { createIk } from '../../../src/core/estimation/estimators';
-import type { TrackedPose } from '../../../src/core/math/pose';
-import { copyQuat, fromAxisAngle, identity, multiply, rotate } from '../../../src/core/math/quat';
-import { add, copyVec3, distance, length, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
-import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+} from 'threepoint/core/estimation/complete-hands';
+import { createIk } from 'threepoint/core/estimation/estimators';
+import type { TrackedPose } from 'threepoint/core/math/pose';
+import { copyQuat, fromAxisAngle, identity, multiply, rotate } from 'threepoint/core/math/quat';
+import { add, copyVec3, distance, length, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { describe, expect, test } from 'vitest';
 import { evenly, number, seed } from '../arbitraries';
 import { poseOf } from './drawn';
 

@@ -1,20 +1,20 @@
-import { type AvatarPose, copyAvatarPose, makeUpperBodyPose } from '../../../src/core/body/avatar-pose';
-import type { Calibration } from '../../../src/core/body/calibration';
-import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
-import { headJointOf } from '../../../src/core/body/head-joint';
-import type { JointName } from '../../../src/core/body/joints';
-import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import type { CompletedFrame, CompletedHand } from '../../../src/core/estimation/complete-hands';
-import { composeBody } from '../../../src/core/estimation/compose-body';
-import { armBones, fitArms, makeFitArmsState } from '../../../src/core/estimation/fit-arms';
-import { fitTorso, makeFitTorsoState, torsoBones } from '../../../src/core/estimation/fit-torso';
-import type { JointPositions } from '../../../src/core/estimation/joint-positions';
-import type { PoseEstimator } from '../../../src/core/estimation/pose-estimator';
-import type { Pose } from '../../../src/core/math/pose';
-import { copyQuat, identity } from '../../../src/core/math/quat';
-import { copyVec3, normalise, vec3 } from '../../../src/core/math/vec3';
-import { readHeading } from '../../../src/core/tracking/heading';
-import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import { type AvatarPose, copyAvatarPose, makeUpperBodyPose } from 'threepoint/core/body/avatar-pose';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { headJointOf } from 'threepoint/core/body/head-joint';
+import type { JointName } from 'threepoint/core/body/joints';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import type { CompletedFrame, CompletedHand } from 'threepoint/core/estimation/complete-hands';
+import { composeBody } from 'threepoint/core/estimation/compose-body';
+import { armBones, fitArms, makeFitArmsState } from 'threepoint/core/estimation/fit-arms';
+import { fitTorso, makeFitTorsoState, torsoBones } from 'threepoint/core/estimation/fit-torso';
+import type { JointPositions } from 'threepoint/core/estimation/joint-positions';
+import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
+import type { Pose } from 'threepoint/core/math/pose';
+import { copyQuat, identity } from 'threepoint/core/math/quat';
+import { copyVec3, normalise, vec3 } from 'threepoint/core/math/vec3';
+import { readHeading } from 'threepoint/core/tracking/heading';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
 /** Every joint of a body, floor frame. */
 export type Joints = Readonly<Record<JointName, Pose<'floor'>>>;

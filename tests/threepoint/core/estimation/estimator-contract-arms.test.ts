@@ -1,10 +1,9 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
-import type { Calibration } from '../../../src/core/body/calibration';
-import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import { armBones } from '../../../src/core/estimation/fit-arms';
-import type { TrackedPose } from '../../../src/core/math/pose';
-import { multiply, rotate, rotateInverse, rotationBetween, twistAngle, twistOf } from '../../../src/core/math/quat';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { armBones } from 'threepoint/core/estimation/fit-arms';
+import type { TrackedPose } from 'threepoint/core/math/pose';
+import { multiply, rotate, rotateInverse, rotationBetween, twistAngle, twistOf } from 'threepoint/core/math/quat';
 import {
   add,
   addScaled,
@@ -19,8 +18,9 @@ import {
   up,
   type Vec3,
   vec3,
-} from '../../../src/core/math/vec3';
-import { headingOf } from '../../../src/core/tracking/heading';
+} from 'threepoint/core/math/vec3';
+import { headingOf } from 'threepoint/core/tracking/heading';
+import { describe, expect, test } from 'vitest';
 import { evenly, rotation, vector } from '../arbitraries';
 import { bodies, jointsOf, openSubject, person, rate, showSecond, times } from './contract-subjects';
 import { type Joints, show } from './drawn';

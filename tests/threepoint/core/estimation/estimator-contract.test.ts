@@ -1,10 +1,10 @@
 import fc from 'fast-check';
+import { type JointName, jointNames, parentOf } from 'threepoint/core/body/joints';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { type TrackedPose, transformPoint } from 'threepoint/core/math/pose';
+import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
+import { add, distance, length, up, vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
-import { type JointName, jointNames, parentOf } from '../../../src/core/body/joints';
-import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import { type TrackedPose, transformPoint } from '../../../src/core/math/pose';
-import { fromAxisAngle, rotate } from '../../../src/core/math/quat';
-import { add, distance, length, up, vec3 } from '../../../src/core/math/vec3';
 import { rotation, standpoint, vector } from '../arbitraries';
 import { numbersIn } from '../numbers-in';
 import {

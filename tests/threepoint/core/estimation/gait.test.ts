@@ -1,8 +1,8 @@
+import { Gait, shippedGait } from 'threepoint/core/estimation/gait';
+import { GaitFeatures, type GaitPoints } from 'threepoint/core/estimation/gait-features';
+import type { Quat } from 'threepoint/core/math/quat';
+import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
-import { Gait, shippedGait } from '../../../src/core/estimation/gait';
-import { GaitFeatures, type GaitPoints } from '../../../src/core/estimation/gait-features';
-import type { Quat } from '../../../src/core/math/quat';
-import { type Vec3, vec3 } from '../../../src/core/math/vec3';
 import { eyeHeight, standing, walking } from '../../avatar/walking-person';
 
 type Person = (time: number) => GaitPoints;

@@ -1,12 +1,12 @@
 import { readFileSync } from 'node:fs';
-import type { Calibration } from '../../../src/core/body/calibration';
-import type { CompletedHand } from '../../../src/core/estimation/complete-hands';
-import type { SeenHands } from '../../../src/core/estimation/features';
-import { type HandTurns, makeThreePoints, type ThreePoints, turnHands } from '../../../src/core/estimation/solve-ik';
-import { makePose, type Pose, transformPose } from '../../../src/core/math/pose';
-import type { Quat } from '../../../src/core/math/quat';
-import type { Vec3 } from '../../../src/core/math/vec3';
-import { headingFromFloor } from '../../../src/core/tracking/heading';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import type { CompletedHand } from 'threepoint/core/estimation/complete-hands';
+import type { SeenHands } from 'threepoint/core/estimation/features';
+import { type HandTurns, makeThreePoints, type ThreePoints, turnHands } from 'threepoint/core/estimation/solve-ik';
+import { makePose, type Pose, transformPose } from 'threepoint/core/math/pose';
+import type { Quat } from 'threepoint/core/math/quat';
+import type { Vec3 } from 'threepoint/core/math/vec3';
+import { headingFromFloor } from 'threepoint/core/tracking/heading';
 
 type Numbers = readonly number[];
 
@@ -67,7 +67,7 @@ export interface GoldenModel {
 }
 
 export function readGolden<Content>(name: string): Content {
-  return JSON.parse(readFileSync(new URL(`../../golden/${name}`, import.meta.url), 'utf8')) as Content;
+  return JSON.parse(readFileSync(new URL(`../../../golden/${name}`, import.meta.url), 'utf8')) as Content;
 }
 
 /** A hand that is seen, or not; where it is said to be does not matter. */

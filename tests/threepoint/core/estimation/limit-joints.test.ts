@@ -1,8 +1,8 @@
+import { copyJoints, type JointPositions, mapJoints } from 'threepoint/core/estimation/joint-positions';
+import { limitJoints, makeLimitJointsState, resetLimitJoints } from 'threepoint/core/estimation/limit-joints';
+import { fromAxisAngle, identity, type Quat, rotate } from 'threepoint/core/math/quat';
+import { add, distance, subtract, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { expect, test } from 'vitest';
-import { copyJoints, type JointPositions, mapJoints } from '../../../src/core/estimation/joint-positions';
-import { limitJoints, makeLimitJointsState, resetLimitJoints } from '../../../src/core/estimation/limit-joints';
-import { fromAxisAngle, identity, type Quat, rotate } from '../../../src/core/math/quat';
-import { add, distance, subtract, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
 import { fromEulerYxz } from '../euler-angles';
 import { completedFrame } from './drawn';
 

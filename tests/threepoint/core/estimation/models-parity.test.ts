@@ -1,6 +1,6 @@
+import { estimatedJoints } from 'threepoint/core/body/joints';
+import { learnedInputCount } from 'threepoint/core/estimation/residual';
 import { describe, expect, test } from 'vitest';
-import { estimatedJoints } from '../../../src/core/body/joints';
-import { learnedInputCount } from '../../../src/core/estimation/residual';
 import { type GoldenModel, readGolden } from './golden';
 import { type NetworkName, openShippedModel } from './shipped-models';
 

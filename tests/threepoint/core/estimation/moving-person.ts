@@ -1,11 +1,11 @@
-import type { Calibration } from '../../../src/core/body/calibration';
-import { chestSpaceBody, sideSign } from '../../../src/core/body/skeleton';
-import { type Frame, type TrackedPose, type Transform, transformPose } from '../../../src/core/math/pose';
-import { fromAxes, fromAxisAngle, multiply, type Quat, rotate } from '../../../src/core/math/quat';
-import { randomNumbers } from '../../../src/core/math/random';
-import type { Side } from '../../../src/core/math/side';
-import { add, addScaled, cross, normalise, right, subtract, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
-import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { chestSpaceBody, sideSign } from 'threepoint/core/body/skeleton';
+import { type Frame, type TrackedPose, type Transform, transformPose } from 'threepoint/core/math/pose';
+import { fromAxes, fromAxisAngle, multiply, type Quat, rotate } from 'threepoint/core/math/quat';
+import { randomNumbers } from 'threepoint/core/math/random';
+import type { Side } from 'threepoint/core/math/side';
+import { add, addScaled, cross, normalise, right, subtract, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { fromEulerYxz } from '../euler-angles';
 
 /** Where a person stands on the floor and which way they face at the start. */

@@ -1,16 +1,16 @@
+import { turnOfTilt } from 'threepoint/core/body/hand-tilt';
+import { estimatedJoints, type JointName } from 'threepoint/core/body/joints';
+import { chestSpaceBody, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { chestFeatureCount, chestFeatures } from 'threepoint/core/estimation/chest-features';
+import { FeatureWindow, featureCount, frameFeatures } from 'threepoint/core/estimation/features';
+import { transformJoints } from 'threepoint/core/estimation/joint-positions';
+import { makeHandTiltsState, noticeHandTilts } from 'threepoint/core/estimation/notice-hand-tilts';
+import { paperFeatures } from 'threepoint/core/estimation/paper-features';
+import { solveIk } from 'threepoint/core/estimation/solve-ik';
+import { type Side, sides } from 'threepoint/core/math/side';
+import { distance, subtract, type Vec3 } from 'threepoint/core/math/vec3';
+import { floorFromHeading } from 'threepoint/core/tracking/heading';
 import { describe, expect, test } from 'vitest';
-import { turnOfTilt } from '../../../src/core/body/hand-tilt';
-import { estimatedJoints, type JointName } from '../../../src/core/body/joints';
-import { chestSpaceBody, skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import { chestFeatureCount, chestFeatures } from '../../../src/core/estimation/chest-features';
-import { FeatureWindow, featureCount, frameFeatures } from '../../../src/core/estimation/features';
-import { transformJoints } from '../../../src/core/estimation/joint-positions';
-import { makeHandTiltsState, noticeHandTilts } from '../../../src/core/estimation/notice-hand-tilts';
-import { paperFeatures } from '../../../src/core/estimation/paper-features';
-import { solveIk } from '../../../src/core/estimation/solve-ik';
-import { type Side, sides } from '../../../src/core/math/side';
-import { distance, subtract, type Vec3 } from '../../../src/core/math/vec3';
-import { floorFromHeading } from '../../../src/core/tracking/heading';
 import { type GoldenCase, goldenHand, goldenPoints, pointsInHeading, readGolden } from './golden';
 
 const tolerance = 1e-5;

@@ -1,8 +1,8 @@
 import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
 import * as ort from 'onnxruntime-web/wasm';
-import { createPlainRegressor } from '../../../src/core/estimation/learned-network';
-import type { ModelContract, PoseRegressor } from '../../../src/core/estimation/pose-regressor';
+import { createPlainRegressor } from 'threepoint/core/estimation/learned-network';
+import type { ModelContract, PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
 
 export type NetworkName = ModelContract['name'];
 
@@ -23,7 +23,7 @@ export function openPlainModel(): PoseRegressor {
   return createPlainRegressor(contract, bytes);
 }
 
-const folder = new URL('../../../public/models/', import.meta.url);
+const folder = new URL('../../../../public/models/', import.meta.url);
 
 /** A model as the page ships it, run by the runtime that the page uses. */
 export async function openShippedModel(name: NetworkName): Promise<PoseRegressor> {

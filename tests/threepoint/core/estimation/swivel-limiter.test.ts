@@ -1,9 +1,9 @@
 import fc from 'fast-check';
+import { elbowCircle, makeElbowCircle } from 'threepoint/core/body/two-bone-ik';
+import { makeFitTorsoState } from 'threepoint/core/estimation/fit-torso';
+import { type EstimatedPole, estimatedPole, limitSwivel } from 'threepoint/core/estimation/swivel-limiter';
+import { copyVec3, distance, down, normalise, scale, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
-import { elbowCircle, makeElbowCircle } from '../../../src/core/body/two-bone-ik';
-import { makeFitTorsoState } from '../../../src/core/estimation/fit-torso';
-import { type EstimatedPole, estimatedPole, limitSwivel } from '../../../src/core/estimation/swivel-limiter';
-import { copyVec3, distance, down, normalise, scale, type Vec3, vec3 } from '../../../src/core/math/vec3';
 import { number, seed } from '../arbitraries';
 
 const bones = { upper: 0.28, lower: 0.26 };

@@ -1,14 +1,14 @@
-import { expect, test } from 'vitest';
 import {
   halfLifeOfCutoff,
   makeSteadyOrientation,
   makeSteadyPoint,
   steadyOrientation,
   steadyPoint,
-} from '../../../src/core/math/one-euro';
-import { angleBetween, fromAxisAngle, type Quat } from '../../../src/core/math/quat';
-import { randomNumbers } from '../../../src/core/math/random';
-import { copyVec3, distance, normalise, type Vec3, vec3 } from '../../../src/core/math/vec3';
+} from 'threepoint/core/math/one-euro';
+import { angleBetween, fromAxisAngle, type Quat } from 'threepoint/core/math/quat';
+import { randomNumbers } from 'threepoint/core/math/random';
+import { copyVec3, distance, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { expect, test } from 'vitest';
 
 const tuning = { restCutoff: 1, cutoffPerSpeed: 15, velocityCutoff: 5 };
 const axis = normalise(vec3(1, 2, -1));

@@ -1,5 +1,4 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
 import {
   composeTransforms,
   invertTransform,
@@ -7,9 +6,10 @@ import {
   type Transform,
   transformPoint,
   transformPose,
-} from '../../../src/core/math/pose';
-import { fromAxisAngle } from '../../../src/core/math/quat';
-import { distance, up, vec3 } from '../../../src/core/math/vec3';
+} from 'threepoint/core/math/pose';
+import { fromAxisAngle } from 'threepoint/core/math/quat';
+import { distance, up, vec3 } from 'threepoint/core/math/vec3';
+import { describe, expect, test } from 'vitest';
 import { rotation, seed, vector } from '../arbitraries';
 
 const transform = fc.record({ position: vector(5), orientation: rotation });

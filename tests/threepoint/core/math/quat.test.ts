@@ -1,5 +1,4 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
 import {
   alignDirections,
   angleBetween,
@@ -18,8 +17,9 @@ import {
   toEulerYxz,
   twistAngle,
   twistOf,
-} from '../../../src/core/math/quat';
-import { add, cross, distance, dot, length, right, scale, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
+} from 'threepoint/core/math/quat';
+import { add, cross, distance, dot, length, right, scale, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { describe, expect, test } from 'vitest';
 import { direction, number, rotation, seed, vector } from '../arbitraries';
 import { fromEulerYxz } from '../euler-angles';
 

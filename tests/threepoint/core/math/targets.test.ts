@@ -1,12 +1,5 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
-import {
-  composeTransforms,
-  invertTransform,
-  makePose,
-  transformPoint,
-  transformPose,
-} from '../../../src/core/math/pose';
+import { composeTransforms, invertTransform, makePose, transformPoint, transformPose } from 'threepoint/core/math/pose';
 import {
   alignDirections,
   conjugate,
@@ -21,7 +14,7 @@ import {
   rotationBetween,
   slerp,
   twistOf,
-} from '../../../src/core/math/quat';
+} from 'threepoint/core/math/quat';
 import {
   add,
   addScaled,
@@ -34,7 +27,8 @@ import {
   subtract,
   up,
   type Vec3,
-} from '../../../src/core/math/vec3';
+} from 'threepoint/core/math/vec3';
+import { describe, expect, test } from 'vitest';
 import { rotation, seed, vector } from '../arbitraries';
 
 type OfVectors = (a: Vec3, b: Vec3, target?: Vec3) => Vec3;

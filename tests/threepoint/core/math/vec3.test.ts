@@ -1,5 +1,4 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
 import {
   add,
   cross,
@@ -16,7 +15,8 @@ import {
   up,
   vec3,
   zero,
-} from '../../../src/core/math/vec3';
+} from 'threepoint/core/math/vec3';
+import { describe, expect, test } from 'vitest';
 import { direction, number, seed, vector } from '../arbitraries';
 
 describe('vectors', () => {

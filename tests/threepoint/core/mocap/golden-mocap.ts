@@ -1,5 +1,5 @@
 import { readFileSync } from 'node:fs';
-import type { MocapSource } from '../../../src/core/mocap/prepare-mocap';
+import type { MocapSource } from 'threepoint/core/mocap/prepare-mocap';
 
 /** A file of a generated person, and what the evaluation makes of it. */
 export interface GoldenMocap {
@@ -17,7 +17,7 @@ export interface GoldenMocap {
 }
 
 export const goldenMocap: readonly GoldenMocap[] = JSON.parse(
-  readFileSync(new URL('../../golden/mocap.json', import.meta.url), 'utf8'),
+  readFileSync(new URL('../../../golden/mocap.json', import.meta.url), 'utf8'),
 );
 
 /** The file as the page opens it. */

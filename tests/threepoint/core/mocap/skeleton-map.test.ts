@@ -1,7 +1,7 @@
+import { isSkeletonMap } from 'threepoint/core/mocap/is-skeleton-map';
+import { prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
+import { finishWork } from 'threepoint/core/motion/work';
 import { describe, expect, test } from 'vitest';
-import { isSkeletonMap } from '../../../src/core/mocap/is-skeleton-map';
-import { prepareMocap } from '../../../src/core/mocap/prepare-mocap';
-import { finishWork } from '../../../src/core/motion/work';
 import { goldenMocap, sourceOf } from './golden-mocap';
 
 const folded = goldenMocap.find(({ motion }) => motion === 'folded_1.bvh')!;

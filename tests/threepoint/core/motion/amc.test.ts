@@ -1,9 +1,9 @@
+import { distance, vec3 } from 'threepoint/core/math/vec3';
+import { makeJointPoses } from 'threepoint/core/motion/file-motion';
+import { readAmc } from 'threepoint/core/motion/read-amc';
+import { readAsf } from 'threepoint/core/motion/read-asf';
+import { finishWork } from 'threepoint/core/motion/work';
 import { describe, expect, test } from 'vitest';
-import { distance, vec3 } from '../../../src/core/math/vec3';
-import { makeJointPoses } from '../../../src/core/motion/file-motion';
-import { readAmc } from '../../../src/core/motion/read-amc';
-import { readAsf } from '../../../src/core/motion/read-asf';
-import { finishWork } from '../../../src/core/motion/work';
 
 /** One bone, two long and upright at rest, whose axes are turned about Z by this angle. */
 const skeleton = (unit: string, angle: number) => `:units

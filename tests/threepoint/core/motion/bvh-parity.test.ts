@@ -1,10 +1,10 @@
 import { readFileSync } from 'node:fs';
+import type { Quat } from 'threepoint/core/math/quat';
+import { distance, type Vec3 } from 'threepoint/core/math/vec3';
+import { makeJointPoses } from 'threepoint/core/motion/file-motion';
+import { poseBvh, readBvh } from 'threepoint/core/motion/read-bvh';
+import { finishWork } from 'threepoint/core/motion/work';
 import { expect, test } from 'vitest';
-import type { Quat } from '../../../src/core/math/quat';
-import { distance, type Vec3 } from '../../../src/core/math/vec3';
-import { makeJointPoses } from '../../../src/core/motion/file-motion';
-import { poseBvh, readBvh } from '../../../src/core/motion/read-bvh';
-import { finishWork } from '../../../src/core/motion/work';
 
 interface GoldenFile {
   readonly text: string;
@@ -15,7 +15,7 @@ interface GoldenFile {
 }
 
 const files: readonly GoldenFile[] = JSON.parse(
-  readFileSync(new URL('../../golden/bvh.json', import.meta.url), 'utf8'),
+  readFileSync(new URL('../../../golden/bvh.json', import.meta.url), 'utf8'),
 );
 
 test.each(files)('a BVH is read as Python reads it, every order of channels within 1e-5: file %#', (golden) => {

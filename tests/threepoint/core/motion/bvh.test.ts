@@ -1,13 +1,13 @@
 import { Quaternion, Vector3 } from 'three';
 import { BVHLoader } from 'three/examples/jsm/loaders/BVHLoader.js';
+import type { Quat } from 'threepoint/core/math/quat';
+import { distance, type Vec3 } from 'threepoint/core/math/vec3';
+import { makeJointPoses } from 'threepoint/core/motion/file-motion';
+import { type BvhMotion, poseBvh, readBvh } from 'threepoint/core/motion/read-bvh';
+import { turnPoint, turnRotation } from 'threepoint/core/motion/skeleton';
+import { finishWork } from 'threepoint/core/motion/work';
+import { writeBvh } from 'threepoint/core/motion/write-bvh';
 import { describe, expect, test } from 'vitest';
-import type { Quat } from '../../../src/core/math/quat';
-import { distance, type Vec3 } from '../../../src/core/math/vec3';
-import { makeJointPoses } from '../../../src/core/motion/file-motion';
-import { type BvhMotion, poseBvh, readBvh } from '../../../src/core/motion/read-bvh';
-import { turnPoint, turnRotation } from '../../../src/core/motion/skeleton';
-import { finishWork } from '../../../src/core/motion/work';
-import { writeBvh } from '../../../src/core/motion/write-bvh';
 import { actingPerson, contortedPerson, rateHz, type Truth, textOf } from './moved-person';
 import { playerOf } from './play-clip';
 

@@ -1,12 +1,12 @@
+import { chunksOf } from 'threepoint/avatar/file/glb-chunks';
+import { distance } from 'threepoint/core/math/vec3';
+import { makeJointPoses } from 'threepoint/core/motion/file-motion';
+import { resampleMotion } from 'threepoint/core/motion/motion';
+import { readVrma } from 'threepoint/core/motion/read-vrma';
+import { turnPoint, turnRotation } from 'threepoint/core/motion/skeleton';
+import { finishWork } from 'threepoint/core/motion/work';
+import { writeVrma } from 'threepoint/core/motion/write-vrma';
 import { describe, expect, test } from 'vitest';
-import { chunksOf } from '../../../src/avatar/file/glb-chunks';
-import { distance } from '../../../src/core/math/vec3';
-import { makeJointPoses } from '../../../src/core/motion/file-motion';
-import { resampleMotion } from '../../../src/core/motion/motion';
-import { readVrma } from '../../../src/core/motion/read-vrma';
-import { turnPoint, turnRotation } from '../../../src/core/motion/skeleton';
-import { finishWork } from '../../../src/core/motion/work';
-import { writeVrma } from '../../../src/core/motion/write-vrma';
 import { actingPerson, bytesOf, rateHz } from './moved-person';
 
 const { motion, truth } = actingPerson();

@@ -4,12 +4,12 @@ import { createVRMAnimationClip, type VRMAnimation, VRMAnimationLoaderPlugin } f
 import { validateBytes } from 'gltf-validator';
 import { Quaternion, Vector3 } from 'three';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import { jointNames } from 'threepoint/core/body/joints';
+import { distance } from 'threepoint/core/math/vec3';
+import { makePosedBones, poseBones } from 'threepoint/core/motion/motion';
+import { turnPoint, turnRotation } from 'threepoint/core/motion/skeleton';
+import { clipTimes, writeVrma } from 'threepoint/core/motion/write-vrma';
 import { beforeAll, describe, expect, test } from 'vitest';
-import { jointNames } from '../../../src/core/body/joints';
-import { distance } from '../../../src/core/math/vec3';
-import { makePosedBones, poseBones } from '../../../src/core/motion/motion';
-import { turnPoint, turnRotation } from '../../../src/core/motion/skeleton';
-import { clipTimes, writeVrma } from '../../../src/core/motion/write-vrma';
 import { mannequin } from '../../avatar/glb';
 import { actingPerson, bytesOf, contortedPerson, rateHz } from './moved-person';
 import { playerOf } from './play-clip';

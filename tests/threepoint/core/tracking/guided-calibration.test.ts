@@ -1,18 +1,18 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
-import type { Calibration } from '../../../src/core/body/calibration';
-import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
-import { jointNames } from '../../../src/core/body/joints';
-import { armLength, skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import { type Frame, type Pose, type TrackedPose, transformPose } from '../../../src/core/math/pose';
-import { fromAxisAngle, identity, multiply, type Quat, rotate } from '../../../src/core/math/quat';
-import { add, right, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { jointNames } from 'threepoint/core/body/joints';
+import { armLength, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { type Frame, type Pose, type TrackedPose, transformPose } from 'threepoint/core/math/pose';
+import { fromAxisAngle, identity, multiply, type Quat, rotate } from 'threepoint/core/math/quat';
+import { add, right, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import {
   type GuidedCalibration,
   startGuidedCalibration,
   stepGuidedCalibration,
-} from '../../../src/core/tracking/guided-calibration';
-import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+} from 'threepoint/core/tracking/guided-calibration';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { describe, expect, test } from 'vitest';
 import { evenly, seed, standpoint } from '../arbitraries';
 
 const pose = (position: Vec3, orientation: Quat = identity): TrackedPose => ({

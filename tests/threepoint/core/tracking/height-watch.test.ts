@@ -1,17 +1,17 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
 import {
   type Calibration,
   calibrationComplaint,
   eyeHeightRange,
   provisionalCalibration,
   withEyeHeight,
-} from '../../../src/core/body/calibration';
-import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import { fromAxisAngle, identity, multiply, type Quat, rotate } from '../../../src/core/math/quat';
-import { right, subtract, up, vec3 } from '../../../src/core/math/vec3';
-import { createHeightWatch } from '../../../src/core/tracking/height-watch';
-import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+} from 'threepoint/core/body/calibration';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { fromAxisAngle, identity, multiply, type Quat, rotate } from 'threepoint/core/math/quat';
+import { right, subtract, up, vec3 } from 'threepoint/core/math/vec3';
+import { createHeightWatch } from 'threepoint/core/tracking/height-watch';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { describe, expect, test } from 'vitest';
 import { evenly, seed } from '../arbitraries';
 
 const person: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };

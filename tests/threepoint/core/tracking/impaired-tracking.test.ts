@@ -1,12 +1,12 @@
 import fc from 'fast-check';
+import { closedHand, mixHandShape, relaxedHand } from 'threepoint/core/body/hand-shape';
+import type { TrackedPose } from 'threepoint/core/math/pose';
+import { angleBetween, fromAxisAngle, multiply } from 'threepoint/core/math/quat';
+import { distance, vec3 } from 'threepoint/core/math/vec3';
+import { deviceBodySize } from 'threepoint/core/tracking/device-body';
+import { ImpairedTracking, type Impairments } from 'threepoint/core/tracking/impaired-tracking';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { describe, expect, test } from 'vitest';
-import { closedHand, mixHandShape, relaxedHand } from '../../../src/core/body/hand-shape';
-import type { TrackedPose } from '../../../src/core/math/pose';
-import { angleBetween, fromAxisAngle, multiply } from '../../../src/core/math/quat';
-import { distance, vec3 } from '../../../src/core/math/vec3';
-import { deviceBodySize } from '../../../src/core/tracking/device-body';
-import { ImpairedTracking, type Impairments } from '../../../src/core/tracking/impaired-tracking';
-import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { evenly, seed } from '../arbitraries';
 
 /** A person who stands turned and swings head and hands; where they are at any time [s]. */

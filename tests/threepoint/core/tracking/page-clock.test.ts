@@ -1,6 +1,6 @@
 import fc from 'fast-check';
+import { createPageClock, longestStep, neverBack } from 'threepoint/core/tracking/page-clock';
 import { describe, expect, test } from 'vitest';
-import { createPageClock, longestStep, neverBack } from '../../../src/core/tracking/page-clock';
 
 const frameMs = 1000 / 72;
 

@@ -1,10 +1,9 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
-import { flatHand } from '../../../src/core/body/hand-shape';
-import type { TrackedPose } from '../../../src/core/math/pose';
-import { slerp } from '../../../src/core/math/quat';
-import { distance, lerp, vec3 } from '../../../src/core/math/vec3';
-import { deviceBodySize } from '../../../src/core/tracking/device-body';
+import { flatHand } from 'threepoint/core/body/hand-shape';
+import type { TrackedPose } from 'threepoint/core/math/pose';
+import { slerp } from 'threepoint/core/math/quat';
+import { distance, lerp, vec3 } from 'threepoint/core/math/vec3';
+import { deviceBodySize } from 'threepoint/core/tracking/device-body';
 import {
   cutRecording,
   parseRecording,
@@ -12,8 +11,9 @@ import {
   recordingDuration,
   sampleRecording,
   writeRecording,
-} from '../../../src/core/tracking/recording';
-import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+} from 'threepoint/core/tracking/recording';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { describe, expect, test } from 'vitest';
 import { evenly, number, rotation, seed, vector } from '../arbitraries';
 
 const tracked: fc.Arbitrary<TrackedPose> = fc.record({

@@ -1,11 +1,11 @@
 import type { XRDevice, XRDeviceConfig } from 'iwer';
-import { allReleased, type Buttons } from '../core/games/button-presses';
-import { composeTransforms, invertTransform, type Pose, type TrackedPose } from '../core/math/pose';
-import { fromAxes } from '../core/math/quat';
-import { type Side, sides } from '../core/math/side';
-import { vec3 } from '../core/math/vec3';
-import type { TrackingFrame } from '../core/tracking/tracking-frame';
-import { gripFromWrist, type HandleFit, handleFit, wristFromGrip } from './grip-offsets';
+import { allReleased, type Buttons } from 'threepoint/core/input/button-presses';
+import { composeTransforms, invertTransform, type Pose, type TrackedPose } from 'threepoint/core/math/pose';
+import { fromAxes } from 'threepoint/core/math/quat';
+import { type Side, sides } from 'threepoint/core/math/side';
+import { vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { gripFromWrist, type HandleFit, handleFit, wristFromGrip } from 'threepoint/xr/grip-offsets';
 
 /** An emulated headset, in place of a device that is not there. */
 export interface Emulator {

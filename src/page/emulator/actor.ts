@@ -1,6 +1,6 @@
-import { type Calibration, defaultCalibration } from '../core/body/calibration';
-import { actorFrame } from '../core/tracking/actor-motion';
-import type { TrackingFrame } from '../core/tracking/tracking-frame';
+import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
 /** Moves in place of a person while no one wears a headset. */
 export interface Actor {

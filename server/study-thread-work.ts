@@ -1,0 +1,8 @@
+import { parentPort } from 'node:worker_threads';
+import { createRoomTokens } from 'threepoint-rooms/server/room-tokens';
+import { serveStudies } from 'threepoint-study/server/study-thread';
+
+// The thread of the studies: its seats are signed by the tokens that the rooms of this server accept.
+
+if (!parentPort) throw new Error('study-thread-work.ts runs in a worker thread, which the study service starts');
+serveStudies(parentPort, (secret, now) => createRoomTokens(secret, now).sign);
