@@ -11,15 +11,10 @@ import { sourceResolution } from './source-condition.mjs';
 
 const out = join(root, 'dist-library');
 const entries = ['index', 'motion', 'three', 'onnx', 'onnx-worker', 'polyfill'];
-const own = JSON.parse(readFileSync(join(root, 'package.json'), 'utf8'));
-const version = (name) => own.dependencies[name];
-/** The next minor versions of a package keep what we use; three has no such promise, its peers say from which on it works. */
-const peers = {
-  '@pixiv/three-vrm': `^${version('@pixiv/three-vrm')}`,
-  'onnxruntime-web': `^${version('onnxruntime-web')}`,
-  three: '>=0.184.0',
-};
-const external = (id) => [...Object.keys(peers), 'valibot'].some((name) => id === name || id.startsWith(`${name}/`));
+/** The manifest of the workspace; the published one is the same without what only this repository can resolve. */
+const own = JSON.parse(readFileSync(join(root, 'src/threepoint/package.json'), 'utf8'));
+const external = (id) =>
+  [...Object.keys(own.peerDependencies), 'valibot'].some((name) => id === name || id.startsWith(`${name}/`));
 
 /** Files of the package beside its code, and where they lie here. */
 const copied = {
@@ -33,33 +28,23 @@ const copied = {
   'README.md': 'docs/library.md',
 };
 
-const entry = (name) => ({ types: `./types/lib/${name}.d.ts`, default: `./${name}.js` });
-
-const manifest = {
-  name: own.name,
-  version: own.version,
-  description: own.description,
-  license: own.license,
-  keywords: ['webxr', 'three', 'avatar', 'vrm', 'inverse-kinematics', 'body-tracking'],
-  type: 'module',
-  sideEffects: ['./onnx-worker.js'],
-  exports: {
-    '.': entry('index'),
-    './motion': entry('motion'),
-    './three': entry('three'),
-    './onnx': entry('onnx'),
-    './onnx-worker': entry('onnx-worker'),
-    './polyfill': entry('polyfill'),
-    './models/*': './models/*',
-    './avatars/*': './avatars/*',
-    './package.json': './package.json',
-  },
-  // For tools that read no `exports`.
-  types: './types/lib/index.d.ts',
-  dependencies: { valibot: `^${version('valibot')}` },
-  peerDependencies: peers,
-  peerDependenciesMeta: { 'onnxruntime-web': { optional: true } },
-};
+/** Returns the manifest to publish: without sources, without rooms that are internal, with dependencies that may be newer. */
+function published() {
+  const { private: _, devDependencies: __, exports, dependencies, ...rest } = own;
+  const outside = Object.entries(exports).flatMap(([name, target]) => {
+    if (typeof target === 'string') return [[name, target]];
+    const { source: ___, ...built } = target;
+    return Object.keys(built).length > 0 ? [[name, built]] : [];
+  });
+  return {
+    ...rest,
+    // Sources have more files of this kind: workers, which a bundler would drop.
+    sideEffects: ['./onnx-worker.js'],
+    exports: Object.fromEntries(outside),
+    // Bundled: gltf-validator, in a chunk that loads when an avatar is checked.
+    dependencies: { valibot: `^${dependencies.valibot}` },
+  };
+}
 
 /** In the package the weights lie beside the code: the sources' own way to them leads nowhere there. */
 const weightsBeside = {
@@ -67,7 +52,7 @@ const weightsBeside = {
   transform: {
     filter: { id: /load-learned\.ts$/ },
     handler(code) {
-      const moved = code.replace("'../../public/models/learned.bin'", "'./models/learned.bin'");
+      const moved = code.replace("'../../../public/models/learned.bin'", "'./models/learned.bin'");
       if (moved === code) throw new Error('load-learned.ts no longer states where the weights lie');
       return { code: moved, map: null };
     },
@@ -117,7 +102,7 @@ function writeFiles() {
     mkdirSync(dirname(join(out, to)), { recursive: true });
     copyFileSync(join(root, from), join(out, to));
   }
-  writeFileSync(join(out, 'package.json'), `${JSON.stringify(manifest, null, 2)}\n`);
+  writeFileSync(join(out, 'package.json'), `${JSON.stringify(published(), null, 2)}\n`);
 }
 
 /** A page that draws with avatars of its own making, as a bundler sees it. */

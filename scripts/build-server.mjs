@@ -1,7 +1,7 @@
 // Builds the server into JavaScript, for machines without the tools that run it from its sources: node dist-server/main.mjs. Its packages stay
 // outside (npm ci --omit=dev). The page is a build of its own (npm run build).
 import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { join, resolve } from 'node:path';
+import { basename, join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { parseArgs } from 'node:util';
 import { rolldown } from 'rolldown';
@@ -17,23 +17,31 @@ const worker = '-worker.mjs';
  * loads NAME-work.ts through a loader for TypeScript; in the build NAME-worker.mjs is NAME-work.ts itself.
  */
 function entries() {
-  const workers = readdirSync(join(root, 'server')).filter((file) => file.endsWith(worker));
+  const workers = ['server', 'src/study/server'].flatMap((folder) =>
+    readdirSync(join(root, folder)).flatMap((file) => (file.endsWith(worker) ? [`${folder}/${file}`] : [])),
+  );
   return Object.fromEntries([
     ['main', join(root, 'server/main.ts')],
     ...workers.map((file) => {
-      const work = join(root, 'server', file.replace(worker, '-work.ts'));
-      if (!existsSync(work)) throw new SetupError(`server/${file} needs a ${work.slice(root.length + 1)} to load.`);
-      return [file.replace(/\.mjs$/, ''), work];
+      const work = file.replace(worker, '-work.ts');
+      if (!existsSync(join(root, work))) throw new SetupError(`${file} needs a ${work} to load.`);
+      return [basename(file, '.mjs'), join(root, work)];
     }),
   ]);
 }
+
+/** The packages whose code is part of the server. */
+const packages = ['server', ...['games', 'http', 'rooms', 'study', 'threepoint'].map((name) => `src/${name}`)];
+const manifestIn = (folder) => JSON.parse(readFileSync(join(root, folder, 'package.json'), 'utf8'));
 
 /**
  * Bundles the server's own files into `out`; packages and Node's modules are imported where it runs. The package.json beside them names those
  * packages alone, so that npm prune removes those of the page.
  */
 export async function buildServer(out) {
-  const { name, version, type, dependencies } = JSON.parse(readFileSync(join(root, 'package.json'), 'utf8'));
+  const { version, type } = manifestIn('.');
+  const dependencies = Object.assign({}, ...packages.map((folder) => manifestIn(folder).dependencies));
+  for (const own of packages.map((folder) => manifestIn(folder).name)) delete dependencies[own];
   const packageOf = (id) => Object.keys(dependencies).find((known) => id === known || id.startsWith(`${known}/`));
   const bundle = await rolldown({
     input: entries(),
@@ -55,15 +63,15 @@ export async function buildServer(out) {
   await bundle.close();
   const foreign = output.flatMap(({ moduleIds = [] }) => moduleIds).filter((id) => id.includes('node_modules'));
   if (foreign.length > 0) {
-    throw new SetupError(`The server imports packages that package.json does not have: ${foreign.join(', ')}`);
+    throw new SetupError(`The server imports packages that no package.json names: ${foreign.join(', ')}`);
   }
   const imported = new Set(
     output.flatMap(({ imports = [], dynamicImports = [] }) => [...imports, ...dynamicImports]).map(packageOf),
   );
   const own = Object.fromEntries(Object.entries(dependencies).filter(([known]) => imported.has(known)));
-  const manifest = { name, version, type, private: true, dependencies: own };
+  const manifest = { name: 'threepoint-server', version, type, private: true, dependencies: own };
   writeFileSync(join(out, 'package.json'), `${JSON.stringify(manifest, null, 2)}\n`);
-  cpSync(join(root, 'src/study/server/analysis'), join(out, 'study-analysis'), { recursive: true });
+  cpSync(join(root, 'src/study/server/analysis'), join(out, 'analysis'), { recursive: true });
 }
 
 if (import.meta.url === pathToFileURL(process.argv[1]).href)

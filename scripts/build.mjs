@@ -19,7 +19,6 @@ const sources = [
   'package-lock.json',
   'public',
   'src',
-  'src/http/security-headers.ts',
   'scripts/build.mjs',
   'scripts/build-service-worker.mjs',
 ];

@@ -47,7 +47,7 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
     thread: new URL('./study-thread-worker.mjs', import.meta.url),
     directory: options.studyDirectory,
     token: options.experimenterToken,
-    software: softwareIn(options.pageDirectory),
+    software: softwareIn(options.pageDirectory, new URL('../package.json', import.meta.url)),
     now,
     secret: options.secret,
     trustProxy: relaying.trustProxy,

@@ -12,11 +12,9 @@ export interface Software {
 
 const isWeights = (file: string): boolean => /\.(onnx|bin)$/.test(file);
 
-/** This program, and the networks below `pageDirectory`, which may have none. */
-export function softwareIn(pageDirectory: string): Software {
-  const { name, version } = JSON.parse(
-    readFileSync(new URL('../../package.json', import.meta.url), 'utf8'),
-  ) as Software;
+/** Returns this program, its version by the `manifest` (a package.json), and the networks below `pageDirectory`, which may have none. */
+export function softwareIn(pageDirectory: string, manifest: URL): Software {
+  const { version } = JSON.parse(readFileSync(manifest, 'utf8')) as Software;
   const models = join(pageDirectory, 'models');
   const files = existsSync(models) ? readdirSync(models).filter(isWeights).toSorted() : [];
   const weights = files.map((file) => ({
@@ -25,5 +23,5 @@ export function softwareIn(pageDirectory: string): Software {
       .update(readFileSync(join(models, file)))
       .digest('hex'),
   }));
-  return { name, version, weights };
+  return { name: 'threepoint', version, weights };
 }

@@ -1,6 +1,6 @@
 import { existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
-import { fileURLToPath } from 'node:url';
+import { fileURLToPath, pathToFileURL } from 'node:url';
 import { ValidationError } from 'threepoint/core/validation/validation';
 import { softwareIn } from 'threepoint-http/software';
 import { compareCohorts } from '../../model/compare-cohorts';
@@ -90,7 +90,7 @@ function run(): void {
       store.records.store(plan.id, participant, records, firstSession);
       store.places.saveProgress(plan.id, participant, progress, firstSession);
     }
-    const used = softwareIn(join(root, 'public'));
+    const used = softwareIn(join(root, 'public'), pathToFileURL(join(root, 'package.json')));
     const software = { exportedBy: used, served: [{ since: firstSession, ...used }] };
     const content = (participant?: string) => {
       const records = store.records.all(plan.id, participant);

@@ -1,0 +1,162 @@
+// node scripts/check-language.mjs [PATH …]: lists comments and documents that are not in plain technical English, by file and line. The rules are
+// few and mechanical: they find habits, not style. tests/language.test.ts asserts that none is left.
+import { execFileSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import ts from 'typescript';
+import { root } from './run-command.mjs';
+
+/** A comment that begins so is the rest of a sentence that is not there. */
+const fragment = /^(Of|As|So|Those|Whose|Whom|Where|The same)\b/;
+/** Words that stand for the field's own, or that English no longer uses; in study texts participants are told, which `allowed` permits. */
+const unwanted = /\b(told|tells?|hears?|heard|anew|whither|in vain|to be had|believed?|of ours|whom|let go of)\b/i;
+const longestSentence = 25;
+const longestLine = 120;
+
+/** Files in which a word is the right one. */
+const allowed = {
+  'docs/study.md': /\btold\b/,
+};
+
+/** Returns the comments of a TypeScript or JavaScript file: line of the first character, and text without its marks. */
+function commentsOfScript(text) {
+  const found = [];
+  const add = (start, raw) => {
+    const line = text.slice(0, start).split('\n').length;
+    found.push({
+      line,
+      text: raw
+        .replace(/^\/\*\*?|\*\/$|^\/\/\s?/g, '')
+        .replace(/^\s*\* ?/gm, '')
+        .trim(),
+    });
+  };
+  const source = ts.createSourceFile('file.ts', text, ts.ScriptTarget.Latest, true);
+  const seen = new Set();
+  const visit = (node) => {
+    for (const range of ts.getLeadingCommentRanges(text, node.getFullStart()) ?? []) {
+      if (seen.has(range.pos)) continue;
+      seen.add(range.pos);
+      add(range.pos, text.slice(range.pos, range.end));
+    }
+    ts.forEachChild(node, visit);
+    for (const child of node.getChildren(source)) if (child.kind < ts.SyntaxKind.FirstNode) visitToken(child);
+  };
+  const visitToken = (token) => {
+    for (const range of ts.getLeadingCommentRanges(text, token.getFullStart()) ?? []) {
+      if (seen.has(range.pos)) continue;
+      seen.add(range.pos);
+      add(range.pos, text.slice(range.pos, range.end));
+    }
+  };
+  visit(source);
+  return joined(found, text);
+}
+
+/** Lines of // that follow each other are one comment. */
+function joined(comments, text) {
+  const lines = text.split('\n');
+  const result = [];
+  for (const comment of comments.toSorted((a, b) => a.line - b.line)) {
+    const last = result.at(-1);
+    const isLine = /^\s*\/\//.test(lines[comment.line - 1] ?? '');
+    if (last?.isLine && isLine && last.end + 1 === comment.line) {
+      last.text += ` ${comment.text}`;
+      last.end = comment.line;
+    } else result.push({ ...comment, isLine, end: comment.line });
+  }
+  return result;
+}
+
+function commentsOfPython(text) {
+  const found = [];
+  const docstring = /"""([\s\S]*?)"""/g;
+  for (const match of text.matchAll(docstring)) {
+    found.push({ line: text.slice(0, match.index).split('\n').length, text: match[1].trim() });
+  }
+  let open = null;
+  text.split('\n').forEach((line, index) => {
+    const comment = /^\s*#(?!!)\s?(.*)$/.exec(line);
+    if (!comment) {
+      open = null;
+      return;
+    }
+    if (open) open.text += ` ${comment[1]}`;
+    else found.push((open = { line: index + 1, text: comment[1] }));
+  });
+  return found;
+}
+
+function* problemsOfComments(comments) {
+  for (const { line, text } of comments) {
+    if (/^(biome-ignore|@ts-|reason:|noqa|type:)/.test(text)) continue;
+    if (fragment.test(text)) yield { line, what: `begins with a fragment: “${text.slice(0, 60)}”` };
+    const word = unwanted.exec(text);
+    if (word)
+      yield {
+        line,
+        what: `says “${word[0]}”: “${text.slice(Math.max(0, word.index - 30), word.index + 30).replaceAll('\n', ' ')}”`,
+      };
+  }
+}
+
+/** Returns the problems of a Markdown file's prose; tables, code, headings and addresses of links are left out. */
+function problemsOfDocument(text, file) {
+  const blank = (part) => part.replace(/[^\n]/g, '');
+  const prose = text
+    .replace(/^```[\s\S]*?^```/gm, blank)
+    .replace(/^(\||#|<).*$/gm, '')
+    .replace(/\]\([^)]*\)/g, ']')
+    .replace(/`[^`\n]*`/g, 'code');
+  const problems = [];
+  let line = 1;
+  for (const paragraph of prose.split(/(\n\s*\n|\n(?=\s*(?:[-*]|\d+\.)\s))/)) {
+    for (const sentence of paragraph.replace(/\n/g, ' ').split(/(?<=[.!?:;])\s+/)) {
+      const words = sentence.split(/\s+/).filter((part) => /\w/.test(part)).length;
+      if (words > longestSentence) {
+        problems.push({ line, what: `has a sentence of ${words} words: “${sentence.trim().slice(0, 60)}…”` });
+      }
+      const word = unwanted.exec(sentence);
+      if (word && !allowed[file]?.test(word[0])) {
+        problems.push({ line, what: `says “${word[0]}”: “${sentence.trim().slice(0, 60)}…”` });
+      }
+    }
+    line += paragraph.split('\n').length - 1;
+  }
+  return problems;
+}
+
+function problemsOfFile(file, text) {
+  if (file.endsWith('.md')) return problemsOfDocument(text, file);
+  const problems = [...problemsOfComments(file.endsWith('.py') ? commentsOfPython(text) : commentsOfScript(text))];
+  text.split('\n').forEach((line, index) => {
+    if (line.length > longestLine && !/https?:\/\//.test(line)) {
+      problems.push({ line: index + 1, what: `has ${line.length} columns` });
+    }
+  });
+  return problems;
+}
+
+/** Files whose words are checked: what the project's people read, and nothing that is generated or another's. */
+const checked = /\.(ts|mjs|cjs|py|md)$/;
+const unchecked = /^(tests\/golden\/|CHANGELOG\.md$|LICENSE|docs\/(reliability|accuracy)\.md$)/;
+
+/** Returns every problem below these paths: {file, line, what}. */
+export function languageProblems(paths = []) {
+  const files = execFileSync('git', ['ls-files', '--cached', '--others', '--exclude-standard', '--', ...paths], {
+    cwd: root,
+    encoding: 'utf8',
+  })
+    .split('\n')
+    .filter((file) => checked.test(file) && !unchecked.test(file));
+  return files.flatMap((file) =>
+    problemsOfFile(file, readFileSync(join(root, file), 'utf8')).map((problem) => ({ file, ...problem })),
+  );
+}
+
+if (import.meta.url === pathToFileURL(process.argv[1]).href) {
+  const problems = languageProblems(process.argv.slice(2));
+  for (const { file, line, what } of problems) console.log(`${file}:${line} ${what}`);
+  console.log(`${problems.length} problems`);
+}
