@@ -83,7 +83,10 @@ function commentsOfPython(text) {
       return;
     }
     if (open) open.text += ` ${comment[1]}`;
-    else found.push((open = { line: index + 1, text: comment[1] }));
+    else {
+      open = { line: index + 1, text: comment[1] };
+      found.push(open);
+    }
   });
   return found;
 }

@@ -7,12 +7,12 @@ import { distance } from 'threepoint/core/math/vec3';
 import { actorFrame, actorLoopSeconds } from 'threepoint/core/tracking/actor-motion';
 import { createPageClock } from 'threepoint/core/tracking/page-clock';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import { createArcheryPlay, probeOf } from 'threepoint-page/archery/archery-play';
 import { createBallPlay } from 'threepoint-page/ball/ball-play';
 import { createFrameLoop } from 'threepoint-page/shell/frame-loop';
 import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
 import { Recorder } from 'threepoint-page/studio/recorder';
-import { createLoopbackHost } from 'threepoint-rooms/client/loopback-connection';
 import { type PlayedStep, playTrial } from 'threepoint-study/participant/study-trial';
 import { describe, expect, test } from 'vitest';
 import { studiedArcher } from '../study/participant/played-round';
@@ -113,7 +113,7 @@ function goesOn(step: number): void {
   });
 
   test('a ball game with two built-in players goes on, theirs included', () => {
-    const host = createLoopbackHost({ seed: 5, ball: { seconds: 60 } });
+    const host = createBallLoopbackHost({ seed: 5, ball: { seconds: 60 } });
     const play = createBallPlay({
       connect: host.connect,
       visitor: { name: 'Robin', calibration: defaultCalibration },

@@ -2,8 +2,8 @@ import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { allReleased } from 'threepoint/core/input/button-presses';
+import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import { createBallPlay } from 'threepoint-page/ball/ball-play';
-import { createLoopbackHost } from 'threepoint-rooms/client/loopback-connection';
 import { expect, test } from 'vitest';
 import { poseOf } from '../threepoint/core/estimation/drawn';
 import { measured } from './measured';
@@ -11,7 +11,7 @@ import { measured } from './measured';
 const released = { left: allReleased, right: allReleased };
 
 /** One of two people in a room of this page; who wears a headset that is taken off draws no frames at all. */
-function person(host: ReturnType<typeof createLoopbackHost>, name: string, seat: number) {
+function person(host: ReturnType<typeof createBallLoopbackHost>, name: string, seat: number) {
   const play = createBallPlay({
     connect: host.connect,
     visitor: { name, calibration: defaultCalibration, seat },
@@ -37,7 +37,7 @@ test('a headset taken off for 20 s: others see “away” at once when told, wit
 }, () => {
   const rows: Record<string, string> = {};
   for (const told of [true, false]) {
-    const host = createLoopbackHost({ seed: 5 });
+    const host = createBallLoopbackHost({ seed: 5 });
     const ann = person(host, 'Ann', 0);
     const cal = person(host, 'Cal', 2);
     let time = 50;

@@ -11,6 +11,7 @@ import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
 import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { BallConnection } from 'threepoint-games/ball/ball-client';
 import type { BallState } from 'threepoint-games/ball/ball-state';
 import { ballRadius, basketRadius, rimTube } from 'threepoint-games/ball/flight';
 import type { BallPulse } from 'threepoint-games/ball/gestures';
@@ -21,7 +22,7 @@ import type { BallSteering } from 'threepoint-games/ball/steered-players';
 import { ballInPalm } from 'threepoint-games/fist';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
 import { bannerText, connectionText } from 'threepoint-rooms/client/banner';
-import type { Connection, Visitor } from 'threepoint-rooms/client/connection';
+import type { Visitor } from 'threepoint-rooms/client/connection';
 import type { Quality } from '../scene/renderer';
 import type { SurroundingsHost } from '../scene/surroundings';
 import type { BallRound } from './ball-bar';
@@ -48,7 +49,7 @@ export interface BallActivityOptions {
   readonly visitor: Visitor;
   /** The visitor's name was given by the page: its player reads “You” instead. */
   readonly unnamed: boolean;
-  connect(visitor: Visitor, time: number): Connection;
+  connect(visitor: Visitor, time: number): BallConnection;
   /** null: avatars that are files are not exchanged in this room. */
   readonly avatars: AvatarExchange | null;
   readonly voiceTerms: VoicesOptions['terms'];

@@ -7,6 +7,7 @@ import type { Buttons } from 'threepoint/core/input/button-presses';
 import { identity } from 'threepoint/core/math/quat';
 import { zero } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
 import type { BallAction, BallState } from 'threepoint-games/ball/ball-state';
 import type { Opening } from 'threepoint-games/ball/basket';
 import { type BallGestureFrame, type BallGestures, createBallGestures } from 'threepoint-games/ball/gestures';
@@ -14,7 +15,7 @@ import { createHolder } from 'threepoint-games/ball/holder-motion';
 import type { Performed, PlayerBody } from 'threepoint-games/ball/player-postures';
 import { holderStation, stations } from 'threepoint-games/ball/stations';
 import { type BallBot, createThrower } from 'threepoint-games/ball/thrower-motion';
-import type { Connection, RoomView, Visitor } from 'threepoint-rooms/client/connection';
+import type { Visitor } from 'threepoint-rooms/client/connection';
 
 /** A built-in player moves at least this often, however slowly pictures come: a throw is over in a fifth of a second. */
 const movesPerSecond = 60;
@@ -54,7 +55,7 @@ export interface CourtSight {
 }
 
 /** Hands become deeds on this connection. */
-export function gesturesOf(of: Connection): BallGestures {
+export function gesturesOf(of: BallConnection): BallGestures {
   return createBallGestures(() => {
     const seen = of.room;
     const seat = seen?.mySeat ?? 0;
@@ -69,7 +70,12 @@ export function gesturesOf(of: Connection): BallGestures {
 }
 
 /** One player's frame as deeds, sent. While the clock stands hands mean nothing. */
-export function play(of: Connection, gestures: BallGestures, frame: TrackingFrame, buttons: Buttons): BallGestureFrame {
+export function play(
+  of: BallConnection,
+  gestures: BallGestures,
+  frame: TrackingFrame,
+  buttons: Buttons,
+): BallGestureFrame {
   const done = gestures.follow(of.room?.paused ? { ...frame, suspended: true } : frame, buttons);
   for (const action of done.actions) {
     if (!isDeed(action)) continue;
@@ -79,7 +85,7 @@ export function play(of: Connection, gestures: BallGestures, frame: TrackingFram
   return done;
 }
 
-export const stationOf = (seen: RoomView, seat: number): number => seen.match?.players[seat]?.station ?? seat;
+export const stationOf = (seen: BallRoomView, seat: number): number => seen.match?.players[seat]?.station ?? seat;
 
 /** Head, hands and buttons of a built-in player, whose own time stands when the match's does. */
 export function performedAt(
@@ -95,7 +101,7 @@ export function performedAt(
 
 /** A built-in player on a connection, and how its body is solved. */
 export interface Mover {
-  readonly line: Connection;
+  readonly line: BallConnection;
   readonly gestures: BallGestures;
   readonly actor: BallBot;
   readonly estimator: PoseEstimator;
@@ -128,7 +134,7 @@ const seatsEvery = 0.4;
 export const readyAfter = 1;
 
 interface Bot {
-  readonly connection: Connection;
+  readonly connection: BallConnection;
   readonly calibration: Calibration;
   readonly estimator: PoseEstimator;
   gestures: BallGestures | null;
@@ -141,7 +147,7 @@ interface Bot {
 }
 
 export interface BotsOptions {
-  connect(visitor: Visitor, time: number): Connection;
+  connect(visitor: Visitor, time: number): BallConnection;
   /** Whether bots take the seats that are free; asked for in every frame. */
   bots(): boolean;
   readonly seed: number;
@@ -158,7 +164,7 @@ export class BallBots {
   ) {}
 
   /** Bots come for seats that are free in the room of `connection`, and go when they are not wanted or a person has come. */
-  seat(connection: Connection, time: number): void {
+  seat(connection: BallConnection, time: number): void {
     const { options } = this;
     const wanted = options.bots();
     let ended = false;

@@ -1,13 +1,13 @@
+import { type BallConnection, ballClientPolicy, createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
-import type { Connection, LocalClock, Visitor } from 'threepoint-rooms/client/connection';
-import { createLoopbackHost } from 'threepoint-rooms/client/loopback-connection';
+import type { LocalClock, Visitor } from 'threepoint-rooms/client/connection';
 import type { RoomTerms } from 'threepoint-rooms/protocol/messages';
 import type { VoiceTerms } from 'threepoint-rooms/voices/voice-terms';
 import type { SignedSeat } from 'threepoint-study/model/study-api';
 import { pageFolder } from 'threepoint-ui/page-folder';
 
 /** Makes one visitor's place in a room; `time`: the page's clock [s]. */
-export type Connect = (visitor: Visitor, time: number) => Connection;
+export type Connect = (visitor: Visitor, time: number) => BallConnection;
 
 /** Where a browser keeps what lasts as long as a tab; undefined where it keeps nothing. */
 function tabStorage(): Storage | undefined {
@@ -38,7 +38,7 @@ export async function assignedSeat(seat: () => Promise<SignedSeat>, clock: Local
   ]);
   const pass = { token: async (afresh: boolean) => (afresh ? await seat() : first).token };
   const connect: Connect = (visitor) =>
-    createSocketConnection({ url: pageFolder(), room: first.room, visitor, clock, pass });
+    createSocketConnection(ballClientPolicy, { url: pageFolder(), room: first.room, visitor, clock, pass });
   return { connect, avatars: null, voiceTerms: null };
 }
 
@@ -52,7 +52,7 @@ export async function connectionsFor(
 ): Promise<BallPlace> {
   if (room === null) {
     const { pausable: _, ...ball } = terms;
-    return { connect: createLoopbackHost({ seed, ball }).connect, avatars: null, voiceTerms: null };
+    return { connect: createBallLoopbackHost({ seed, ball }).connect, avatars: null, voiceTerms: null };
   }
   const [{ createSocketConnection }, { createRoomPass }, { createAvatarExchange }, { askVoiceTerms }] =
     await Promise.all([
@@ -64,7 +64,7 @@ export async function connectionsFor(
   const server = pageFolder();
   const person = createRoomPass(server, room, 'ball', tabStorage(), terms);
   const connect: Connect = (visitor) =>
-    createSocketConnection({
+    createSocketConnection(ballClientPolicy, {
       url: server,
       room,
       visitor,

@@ -15,6 +15,7 @@ import {
 import type { Side } from 'threepoint/core/math/side';
 import { length, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
 import type { BallEvent, BallRole, BallState } from 'threepoint-games/ball/ball-state';
 import { basketInHands, type Opening } from 'threepoint-games/ball/basket';
 import { ballRadius } from 'threepoint-games/ball/flight';
@@ -23,7 +24,7 @@ import { ballSecondsLeft, ballsLeft } from 'threepoint-games/ball/state-readings
 import { isInZone } from 'threepoint-games/ball/stations';
 import type { Launch } from 'threepoint-games/ballistics';
 import { ballInPalm } from 'threepoint-games/fist';
-import type { Connection, ConnectionStatus, RoomView } from 'threepoint-rooms/client/connection';
+import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
 import type { RemotePlayer } from 'threepoint-rooms/client/remote-players';
 import { seatLooks } from './court-plan';
 import { shownToEyes } from './personal-space';
@@ -61,7 +62,7 @@ export interface BodyFrame {
 /** What one frame of the match brought: to be seen, heard and felt. */
 export interface BallFrame {
   readonly state: BallState;
-  /** Of the room that the match is in: see `RoomView.epoch`. */
+  /** Of the room that the match is in: see `BallRoomView.epoch`. */
   readonly epoch: string;
   /** Whether the room is heard; without it the state is what was known last. */
   readonly connection: ConnectionStatus['phase'];
@@ -117,7 +118,7 @@ export interface BallProbe {
 /** What tools may know of this frame of a match. */
 export function probeOf(
   { state, me, role, rotate, spectators, paused, held, aim, players, opening }: BallFrame,
-  connection: Connection,
+  connection: BallConnection,
 ): BallProbe {
   const count = (on: string) => state.balls.filter((place) => place.on === on).length;
   const { x, y, z } = opening?.position ?? state.basket.position;
@@ -185,8 +186,8 @@ export class CourtPeople {
    * Looks at everyone; `frame`: the own hands, null where nothing is tracked. floorFromArena: where the arena lies in this room.
    */
   look(
-    line: Connection,
-    seen: RoomView,
+    line: BallConnection,
+    seen: BallRoomView,
     frame: TrackingFrame | null,
     others: readonly RemotePlayer[],
     floorFromArena: Transform<'floor', 'arena'>,

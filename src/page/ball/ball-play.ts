@@ -9,6 +9,7 @@ import { identity } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { zero } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
 import type { BallEvent } from 'threepoint-games/ball/ball-state';
 import type { BallCue, BallGestureFrame, BallGestures, BallPulse } from 'threepoint-games/ball/gestures';
 import type { Performed } from 'threepoint-games/ball/player-postures';
@@ -20,7 +21,7 @@ import {
   type SteeredPlayer,
 } from 'threepoint-games/ball/steered-players';
 import type { BallBot } from 'threepoint-games/ball/thrower-motion';
-import type { Connection, ConnectionStatus, RoomView, Visitor, VoiceLine } from 'threepoint-rooms/client/connection';
+import type { ConnectionStatus, Visitor, VoiceLine } from 'threepoint-rooms/client/connection';
 import { createRemotePlayers, type RemotePlayer } from 'threepoint-rooms/client/remote-players';
 import {
   actorFor,
@@ -40,7 +41,7 @@ import { type BallFrame, type BallProbe, CourtPeople, probeOf } from './ball-fra
 /** A match and who plays it, apart from everything that is seen of it. */
 export interface BallPlay {
   readonly status: ConnectionStatus;
-  readonly room: RoomView | null;
+  readonly room: BallRoomView | null;
   /** How this page sets up voices with the others; null: not connected yet. */
   readonly voices: VoiceLine | null;
   /** Where the arena lies in this room: by the own seat; a spectator stands in the arena's own frame. Another object with every change. */
@@ -73,7 +74,7 @@ export interface BallPlay {
 }
 
 export interface BallPlayOptions {
-  connect(visitor: Visitor, time: number): Connection;
+  connect(visitor: Visitor, time: number): BallConnection;
   readonly visitor: Visitor;
   /** Whether bots take the seats that are free; asked for in every frame. */
   bots(): boolean;
@@ -109,7 +110,7 @@ const none: readonly never[] = [];
 class MatchPlay implements BallPlay {
   newest: BallFrame | null = null;
   private calibration: Calibration;
-  private connection: Connection | null = null;
+  private connection: BallConnection | null = null;
   private readonly remote = createRemotePlayers();
   private others: readonly RemotePlayer[] = [];
   private readonly sight: CourtSight = { stood: 0, opening: null };
@@ -128,7 +129,7 @@ class MatchPlay implements BallPlay {
   /** Since when the match has been waiting in this phase for a player to be ready [s]. */
   private waitingSince: { readonly phase: string; readonly at: number } | null = null;
   /** Who sat where when it was looked at last. */
-  private seating: RoomView['seats'] = none;
+  private seating: BallRoomView['seats'] = none;
   private begunAt: number | null = null;
   private placedBy: Transform<'arena', 'floor'> | null = null;
   private placed = nowhere;
@@ -143,7 +144,7 @@ class MatchPlay implements BallPlay {
     return this.connection?.status ?? connecting;
   }
 
-  get room(): RoomView | null {
+  get room(): BallRoomView | null {
     return this.connection?.room ?? null;
   }
 
@@ -319,7 +320,10 @@ class MatchPlay implements BallPlay {
   }
 
   /** Another station, another body, or a mouse that comes or goes: another player, but not while a round is played. */
-  private ownPlayer(seen: RoomView, seat: number): { readonly bot: OwnPlayer['bot']; readonly handedOver: boolean } {
+  private ownPlayer(
+    seen: BallRoomView,
+    seat: number,
+  ): { readonly bot: OwnPlayer['bot']; readonly handedOver: boolean } {
     const { own } = this;
     const { eyeHeight } = this.calibration;
     const station = stationOf(seen, seat);
@@ -340,7 +344,7 @@ class MatchPlay implements BallPlay {
   }
 
   /** What lies between two slow pictures is played too; the last moment is the picture's own. */
-  private catchUp(line: Connection, actor: BallBot, time: number): void {
+  private catchUp(line: BallConnection, actor: BallBot, time: number): void {
     this.gestures ??= gesturesOf(line);
     const moments = momentsUntil(time, this.actedAt);
     this.actedAt = time;

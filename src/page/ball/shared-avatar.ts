@@ -6,8 +6,8 @@ import {
   type WornAvatar,
 } from 'threepoint/core/body/worn-avatar';
 import { reasonOf } from 'threepoint/core/errors/reasons';
+import type { BallRoomView } from 'threepoint-games/ball/ball-client';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
-import type { RoomView } from 'threepoint-rooms/client/connection';
 
 /** What the wearer has on: one of ours by name, or a file. */
 export type OwnWear =
@@ -54,7 +54,7 @@ export class SharedAvatar {
   }
 
   /** Once a frame; `room`: null before the first welcome. */
-  follow(room: RoomView | null): void {
+  follow(room: BallRoomView | null): void {
     if (!room || room.mySeat === null) return;
     const wear = this.#options.wear();
     if (wear === this.#wear && room.welcomes === this.#welcomes) return;

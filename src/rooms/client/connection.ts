@@ -1,10 +1,10 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { WornAvatar } from 'threepoint/core/body/worn-avatar';
 import type { Transform } from 'threepoint/core/math/pose';
-import type { BallDeed, BallEvent, BallState } from 'threepoint-games/ball/ball-state';
 import type { Farewell, SeatInfo } from '../protocol/messages';
 import type { PosePacket } from '../protocol/pose-packet';
 import type { SignalBody, Voice } from '../protocol/voice-messages';
+import type { HostedGame } from '../room/match-policy';
 
 /** This page's clock, that of the tracked frames [s]; it never goes back. */
 export interface LocalClock {
@@ -26,7 +26,7 @@ export interface ConnectionStatus {
 }
 
 /** The room as it is known here. */
-export interface RoomView {
+export interface RoomView<Game extends HostedGame> {
   readonly id: string;
   /** Another one where the room was made anew under its name, and what was played in it is forgotten. */
   readonly epoch: string;
@@ -38,10 +38,10 @@ export interface RoomView {
   /** Roles move on with every rematch. */
   readonly rotate: boolean;
   /**
-   * The match with our own actions as they will turn out if the rules allow them; null before the first welcome. Heads, hands and the basket are
-   * not in it as they are now: poses are with the remote players, and the basket is in its holder's hands (`basketInHands`).
+   * The match with the player's own actions as they turn out if the rules allow them; null before the first welcome. The poses of the players
+   * are not in it: RemotePlayers has them.
    */
-  readonly match: BallState | null;
+  readonly match: Game['state'] | null;
   /** How long the room takes to answer [s]; null: it is in this page, or has not answered yet. */
   readonly delay: number | null;
   /** Seconds of the match minus seconds of this page's clock. */
@@ -63,9 +63,9 @@ export interface ArrivedPose {
 }
 
 /** What came since the last call. */
-export interface ConnectionUpdate {
+export interface ConnectionUpdate<Game extends HostedGame> {
   /** What happened in the match, oldest first. Not what happened before we came: that is in the match as it was told. */
-  readonly events: readonly BallEvent[];
+  readonly events: readonly Game['event'][];
   readonly poses: readonly ArrivedPose[];
   /** welcome: the room is known afresh, after joining or returning. match: another round began. voided: see `RoomView.voided`. */
   readonly news: readonly ('welcome' | 'match' | 'voided' | 'seats')[];
@@ -95,16 +95,16 @@ export interface VoiceLine {
 /**
  * A place in a room, whether the Room runs on a server or in this page. Times are this page's clock [s], that of the tracked frames.
  */
-export interface Connection {
+export interface Connection<Game extends HostedGame> {
   readonly status: ConnectionStatus;
   /** null: never joined yet. Kept, as it was, while the connection is lost. */
-  readonly room: RoomView | null;
+  readonly room: RoomView<Game> | null;
   /** Once a frame: what came since the last call. */
-  update(time: number): ConnectionUpdate;
+  update(time: number): ConnectionUpdate<Game>;
   /** Once a frame; sends 30 of them a second. `time`: of the tracked frame. Nothing while a spectator or not connected. */
   sendPose(time: number, shown: ShownPose): void;
-  /** An action with a ball: shown at once, judged by the Room. */
-  act(action: BallDeed): void;
+  /** Sends an action in the game: it is predicted at once and judged by the Room. */
+  act(action: Game['action']): void;
   ready(ready: boolean): void;
   rotate(rotate: boolean): void;
   /** Wants the match's clock to stand; refused where the room's terms do not allow it. Said again after every return. */

@@ -1,46 +1,53 @@
-import type { BallRoomMessage } from 'threepoint-games/ball/ball-messages';
-import { type BallGame, BallPolicy } from 'threepoint-games/ball/ball-policy';
-import type { BallAction, BallOptions } from 'threepoint-games/ball/ball-state';
-import type { ClientMessage, Farewell } from '../protocol/messages';
+import type { ClientMessage, Farewell, RoomMessage } from '../protocol/messages';
 import { encodeFrame } from '../protocol/pose-frame';
+import type { HostedGame, MatchAction, MatchPolicy } from '../room/match-policy';
 import { Room, type RoomOptions } from '../room/room';
 import type { ClientId, RoomRefusal } from '../room/room-outlet';
+import type { ClientPolicy } from './client-policy';
 import type { Connection, ConnectionStatus, ConnectionUpdate, Visitor } from './connection';
 import { RoomSession } from './room-session';
 
-/** A room of the ball game in this page: for a player alone, with bots if they like, and for tests. */
-export interface LoopbackHost {
-  readonly room: Room<BallGame>;
+/** A Room in this page: for a player alone, with bots if they like, and for tests. */
+export interface LoopbackHost<Game extends HostedGame> {
+  readonly room: Room<Game>;
   /** `now`: this page's clock [s]. */
-  connect(visitor: Visitor, now: number): Connection;
+  connect(visitor: Visitor, now: number): Connection<Game>;
 }
 
-export interface LoopbackOptions extends Partial<RoomOptions> {
-  readonly seed?: number;
-  readonly ball?: Partial<BallOptions>;
+export interface LoopbackOptions<Game extends HostedGame> extends Partial<RoomOptions> {
   refused?(refusal: RoomRefusal): void;
-  stepped?(actions: readonly BallAction[]): void;
+  stepped?(actions: readonly MatchAction<Game>[]): void;
 }
 
 /** The Room is the one of the server, and as it is this page's own it may be paused. It ticks when its first guest of a frame asks for news. */
-export function createLoopbackHost(options: LoopbackOptions = {}): LoopbackHost {
-  const shared = new LoopbackRoom(options);
+export function createLoopbackHost<Game extends HostedGame>(
+  match: MatchPolicy<Game>,
+  client: ClientPolicy<Game>,
+  options: LoopbackOptions<Game> = {},
+): LoopbackHost<Game> {
+  const shared = new LoopbackRoom(match, client, options);
   return {
     room: shared.room,
     connect: (visitor, now) => shared.connect(visitor, now),
   };
 }
 
-class LoopbackRoom {
-  readonly room: Room<BallGame>;
-  readonly #guests = new Map<ClientId, LoopbackConnection>();
+class LoopbackRoom<Game extends HostedGame> {
+  readonly room: Room<Game>;
+  readonly policy: ClientPolicy<Game>;
+  readonly #guests = new Map<ClientId, LoopbackConnection<Game>>();
   #now = 0;
   #ticked = Number.NEGATIVE_INFINITY;
   #made = 0;
 
-  constructor({ refused, stepped, seed = 0, ball, ...options }: LoopbackOptions) {
-    this.room = new Room<BallGame>(
-      new BallPolicy({ ...ball, seed }),
+  constructor(
+    match: MatchPolicy<Game>,
+    client: ClientPolicy<Game>,
+    { refused, stepped, ...options }: LoopbackOptions<Game>,
+  ) {
+    this.policy = client;
+    this.room = new Room<Game>(
+      match,
       { id: 'here', epoch: 'here', pausable: true, ...options },
       {
         send: (to, message) => this.#guests.get(to)?.hear(message, this.#now),
@@ -65,7 +72,7 @@ class LoopbackRoom {
     return this.#now;
   }
 
-  connect(visitor: Visitor, time: number): Connection {
+  connect(visitor: Visitor, time: number): Connection<Game> {
     this.#now = Math.max(this.#now, time);
     this.#made += 1;
     const client = `guest ${this.#made}`;
@@ -85,13 +92,13 @@ class LoopbackRoom {
   }
 }
 
-class LoopbackConnection extends RoomSession {
-  readonly #shared: LoopbackRoom;
+class LoopbackConnection<Game extends HostedGame> extends RoomSession<Game> {
+  readonly #shared: LoopbackRoom<Game>;
   readonly #client: ClientId;
   #status: ConnectionStatus = { phase: 'joined', attempt: 0, retryIn: null, reason: null };
 
-  constructor(shared: LoopbackRoom, client: ClientId, visitor: Visitor) {
-    super(visitor, true);
+  constructor(shared: LoopbackRoom<Game>, client: ClientId, visitor: Visitor) {
+    super(shared.policy, visitor, true);
     this.#shared = shared;
     this.#client = client;
   }
@@ -104,7 +111,7 @@ class LoopbackConnection extends RoomSession {
     this.#shared.room.join(this.#client, this.#client, this.joining(), this.#shared.now);
   }
 
-  hear(message: BallRoomMessage, now: number): void {
+  hear(message: RoomMessage<Game>, now: number): void {
     this.onMessage(message, now);
   }
 
@@ -116,7 +123,7 @@ class LoopbackConnection extends RoomSession {
     this.#status = { phase: 'ended', attempt: 0, retryIn: null, reason };
   }
 
-  update(time: number): ConnectionUpdate {
+  update(time: number): ConnectionUpdate<Game> {
     this.#shared.advance(time);
     return this.takeUpdate(this.#shared.now, this.#isHere);
   }

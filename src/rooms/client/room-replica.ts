@@ -1,28 +1,30 @@
 import { sameMeasures } from 'threepoint/core/body/calibration';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import type { Transform } from 'threepoint/core/math/pose';
-import type { BallRoomMessage, SentBallGame } from 'threepoint-games/ball/ball-messages';
-import { unpackBall } from 'threepoint-games/ball/ball-snapshot';
-import type { BallDeed, BallEvent, BallState } from 'threepoint-games/ball/ball-state';
-import { answersDeed, followBallEvent, predictDeed, withMatchTime } from 'threepoint-games/ball/replica';
-import { arenaFromSeatFloor } from 'threepoint-games/ball/stations';
-import { type SeatInfo, unpackSeatInfo, type Welcome } from '../protocol/messages';
+import { type RoomMessage, type SeatInfo, unpackSeatInfo, type Welcome } from '../protocol/messages';
+import type { HostedGame } from '../room/match-policy';
+import type { ClientPolicy } from './client-policy';
 
 /** What a Room has said of itself. */
 export interface KnownRoom
-  extends Pick<Welcome<SentBallGame>, 'room' | 'epoch' | 'seat' | 'spectators' | 'rotate' | 'matchStart' | 'paused'> {
+  extends Pick<Welcome<HostedGame>, 'room' | 'epoch' | 'seat' | 'spectators' | 'rotate' | 'matchStart' | 'paused'> {
   readonly seats: readonly (SeatInfo | null)[];
 }
 
 const skeletonOf = (info: SeatInfo | null): Skeleton | null => info && skeletonFromCalibration(info.calibration);
 
-/** A Room of the ball game as a client knows it: what the Room has confirmed, and the client's own actions that it has not answered yet. */
-export class RoomReplica {
+/** A Room as a client knows it: what the Room has confirmed, and the client's own actions that it has not answered yet. */
+export class RoomReplica<Game extends HostedGame> {
+  readonly #policy: ClientPolicy<Game>;
   #known: KnownRoom | null = null;
   #skeletons: (Skeleton | null)[] = [];
-  #confirmed: BallState | null = null;
-  #pending: BallDeed[] = [];
+  #confirmed: Game['state'] | null = null;
+  #pending: Game['action'][] = [];
   #voided = 0;
+
+  constructor(policy: ClientPolicy<Game>) {
+    this.#policy = policy;
+  }
 
   /** null: before the first welcome. */
   get known(): KnownRoom | null {
@@ -45,40 +47,40 @@ export class RoomReplica {
   }
 
   arenaFromFloor(seat: number): Transform<'arena', 'floor'> {
-    return arenaFromSeatFloor(seat, this.#confirmed);
+    return this.#policy.arenaFromFloor(seat, this.#confirmed);
   }
 
   /** The match at this second, with the own actions as they will turn out if the rules allow them; null: none is known. */
-  predicted(matchTime: number): BallState | null {
+  predicted(matchTime: number): Game['state'] | null {
     if (!this.#confirmed) return null;
-    const state = withMatchTime(this.#confirmed, matchTime);
+    const state = this.#policy.at(this.#confirmed, matchTime);
     const seat = this.mySeat;
-    return seat === null ? state : this.#pending.reduce((at, action) => predictDeed(at, seat, action), state);
+    return seat === null ? state : this.#pending.reduce((at, action) => this.#policy.predict(at, seat, action), state);
   }
 
   /** Counts on an action that is about to be sent; false: there is no match to act in. */
-  expect(action: BallDeed): boolean {
+  expect(action: Game['action']): boolean {
     if (this.mySeat === null || !this.#confirmed) return false;
     this.#pending.push(action);
     return true;
   }
 
   /** The whole room, on joining and on returning; true: it has forgotten a round that was running. */
-  onWelcome(message: Welcome<SentBallGame>): boolean {
+  onWelcome(message: Welcome<Game>): boolean {
     const { room, epoch, seat, spectators, rotate, matchStart, paused } = message;
     const before = this.#known;
     const forgotten = before !== null && before.epoch !== epoch && this.#confirmed?.phase === 'running';
     const seats = message.seats.map(unpackSeatInfo);
     this.#known = { room, epoch, seat, spectators, rotate, seats, matchStart, paused };
     this.#skeletons = seats.map(skeletonOf);
-    this.#confirmed = unpackBall(message.match);
+    this.#confirmed = this.#policy.unpack(message.match);
     this.#pending = [];
     if (forgotten) this.#voided += 1;
     return forgotten;
   }
 
   /** A change of a room that is known; false: none is yet, and nothing was taken in. */
-  onChange(message: Exclude<BallRoomMessage, { type: 'welcome' | 'pong' | 'signal' }>): boolean {
+  onChange(message: Exclude<RoomMessage<Game>, { type: 'welcome' | 'pong' | 'signal' }>): boolean {
     if (!this.#known) return false;
     switch (message.type) {
       case 'seat':
@@ -99,7 +101,7 @@ export class RoomReplica {
         break;
       case 'match':
         this.#known = { ...this.#known, matchStart: message.matchStart };
-        this.#confirmed = unpackBall(message.match);
+        this.#confirmed = this.#policy.unpack(message.match);
         this.#pending = [];
         break;
       case 'events':
@@ -108,10 +110,10 @@ export class RoomReplica {
     return true;
   }
 
-  #follow(event: BallEvent): void {
+  #follow(event: Game['event']): void {
     const seat = this.mySeat;
-    if (this.#confirmed) this.#confirmed = followBallEvent(this.#confirmed, event);
-    if (seat !== null) this.#pending = this.#pending.filter((action) => !answersDeed(event, seat, action));
+    if (this.#confirmed) this.#confirmed = this.#policy.follow(this.#confirmed, event);
+    if (seat !== null) this.#pending = this.#pending.filter((action) => !this.#policy.answers(event, seat, action));
   }
 
   #setSeatInfo(known: KnownRoom, seat: number, info: SeatInfo | null): void {

@@ -2,13 +2,13 @@ import type { Calibration } from 'threepoint/core/body/calibration';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { plainAvatar, type WornAvatar } from 'threepoint/core/body/worn-avatar';
 import type { Transform } from 'threepoint/core/math/pose';
-import type { BallRoomMessage } from 'threepoint-games/ball/ball-messages';
-import type { BallDeed, BallEvent } from 'threepoint-games/ball/ball-state';
-import { type ClientMessage, type Joining, toMillimetres } from '../protocol/messages';
+import { type ClientMessage, type Joining, type RoomMessage, toMillimetres } from '../protocol/messages';
 import { packetMs } from '../protocol/packet-time';
 import { decodePose, encodePose } from '../protocol/pose-codec';
 import { decodeFrame } from '../protocol/pose-frame';
 import type { SignalBody, Voice } from '../protocol/voice-messages';
+import type { HostedGame } from '../room/match-policy';
+import type { ClientPolicy } from './client-policy';
 import { createClockSync } from './clock-sync';
 import type {
   ArrivedPose,
@@ -29,7 +29,7 @@ const poseSeconds = 1 / 30;
 const mostWaiting = 256;
 
 /** A client's half of the protocol. Each kind of connection carries it over a wire of its own, in `transmit` and `transmitPose`. */
-export abstract class RoomSession implements Connection {
+export abstract class RoomSession<Game extends HostedGame> implements Connection<Game> {
   readonly voices: VoiceLine = {
     say: (voice) => this.#sayVoice(voice),
     signal: (to: string, body: SignalBody) => this.transmit({ type: 'signal', to, body }),
@@ -41,7 +41,7 @@ export abstract class RoomSession implements Connection {
   /** The Room's clock is this page's own. */
   readonly #knowsClock: boolean;
   readonly #clock = createClockSync();
-  readonly #replica = new RoomReplica();
+  readonly #replica: RoomReplica<Game>;
   #calibration: Calibration;
   #avatar: WornAvatar;
   #voice: Voice | null = null;
@@ -57,12 +57,13 @@ export abstract class RoomSession implements Connection {
   #welcomes = 0;
   #now = 0;
   #nextPose = Number.NEGATIVE_INFINITY;
-  #events: BallEvent[] = [];
+  #events: Game['event'][] = [];
   #poses: ArrivedPose[] = [];
-  #news: ConnectionUpdate['news'][number][] = [];
-  #view: RoomView | null = null;
+  #news: ConnectionUpdate<Game>['news'][number][] = [];
+  #view: RoomView<Game> | null = null;
 
-  constructor(visitor: Visitor, knowsClock: boolean) {
+  constructor(policy: ClientPolicy<Game>, visitor: Visitor, knowsClock: boolean) {
+    this.#replica = new RoomReplica(policy);
     this.#visitor = visitor;
     this.#knowsClock = knowsClock;
     this.#calibration = toMillimetres(visitor.calibration);
@@ -72,13 +73,13 @@ export abstract class RoomSession implements Connection {
   }
 
   abstract get status(): ConnectionStatus;
-  abstract update(time: number): ConnectionUpdate;
+  abstract update(time: number): ConnectionUpdate<Game>;
   abstract leave(): void;
   /** To the Room, in order; nothing while there is no connection. */
   protected abstract transmit(message: ClientMessage): void;
   protected abstract transmitPose(bytes: Uint8Array): void;
 
-  get room(): RoomView | null {
+  get room(): RoomView<Game> | null {
     const { known } = this.#replica;
     if (!known) return null;
     this.#view ??= {
@@ -107,7 +108,7 @@ export abstract class RoomSession implements Connection {
     if (bytes) this.transmitPose(bytes);
   }
 
-  act(action: BallDeed): void {
+  act(action: Game['action']): void {
     if (!this.#replica.expect(action)) return;
     this.#view = null;
     this.transmit({ type: 'action', action });
@@ -176,7 +177,7 @@ export abstract class RoomSession implements Connection {
   }
 
   /** Takes a message of the Room in, heard at this time of the page's clock [s]. */
-  protected onMessage(message: BallRoomMessage, at: number): void {
+  protected onMessage(message: RoomMessage<Game>, at: number): void {
     this.#now = Math.max(this.#now, at);
     this.#view = null;
     switch (message.type) {
@@ -222,7 +223,7 @@ export abstract class RoomSession implements Connection {
   }
 
   /** What came since the last call; asks for the Room's time when that is due. */
-  protected takeUpdate(time: number, connected: boolean): ConnectionUpdate {
+  protected takeUpdate(time: number, connected: boolean): ConnectionUpdate<Game> {
     this.#now = time;
     this.#view = null;
     if (connected && !this.#knowsClock && this.#clock.due(time)) this.transmit({ type: 'ping', sent: time });
@@ -238,7 +239,7 @@ export abstract class RoomSession implements Connection {
     if (this.#replica.known) this.transmit({ type: 'voice', voice });
   }
 
-  #afterChange(message: BallRoomMessage): void {
+  #afterChange(message: RoomMessage<Game>): void {
     switch (message.type) {
       case 'seat':
         this.#news.push('seats');

@@ -1,8 +1,9 @@
 import { io, type Socket } from 'socket.io-client';
-import { ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
 import { type ClientMessage, protocolVersion } from '../protocol/messages';
 import { frameEvent, messageEvent, pageParser, poseEvent } from '../protocol/small-frames';
+import type { HostedGame } from '../room/match-policy';
 import { type BackOff, createBackOff } from './back-off';
+import type { ClientPolicy } from './client-policy';
 import type { Connection, ConnectionStatus, ConnectionUpdate, LocalClock, Visitor } from './connection';
 import type { RoomPass } from './room-pass';
 import { RoomSession } from './room-session';
@@ -30,9 +31,13 @@ const farewellMs = 1000;
 const mostRefusals = 3;
 
 /** A place in a room on a relay. Connects at once, and again whenever the connection is lost, until it has ended. */
-export const createSocketConnection = (options: SocketConnectionOptions): Connection => new SocketConnection(options);
+export const createSocketConnection = <Game extends HostedGame>(
+  policy: ClientPolicy<Game>,
+  options: SocketConnectionOptions,
+): Connection<Game> => new SocketConnection(policy, options);
 
-class SocketConnection extends RoomSession {
+class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
+  readonly #policy: ClientPolicy<Game>;
   readonly #pass: RoomPass;
   readonly #clock: LocalClock;
   readonly #backOff: BackOff;
@@ -46,8 +51,12 @@ class SocketConnection extends RoomSession {
   #joinedOnce = false;
   #leftOut: number;
 
-  constructor({ url, room, visitor, pass, clock = runningTime, chance }: SocketConnectionOptions) {
-    super(visitor, false);
+  constructor(
+    policy: ClientPolicy<Game>,
+    { url, room, visitor, pass, clock = runningTime, chance }: SocketConnectionOptions,
+  ) {
+    super(policy, visitor, false);
+    this.#policy = policy;
     this.#pass = pass;
     this.#clock = clock;
     this.#leftOut = clock.leftOut;
@@ -76,7 +85,7 @@ class SocketConnection extends RoomSession {
     };
   }
 
-  update(time: number): ConnectionUpdate {
+  update(time: number): ConnectionUpdate<Game> {
     const { leftOut } = this.#clock;
     if (leftOut > this.#leftOut) this.leaveOut(leftOut - this.#leftOut, time);
     this.#leftOut = leftOut;
@@ -131,7 +140,7 @@ class SocketConnection extends RoomSession {
   }
 
   #onValue(value: unknown): void {
-    const message = ballRoomMessageFrom(value);
+    const message = this.#policy.readMessage(value);
     if (!message || (this.#phase === 'ended' && message.type !== 'farewell')) return;
     if (message.type === 'farewell') {
       if (message.reason !== 'stopping') this.#end(message.reason);

@@ -7,6 +7,7 @@ import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { allReleased, type Buttons } from 'threepoint/core/input/button-presses';
 import { distance, type Vec3 } from 'threepoint/core/math/vec3';
+import { ballClientPolicy } from 'threepoint-games/ball/ball-client';
 import { type BallPlay, createBallPlay } from 'threepoint-page/ball/ball-play';
 import { createRoomPass } from 'threepoint-rooms/client/room-pass';
 import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
@@ -35,7 +36,8 @@ function comeIn(port: number, name: string, options: { spectate?: boolean; bots?
   const url = `http://127.0.0.1:${port}`;
   const room = 'over-relay';
   const play = createBallPlay({
-    connect: (visitor) => createSocketConnection({ url, room, visitor, pass: createRoomPass(url, room, 'ball') }),
+    connect: (visitor) =>
+      createSocketConnection(ballClientPolicy, { url, room, visitor, pass: createRoomPass(url, room, 'ball') }),
     visitor: { name, calibration: defaultCalibration, ...(options.spectate && { spectate: true }) },
     bots: () => options.bots ?? false,
     acting: () => !options.spectate,

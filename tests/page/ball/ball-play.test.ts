@@ -3,10 +3,10 @@ import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { allReleased, type Buttons } from 'threepoint/core/input/button-presses';
 import { distance } from 'threepoint/core/math/vec3';
+import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import type { BallEvent, BallOptions } from 'threepoint-games/ball/ball-state';
 import type { BallSteering } from 'threepoint-games/ball/steered-players';
 import { type BallPlay, createBallPlay } from 'threepoint-page/ball/ball-play';
-import { createLoopbackHost } from 'threepoint-rooms/client/loopback-connection';
 import { describe, expect, it } from 'vitest';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 
@@ -25,7 +25,7 @@ function page(options: {
   steering?: () => BallSteering | null;
 }) {
   const { acting = true, bots = true, ball = {}, rateHz = usualHz } = options;
-  const host = createLoopbackHost({ seed: 3, ball });
+  const host = createBallLoopbackHost({ seed: 3, ball });
   const player: BallPlay = createBallPlay({
     connect: host.connect,
     visitor: {

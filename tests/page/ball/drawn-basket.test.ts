@@ -2,8 +2,8 @@ import { nothingPressed } from 'threepoint/core/input/button-presses';
 import type { Pose, TrackedPose } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
 import { add, distance, vec3 } from 'threepoint/core/math/vec3';
+import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import { createBallPlay } from 'threepoint-page/ball/ball-play';
-import { createLoopbackHost } from 'threepoint-rooms/client/loopback-connection';
 import { expect, test } from 'vitest';
 import { holding, opening, shownAt, visitor } from '../../rooms/client/people';
 
@@ -11,7 +11,7 @@ type Wrists = Readonly<Record<Side, Pose<'arena'> | null>>;
 
 /** The holder's own page; how far the basket that it draws is from that of the rules [m]. */
 function holder() {
-  const host = createLoopbackHost();
+  const host = createBallLoopbackHost();
   const play = createBallPlay({
     connect: host.connect,
     visitor: visitor('Cal', { seat: 2 }),

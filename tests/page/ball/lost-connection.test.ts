@@ -2,10 +2,12 @@ import { allReleased, type Buttons } from 'threepoint/core/input/button-presses'
 import type { Pose } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
 import { addScaled, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { ballClientPolicy, type BallConnectionUpdate } from 'threepoint-games/ball/ball-client';
+import type { BallGame } from 'threepoint-games/ball/ball-policy';
 import type { BallRoomMessage } from 'threepoint-games/ball/ball-messages';
 import { holdSeconds } from 'threepoint-games/ball/gestures';
 import { createBallPlay } from 'threepoint-page/ball/ball-play';
-import type { ConnectionStatus, ConnectionUpdate } from 'threepoint-rooms/client/connection';
+import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
 import { RoomSession } from 'threepoint-rooms/client/room-session';
 import type { ClientMessage } from 'threepoint-rooms/protocol/messages';
 import { describe, expect, test } from 'vitest';
@@ -15,7 +17,7 @@ import { toldRoom } from '../../rooms/room/told-room';
 type Told = ReturnType<typeof toldRoom>;
 
 /** Ann's wire to a room that a test tells everything: it can be lost, and come back. */
-class LossyWire extends RoomSession {
+class LossyWire extends RoomSession<BallGame> {
   readonly #told: Told;
   #connections: number;
   #heard = 0;
@@ -23,7 +25,7 @@ class LossyWire extends RoomSession {
 
   /** before: connections of other pages. */
   constructor(told: Told, before = 0) {
-    super(visitor('Ann', { seat: 0 }), true);
+    super(ballClientPolicy, visitor('Ann', { seat: 0 }), true);
     this.#told = told;
     this.#connections = before;
     this.connect();
@@ -45,7 +47,7 @@ class LossyWire extends RoomSession {
     return { phase: this.#whole ? 'joined' : 'reconnecting', attempt: 0, retryIn: null, reason: null };
   }
 
-  override update(time: number): ConnectionUpdate {
+  override update(time: number): BallConnectionUpdate {
     const fresh = this.#whole ? this.#told.said.slice(this.#heard) : [];
     this.#heard = this.#told.said.length;
     for (const { to, message } of fresh) {

@@ -1,5 +1,5 @@
+import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import { Voices } from 'threepoint-page/ball/voices';
-import { createLoopbackHost } from 'threepoint-rooms/client/loopback-connection';
 import type { VoiceTerms } from 'threepoint-rooms/voices/voice-terms';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
 import { visitor } from '../../rooms/client/people';
@@ -44,7 +44,7 @@ const settle = () => new Promise((resolve) => setImmediate(resolve));
 
 /** A player in a room, whose server says what it has to say of voices when the test wants. */
 function seated() {
-  const play = createLoopbackHost().connect(visitor('Ann'), 0);
+  const play = createBallLoopbackHost().connect(visitor('Ann'), 0);
   const answers: (() => void)[] = [];
   const voices = new Voices({
     play: { room: play.room, status: play.status, voices: play.voices },

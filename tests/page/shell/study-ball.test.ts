@@ -2,10 +2,10 @@ import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { allReleased, type Buttons } from 'threepoint/core/input/button-presses';
+import { type BallConnection, createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import { createBallPlay } from 'threepoint-page/ball/ball-play';
 import { createBallRunner } from 'threepoint-page/shell/study-ball';
-import type { Connection, ConnectionStatus, Visitor } from 'threepoint-rooms/client/connection';
-import { createLoopbackHost } from 'threepoint-rooms/client/loopback-connection';
+import type { ConnectionStatus, Visitor } from 'threepoint-rooms/client/connection';
 import {
   type FinishedTrial,
   type PlayedStep,
@@ -36,20 +36,20 @@ const step = {
 
 /** The room of a server that can be cut off, and that has forgotten what was played when it is started anew. */
 function restartedRoom() {
-  const made = (epoch: string) => createLoopbackHost({ seed: 3, ball: { seconds }, epoch });
+  const made = (epoch: string) => createBallLoopbackHost({ seed: 3, ball: { seconds }, epoch });
   let room = made('first');
   let cutOff: ConnectionStatus['phase'] | null = null;
   const moves: ((time: number) => void)[] = [];
   return {
     /** A connection of a page. While it is cut off the room goes on, and the page knows of it what it knew before. */
-    connect(visitor: Visitor, now: number): Connection {
+    connect(visitor: Visitor, now: number): BallConnection {
       let line = room.connect(visitor, now);
       let known = line.room;
       moves.push((time) => {
         line = room.connect(visitor, time);
       });
       return new Proxy(line, {
-        get(_, name: keyof Connection) {
+        get(_, name: keyof BallConnection) {
           if (!cutOff) known = line.room;
           if (name === 'room') return known;
           if (cutOff && name === 'status') return { ...line.status, phase: cutOff };

@@ -1,12 +1,12 @@
+import { type BallLoopbackOptions, createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import type { BallAction } from 'threepoint-games/ball/ball-state';
 import { ballRules } from 'threepoint-games/ball/rules';
-import { createLoopbackHost, type LoopbackOptions } from 'threepoint-rooms/client/loopback-connection';
 import { describe, expect, test } from 'vitest';
 import { atRack, createPerson, fists, holding, opening, releaseOf, visitor } from './people';
 
 /** Three people in a room of this page, frame by frame at 72 Hz. */
-function threeTogether(options: Partial<LoopbackOptions> = {}) {
-  const host = createLoopbackHost(options);
+function threeTogether(options: Partial<BallLoopbackOptions> = {}) {
+  const host = createBallLoopbackHost(options);
   let time = 100;
   const people = ['Ann', 'Ben', 'Cal'].map((name) => createPerson(host.connect(visitor(name), time)));
   const [ann, ben, cal] = people as [(typeof people)[0], (typeof people)[0], (typeof people)[0]];
@@ -119,7 +119,7 @@ describe('a room in the page', () => {
   });
 
   test('a bot gives its seat to a person', () => {
-    const host = createLoopbackHost();
+    const host = createBallLoopbackHost();
     const bots = ['one', 'two', 'three'].map((name) => host.connect(visitor(name, { bot: true }), 1));
     expect(bots[0]?.room?.seats.map((row) => row?.bot)).toEqual([true, true, true]);
     const ann = host.connect(visitor('Ann'), 2);

@@ -4,11 +4,12 @@ import { invertTransform, type Pose, transformPose } from 'threepoint/core/math/
 import { identity } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { add, addScaled, scale, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { BallConnection, BallConnectionUpdate } from 'threepoint-games/ball/ball-client';
 import type { BallDeed, BallEvent } from 'threepoint-games/ball/ball-state';
 import { rackPosition, stations } from 'threepoint-games/ball/stations';
 import { gravity } from 'threepoint-games/ballistics';
 import { wristAround } from 'threepoint-games/fist';
-import type { Connection, ConnectionUpdate, ShownPose, Visitor } from 'threepoint-rooms/client/connection';
+import type { ShownPose, Visitor } from 'threepoint-rooms/client/connection';
 
 export const visitor = (name: string, more: Partial<Visitor> = {}): Visitor => ({
   name,
@@ -27,7 +28,7 @@ export const velocityTo = (from: Vec3, to: Vec3, seconds: number): Vec3 =>
 
 /** A player who stands where their seat is, with their wrists at these places of the arena. */
 export function shownAt(
-  connection: Pick<Connection, 'arenaFromFloor'>,
+  connection: Pick<BallConnection, 'arenaFromFloor'>,
   seat: number,
   wrists: Readonly<Record<Side, Pose<'arena'> | null>>,
 ): ShownPose {
@@ -66,10 +67,10 @@ export const releaseOf = (seat: number): Vec3 => add(stations[seat]!.position, v
 type Unnumbered = BallDeed extends infer D ? (D extends BallDeed ? Omit<D, 'sequence'> : never) : never;
 
 /** A person at a connection: does what a page would do every frame, and remembers what it heard. */
-export function createPerson(connection: Connection) {
+export function createPerson(connection: BallConnection) {
   const events: BallEvent[] = [];
-  const news: ConnectionUpdate['news'][number][] = [];
-  const poses: ConnectionUpdate['poses'][number][] = [];
+  const news: BallConnectionUpdate['news'][number][] = [];
+  const poses: BallConnectionUpdate['poses'][number][] = [];
   let sequence = 0;
   let wrists: Record<Side, Pose<'arena'> | null> = { left: null, right: null };
   const act = (deed: Unnumbered): BallDeed => {

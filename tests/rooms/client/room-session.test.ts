@@ -1,7 +1,8 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { type BallConnectionUpdate, ballClientPolicy } from 'threepoint-games/ball/ball-client';
 import type { BallRoomMessage } from 'threepoint-games/ball/ball-messages';
 import { type BallGame, BallPolicy } from 'threepoint-games/ball/ball-policy';
-import type { ConnectionStatus, ConnectionUpdate } from 'threepoint-rooms/client/connection';
+import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
 import { RoomSession } from 'threepoint-rooms/client/room-session';
 import type { ClientMessage } from 'threepoint-rooms/protocol/messages';
 import { Room } from 'threepoint-rooms/room/room';
@@ -9,7 +10,7 @@ import { expect, test } from 'vitest';
 import { visitor } from './people';
 
 /** A client whose wire takes as long as the test wants: what the Room says waits until it is delivered. */
-class SlowClient extends RoomSession {
+class SlowClient extends RoomSession<BallGame> {
   readonly #room: Room<BallGame>;
   readonly #waiting: BallRoomMessage[] = [];
   #joins = 0;
@@ -17,7 +18,7 @@ class SlowClient extends RoomSession {
   #isJoined = false;
 
   constructor() {
-    super(visitor('Ann'), false);
+    super(ballClientPolicy, visitor('Ann'), false);
     this.#room = new Room<BallGame>(
       new BallPolicy({ seed: 0 }),
       { id: 'here', epoch: 'here', voices: true },
@@ -65,7 +66,7 @@ class SlowClient extends RoomSession {
     return { phase: this.#isJoined ? 'joined' : 'connecting', attempt: 0, retryIn: null, reason: null };
   }
 
-  override update(time: number): ConnectionUpdate {
+  override update(time: number): BallConnectionUpdate {
     return this.takeUpdate(time, this.#isJoined);
   }
 

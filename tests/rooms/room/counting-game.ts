@@ -1,6 +1,8 @@
 import { identity } from 'threepoint/core/math/quat';
 import { vec3 } from 'threepoint/core/math/vec3';
 import { createMatch } from 'threepoint-games/match';
+import type { ClientPolicy } from 'threepoint-rooms/client/client-policy';
+import { roomMessageReader } from 'threepoint-rooms/protocol/messages';
 import type { HostedGame, MatchAction, MatchPolicy, MatchState } from 'threepoint-rooms/room/match-policy';
 
 interface CountingState extends MatchState {
@@ -14,6 +16,8 @@ interface CountingState extends MatchState {
 type CountingEvent =
   | { readonly type: 'counted'; readonly player: number; readonly total: number }
   | { readonly type: 'refused'; readonly player: number; readonly reason: string };
+
+import * as v from 'valibot';
 
 /** Players count to a number together, each step the next. */
 export interface CountingGame extends HostedGame {
@@ -77,3 +81,21 @@ export const countingPolicy = (seats: number, goal = 3): MatchPolicy<CountingGam
   refusalOf: (event) => (event.type === 'refused' ? event : null),
   arenaFromFloor: (seat) => ({ position: vec3(0, seat, 0), orientation: identity }),
 });
+
+const counted = v.strictObject({ type: v.literal('counted'), player: v.number(), total: v.number() });
+const refused = v.strictObject({ type: v.literal('refused'), player: v.number(), reason: v.string() });
+
+/** The counting game as a client of its Room follows it: a client knows the total alone, and predicts its own next number. */
+export const countingClientPolicy: ClientPolicy<CountingGame> = {
+  readMessage: roomMessageReader<CountingGame>(
+    countingKind,
+    v.strictObject({ total: v.number() }),
+    v.union([counted, refused]),
+  ),
+  unpack: ({ total }) => ({ tick: 0, phase: 'running', total, players: [] }),
+  follow: (state, event) => (event.type === 'counted' ? { ...state, total: event.total } : state),
+  at: (state, matchTime) => ({ ...state, tick: Math.floor(matchTime / tickSeconds) }),
+  predict: (state, _seat, { to }) => (to === state.total + 1 ? { ...state, total: to } : state),
+  answers: (event, seat, { to }) => event.player === seat && (event.type === 'refused' || event.total === to),
+  arenaFromFloor: (seat) => ({ position: vec3(0, seat, 0), orientation: identity }),
+};

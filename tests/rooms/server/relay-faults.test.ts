@@ -2,6 +2,7 @@
 
 import { plainAvatar } from 'threepoint/core/body/worn-avatar';
 import { nextRandom } from 'threepoint/core/math/random';
+import { ballClientPolicy } from 'threepoint-games/ball/ball-client';
 import { ballKind } from 'threepoint-games/ball/ball-messages';
 import { createRemotePlayers } from 'threepoint-rooms/client/remote-players';
 import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
@@ -162,7 +163,7 @@ test('500 clients reconnect at once', async () => {
       const room = `meadow-${Math.floor(i / 16)}`;
       const token = await tokens.issue(room, ballKind);
       return ending(
-        createSocketConnection({
+        createSocketConnection(ballClientPolicy, {
           url: relay.url,
           room,
           visitor: visitor(`P${i}`),

@@ -5,6 +5,7 @@ import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { plainAvatar } from 'threepoint/core/body/worn-avatar';
 import { identity } from 'threepoint/core/math/quat';
 import { vec3 } from 'threepoint/core/math/vec3';
+import { ballClientPolicy } from 'threepoint-games/ball/ball-client';
 import { type BallRoomMessage, ballKind } from 'threepoint-games/ball/ball-messages';
 import { createConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { createRouter, noPage } from 'threepoint-http/router';
@@ -75,7 +76,7 @@ export function arrive(
   now = seconds,
 ) {
   const pass = createRoomPass(url, room, kindOf(room), undefined, terms);
-  const connection = createSocketConnection({
+  const connection = createSocketConnection(ballClientPolicy, {
     url,
     room,
     visitor: visitor(name, more),

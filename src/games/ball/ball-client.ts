@@ -1,0 +1,38 @@
+import type { ClientPolicy } from 'threepoint-rooms/client/client-policy';
+import type { Connection, ConnectionUpdate, RoomView } from 'threepoint-rooms/client/connection';
+import {
+  createLoopbackHost,
+  type LoopbackHost,
+  type LoopbackOptions,
+} from 'threepoint-rooms/client/loopback-connection';
+import { ballRoomMessageFrom } from './ball-messages';
+import { type BallGame, BallPolicy } from './ball-policy';
+import { unpackBall } from './ball-snapshot';
+import type { BallOptions } from './ball-state';
+import { answersDeed, followBallEvent, predictDeed, withMatchTime } from './replica';
+import { arenaFromSeatFloor } from './stations';
+
+export type BallConnection = Connection<BallGame>;
+export type BallConnectionUpdate = ConnectionUpdate<BallGame>;
+export type BallRoomView = RoomView<BallGame>;
+export type BallLoopbackHost = LoopbackHost<BallGame>;
+
+/** The ball game as a client of its Room follows it. */
+export const ballClientPolicy: ClientPolicy<BallGame> = {
+  readMessage: ballRoomMessageFrom,
+  unpack: unpackBall,
+  follow: followBallEvent,
+  at: withMatchTime,
+  predict: predictDeed,
+  answers: answersDeed,
+  arenaFromFloor: arenaFromSeatFloor,
+};
+
+export interface BallLoopbackOptions extends LoopbackOptions<BallGame> {
+  readonly seed?: number;
+  readonly ball?: Partial<BallOptions>;
+}
+
+/** Returns a Room of the ball game in this page. */
+export const createBallLoopbackHost = ({ seed = 0, ball, ...options }: BallLoopbackOptions = {}): BallLoopbackHost =>
+  createLoopbackHost(new BallPolicy({ ...ball, seed }), ballClientPolicy, options);
