@@ -164,8 +164,8 @@ async function checkDocuments(sizes) {
     says: /(\d+) kB of code as it travels \((\d+) kB without `loadAvatar`\)/,
     bytes: [sizes['`threepoint/three`'].brotli, alone.brotli],
   };
-  const stale = Object.entries({ 'src/threepoint/README.md': rows, 'README.md': [sentence] }).flatMap(([file, claims]) =>
-    staleSizes(file, readFileSync(join(root, file), 'utf8'), claims),
+  const stale = Object.entries({ 'src/threepoint/README.md': rows, 'README.md': [sentence] }).flatMap(
+    ([file, claims]) => staleSizes(file, readFileSync(join(root, file), 'utf8'), claims),
   );
   if (stale.length > 0) throw new SetupError(`${stale.join('.\n')}.`);
 }

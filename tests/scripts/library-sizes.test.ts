@@ -22,7 +22,9 @@ describe('a size that a document says', () => {
     const says = rowOf('threepoint/onnx-worker');
     const claim = (...bytes: number[]) => staleSizes('src/threepoint/README.md', text, [{ what: 'it', says, bytes }]);
     expect(claim(1_360, 660)).toEqual([]);
-    expect(claim(1_360, 640)).toEqual(['src/threepoint/README.md says 1.4 kB and 0.7 kB of it, it is 1.4 kB and 0.6 kB']);
+    expect(claim(1_360, 640)).toEqual([
+      'src/threepoint/README.md says 1.4 kB and 0.7 kB of it, it is 1.4 kB and 0.6 kB',
+    ]);
   });
 
   test('is told beside what was measured where it is further off', () => {
