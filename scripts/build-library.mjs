@@ -25,7 +25,7 @@ const copied = {
   'models/paper.onnx': 'public/models/paper.onnx',
   'avatars/mannequin.vrm': 'public/avatars/mannequin.vrm',
   LICENSE: 'LICENSE',
-  'README.md': 'docs/library.md',
+  'README.md': 'src/threepoint/README.md',
 };
 
 /** Returns the manifest to publish: without sources, without rooms that are internal, with dependencies that may be newer. */
@@ -139,7 +139,7 @@ export async function buildLibrary() {
   writeFiles();
 }
 
-/** What is measured, by the name that docs/library.md gives it in its table. */
+/** What is measured, by the name that src/threepoint/README.md gives it in its table. */
 async function measureSizes() {
   const sizes = {};
   for (const name of entries) {
@@ -151,7 +151,7 @@ async function measureSizes() {
   return sizes;
 }
 
-/** Throws where docs/library.md or README.md says another size than was measured. */
+/** Throws where src/threepoint/README.md or README.md says another size than was measured. */
 async function checkDocuments(sizes) {
   const rows = Object.entries(sizes).map(([what, { min, brotli }]) => ({
     what,
@@ -164,8 +164,8 @@ async function checkDocuments(sizes) {
     says: /(\d+) kB of code as it travels \((\d+) kB without `loadAvatar`\)/,
     bytes: [sizes['`threepoint/three`'].brotli, alone.brotli],
   };
-  const stale = Object.entries({ 'docs/library.md': rows, 'README.md': [sentence] }).flatMap(([file, claims]) =>
-    staleSizes(file, readFileSync(join(root, file), 'utf8'), claims),
+  const stale = Object.entries({ 'src/threepoint/README.md': rows, 'README.md': [sentence] }).flatMap(
+    ([file, claims]) => staleSizes(file, readFileSync(join(root, file), 'utf8'), claims),
   );
   if (stale.length > 0) throw new SetupError(`${stale.join('.\n')}.`);
 }

@@ -39,7 +39,7 @@ export interface Seen {
   readonly offP95Mm: number;
 }
 
-/** Standard deviations of what a headset says of a place, along each axis [m]: assumptions, which jerk depends on (docs/scaling.md). */
+/** Standard deviations of what a headset says of a place, along each axis [m]: assumptions, which jerk depends on (src/rooms/README.md). */
 export const tremors = [1e-4, 3e-5, 0] as const;
 const displayHz = 72;
 const posesPerSecond = 30;

@@ -29,7 +29,7 @@ function packet(): Uint8Array {
   return bytes;
 }
 
-/** Of the time in a pose packet: its first bit, and how many it has (docs/protocol.md). */
+/** Of the time in a pose packet: its first bit, and how many it has (src/rooms/README.md). */
 const timeAt = 13;
 const timeBits = 14;
 

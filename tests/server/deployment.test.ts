@@ -129,17 +129,17 @@ describe.each(Object.entries(compose.services))('the service %s', (name, found) 
   });
 });
 
-/** Images whose digest is established by whoever deploys them, as docs/scaling.md says. */
+/** Images whose digest is established by whoever deploys them, as docs/deployment.md says. */
 const pinnedOnTheSpot = ['haproxy:2.8-bookworm', 'coturn/coturn:4.6-debian'];
 
-test('base images are pinned by digest; docs/scaling.md says how the others are', () => {
+test('base images are pinned by digest; docs/deployment.md says how the others are', () => {
   const images = [
     ...[...dockerfile.matchAll(/^FROM (\S+)/gm)].map(([, image]) => image ?? ''),
     ...Object.values(compose.services).flatMap(({ image, build }) => (build ? [] : image)),
   ];
   const unpinned = images.filter((image) => !/^[\w/.-]+:[\w.-]+@sha256:[0-9a-f]{64}$/.test(image));
   expect(unpinned).toEqual(pinnedOnTheSpot);
-  const documented = readFileSync(new URL('../../docs/scaling.md', import.meta.url), 'utf8');
+  const documented = readFileSync(new URL('../../docs/deployment.md', import.meta.url), 'utf8');
   for (const image of pinnedOnTheSpot) expect(documented).toContain(image);
 });
 

@@ -93,7 +93,7 @@ export interface GestureFrame {
   readonly cues: readonly BowCue[];
 }
 
-/** Turns tracked hands and their buttons into what archers do (docs/archery.md). */
+/** Turns tracked hands and their buttons into what archers do (src/games/README.md). */
 export interface ArcheryGestures {
   /** Frames in the order of their time; irregular ones are fine. */
   follow(frame: TrackingFrame, buttons: Buttons): GestureFrame;

@@ -270,7 +270,7 @@ function roundEnd(state: ArcheryState, time: number): RoundEnd | null {
 }
 
 /**
- * One archer's round (docs/archery.md): four targets, a few arrows, a bell. Tick 1/90 s, arena frame. The first release or
+ * One archer's round (src/games/README.md): four targets, a few arrows, a bell. Tick 1/90 s, arena frame. The first release or
  * `start` starts the clock, or `start` alone (`startedBy`). With `everyHitCounts` the round does not end before arrows or time do.
  */
 export const archeryRules: GameRules<ArcheryState, ArcheryAction, ArcheryEvent, ArcheryOptions> = {

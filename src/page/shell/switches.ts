@@ -6,7 +6,7 @@ import { type ViewName, viewNames } from '../scene/desktop-view';
 import type { Quality } from '../scene/renderer';
 import { type ActivityName, activityNames } from './play-bar';
 
-/** What the address asks for; null: nothing asked, the page decides. Listed in docs/page.md. */
+/** What the address asks for; null: nothing asked, the page decides. Listed in src/page/README.md. */
 export interface Switches {
   readonly emulate: boolean;
   readonly actor: boolean;

@@ -39,7 +39,7 @@ const isFiniteAvatar = ({ head, leftHand, rightHand, body }: AvatarPose): boolea
 
 /**
  * The packet's bytes, 64 at most; null where head, a hand or the body is not finite. The skeleton is the sender's own; the body's
- * head is where the pose's head is, as every estimator has it. Positions beyond the ranges of docs/protocol.md come out at their edges.
+ * head is where the pose's head is, as every estimator has it. Positions beyond the ranges of src/rooms/README.md come out at their edges.
  */
 export function encodePose(packet: PosePacket, skeleton: Skeleton): Uint8Array | null {
   const { head, leftHand, rightHand, body } = packet.pose;

@@ -45,7 +45,7 @@ const shortestSecret = 32;
 
 type Environment = Readonly<Record<string, string | undefined>>;
 
-export const relayEnvironment = `Environment of the relay (docs/relay.md):
+export const relayEnvironment = `Environment of the relay (server/README.md):
   THREEPOINT_SECRET             signs room tokens; 128 bits or more (openssl rand -base64 32), the same in every process of a fleet
   THREEPOINT_ORIGINS            origins of pages that may connect, with commas between; default: the server's own
   THREEPOINT_HOSTS              names of the server, with commas between, where it has others than localhost, its addresses,

@@ -50,7 +50,7 @@ export function handleFit(profiles: readonly string[]): HandleFit {
   return genericFit;
 }
 
-/** A grip in the wrist's frame (docs/frames.md): its orientation, the inverse of that, and its origin [m]. */
+/** A grip in the wrist's frame (threepoint/README.md, Frames): its orientation, the inverse of that, and its origin [m]. */
 interface HeldGrip {
   readonly orientation: Quat;
   readonly inverse: Quat;

@@ -64,7 +64,7 @@ async function mutations(chance: () => number) {
   return { next: () => ways[below(ways.length)]!(), below };
 }
 
-/** Writes a time [ms] into a packet, from its bit 13 on (docs/protocol.md), so that its age is not what keeps it from the room. */
+/** Writes a time [ms] into a packet, from its bit 13 on (src/rooms/README.md), so that its age is not what keeps it from the room. */
 function setTime(bytes: Uint8Array, timeMs: number): void {
   for (let bit = 0; bit < 14; bit++) {
     const at = 13 + bit;

@@ -2,7 +2,7 @@ import { conjugate, copyQuat, type MutableQuat, multiply, type Quat, quat, rotat
 import { add, copyVec3, type MutableVec3, scale, subtract, type Vec3, vec3 } from './vec3';
 
 /**
- * The coordinate frames of the project, all right-handed, +Y up, −Z forward, metres (docs/frames.md).
+ * The coordinate frames of the project, all right-handed, +Y up, −Z forward, metres (threepoint/README.md, Frames).
  * floor: WebXR `local-floor`. heading: origin on the floor under the headset, yaw of the head. body: origin on the
  * floor under the head joint, yaw of the body (tracking/body-heading). arena: shared by players.
  */
