@@ -101,7 +101,12 @@ export default {
       severity: 'error',
       from: { path: pure },
       to: {
-        pathNot: [pure, packagePath('valibot'), packagePath('@stdlib/(stats-base-dists|math-base-special)-[^/]+')],
+        pathNot: [
+          pure,
+          '^src/rooms/client/(client-policy|connection|loopback-connection)\\.ts$',
+          packagePath('valibot'),
+          packagePath('@stdlib/(stats-base-dists|math-base-special)-[^/]+'),
+        ],
       },
     },
     {
