@@ -64,8 +64,12 @@ export default defineConfig({
       ),
     },
   },
-  // Studies are kept by `npm start`; the pages under development talk to it.
-  server: { host: '127.0.0.1', port: 5173, proxy: { '/api': 'http://127.0.0.1:3333' } },
+  // Rooms and studies are those of `npm start`, which runs beside the development server.
+  server: {
+    host: '127.0.0.1',
+    port: 5173,
+    proxy: { '/api': 'http://127.0.0.1:3333', '/relay': { target: 'http://127.0.0.1:3333', ws: true } },
+  },
   preview: { host: '127.0.0.1', port: 4173 },
   // Workers are modules, so that they may load the parts they need.
   worker: { format: 'es', plugins: () => [decodersWithoutNode, ktx2WithoutScript] },

@@ -147,7 +147,7 @@ test('the image has built JavaScript and no tool of development', () => {
   const [packages = '', image = ''] = dockerfile.split('\nFROM ').slice(-2);
   expect(packages).toContain('RUN npm ci --omit=dev');
   expect(image).not.toMatch(/^RUN npm|tsx|^COPY \. /m);
-  expect(image).toContain('COPY --from=packages /threepoint ./');
+  expect(image).toContain('COPY --from=packages /threepoint/node_modules node_modules');
   expect(image).toContain('CMD ["node", "--enable-source-maps", "server/main.mjs"]');
 });
 
