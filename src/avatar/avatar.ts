@@ -13,10 +13,11 @@ import type { GaitPoints } from '../core/estimation/gait-features';
 import { identity, type Quat, quat, rotate } from '../core/math/quat';
 import type { Side } from '../core/math/side';
 import { addScaled, setVec3, subtract, type Vec3, vec3 } from '../core/math/vec3';
+import { finishWork } from '../core/motion/work';
 import type { SkinTone } from '../core/protocol/worn-avatar';
 import { Face } from './face';
 import { Fingers } from './hands/fingers';
-import { atOnce, betweenFrames, type Steps } from './in-steps';
+import { betweenFrames, type Steps } from './in-steps';
 import { Legs } from './legs/legs';
 import type { LoadedAvatar } from './load-avatar';
 import { ArmHelperJoints } from './rig/arm-helpers';
@@ -283,7 +284,7 @@ class VrmAvatar implements Avatar {
   }
 }
 
-export const createAvatar = (loaded: LoadedAvatar): Avatar => atOnce(makeAvatar(loaded));
+export const createAvatar = (loaded: LoadedAvatar): Avatar => finishWork(makeAvatar(loaded));
 
 /** The same while pictures go on: for a file that came while the page is in use. */
 export const createAvatarBetweenFrames = (loaded: LoadedAvatar): Promise<Avatar> => betweenFrames(makeAvatar(loaded));
