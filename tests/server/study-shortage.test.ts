@@ -8,7 +8,6 @@ import { recordVersion, type StudyRecord } from '../../src/core/study/study-reco
 import { paperPlan } from '../core/study/studies';
 import { measured } from '../reliability/measured';
 import { directoryWith } from '../temporary-directory';
-import { pause } from './running-relay';
 import { experimenterToken, forkServer } from './server-child';
 
 /** A folder of a server with a study in which P01 has stored so many remarks of 2 kB. */
@@ -83,7 +82,7 @@ test('a limit of files that strangers’ connections use up leaves the studies w
   expect((await remark(server)).status).toBe(201);
   const strangers = Array.from({ length: 200 }, () => connect(server.port, '127.0.0.1'));
   for (const stranger of strangers) stranger.on('error', () => stranger.destroy());
-  await pause(1);
+  await expect.poll(async () => (await ask(server, 'GET', '/export')).status).toBe(507);
   const answers = [await remark(server), await remark(server)];
   const exported = await ask(server, 'GET', '/export');
   for (const stranger of strangers) stranger.destroy();
