@@ -132,19 +132,22 @@ test('text stands out from its background, for every kind of colour vision @full
 });
 
 test('going from place to place leaves no geometry and no texture on the graphics device @full', async ({ page }) => {
-  await open(page, 'quality=low&estimator=ik');
+  test.setTimeout(300_000);
+  await page.setViewportSize({ width: 320, height: 200 });
+  // In low quality nothing is reflected.
+  await open(page, 'quality=high&estimator=ik&panel=off');
   /** What the studio holds after a visit to the range, once its own picture is drawn. */
   const heldAfterVisit = async () => {
     for (const name of ['Archery', 'Mirror']) {
       const place = page.getByRole('button', { name, exact: true });
-      await place.click();
-      await expect(place).toHaveAttribute('aria-pressed', 'true');
-      const { frame } = await probe(page);
-      await expect.poll(async () => (await probe(page)).frame.count).toBeGreaterThan(frame.count + 3);
+      await place.press('Enter');
+      await expect(place).toHaveAttribute('aria-pressed', 'true', { timeout: 60_000 });
+      const { count } = (await probe(page)).frame;
+      await expect.poll(async () => (await probe(page)).frame.count, { timeout: 60_000 }).toBeGreaterThan(count + 1);
     }
     const { geometries, textures } = (await probe(page)).drawing;
     return { geometries, textures };
   };
   const first = await heldAfterVisit();
-  for (let visits = 0; visits < 2; visits++) expect(await heldAfterVisit()).toEqual(first);
+  expect(await heldAfterVisit()).toEqual(first);
 });
