@@ -34,28 +34,15 @@ const decodersWithoutNode: Plugin = {
   enforce: 'pre',
   resolveId: {
     filter: { id: /^(fs|path)$/ },
-    handler: (_, importer) => (/\/(draco|basis)\//.test(importer ?? '') ? '\0decoders-without-node' : undefined),
+    handler: (_, importer) => (/\/draco\//.test(importer ?? '') ? '\0decoders-without-node' : undefined),
   },
   load: { filter: { id: /^\0decoders-without-node$/ }, handler: () => 'export {};' },
-};
-
-/** three.js's loader of KTX2 knows where its transcoder's script lies, for a worker of its own; ours has it in itself (src/threepoint/avatar/decoders/ktx2-worker.ts). */
-const ktx2WithoutScript: Plugin = {
-  name: 'ktx2-without-script',
-  transform: {
-    filter: { id: /\/jsm\/loaders\/KTX2Loader\.js$/ },
-    handler(code) {
-      const address = /new URL\( '[^']*\/basis_transcoder\.js', import\.meta\.url \)\.toString\(\)/;
-      if (!address.test(code)) this.error('KTX2Loader no longer says where basis_transcoder.js is: see vite.config.ts');
-      return { code: code.replace(address, "''"), map: null };
-    },
-  },
 };
 
 export default defineConfig({
   // Where the page is served from: any folder, unless `npm run build -- --base` names one (scripts/build.mjs).
   base: './',
-  plugins: [policyInPages, ktx2WithoutScript],
+  plugins: [policyInPages],
   resolve: {
     conditions: ['source', ...defaultClientConditions],
     alias: {
@@ -72,7 +59,7 @@ export default defineConfig({
   },
   preview: { host: '127.0.0.1', port: 4173 },
   // Workers are modules, so that they may load the parts they need.
-  worker: { format: 'es', plugins: () => [decodersWithoutNode, ktx2WithoutScript] },
+  worker: { format: 'es', plugins: () => [decodersWithoutNode] },
   build: {
     target: 'es2022',
     // The policy of the server allows scripts of our own files alone: nothing may be inlined into the page as a data: URL.

@@ -2,4 +2,4 @@
 import { register } from 'tsx/esm/api';
 
 register();
-await import('./study-thread-work.ts');
+await import('threepoint-study/server/study-thread.ts');

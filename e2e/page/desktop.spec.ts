@@ -1,3 +1,4 @@
+import { measured } from '../../tests/reliability/measured';
 import {
   expect,
   freshTest,
@@ -93,3 +94,60 @@ for (const [where, query, viewport] of [
     await open(page, `${query}&quality=low&estimator=ik`);
     await expect(page.getByRole('button', { name: 'Controls' })).toHaveAttribute('aria-expanded', 'true');
   });
+
+/** The luminance of a colour of three channels in [0, 1], as WCAG defines it. */
+const luminance = (channels: readonly number[]): number => {
+  const [r = 0, g = 0, b = 0] = channels.map((value) =>
+    value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4,
+  );
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+};
+
+test('text stands out from its background, for every kind of colour vision @full', async ({ page }) => {
+  await open(page, 'quality=low&estimator=ik');
+  /** The colour that a browser computes for a variable of the page's styles. */
+  const colour = (name: string): Promise<number[]> =>
+    page.evaluate((variable) => {
+      const probe = document.body.appendChild(document.createElement('i'));
+      probe.style.color = `var(--${variable})`;
+      const channels = getComputedStyle(probe).color.match(/[\d.]+/g) ?? [];
+      probe.remove();
+      return channels.slice(0, 3).map((channel) => Number(channel) / 255);
+    }, name);
+  const contrasts = [];
+  for (const [text, background] of [
+    ['ink', 'glass'],
+    ['ink-soft', 'glass'],
+    ['accent-ink', 'accent'],
+    ['trouble', 'glass'],
+  ] as const) {
+    const [dark = 0, light = 0] = [luminance(await colour(text)), luminance(await colour(background))].sort(
+      (a, b) => a - b,
+    );
+    contrasts.push((light + 0.05) / (dark + 0.05));
+  }
+  const least = Math.min(...contrasts);
+  expect(least).toBeGreaterThan(4.5);
+  measured('comfort', { 'least contrast of text': `${least.toFixed(1)} : 1`, 'larger text': '130 %, remembered' });
+});
+
+test('going from place to place leaves no geometry and no texture on the graphics device @full', async ({ page }) => {
+  test.setTimeout(300_000);
+  await page.setViewportSize({ width: 320, height: 200 });
+  // In low quality nothing is reflected.
+  await open(page, 'quality=high&estimator=ik&panel=off');
+  /** What the studio holds after a visit to the range, once its own picture is drawn. */
+  const heldAfterVisit = async () => {
+    for (const name of ['Archery', 'Mirror']) {
+      const place = page.getByRole('button', { name, exact: true });
+      await place.press('Enter');
+      await expect(place).toHaveAttribute('aria-pressed', 'true', { timeout: 60_000 });
+      const { count } = (await probe(page)).frame;
+      await expect.poll(async () => (await probe(page)).frame.count, { timeout: 60_000 }).toBeGreaterThan(count + 1);
+    }
+    const { geometries, textures } = (await probe(page)).drawing;
+    return { geometries, textures };
+  };
+  const first = await heldAfterVisit();
+  expect(await heldAfterVisit()).toEqual(first);
+});

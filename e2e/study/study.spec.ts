@@ -1,4 +1,7 @@
 import { enterVr, expect, keepPicture } from '../page-fixture';
+import { execFile } from 'node:child_process';
+import { writeFile } from 'node:fs/promises';
+import { promisify } from 'node:util';
 import {
   calibrate,
   headsetOf,
@@ -137,6 +140,12 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
   }
   expect(new Set(trials.slice(1).map(({ body }) => body.condition))).toEqual(new Set(['ik', 'learned']));
   for (const { body } of trials.slice(1)) expect(body.estimator).toBe(body.condition);
+
+  const zip = test.info().outputPath('short.zip');
+  const exported = await experimenter(origin).ask('/short/export');
+  await writeFile(zip, Buffer.from(await exported.arrayBuffer()));
+  const { stdout } = await promisify(execFile)('npm', ['run', '-s', 'study:verify', '--', zip]);
+  expect(stdout).toMatch(/: sound: \d+ files, computed anew from \d+ records\./);
 
   await openResults(page, 'short');
   await expect(page.getByText('SIMULATED: a program made these data')).toBeVisible();

@@ -102,6 +102,7 @@ export const faultRows = {
     sees: 'Snap turns behind a vignette, text that grows, captions (in the headset where the sound is off), rings told apart by brightness, no movement of the page',
     target: 'a turn turns about the head: 0 mm; contrast 4.5 : 1',
     tests: [
+      'e2e/desktop.spec.ts',
       'tests/reliability/comfort.test.ts',
       'tests/threepoint/xr/tracker.test.ts',
       'tests/page/archery/boards.test.ts',

@@ -62,7 +62,7 @@ describe.each(['ci.yml', 'nightly.yml'])('%s', (file) => {
     for (const { env, steps, needs } of jobs(file)) {
       if (needs) continue;
       expect(env?.THREEPOINT_PROGRAMS).toBe('required');
-      for (const programs of ['haproxy redis-server', 'strace', 'coturn pulseaudio pulseaudio-utils', 'r-base-core'])
+      for (const programs of ['haproxy redis-server', 'strace', 'coturn pulseaudio pulseaudio-utils'])
         expect(steps.some(({ run }) => run?.includes(programs))).toBe(true);
     }
   });

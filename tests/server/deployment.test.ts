@@ -64,19 +64,23 @@ describe('compose.yaml', () => {
 
   test('gives every relay what it takes, and nothing that it does not know', () => {
     for (const name of ['relay-1', 'relay-2']) {
-      const environment = { ...inImage, ...environmentOf(name, secret) };
-      expect(relayConfigurationFrom(environment)).toMatchObject({
+      const environment: Record<string, string> = { ...inImage, ...environmentOf(name, secret) };
+      const read = new Set<string | symbol>();
+      const observed = new Proxy(environment, {
+        get(target, variable: string) {
+          read.add(variable);
+          return target[variable];
+        },
+      });
+      expect(relayConfigurationFrom(observed)).toMatchObject({
         secret: secret.THREEPOINT_SECRET,
         redisUrl: 'redis://redis:6379',
         trustProxy: true,
         host: '0.0.0.0',
         logLevel: 'info',
       });
-      expect(configurationFrom([], environment)).toMatchObject({ port: 3333, studyDirectory: '/studies' });
-      const source = ['relay-configuration', 'voice-configuration', 'configuration']
-        .map((file) => readFileSync(fileURLToPath(new URL(`../../server/${file}.ts`, import.meta.url)), 'utf8'))
-        .join('');
-      for (const variable of Object.keys(environment)) expect(source, variable).toContain(variable);
+      expect(configurationFrom([], observed)).toMatchObject({ port: 3333, studyDirectory: '/studies' });
+      expect([...read]).toEqual(expect.arrayContaining(Object.keys(environment)));
     }
   });
 

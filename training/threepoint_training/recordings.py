@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from . import hand_tilt, prepare
 from .mocap_rules import RULES
 from .motion import MocapError
+from .normal_numbers import NormalNumbers
 from .prepared_corpus import JOINTS, LEG_JOINTS, ROTATIONS, PreparedCorpus
 from .simulate_trackers import FOREARM_ERROR, TrackerConfig, draw_wearer, measured_tilts, simulate
 
@@ -39,8 +40,8 @@ def write(corpus: PreparedCorpus, config: RecordingsConfig) -> Path:
     forearms = hand_tilt.ForearmMeans(corpus, tuple(corpus.people))
     for number, (name, person) in enumerate(zip(corpus.clips, corpus.clip_people, strict=True)):
         # Keyed by person and clip, so that a selection of clips sees the same trackers as the whole corpus.
-        wearer = draw_wearer(config.trackers, np.random.default_rng([config.seed, zlib.crc32(person.encode())]))
-        random = np.random.default_rng([config.seed, zlib.crc32(name.encode())])
+        wearer = draw_wearer(config.trackers, NormalNumbers(config.seed ^ zlib.crc32(person.encode())))
+        random = NormalNumbers(config.seed ^ zlib.crc32(name.encode()))
         frames = corpus.clip_slice(number)
         positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, config.trackers, random)
         tracked = np.concatenate([positions, rotations], axis=-1).reshape(len(positions), -1)

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import hand_tilt, quaternion
 from .mocap_rules import RULES
+from .normal_numbers import NormalSource
 from .prepare import EYES_FROM_HEAD_JOINT
 from .prepared_corpus import TRACKED_COLUMNS
 
@@ -49,13 +50,13 @@ class Wearer:
     hand_turns: Array  # [2, 4]
 
 
-def draw_turns(deviation: ArrayLike, shape: tuple[int, ...], random: np.random.Generator) -> Array:
+def draw_turns(deviation: ArrayLike, shape: tuple[int, ...], random: NormalSource) -> Array:
     """Rotations [*shape, 4] about random axes, by this much (standard deviation, [rad], broadcast to `shape`)."""
     deviation = np.asarray(deviation)[..., None]
     return quaternion.from_rotation_vector(random.normal(size=(*shape, 3)) * deviation / np.sqrt(3))
 
 
-def draw_wearer(config: TrackerConfig, random: np.random.Generator) -> Wearer:
+def draw_wearer(config: TrackerConfig, random: NormalSource) -> Wearer:
     """A wearer with offsets and rotations drawn at random."""
     turns = draw_turns(config.hand_turn, (2,), random)
     return Wearer(
@@ -66,13 +67,13 @@ def draw_wearer(config: TrackerConfig, random: np.random.Generator) -> Wearer:
     )
 
 
-def measured_tilts(tilts: Array, worn: Array, config: TrackerConfig, random: np.random.Generator) -> Array:
+def measured_tilts(tilts: Array, worn: Array, config: TrackerConfig, random: NormalSource) -> Array:
     """What a calibration measures of hands with these tilts [..., 2], through trackers that are turned by `worn` [..., 4] against them."""
     return hand_tilt.turned(tilts, worn) + random.normal(size=tilts.shape) * config.hand_tilt_error / np.sqrt(2)
 
 
 def simulate(
-    positions: Array, rotations: Array, wearer: Wearer, config: TrackerConfig, random: np.random.Generator
+    positions: Array, rotations: Array, wearer: Wearer, config: TrackerConfig, random: NormalSource
 ) -> tuple[Array, Array]:
     """Tracked positions [F, 3, 3] and rotations [F, 3, 4] of headset, left and right wrist, from JOINTS and ROTATIONS arrays."""
     positions = np.asarray(positions, np.float64)

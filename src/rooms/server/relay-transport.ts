@@ -16,7 +16,6 @@ import { relayParser } from '../protocol/small-frames';
 import { TokenBucket } from '../room/token-bucket';
 import type { RelayConfiguration } from './relay-configuration';
 import type { RelayMetrics } from './relay-metrics';
-import { type ReceivingWebSocket, takeShortMessages } from './short-messages';
 import { SlowReaders } from './slow-readers';
 
 /** Where the relay is found on its server. */
@@ -89,7 +88,7 @@ function complaintAbout({ method, headers }: IncomingMessage, query: URLSearchPa
 /** Lets `listener` have a connection's binary messages; Engine.IO gets the others, as before. `take`: whether a frame is to be heard at all. */
 function divert(conn: Socket['conn'], take: () => boolean, listener: (bytes: Uint8Array) => void): void {
   // reason: Engine.IO leaves the WebSocket there for its own transport, and does not say so in its types.
-  const { websocket } = conn.request as unknown as { readonly websocket: EventEmitter & ReceivingWebSocket };
+  const { websocket } = conn.request as unknown as { readonly websocket: EventEmitter };
   for (const engines of websocket.listeners('message')) {
     websocket.off('message', engines as () => void);
     websocket.on('message', (received: Buffer, isBinary: boolean) => {
@@ -100,9 +99,6 @@ function divert(conn: Socket['conn'], take: () => boolean, listener: (bytes: Uin
   }
   websocket.on('ping', take);
   websocket.on('pong', take);
-  takeShortMessages(websocket, (bytes) => {
-    if (take()) listener(bytes);
-  });
 }
 
 /**

@@ -37,10 +37,10 @@ const day = (seconds: number) => new Date(seconds * 1000).toISOString().slice(0,
 const simulatedNotice =
   'SIMULATED: a program made this. It says nothing about people and must never be analysed with theirs.';
 
-/** The analysis in other languages, as it lies beside this file. */
+/** The analysis in Python, as it lies next to this file. */
 const analysisFiles = () =>
-  ['analyse.py', 'analyse.R', 'requirements.txt'].map(
-    (name) => [`analysis/${name}`, readFileSync(new URL(`./analysis/${name}`, import.meta.url), 'utf8')] as const,
+  ['analyse.py', 'requirements.txt'].map(
+    (name) => [`analysis/${name}`, readFileSync(new URL(`../../../../../server/analysis/${name}`, import.meta.url), 'utf8')] as const,
   );
 
 function readme(content: ExportContent, leftOut: readonly string[], whole: boolean): string {
@@ -63,8 +63,8 @@ function readme(content: ExportContent, leftOut: readonly string[], whole: boole
     ...(whole
       ? [
           'results/      what the page of results computes: planned, then explored',
-          'analysis/     the same from the tidy tables: "Rscript analysis/analyse.R", or',
-          '              "pip install -r analysis/requirements.txt" and "python analysis/analyse.py"',
+          'analysis/     the same from the tidy tables: "pip install -r analysis/requirements.txt"',
+          '              and "python analysis/analyse.py"',
         ]
       : []),
     'motion/       where there is consent to it: tracked frames as they were recorded',

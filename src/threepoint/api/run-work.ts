@@ -1,4 +1,4 @@
-import { secondsLeft, type Work } from '../core/motion/work';
+import { runInTurns, secondsLeft, type Work, type WorkHost } from '../core/motion/work';
 
 /** How far long work is. */
 export interface WorkProgress {
@@ -15,47 +15,35 @@ export interface WorkOptions {
   readonly signal?: AbortSignal | undefined;
 }
 
-/** Work goes on for so long [ms] before frames and presses have their turn. */
-const turnMs = 8;
 const tellEveryMs = 100;
 
-/** The next turn of the event loop. A message is not held back as timers are, in pages that are not looked at. */
-function nextTurn(): Promise<void> {
-  return new Promise((resolve) => {
-    const { port1, port2 } = new MessageChannel();
-    port1.onmessage = () => {
-      port1.close();
-      resolve();
-    };
-    port2.postMessage(null);
-  });
-}
+const host: WorkHost = {
+  now: () => performance.now(),
+  // A page in the background delays timers, but not messages.
+  nextTurn: () =>
+    new Promise((resolve) => {
+      const { port1, port2 } = new MessageChannel();
+      port1.onmessage = () => {
+        port1.close();
+        resolve();
+      };
+      port2.postMessage(null);
+    }),
+};
 
 /** Does long work in turns of a few milliseconds, so that a page goes on drawing. Rejects with what the work throws. */
 export async function runWork<Result>(work: Work<Result>, { onProgress, signal }: WorkOptions = {}): Promise<Result> {
-  const begun = performance.now();
-  let turnBegan = begun;
+  signal?.throwIfAborted();
+  const begun = host.now();
   let told = Number.NEGATIVE_INFINITY;
-  try {
-    for (;;) {
-      signal?.throwIfAborted();
-      const step = await work.next();
-      if (step.done) {
-        signal?.throwIfAborted();
-        onProgress?.({ share: 1, secondsLeft: 0 });
-        return step.value;
-      }
-      const now = performance.now();
-      if (now - told >= tellEveryMs) {
-        told = now;
-        onProgress?.({ share: step.value, secondsLeft: secondsLeft(step.value, (now - begun) / 1000) });
-      }
-      if (now - turnBegan < turnMs) continue;
-      await nextTurn();
-      turnBegan = performance.now();
-    }
-  } finally {
-    // The work closes what it holds open; after its end this does nothing.
-    await work.return(undefined as Result);
-  }
+  const result = await runInTurns(work, host, (share) => {
+    signal?.throwIfAborted();
+    const now = host.now();
+    if (now - told < tellEveryMs) return;
+    told = now;
+    onProgress?.({ share, secondsLeft: secondsLeft(share, (now - begun) / 1000) });
+  });
+  signal?.throwIfAborted();
+  onProgress?.({ share: 1, secondsLeft: 0 });
+  return result;
 }

@@ -1,24 +1,25 @@
 import { type VRM, VRMFirstPerson, VRMUtils } from '@pixiv/three-vrm';
 import { Group, type Object3D } from 'three';
 import { handBoneRotation } from '../core/body/arm-rotations';
-import type { AvatarPose, UpperBodyPose } from '../core/body/avatar-pose';
-import type { Calibration } from '../core/body/calibration';
+import { type AvatarPose, type UpperBodyPose } from '../core/body/avatar-pose';
+import { type Calibration } from '../core/body/calibration';
 import { forwardKinematics, makeJointPoses } from '../core/body/forward-kinematics';
 import { type HandGeometry, scaledHand } from '../core/body/hand-geometry';
-import type { FingerName, HandShape } from '../core/body/hand-shape';
+import { type FingerName, type HandShape } from '../core/body/hand-shape';
 import { headJointOf } from '../core/body/head-joint';
 import { type JointName, jointNames } from '../core/body/joints';
 import { type Skeleton, skeletonFromCalibration } from '../core/body/skeleton';
-import type { SkinTone } from '../core/body/worn-avatar';
-import type { GaitPoints } from '../core/estimation/gait-features';
-import { identity, type Quat, quat, rotate } from '../core/math/quat';
-import type { Side } from '../core/math/side';
-import { addScaled, setVec3, subtract, type Vec3, vec3 } from '../core/math/vec3';
+import { type SkinTone } from '../core/body/worn-avatar';
+import { type GaitPoints } from '../core/estimation/gait-features';
+import { type Quat, identity, quat, rotate } from '../core/math/quat';
+import { type Side } from '../core/math/side';
+import { type Vec3, addScaled, setVec3, subtract, vec3 } from '../core/math/vec3';
+import { finishWork } from '../core/motion/work';
 import { Face } from './face';
 import { Fingers } from './hands/fingers';
-import { atOnce, betweenFrames, type Steps } from './in-steps';
+import { type Steps, betweenFrames } from './in-steps';
 import { Legs } from './legs/legs';
-import type { LoadedAvatar } from './load-avatar';
+import { type LoadedAvatar } from './load-avatar';
 import { ArmHelperJoints } from './rig/arm-helpers';
 import { type AvatarMesh, BodyMeshes, readMeshes } from './rig/body-meshes';
 import { OwnTrunk } from './rig/own-trunk';
@@ -283,7 +284,7 @@ class VrmAvatar implements Avatar {
   }
 }
 
-export const createAvatar = (loaded: LoadedAvatar): Avatar => atOnce(makeAvatar(loaded));
+export const createAvatar = (loaded: LoadedAvatar): Avatar => finishWork(makeAvatar(loaded));
 
 /** The same while pictures go on: for a file that came while the page is in use. */
 export const createAvatarBetweenFrames = (loaded: LoadedAvatar): Promise<Avatar> => betweenFrames(makeAvatar(loaded));

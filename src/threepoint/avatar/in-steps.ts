@@ -1,25 +1,12 @@
+import { runInTurns, type WorkHost } from '../core/motion/work';
+
 /** Work in steps of a millisecond or so, between which other work may be done. */
 export type Steps<Result> = Generator<undefined, Result>;
 
-/** All steps one after the other. */
-export function atOnce<Result>(steps: Steps<Result>): Result {
-  for (;;) {
-    const step = steps.next();
-    if (step.done) return step.value;
-  }
-}
+const host: WorkHost = {
+  now: () => performance.now(),
+  nextTurn: () => new Promise((resolve) => setTimeout(resolve)),
+};
 
-/** So long steps follow each other [ms] before pictures and clicks have their turn: half of a frame at 60 Hz. */
-const turnMs = 8;
-
-/** The same, with the page's other work between: no picture waits for it. */
-export async function betweenFrames<Result>(steps: Steps<Result>): Promise<Result> {
-  let since = performance.now();
-  for (;;) {
-    const step = steps.next();
-    if (step.done) return step.value;
-    if (performance.now() - since < turnMs) continue;
-    await new Promise((resolve) => setTimeout(resolve));
-    since = performance.now();
-  }
-}
+/** Runs the steps in turns with the page's other work, so that no frame waits for them. */
+export const betweenFrames = <Result>(steps: Steps<Result>): Promise<Result> => runInTurns(steps, host);

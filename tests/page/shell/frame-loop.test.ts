@@ -5,77 +5,82 @@ import { createFrameLoop, type FrameParts } from 'threepoint-page/shell/frame-lo
 import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
 import { describe, expect, test } from 'vitest';
 
-const head = {
-  position: { x: 0, y: 1.6, z: 0 },
-  orientation: { x: 0, y: 0, z: 0, w: 1 },
-  tracking: 'tracked',
-} as const;
-const tracked: TrackingFrame = { time: 1, head, leftHand: null, rightHand: null };
-const pose: AvatarPose = { head, leftHand: null, rightHand: null, body: null };
+/** A frame whose head is as high [m] as its time [s] is long. */
+const trackedAt = (time: number): TrackingFrame => ({
+  ...{ time, leftHand: null, rightHand: null },
+  head: { position: { x: 0, y: time, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 }, tracking: 'tracked' },
+});
+const poseOf = ({ head }: TrackingFrame): AvatarPose => ({ head, leftHand: null, rightHand: null, body: null });
 
-/** The parts of a frame, each of which writes its name down. */
-function observedParts(change: Partial<FrameParts<string>> = {}) {
-  const calls: string[] = [];
-  const parts: FrameParts<string> = {
-    track: (_, deviceFrame) => {
-      calls.push(`track ${deviceFrame ?? 'desktop'}`);
-      return tracked;
+/** A loop and what its parts received: times and heights of heads. */
+function running(change: Partial<FrameParts<undefined>> = {}) {
+  const seen = {
+    observed: [] as number[],
+    skinned: [] as number[],
+    rendered: [] as (number | undefined)[],
+    failures: [] as unknown[],
+    jumps: 0,
+    jumpsBeforeTracking: 0,
+  };
+  const parts: FrameParts<undefined> = {
+    track: (time) => {
+      seen.jumpsBeforeTracking = seen.jumps;
+      return trackedAt(time);
     },
-    observe: () => void calls.push('observe'),
-    estimate(frame) {
-      calls.push(frame ? 'estimate' : 'estimate without tracking');
-      return pose;
-    },
-    skin: () => void calls.push('skin'),
-    render: (_, frame) => void calls.push(frame ? 'render' : 'render without tracking'),
-    fail: (error) => void calls.push(`fail ${String(error)}`),
+    observe: ({ time }) => void seen.observed.push(time),
+    estimate: (frame) => frame && poseOf(frame),
+    skin: ({ head }) => void seen.skinned.push(head.position.y),
+    render: (_, frame) => void seen.rendered.push(frame?.time),
+    fail: (error) => void seen.failures.push(error),
     ...change,
   };
-  const body = new Body({ estimator: 'ik', events: { jumped: () => void calls.push('jumped') } });
-  return {
-    calls,
-    loop: createFrameLoop(
-      parts,
-      body,
-      createFrameTiming(() => 0),
-    ),
+  const jumped = () => {
+    seen.jumps += 1;
   };
+  const body = new Body({ estimator: 'ik', events: { jumped } });
+  const timing = createFrameTiming(() => 0);
+  return { seen, loop: createFrameLoop(parts, body, timing) };
 }
 
 describe('one frame', () => {
-  test('is drawn at once, of what this frame tracked', () => {
-    const { loop, calls } = observedParts();
-    loop(0, 'xr');
-    expect(calls).toEqual(['track xr', 'observe', 'estimate', 'skin', 'render']);
+  test('shows the body that it tracked itself', () => {
+    const { loop, seen } = running();
+    for (const milliseconds of [0, 16, 32]) loop(milliseconds);
+    expect(seen.rendered).toHaveLength(3);
+    expect(new Set(seen.rendered).size).toBe(3);
+    expect(seen.observed).toEqual(seen.rendered);
+    expect(seen.skinned).toEqual(seen.rendered);
+    expect(seen.failures).toEqual([]);
   });
 
-  test('without a tracked head the last body stays and the world is drawn', () => {
-    const { loop, calls } = observedParts({ track: () => null });
+  test('without a tracked head leaves the last body and draws the world', () => {
+    const { loop, seen } = running({ track: () => null, estimate: () => poseOf(trackedAt(1)) });
     loop(0);
-    expect(calls).toEqual(['estimate without tracking', 'render without tracking']);
+    expect(seen).toMatchObject({ observed: [], skinned: [], rendered: [undefined] });
   });
 
-  test('after a pause what follows motion begins again, before anything of the frame is read', () => {
-    const { loop, calls } = observedParts();
+  test('after a pause resets what follows motion before it tracks', () => {
+    const { loop, seen } = running();
     loop(0);
     loop(400);
-    expect(calls).not.toContain('jumped');
-    calls.length = 0;
+    expect(seen.jumps).toBe(0);
     loop(20_000);
-    expect(calls.slice(0, 2)).toEqual(['jumped', 'track desktop']);
+    expect(seen.jumpsBeforeTracking).toBe(1);
   });
 
-  test('a part that throws is told of, and the next frame runs', () => {
+  test('whose part throws reports it, and the next frame runs', () => {
+    const failure = new Error('no bones');
     let broken = true;
-    const { loop, calls } = observedParts({
+    const { loop, seen } = running({
       skin: () => {
-        if (broken) throw new Error('no bones');
+        if (broken) throw failure;
       },
     });
     loop(0);
-    expect(calls.at(-1)).toBe('fail Error: no bones');
+    expect(seen).toMatchObject({ failures: [failure], rendered: [] });
     broken = false;
     loop(1);
-    expect(calls.at(-1)).toBe('render');
+    expect(seen.failures).toHaveLength(1);
+    expect(seen.rendered).toHaveLength(1);
   });
 });

@@ -21,11 +21,6 @@ describe('the entrance', () => {
     expect(tab.visit.state()).toMatchObject({ screen: 'participant', step: null, running: false });
   });
 
-  test('an address without an invitation asks for it and keeps the participant that it names', async () => {
-    const tab = await browser(await studyServer()).open({ invitation: null });
-    expect(tab.display.asked('participant').known).toEqual({ participant: 'P01', invitation: null });
-  });
-
   test('a wrong invitation is said once consent is given, and the place stays free', async () => {
     const server = await studyServer();
     const tab = await browser(server).open({ invitation: 'AAAA-BBBB-CCCC-DDDD' });
@@ -110,15 +105,6 @@ describe('the participant', () => {
     expect(tab.host.measures).toBeNull();
   });
 
-  test('is measured anew before each block', async () => {
-    const { tab } = await beforeTheQuestions(await studyServer());
-    answer(tab, ['Q1', 'Q2', 'Q3', 'Q4', 'Q5', 'Q6', 'Q7']);
-    tab.display.press('submit');
-    expect(tab.display.shown).toBe('calibration');
-    await measure(tab);
-    expect(tab.visit.state().step).toBe('archery/2/trial-1');
-  });
-
   test('is not measured any further when the headset comes off meanwhile', async () => {
     const tab = await browser(await studyServer()).open();
     await agree(tab);
@@ -133,15 +119,6 @@ describe('the participant', () => {
     tab.wear(true);
     expect(tab.display.shown).toBe('calibration');
     expect(tab.host.measures).toBeNull();
-  });
-
-  test('rests as long as the plan says, and the questions come by themselves', async () => {
-    const { tab } = await beforeTheRound(await studyServer());
-    play(tab, 40);
-    tab.pass(50);
-    expect(tab.display.shown).toBe('rest');
-    tab.pass(10);
-    expect(tab.display.shown).toBe('question-Q1');
   });
 });
 
@@ -350,28 +327,6 @@ describe('a questionnaire', () => {
       ...['answered', 'open', 'answered'],
       ...['open', 'open', 'open', 'open'],
     ]);
-  });
-
-  test('with a gap is not taken, and leads to the gap', async () => {
-    const { tab } = await beforeTheQuestions(await studyServer());
-    answer(tab, ['Q1', 'Q2', 'Q3']);
-    tab.display.screen?.question?.goTo(6);
-    choose(tab, 2);
-    tab.display.press('submit');
-    expect(tab.display.shown).toBe('question-Q4');
-    expect(tab.display.screen?.hint).toBe('* This question still needs an answer.');
-    expect(tab.visit.state().step).toBe('archery/1/questionnaire');
-  });
-
-  test('that is full is handed in, and the next block begins', async () => {
-    const server = await studyServer();
-    const { tab } = await beforeTheQuestions(server);
-    answer(tab, ['Q1', 'Q2', 'Q3', 'Q4', 'Q5', 'Q6', 'Q7']);
-    tab.display.press('submit');
-    expect(tab.display.shown).toBe('calibration');
-    await tab.exchange();
-    const answers = server.store.records.all('paper').find(({ kind }) => kind === 'answers');
-    expect(answers?.body).toMatchObject({ answers: { Q1: 4, Q2: 4, Q3: 4, Q4: 4, Q5: 4, Q6: 4, Q7: 4 } });
   });
 });
 

@@ -22,20 +22,8 @@ function pythonWithScipy(): string | null {
   return null;
 }
 
-const languages = [
-  {
-    name: 'R',
-    program: installed('Rscript'),
-    script: 'analysis/analyse.R',
-    missing: 'R is not installed (r-base-core)',
-  },
-  {
-    name: 'Python',
-    program: pythonWithScipy(),
-    script: 'analysis/analyse.py',
-    missing: 'no Python with SciPy was found (STUDY_PYTHON, src/study/server/analysis/requirements.txt)',
-  },
-];
+const script = 'analysis/analyse.py';
+const python = pythonWithScipy();
 
 function written(files: Readonly<Record<string, string>>): string {
   const directory = directoryWith();
@@ -46,18 +34,18 @@ function written(files: Readonly<Record<string, string>>): string {
   return directory;
 }
 
-const analysed = (program: string, script: string, directory: string) => {
-  const { status, stdout, stderr } = spawnSync(program, [join(directory, script)], { encoding: 'utf8' });
+const analysed = (directory: string) => {
+  const { status, stdout, stderr } = spawnSync(python as string, [join(directory, script)], { encoding: 'utf8' });
   return { status, said: stdout, complaint: stderr };
 };
 
-describe.each(languages)('the analysis in $name of an exported study', ({ program, script, missing }) => {
-  const analysing = program === null ? test.skip : test;
-  const unless = program === null ? ` (left out: ${missing})` : '';
+describe('the analysis in Python of an exported study', () => {
+  const analysing = python === null ? test.skip : test;
+  const unless = python === null ? ' (left out: no Python with SciPy: STUDY_PYTHON, requirements.txt)' : '';
 
   analysing.each(Object.entries(designs))(`computes the tables of the page to a millionth: %s${unless}`, (_, plan) => {
     const files = exportFiles(exportedStudy(plan));
-    const { status, said, complaint } = analysed(program as string, script, written(files));
+    const { status, said, complaint } = analysed(written(files));
     expect(complaint).toBe('');
     expect(said).not.toContain('differences');
     expect(said.match(/rows, as computed here/g)).toHaveLength(13);
@@ -71,7 +59,7 @@ describe.each(languages)('the analysis in $name of an exported study', ({ progra
       const answers = Object.fromEntries(Object.keys(record.body.answers).map((id) => [id, 4]));
       return { ...record, body: { ...record.body, answers } };
     });
-    const { status, said } = analysed(program as string, script, written(exportFiles({ ...content, records })));
+    const { status, said } = analysed(written(exportFiles({ ...content, records })));
     expect(said).not.toContain('differences');
     expect(status).toBe(0);
   });
@@ -92,7 +80,7 @@ describe.each(languages)('the analysis in $name of an exported study', ({ progra
       ['points', '', ''],
       ['percent', '', ''],
     ]);
-    const { status, said, complaint } = analysed(program as string, script, written(files));
+    const { status, said, complaint } = analysed(written(files));
     expect(complaint).toBe('');
     expect(said).not.toContain('differences');
     expect(status).toBe(0);
@@ -105,11 +93,10 @@ describe.each(languages)('the analysis in $name of an exported study', ({ progra
     const f = first[heads.indexOf('f')] as string;
     const changed = { ...files, 'results/answers-overall.csv': table.replace(f, `${Number(f) * 1.00001}`) };
     const directory = written(changed);
-    const { status, said } = analysed(program as string, script, directory);
+    const { status, said } = analysed(directory);
     expect(said).toMatch(/results\/answers-overall\.csv: \d+ rows, 1 differences\n\s+line 2, f: /);
     expect(status).toBe(1);
-    const folder = script.endsWith('R') ? 'r' : 'python';
-    expect(readFileSync(join(directory, 'analysis', folder, 'answers-overall.csv'), 'utf8')).toContain(
+    expect(readFileSync(join(directory, 'analysis', 'python', 'answers-overall.csv'), 'utf8')).toContain(
       'partial_eta_squared',
     );
   });

@@ -131,10 +131,11 @@ test('a claim of a place that is taken already leaves the address its places of 
 describe('3000 guesses from one address', () => {
   const from = '203.0.113.9';
   const guesses = Array.from({ length: 3000 }, (_, number) => number);
+  /** Six at once, then one after 1, 2, 4, … 64 s: more than any loop gets within the time limit of a test, 120 s. */
+  const mostLookedAt = 13;
 
   async function guessAll(server: Server, what: string, asked: (number: number) => [string, string, Asked]) {
     const statuses = new Map<number, number>();
-    const started = performance.now();
     for (let first = 0; first < guesses.length; first += 60) {
       const answers = guesses.slice(first, first + 60).map((number) => {
         const [method, path, options] = asked(number);
@@ -145,13 +146,12 @@ describe('3000 guesses from one address', () => {
         if (status === 429) expect(Number(headers.get('retry-after'))).toBeGreaterThan(0);
       }
     }
-    const seconds = (performance.now() - started) / 1000;
-    const lookedAt = 3000 - (statuses.get(429) ?? 0);
-    // Five at once, then after 1, 2, 4 … seconds: within the time that the loop took.
-    expect(lookedAt).toBeLessThanOrEqual(6 + Math.ceil(Math.log2(seconds + 1)));
+    const lookedAt = guesses.length - (statuses.get(429) ?? 0);
+    expect(lookedAt).toBeGreaterThanOrEqual(6);
+    expect(lookedAt).toBeLessThanOrEqual(mostLookedAt);
     expect(server.wrongGuesses).toHaveLength(lookedAt);
     expect(JSON.stringify(server.wrongGuesses)).not.toMatch(/ZZZZ|guess-/);
-    measured('guessing', { [what]: `${lookedAt} of 3000 looked at in ${seconds.toFixed(1)} s` });
+    measured('guessing', { [what]: `${lookedAt} of ${guesses.length} looked at` });
     return statuses;
   }
 

@@ -77,10 +77,8 @@ describe('an export', () => {
     expect(content.software.exportedBy.weights[0]?.sha256).toMatch(/^[0-9a-f]{64}$/);
   });
 
-  test('of a whole study holds results and their analysis in R and Python; of one participant neither', () => {
-    expect(Object.keys(files)).toEqual(
-      expect.arrayContaining(['results/answers-overall.csv', 'analysis/analyse.R', 'analysis/analyse.py']),
-    );
+  test('of a whole study holds results and their analysis in Python; of one participant neither', () => {
+    expect(Object.keys(files)).toEqual(expect.arrayContaining(['results/answers-overall.csv', 'analysis/analyse.py']));
     const records = content.records.filter(({ participant }) => participant === 'P01');
     const own = Object.keys(exportFiles({ ...content, records }, 'P01'));
     expect(own.filter((path) => /^(results|analysis)\//.test(path))).toEqual([]);
@@ -133,7 +131,7 @@ describe('verifying an export', () => {
     expect(complaints).toContainEqual(expect.stringMatching(/^results\/scores-compared\.csv, row 1, mean_first: /));
   });
 
-  test.each(['answers.csv', 'results/answers-overall.csv', 'analysis/analyse.R', 'bids/participants.tsv'])(
+  test.each(['answers.csv', 'results/answers-overall.csv', 'analysis/analyse.py', 'bids/participants.tsv'])(
     'says that %s is missing',
     (path) => {
       expect(complaintsOf({ [path]: null })).toEqual([`${path} is missing.`]);

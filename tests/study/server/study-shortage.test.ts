@@ -1,12 +1,11 @@
 import { once } from 'node:events';
-import { Agent, request as httpRequest, type IncomingMessage } from 'node:http';
+import { Agent, type IncomingMessage, request as httpRequest } from 'node:http';
 import { connect } from 'node:net';
 import { join } from 'node:path';
-import { recordVersion, type StudyRecord } from 'threepoint-study/model/study-record';
+import { type StudyRecord, recordVersion } from 'threepoint-study/model/study-record';
 import { openStudyStore } from 'threepoint-study/server/study-store';
 import { expect, onTestFinished, test } from 'vitest';
 import { measured } from '../../reliability/measured';
-import { pause } from '../../rooms/server/running-relay';
 import { experimenterToken, forkServer } from '../../server/server-child';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan } from '../model/studies';
@@ -83,7 +82,7 @@ test('a limit of files that strangers’ connections use up leaves the studies w
   expect((await remark(server)).status).toBe(201);
   const strangers = Array.from({ length: 200 }, () => connect(server.port, '127.0.0.1'));
   for (const stranger of strangers) stranger.on('error', () => stranger.destroy());
-  await pause(1);
+  await expect.poll(async () => (await ask(server, 'GET', '/export')).status).toBe(507);
   const answers = [await remark(server), await remark(server)];
   const exported = await ask(server, 'GET', '/export');
   for (const stranger of strangers) stranger.destroy();

@@ -42,6 +42,8 @@ function withBinaryLength(length: number): ArrayBuffer {
   return file;
 }
 
+const ktx2Sentence = /has KTX2 textures, which .* Convert them to PNG, JPEG or WebP and save it again\./;
+
 /** What a user may try, and the sentence for it. */
 const attempts: readonly (readonly [string, () => ArrayBuffer, RegExp])[] = [
   ['more bytes than a headset takes', () => new ArrayBuffer(61 * 2 ** 20), /61 MB; an avatar may have 60 at most/],
@@ -170,6 +172,19 @@ const attempts: readonly (readonly [string, () => ArrayBuffer, RegExp])[] = [
       }),
     /person\.vrm: no VRM or GLB file \(is nested deeper than 64 levels\)/,
   ],
+  [
+    'a need for KTX2 textures',
+    () =>
+      changed((json) => {
+        json.extensionsRequired = ['KHR_texture_basisu'];
+      }),
+    ktx2Sentence,
+  ],
+  [
+    'a KTX2 texture that it does not need',
+    () => withPictures(1, Buffer.from('\xabKTX 20\xbb\r\n\x1a\n'.padEnd(80, '\0'), 'latin1')),
+    ktx2Sentence,
+  ],
 ];
 
 let refused = 0;
@@ -199,12 +214,7 @@ describe('an avatar from a file', () => {
   });
 });
 
-const compressions = [
-  'EXT_meshopt_compression',
-  'KHR_meshopt_compression',
-  'KHR_draco_mesh_compression',
-  'KHR_texture_basisu',
-];
+const compressions = ['EXT_meshopt_compression', 'KHR_meshopt_compression', 'KHR_draco_mesh_compression'];
 
 /** Says that the file cannot be read without this, and marks its buffers as compressed by it. */
 const compressed = (extension: string) =>
@@ -217,20 +227,17 @@ const compressed = (extension: string) =>
 
 describe('a compressed body', () => {
   // A rejection that no part of the page waits for ends a test run: the loader must not have begun.
-  test.each(['EXT_meshopt_compression', 'KHR_meshopt_compression', 'KHR_draco_mesh_compression', 'KHR_texture_basisu'])(
-    '%s is refused in one sentence, before the loader begins',
-    async (extension) => {
-      const sentence = `person.vrm: is compressed (${extension}); this page reads avatars that are saved without compression`;
-      const rejections: unknown[] = [];
-      const heard = (reason: unknown) => void rejections.push(reason);
-      process.on('unhandledRejection', heard);
-      await expect(parseAvatar(compressed(extension), 'person.vrm')).rejects.toThrow(sentence);
-      await new Promise((resolve) => setImmediate(resolve));
-      process.off('unhandledRejection', heard);
-      expect(rejections).toEqual([]);
-      refused += 1;
-    },
-  );
+  test.each(compressions)('%s is refused in one sentence, before the loader begins', async (extension) => {
+    const sentence = `person.vrm: is compressed (${extension}); this page reads avatars that are saved without compression`;
+    const rejections: unknown[] = [];
+    const heard = (reason: unknown) => void rejections.push(reason);
+    process.on('unhandledRejection', heard);
+    await expect(parseAvatar(compressed(extension), 'person.vrm')).rejects.toThrow(sentence);
+    await new Promise((resolve) => setImmediate(resolve));
+    process.off('unhandledRejection', heard);
+    expect(rejections).toEqual([]);
+    refused += 1;
+  });
 
   test('what VRMs of others need is read', () => {
     const file = changed((json) => {

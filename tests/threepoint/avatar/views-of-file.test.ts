@@ -11,11 +11,10 @@ const corners = new Uint16Array([0, 1, 2, 2, 1, 3]);
 const bytesFrom = (first: number, length: number) => Uint8Array.from({ length }, (_, i) => (first + i * 7) & 255);
 const skin = bytesFrom(11, 301);
 const cloth = bytesFrom(83, 77);
-const packed = bytesFrom(160, 130);
 
-/** A square with two pictures, and a third one in KTX2. */
+/** A square with two pictures. */
 function paintedSquare(): ArrayBuffer {
-  const parts = [places, corners, skin, cloth, packed].map(
+  const parts = [places, corners, skin, cloth].map(
     ({ buffer, byteOffset, byteLength }) => new Uint8Array(buffer, byteOffset, byteLength),
   );
   const starts = parts.map((_, i) => parts.slice(0, i).reduce((sum, { length }) => sum + padded(length), 0));
@@ -31,14 +30,12 @@ function paintedSquare(): ArrayBuffer {
       {
         pbrMetallicRoughness: { baseColorTexture: { index: 0 } },
         emissiveTexture: { index: 1 },
-        normalTexture: { index: 2 },
       },
     ],
-    textures: [{ source: 0 }, { source: 1 }, { extensions: { KHR_texture_basisu: { source: 2 } } }],
+    textures: [{ source: 0 }, { source: 1 }],
     images: [
       { bufferView: 2, mimeType: 'image/png' },
       { bufferView: 3, mimeType: 'image/jpeg' },
-      { bufferView: 4, mimeType: 'image/ktx2' },
     ],
     accessors: [
       { bufferView: 0, componentType: 5126, type: 'VEC3', count: 4, min: [0, 0, -2], max: [1, 1, 0] },
@@ -51,7 +48,6 @@ function paintedSquare(): ArrayBuffer {
       ...(i > 0 && { byteOffset: starts[i] }),
     })),
     buffers: [{ byteLength: binary.length }],
-    extensionsUsed: ['KHR_texture_basisu'],
   };
   return glbOf(json, binary);
 }
@@ -77,17 +73,12 @@ function readPicture(
     .then(onLoad, onError);
 }
 
-/** A KTX2 picture is given as bytes: their length is asked before they are read. */
-const unpack = (bytes: ArrayBuffer, onLoad: (picture: Texture) => void) =>
-  onLoad(pictureOf(bytes.slice(0, bytes.byteLength), 'in memory'));
-
 /** What the loader makes of a file; its parser tells whether it was asked for the binary as a whole. */
 async function loaded(file: ArrayBuffer) {
   // The loader asks the window for addresses of blobs.
   vi.stubGlobal('self', globalThis);
   const { json, binary } = chunksOf(new Uint8Array(file))!;
   const loader = new GLTFLoader();
-  loader.setKTX2Loader({ isKTX2Loader: true, parse: unpack } as never);
   loader.register(viewsOfFile(binary, new Blob([file])));
   loader.register((parser) => {
     parser.textureLoader = { load: readPicture } as never;
@@ -104,11 +95,6 @@ describe('a file that is read in views', () => {
     const { material } = await loaded(paintedSquare());
     expect((material.map as Picture).given).toEqual({ bytes: skin, type: 'image/png' });
     expect((material.emissiveMap as Picture).given).toEqual({ bytes: cloth, type: 'image/jpeg' });
-  });
-
-  test('gives a KTX2 picture its bytes in memory, from which it is unpacked', async () => {
-    const { material } = await loaded(paintedSquare());
-    expect((material.normalMap as Picture).given).toEqual({ bytes: packed, type: 'in memory' });
   });
 
   test('cuts meshes out as they are, each into memory of its own', async () => {

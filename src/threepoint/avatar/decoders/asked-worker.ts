@@ -20,11 +20,11 @@ export class AskedWorker<Question, Answer> {
     this.#begin = begin;
   }
 
-  ask(question: Question, transfer: Transferable[] = []): Promise<Answer> {
+  ask(question: Question): Promise<Answer> {
     return new Promise((resolve, reject) => {
       this.#worker ??= this.#started();
       this.#waiting.push({ resolve, reject });
-      this.#worker.postMessage(question, transfer);
+      this.#worker.postMessage(question);
       if (this.#waiting.length === 1) this.#wait();
     });
   }

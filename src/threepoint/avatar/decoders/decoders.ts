@@ -56,8 +56,4 @@ export const decoders: Decoders = {
   async KHR_draco_mesh_compression(loader) {
     loader.setDRACOLoader(dracoInWorker() as never);
   },
-  async KHR_texture_basisu(loader) {
-    const { unpackKtx2 } = await import('./ktx2');
-    unpackKtx2(loader);
-  },
 };

@@ -9,13 +9,12 @@ const letters = (bytes: Uint8Array, at: number, text: string): boolean =>
 
 export const isKtx2 = (bytes: Uint8Array): boolean => letters(bytes, 1, 'KTX 20');
 
-/** The size that a PNG, JPEG, WebP or KTX2 file says it has, before anything of it is decoded; null: it is none of them. */
+/** The size that a PNG, JPEG or WebP file says it has, before anything of it is decoded; null: it is none of them. */
 export function imageSize(bytes: Uint8Array): ImageSize | null {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   try {
     if (letters(bytes, 1, 'PNG')) return { width: view.getUint32(16), height: view.getUint32(20) };
     if (letters(bytes, 0, 'RIFF') && letters(bytes, 8, 'WEBP')) return webpSize(bytes, view);
-    if (isKtx2(bytes)) return { width: view.getUint32(20, true), height: view.getUint32(24, true) };
     if (view.getUint16(0) === 0xffd8) return jpegSize(view);
   } catch (error) {
     // Cut short: no picture.

@@ -7,7 +7,7 @@ interface Description {
     readonly byteLength: number;
     readonly extensions?: Readonly<Record<string, unknown>>;
   }[];
-  readonly images?: readonly { readonly bufferView?: number; readonly mimeType?: string }[];
+  readonly images?: readonly { readonly bufferView?: number }[];
 }
 
 const isPacked = (extension: string): boolean => extension.endsWith('meshopt_compression');
@@ -20,9 +20,7 @@ export const viewsOfFile =
   (binary: Uint8Array, file: Blob) =>
   (parser: GLTFParser): GLTFLoaderPlugin => {
     const { bufferViews = [], images = [] } = parser.json as Description;
-    // KTX2 is unpacked from bytes in memory.
-    const read = images.filter(({ mimeType }) => mimeType !== 'image/ktx2');
-    const pictures = new Set(read.map(({ bufferView }) => bufferView));
+    const pictures = new Set(images.map(({ bufferView }) => bufferView));
     return {
       name: 'threepoint_views',
       beforeRoot() {

@@ -1,8 +1,8 @@
 import { fromAxisAngle, multiply, type Quat, quat, rotate, setQuat } from '../math/quat';
+import { normalNumbers } from '../math/random';
 import { add, length, normalise, type Vec3, vec3 } from '../math/vec3';
 import type { EvenClip } from './even-clip';
 import { eyesFromHeadJoint, seed, trackers } from './mocap-rules.json';
-import { NumpyRandom } from './numpy-random';
 import { positionsWidth, rotationsWidth } from './our-joints';
 import { trackedJoints, truthJoints } from './skeleton-map';
 
@@ -15,9 +15,15 @@ const radians = (degrees: number): number => (degrees * Math.PI) / 180;
 const noiseOf = (joint: number, { head, hands }: Readonly<Record<'head' | 'hands', number>>): number =>
   joint === 0 ? head : hands;
 
+/** Returns the next number of a standard normal distribution. */
+type Normal = () => number;
+
+/** Returns the generator for a person or a clip; NormalNumbers in Python draws the same numbers. */
+const normalOf = (name: string): Normal => normalNumbers(seed ^ checksum(name));
+
 /** Three normal numbers of this deviation. */
-const drawVector = (random: NumpyRandom, deviation: number): Vec3 =>
-  vec3(random.normal() * deviation, random.normal() * deviation, random.normal() * deviation);
+const drawVector = (normal: Normal, deviation: number): Vec3 =>
+  vec3(normal() * deviation, normal() * deviation, normal() * deviation);
 
 /** The rotation by |v| [rad] about v. */
 const fromRotationVector = (v: Vec3): Quat => fromAxisAngle(normalise(v), length(v));
@@ -40,13 +46,13 @@ function checksum(text: string): number {
 
 /** How a headset and two hands sit on a person, constant for a wearer: offsets [m] in the frames of head and wrists, and turns. */
 function drawWearer(person: string): { readonly offsets: readonly Vec3[]; readonly turns: readonly Quat[] } {
-  const random = new NumpyRandom([seed, checksum(person)]);
+  const normal = normalOf(person);
   const handTurn = radians(trackers.handTurnDegrees) / Math.sqrt(3);
-  const hands = [drawVector(random, handTurn), drawVector(random, handTurn)].map(fromRotationVector);
+  const hands = [drawVector(normal, handTurn), drawVector(normal, handTurn)].map(fromRotationVector);
   const [x, y, z] = eyesFromHeadJoint as [number, number, number];
-  const eyes = add(vec3(x, y, z), drawVector(random, trackers.headsetOffset));
-  const pitch = random.normal() * radians(trackers.headsetPitchDegrees);
-  const wrists = [drawVector(random, trackers.wristOffset), drawVector(random, trackers.wristOffset)];
+  const eyes = add(vec3(x, y, z), drawVector(normal, trackers.headsetOffset));
+  const pitch = normal() * radians(trackers.headsetPitchDegrees);
+  const wrists = [drawVector(normal, trackers.wristOffset), drawVector(normal, trackers.wristOffset)];
   return { offsets: [eyes, ...wrists], turns: [fromAxisAngle(vec3(1, 0, 0), pitch), ...hands] };
 }
 
@@ -60,7 +66,7 @@ export function simulateTrackers(
   clip: string,
 ): Float32Array<ArrayBuffer> {
   const { offsets, turns } = drawWearer(person);
-  const random = new NumpyRandom([seed, checksum(clip)]);
+  const normal = normalOf(clip);
   const tracked = new Float32Array(frameCount * trackedWidth);
   const columns = trackedJoints.map((joint) => 3 * truthJoints.indexOf(joint));
   const rotation = quat(0, 0, 0, 1);
@@ -73,7 +79,7 @@ export function simulateTrackers(
     for (const [joint, column] of columns.entries()) {
       const from = frame * positionsWidth + column;
       const moved = rotate(read(frame, joint), offsets[joint]!);
-      const noise = drawVector(random, noiseOf(joint, trackers.positionNoise));
+      const noise = drawVector(normal, noiseOf(joint, trackers.positionNoise));
       const at = frame * trackedWidth + 7 * joint;
       tracked[at] = positions[from]! + moved.x + noise.x;
       tracked[at + 1] = positions[from + 1]! + moved.y + noise.y;
@@ -83,7 +89,7 @@ export function simulateTrackers(
   for (let frame = 0; frame < frameCount; frame++) {
     for (const [joint, turn] of turns.entries()) {
       const jitter = radians(noiseOf(joint, trackers.rotationNoiseDegrees)) / Math.sqrt(3);
-      const turned = multiply(multiply(read(frame, joint), turn), fromRotationVector(drawVector(random, jitter)));
+      const turned = multiply(multiply(read(frame, joint), turn), fromRotationVector(drawVector(normal, jitter)));
       tracked.set([turned.x, turned.y, turned.z, turned.w], frame * trackedWidth + 7 * joint + 3);
     }
   }

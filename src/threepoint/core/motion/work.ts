@@ -26,10 +26,47 @@ export function* portionOf<Result>(
 }
 
 /** Does the whole of some work at once, where nothing waits for it. */
-export function finishWork<Result>(work: Generator<number, Result>): Result {
+export function finishWork<Result>(work: Generator<unknown, Result>): Result {
   for (;;) {
     const step = work.next();
     if (step.done) return step.value;
+  }
+}
+
+/** The clock and the event loop of the program that does the work. */
+export interface WorkHost {
+  /** Milliseconds of a monotonic clock. */
+  now(): number;
+  /** Resolves in a later turn of the event loop, after frames and input. */
+  nextTurn(): Promise<void>;
+}
+
+/** Work goes on for this long [ms] before frames and input have their turn: half of a frame at 60 Hz. */
+const turnMs = 8;
+
+/**
+ * Does long work in turns of a few milliseconds, so that a page goes on drawing. `onStep` receives what each step yields and may throw to stop the
+ * work. Rejects with what it or the work throws.
+ */
+export async function runInTurns<Step, Result>(
+  work: Generator<Step, Result> | AsyncGenerator<Step, Result>,
+  host: WorkHost,
+  onStep?: (step: Step) => void,
+): Promise<Result> {
+  let turnBegan = host.now();
+  try {
+    for (;;) {
+      const step = await work.next();
+      if (step.done) return step.value;
+      if (host.now() - turnBegan >= turnMs) {
+        await host.nextTurn();
+        turnBegan = host.now();
+      }
+      onStep?.(step.value);
+    }
+  } finally {
+    // The work closes what it holds open; after its end this does nothing.
+    await work.return(undefined as Result);
   }
 }
 
