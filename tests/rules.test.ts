@@ -39,152 +39,121 @@ describe('the import rules', () => {
   const empty = 'export {};\n';
 
   test.each([
-    ['math knows nothing', 'core-math', { 'src/core/math/a.ts': "import '../body/b';", 'src/core/body/b.ts': empty }],
+    [
+      'the library knows no rooms',
+      'package-threepoint',
+      { 'src/threepoint/xr/a.ts': "import '../../rooms/client/b';", 'src/rooms/client/b.ts': empty },
+    ],
+    [
+      'rooms know no game',
+      'package-threepoint-rooms',
+      { 'src/rooms/room/a.ts': "import '../../games/ball/b';", 'src/games/ball/b.ts': empty },
+    ],
+    [
+      'the study knows no rooms',
+      'package-threepoint-study',
+      { 'src/study/server/a.ts': "import '../../rooms/server/b';", 'src/rooms/server/b.ts': empty },
+    ],
+    [
+      'nor the server that mounts it',
+      'package-threepoint-study',
+      { 'src/study/server/a.ts': "import '../../../server/b';", 'server/b.ts': empty },
+    ],
+    [
+      'parts of panels know no page',
+      'package-threepoint-ui',
+      { 'src/ui/a.ts': "import '../page/shell/b';", 'src/page/shell/b.ts': empty },
+    ],
+    [
+      'the server draws nothing',
+      'package-threepoint-server',
+      { 'server/a.ts': "import '../src/page/scene/b';", 'src/page/scene/b.ts': empty },
+    ],
+    [
+      'math knows no body',
+      'src-threepoint-core-math',
+      { 'src/threepoint/core/math/a.ts': "import '../body/b';", 'src/threepoint/core/body/b.ts': empty },
+    ],
     [
       'not even a type',
-      'core-tracking',
+      'src-threepoint-core-tracking',
       {
-        'src/core/tracking/a.ts': "import type { B } from '../estimation/b';\nexport type A = B;",
-        'src/core/estimation/b.ts': 'export type B = 1;',
-      },
-    ],
-    ['games know no body', 'core-games', { 'src/core/games/a.ts': "import '../body/b';", 'src/core/body/b.ts': empty }],
-    [
-      'estimation knows no protocol',
-      'core-estimation',
-      { 'src/core/estimation/a.ts': "import '../protocol/b';", 'src/core/protocol/b.ts': empty },
-    ],
-    [
-      'the Room knows no game',
-      'core-room',
-      { 'src/core/room/a.ts': "import '../games/ball/b';", 'src/core/games/ball/b.ts': empty },
-    ],
-    [
-      'not even by a detour',
-      'room-reaches-no-game',
-      {
-        'src/core/room/a.ts': "import '../protocol/b';",
-        'src/core/protocol/b.ts': "import '../games/ball/c';",
-        'src/core/games/ball/c.ts': empty,
+        'src/threepoint/core/tracking/a.ts': "import type { B } from '../estimation/b';\nexport type A = B;",
+        'src/threepoint/core/estimation/b.ts': 'export type B = 1;',
       },
     ],
     [
-      'a new folder of core is asked about',
-      'core-folders-are-known',
-      { 'src/core/extra/a.ts': "import '../math/b';", 'src/core/math/b.ts': empty },
+      'adapters do not meet',
+      'src-threepoint-avatar',
+      { 'src/threepoint/avatar/a.ts': "import '../xr/b';", 'src/threepoint/xr/b.ts': empty },
     ],
     [
-      'core imports no adapter',
-      'core-is-pure',
-      { 'src/core/math/a.ts': "import '../../scene/b';", 'src/scene/b.ts': empty },
-    ],
-    ['core imports no package', 'core-is-pure', { 'src/core/math/a.ts': "import 'valibot';" }],
-    ['validation stays in the study', 'core-is-pure', { 'src/core/games/a.ts': "import 'valibot';" }],
-    ['the study draws nothing', 'core-study-is-pure', { 'src/core/study/a.ts': "import 'three';" }],
-    [
-      'p-values come from one file',
-      'core-study-is-pure',
-      { 'src/core/study/plan.ts': "import '@stdlib/stats-base-dists-t-cdf';" },
-    ],
-    ['which needs nothing else', 'core-statistics-is-pure', { 'src/core/statistics/a.ts': "import 'valibot';" }],
-    ['core imports no Node', 'core-is-pure', { 'src/core/math/a.ts': "import 'node:fs';" }],
-    ['adapters do not meet', 'adapters-are-strangers', { 'src/ui/a.ts': "import '../xr/b';", 'src/xr/b.ts': empty }],
-    [
-      'main is the top',
-      'main-is-imported-by-none',
-      { 'src/app/shell/frame-loop.ts': "import '../main';", 'src/app/main.ts': empty },
+      'the results page takes no part in a study',
+      'src-study-pages',
+      { 'src/study/pages/a.ts': "import '../participant/b';", 'src/study/participant/b.ts': empty },
     ],
     [
-      'adapters know no page',
-      'adapters-know-no-page',
-      { 'src/ui/a.ts': "import '../app/shell/frame-loop';", 'src/app/shell/frame-loop.ts': empty },
+      'a room of a package is known',
+      'rooms-are-known',
+      { 'src/rooms/extra/a.ts': "import '../room/b';", 'src/rooms/room/b.ts': empty },
+    ],
+    ['core imports no package', 'rules-are-pure', { 'src/threepoint/core/math/a.ts': "import 'three';" }],
+    ['nor do the games', 'rules-are-pure', { 'src/games/ball/a.ts': "import 'socket.io-client';" }],
+    ['core imports no Node', 'browsers-have-no-node', { 'src/threepoint/core/math/a.ts': "import 'node:fs';" }],
+    [
+      'the face of the library draws nothing',
+      'library-entries-stay-apart',
+      { 'src/threepoint/api/index.ts': "import '../avatar/b';", 'src/threepoint/avatar/b.ts': empty },
     ],
     [
-      'the library knows no page',
-      'library-knows-no-page',
-      { 'src/lib/index.ts': "import '../app/shell/b';", 'src/app/shell/b.ts': empty },
-    ],
-    ['and no panel of one', 'library-knows-no-page', { 'src/lib/three.ts': "import '../ui/b';", 'src/ui/b.ts': empty }],
-    ['its face has no three', 'three-draws', { 'src/lib/index.ts': "import 'three';" }],
-    [
-      'not by way of an avatar',
-      'library-parts-stay-apart',
-      { 'src/lib/index.ts': "import '../avatar/b';", 'src/avatar/b.ts': empty },
+      'and has no runtime',
+      'library-entries-stay-apart',
+      { 'src/threepoint/api/body.ts': "import '../onnx/session';", 'src/threepoint/onnx/session.ts': empty },
     ],
     [
-      'nor a runtime',
-      'library-parts-stay-apart',
-      { 'src/lib/body.ts': "import '../inference/session';", 'src/inference/session.ts': empty },
-    ],
-    [
-      'which drawing does not need either',
+      'nor does what draws',
       'library-draws-without-runtime',
-      { 'src/lib/three.ts': "import './onnx';", 'src/lib/onnx.ts': empty },
+      { 'src/threepoint/api/three.ts': "import './onnx';", 'src/threepoint/api/onnx.ts': empty },
     ],
     [
-      'nor does the polyfill know three',
+      'the polyfill draws nothing',
       'library-polyfill-draws-nothing',
-      { 'src/lib/polyfill.ts': "import '../avatar/b';", 'src/avatar/b.ts': empty },
-    ],
-    [
-      'adapters know no library',
-      'adapters-know-no-page',
-      { 'src/xr/a.ts': "import '../lib/body';", 'src/lib/body.ts': empty },
+      { 'src/threepoint/api/polyfill.ts': "import '../avatar/b';", 'src/threepoint/avatar/b.ts': empty },
     ],
     [
       'a game knows no shell',
       'activities-are-strangers',
-      { 'src/app/ball/a.ts': "import '../shell/b';", 'src/app/shell/b.ts': empty },
+      { 'src/page/ball/a.ts': "import '../shell/b';", 'src/page/shell/b.ts': empty },
     ],
     [
-      'the study knows no game',
+      'nor the other game',
       'activities-are-strangers',
-      { 'src/app/study/a.ts': "import '../archery/b';", 'src/app/archery/b.ts': empty },
+      { 'src/page/ball/a.ts': "import '../archery/b';", 'src/page/archery/b.ts': empty },
     ],
     [
-      'the results page loads no body',
-      'pages-stand-alone',
-      { 'src/pages/a.ts': "import '../avatar/b';", 'src/avatar/b.ts': empty },
+      'the scene knows no game',
+      'scene-draws-for-activities',
+      { 'src/page/scene/a.ts': "import '../archery/b';", 'src/page/archery/b.ts': empty },
     ],
-    [
-      'a file has a room',
-      'nothing-loose-in-src',
-      { 'src/a.ts': "import './core/math/b';", 'src/core/math/b.ts': empty },
-    ],
-    [
-      'the body knows no tracking',
-      'core-body',
-      { 'src/core/body/a.ts': "import '../tracking/b';", 'src/core/tracking/b.ts': empty },
-    ],
-    ['three stays where things are drawn', 'three-draws', { 'src/net/a.ts': "import 'three';" }],
+    ['three stays where things are drawn', 'three-draws', { 'src/rooms/client/a.ts': "import 'three';" }],
     [
       'and so do its types',
       'three-draws',
-      { 'src/inference/a.ts': "import type { Vector3 } from 'three';\nexport type A = Vector3;" },
+      { 'src/threepoint/onnx/a.ts': "import type { Vector3 } from 'three';\nexport type A = Vector3;" },
     ],
-    ['and its VRM loader', 'three-draws', { 'src/net/a.ts': "import '@pixiv/three-vrm';" }],
+    ['and its VRM loader', 'three-draws', { 'src/rooms/client/a.ts': "import '@pixiv/three-vrm';" }],
+    ['the runtime has one room', 'onnxruntime-infers', { 'src/page/main.ts': "import 'onnxruntime-web/wasm';" }],
+    ['the database has one file', 'sqlite-stores', { 'server/a.ts': "import '@photostructure/sqlite';" }],
     [
-      'the runtime stays behind inference',
-      'onnxruntime-infers',
-      { 'src/app/main.ts': "import 'onnxruntime-web/wasm';" },
+      'the page reaches the server over the network',
+      'browser-code-knows-no-server',
+      { 'src/page/shell/a.ts': "import '../../http/b';", 'src/http/b.ts': empty },
     ],
-    ['sockets stay in net and server', 'socket-io-connects', { 'src/ui/a.ts': "import 'socket.io-client';" }],
-    ['the database stays in one file', 'sqlite-stores', { 'server/a.ts': "import '@photostructure/sqlite';" }],
-    [
-      'the server draws nothing',
-      'server-knows-core-alone',
-      { 'server/a.ts': "import '../src/scene/b';", 'src/scene/b.ts': empty },
-    ],
-    [
-      'the page imports no server',
-      'page-knows-no-server',
-      { 'src/net/a.ts': "import '../../server/b';", 'server/b.ts': empty },
-    ],
-    ['the page runs in a browser', 'page-runs-in-a-browser', { 'src/net/a.ts': "import 'node:net';" }],
+    ['the page runs in a browser', 'browsers-have-no-node', { 'src/rooms/client/a.ts': "import 'node:net';" }],
     [
       'what ships needs no tests',
       'shipped-code-knows-no-tests',
-      { 'src/net/a.ts': "import '../../tests/b';", 'tests/b.ts': empty },
+      { 'src/rooms/client/a.ts': "import '../../../tests/b';", 'tests/b.ts': empty },
     ],
     ['no circles', 'no-cycles', { 'src/ui/a.ts': "import './b';", 'src/ui/b.ts': "import './a';" }],
     ['imports lead somewhere', 'imports-resolve', { 'src/ui/a.ts': "import './gone';" }],
@@ -194,26 +163,26 @@ describe('the import rules', () => {
 
   test('what the design allows breaks none', async () => {
     const allowed = {
-      'src/core/math/vec3.ts': empty,
-      'src/core/tracking/tracking-frame.ts': "import '../math/vec3';",
-      'src/core/body/skeleton.ts': "import '../math/vec3';",
-      'src/core/estimation/estimators.ts':
+      'src/threepoint/core/math/vec3.ts': empty,
+      'src/threepoint/core/tracking/tracking-frame.ts': "import '../math/vec3';",
+      'src/threepoint/core/body/skeleton.ts': "import '../math/vec3';",
+      'src/threepoint/core/estimation/estimators.ts':
         "import '../math/vec3';\nimport '../body/skeleton';\nimport '../tracking/tracking-frame';",
-      'src/core/study/plan.ts': "import 'valibot';",
-      'src/core/statistics/a.ts': "import '@stdlib/stats-base-dists-t-cdf';",
-      'src/scene/renderer.ts': "import 'three';",
-      'src/avatar/mirror.ts':
-        "import 'three';\nimport '@pixiv/three-vrm';\nimport '../scene/renderer';\nimport '../core/body/skeleton';",
-      'src/inference/regressor.ts': "import 'onnxruntime-web/wasm';\nimport '../core/estimation/estimators';",
-      'src/lib/body.ts': "import '../core/estimation/estimators';\nimport '../inference/model-files';",
-      'src/inference/model-files.ts': empty,
-      'src/lib/three.ts': "import 'three';\nimport './body';\nimport '../avatar/mirror';",
-      'src/lib/onnx.ts': "import '../inference/regressor';",
-      'src/app/shell/stage.ts': "import '../../lib/body';\nimport '../studio/studio';\nimport '../../avatar/mirror';",
-      'src/app/studio/studio.ts': "import 'three';\nimport '../../scene/renderer';",
-      'src/app/main.ts': "import './shell/stage';\nimport '../inference/regressor';",
-      'src/pages/results-page.ts': "import '../core/study/plan';",
-      'server/main.ts': "import 'node:http';\nimport '../src/core/math/vec3';",
+      'src/threepoint/avatar/mirror.ts': "import '../core/body/skeleton';",
+      'src/threepoint/onnx/model-files.ts': empty,
+      'src/threepoint/api/body.ts': "import '../core/estimation/estimators';\nimport '../onnx/model-files';",
+      'src/threepoint/api/three.ts': "import './body';\nimport '../avatar/mirror';",
+      'src/rooms/protocol/messages.ts': "import '../../threepoint/core/math/vec3';",
+      'src/rooms/room/room.ts': "import '../protocol/messages';",
+      'src/games/ball/rules.ts': "import '../../rooms/room/room';",
+      'src/http/router.ts': "import 'node:http';",
+      'src/study/statistics/a.ts': empty,
+      'src/study/model/plan.ts': "import '../statistics/a';",
+      'src/study/server/routes.ts': "import '../model/plan';\nimport '../../http/router';",
+      'src/page/scene/renderer.ts': empty,
+      'src/page/studio/studio.ts': "import '../scene/renderer';",
+      'src/page/shell/stage.ts': "import '../studio/studio';\nimport '../../threepoint/avatar/mirror';",
+      'server/main.ts': "import 'node:http';\nimport '../src/games/ball/rules';\nimport '../src/study/server/routes';",
     };
     expect(await brokenImportRules(allowed)).toEqual([]);
   });
@@ -240,10 +209,10 @@ test('chance is refused in core, however it is written, and nowhere else', () =>
     "export const roll = () => Math['random']();\n",
     'const { random } = Math;\nexport const roll = () => random();\n',
   ];
-  const inCore = forbidden.map((code, index) => [`src/core/math/case-${index}.ts`, code] as const);
-  const outside = forbidden.map((code, index) => [`src/net/case-${index}.ts`, code] as const);
+  const inCore = forbidden.map((code, index) => [`src/threepoint/core/math/case-${index}.ts`, code] as const);
+  const outside = forbidden.map((code, index) => [`src/rooms/client/case-${index}.ts`, code] as const);
   const mathematics = [
-    'src/core/math/mathematics.ts',
+    'src/threepoint/core/math/mathematics.ts',
     'export const half = (x: number) => Math.sin(x) / 2;\n',
   ] as const;
   const report = lint(Object.fromEntries([...inCore, ...outside, mathematics]));
