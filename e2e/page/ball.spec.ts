@@ -102,7 +102,7 @@ test('a spectator sees three bots and follows one of them @full', async ({ page 
 
 /** The server as `npm start` runs it, page and relay on one port; it can be killed and started again. */
 async function startServer(seconds: number, port: number): Promise<{ kill(): Promise<void> }> {
-  const root = fileURLToPath(new URL('../../..', import.meta.url));
+  const root = fileURLToPath(new URL('../..', import.meta.url));
   const server = spawn(process.execPath, ['--import', 'tsx', 'server/main.ts', '--port', String(port)], {
     cwd: root,
     env: { ...process.env, THREEPOINT_BALL_SECONDS: String(seconds) },

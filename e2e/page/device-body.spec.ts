@@ -10,7 +10,7 @@ import { enterVr, expect, keepPicture, open, probe, freshTest as test } from '..
 
 /** Our own polyfill in one piece: it stands for a headset that tracks its wearer's body. */
 async function polyfill(): Promise<string> {
-  const input = fileURLToPath(new URL('../../../src/threepoint/api/polyfill.ts', import.meta.url));
+  const input = fileURLToPath(new URL('../../src/threepoint/api/polyfill.ts', import.meta.url));
   const build = await rolldown({ input, platform: 'browser', resolve: sourceResolution('browser') });
   const { output } = await build.generate({ format: 'iife', name: 'bodyPolyfill', codeSplitting: false });
   await build.close();
@@ -31,7 +31,7 @@ async function openOnTrackingHeadset(page: Page): Promise<void> {
 
 /** What `npm run evaluate -- --recording` says of the only recording. */
 function evaluated(recording: string, json: string) {
-  const root = fileURLToPath(new URL('../../..', import.meta.url));
+  const root = fileURLToPath(new URL('../..', import.meta.url));
   const program = ['--import', 'tsx', 'bench/evaluate/recorded.ts'];
   execFileSync(process.execPath, [...program, '--recording', recording, '--json', json], { cwd: root });
   const [only] = Object.values(JSON.parse(readFileSync(json, 'utf8')).recordings);

@@ -171,7 +171,7 @@ freshTest(
   'cross-origin isolated and without WebXR: the same page, and a sentence @full',
   async ({ page, complaints }) => {
     complaints.allow(/asked http:\/\/localhost/);
-    const handler = createPageHandler(fileURLToPath(new URL('../../../dist', import.meta.url)));
+    const handler = createPageHandler(fileURLToPath(new URL('../../dist', import.meta.url)));
     const server = await serve(
       (request, response) => {
         response.setHeader('cross-origin-opener-policy', 'same-origin');

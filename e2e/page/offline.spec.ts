@@ -12,7 +12,7 @@ import { emulatedHeadset } from '../emulated-headset';
 import { enterVr, expect, keepPicture, listen, newPage, probe } from '../page-fixture';
 import { type PlainServer, servePlainly } from '../plain-server';
 
-const dist = fileURLToPath(new URL('../../../dist', import.meta.url));
+const dist = fileURLToPath(new URL('../../dist', import.meta.url));
 
 interface OurServer extends PlainServer {
   readonly port: number;

@@ -10,7 +10,7 @@ import { emulatedHeadset } from '../emulated-headset';
 import { enterVr, expect, joint, keepPicture, listen, newPage, probe } from '../page-fixture';
 import { servePlainly } from '../plain-server';
 
-const dist = fileURLToPath(new URL('../../../dist', import.meta.url));
+const dist = fileURLToPath(new URL('../../dist', import.meta.url));
 
 /** The page from a host that serves files out of a folder and nothing else. It may ask for nothing beyond that folder, nor complain. */
 const test = base.extend<{ built: string; address: string; complaints: readonly string[] }>({

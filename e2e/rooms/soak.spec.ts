@@ -17,7 +17,7 @@ const mutesAMinute = 5;
 const rejoinEvery = 5;
 
 /** A line for each minute, so that a run that breaks has told what it saw. */
-const file = fileURLToPath(new URL('../../../artifacts/soak.jsonl', import.meta.url));
+const file = fileURLToPath(new URL('../../artifacts/soak.jsonl', import.meta.url));
 
 // A trace would keep each of the test's questions for hours, and film nothing that is looked at.
 test.use({ trace: 'off' });

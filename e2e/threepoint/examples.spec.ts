@@ -7,7 +7,7 @@ import { wristByGrip, wristName } from '../hands-on-controllers';
 import { distance } from '../page-fixture';
 import { servePlainly } from '../plain-server';
 
-const iwer = fileURLToPath(new URL('../../../node_modules/iwer/build/iwer.min.js', import.meta.url));
+const iwer = fileURLToPath(new URL('../../node_modules/iwer/build/iwer.min.js', import.meta.url));
 
 /** An object of three.js, as far as it tells whether it is drawn. */
 interface Drawn {

@@ -7,7 +7,7 @@ import { planJsonSchema } from './check/plan-json-schema';
 
 const write = (name: string, value: object) =>
   writeFileSync(
-    fileURLToPath(new URL(`../../../../../public/studies/${name}`, import.meta.url)),
+    fileURLToPath(new URL(`../../../public/studies/${name}`, import.meta.url)),
     `${JSON.stringify(value, null, 2)}\n`,
   );
 

@@ -40,7 +40,7 @@ const simulatedNotice =
 /** The analysis in Python, as it lies next to this file. */
 const analysisFiles = () =>
   ['analyse.py', 'requirements.txt'].map(
-    (name) => [`analysis/${name}`, readFileSync(new URL(`../../../../../server/analysis/${name}`, import.meta.url), 'utf8')] as const,
+    (name) => [`analysis/${name}`, readFileSync(new URL(`./analysis/${name}`, import.meta.url), 'utf8')] as const,
   );
 
 function readme(content: ExportContent, leftOut: readonly string[], whole: boolean): string {

@@ -12,7 +12,7 @@ export interface LearnedOptions {
 }
 
 /** Stated where a bundler looks for files: it copies the weights and puts their address here. */
-const ownWeights = () => new URL('../../../../public/models/learned.bin', import.meta.url);
+const ownWeights = () => new URL('../../../public/models/learned.bin', import.meta.url);
 
 /**
  * The learned network without a runtime: 91 kB, answered within the frame. Rejects with a sentence that says what is wrong with which file.

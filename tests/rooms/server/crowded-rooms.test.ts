@@ -11,7 +11,7 @@ import { testSecret } from './running-relay';
 const crowd = { rooms: isNightly ? 200 : 20, seconds: isNightly ? 600 : 5 };
 /** Before it, so that the code is compiled and every buffer has been used once. */
 const warmUp = { rooms: 20, seconds: 3 };
-const clientsScript = fileURLToPath(new URL('../../../../bench/relay/clients.ts', import.meta.url));
+const clientsScript = fileURLToPath(new URL('../../../bench/relay/clients.ts', import.meta.url));
 
 interface Census {
   readonly rooms: number;

@@ -13,7 +13,7 @@ import { arrive, pause, testSecret, until } from './running-relay';
 
 const programs = { haproxy: installed('haproxy'), redis: installed('redis-server') };
 const missing = Object.values(programs).includes(null);
-const config = fileURLToPath(new URL('../../../../deploy/haproxy.cfg', import.meta.url));
+const config = fileURLToPath(new URL('../../../deploy/haproxy.cfg', import.meta.url));
 
 async function freePort(): Promise<number> {
   const server = createServer().listen(0, '127.0.0.1');

@@ -11,7 +11,7 @@ import { describe, expect, test } from 'vitest';
 import { directoryWith } from '../../temporary-directory';
 import { examplePlan, paperFile, paperPlan } from '../model/studies';
 
-const root = fileURLToPath(new URL('../../../..', import.meta.url));
+const root = fileURLToPath(new URL('../../..', import.meta.url));
 const read = (path: string) => readFileSync(join(root, path), 'utf8');
 
 describe('the schema for editors', () => {

@@ -15,7 +15,7 @@ import { describe, expect, test } from 'vitest';
 import { directoryWith } from '../../temporary-directory';
 import { latencyPlan, paperPlan } from '../model/studies';
 
-const root = fileURLToPath(new URL('../../../..', import.meta.url));
+const root = fileURLToPath(new URL('../../..', import.meta.url));
 const plan = simulatedPlan(paperPlan());
 const start = 1_767_600_000;
 const models = { answers: nullAnswerModel, performance: statedPerformanceModel };

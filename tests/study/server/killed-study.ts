@@ -16,7 +16,7 @@ import { directoryWith } from '../../temporary-directory';
 import { paperPlan, session } from '../model/studies';
 
 const experimenter = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
-const root = fileURLToPath(new URL('../../../..', import.meta.url));
+const root = fileURLToPath(new URL('../../..', import.meta.url));
 
 /** What kills found; every list is empty where nothing was lost. */
 export interface KillReport {

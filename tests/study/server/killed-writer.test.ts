@@ -6,7 +6,7 @@ import { describe, expect, test } from 'vitest';
 import { now } from './running-studies';
 import { completed, opened, withPaperStudy } from './stored-studies';
 
-const root = fileURLToPath(new URL('../../../..', import.meta.url));
+const root = fileURLToPath(new URL('../../..', import.meta.url));
 
 describe('a server killed while it writes (kill -9)', () => {
   /** Lets the writer live for some acknowledgements and then kills it; what it acknowledged. */

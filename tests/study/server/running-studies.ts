@@ -26,7 +26,7 @@ const software = {
 /** What an export says of the program that served it. */
 export const testSoftware = { exportedBy: software, served: [{ since: now, ...software }] };
 /** The script of the thread that the server starts for its studies. */
-export const studyThread = new URL('../../../../server/study-thread-worker.mjs', import.meta.url);
+export const studyThread = new URL('../../../server/study-thread-worker.mjs', import.meta.url);
 export const studySeats = createStudySeats(testSecret, createRoomTokens(testSecret, () => Date.now() / 1000).sign);
 
 interface InThisThread {

@@ -12,7 +12,7 @@ import { directoryWith } from '../../temporary-directory';
 import { paperPlan, session } from '../model/studies';
 
 const now = 1_800_000_000;
-const root = fileURLToPath(new URL('../../../..', import.meta.url));
+const root = fileURLToPath(new URL('../../..', import.meta.url));
 
 function consented(participant: string): StudyRecord[] {
   const schedule = scheduleFor(paperPlan(), participant);

@@ -74,7 +74,7 @@ test('a database from before versions of plans keeps every plan and participant,
  * finished and begun, P07 has withdrawn. P01 of "pairs" plays archery in pairs, which plans of today may not ask for.
  */
 describe('a database that the first version of the program wrote', () => {
-  const golden = (name: string) => readFileSync(new URL(`../../../golden/${name}`, import.meta.url));
+  const golden = (name: string) => readFileSync(new URL(`../../golden/${name}`, import.meta.url));
   const sent = JSON.parse(golden('first-studies.json').toString()) as Anything;
 
   async function served() {

@@ -6,7 +6,7 @@ import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { Recording } from 'threepoint/core/tracking/recording';
 import { expect, test, vi } from 'vitest';
 
-const models = new URL('../../../../public/models/', import.meta.url);
+const models = new URL('../../../public/models/', import.meta.url);
 
 test('a program of Node has the learned network from the disk, without a word of where it lies', async () => {
   const told: string[] = [];

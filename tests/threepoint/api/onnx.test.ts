@@ -14,7 +14,7 @@ let models = '';
 beforeAll(async () => {
   server = createServer((request, response) => {
     const name = request.url?.split('/').at(-1) ?? '';
-    response.end(readFileSync(new URL(`../../../../public/models/${name}`, import.meta.url)));
+    response.end(readFileSync(new URL(`../../../public/models/${name}`, import.meta.url)));
   });
   await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
   models = `http://127.0.0.1:${(server.address() as AddressInfo).port}/any/folder`;

@@ -164,7 +164,7 @@ describe('eyes', () => {
         };
       },
       undefined,
-      readFileSync(new URL('../../../../public/avatars/woman.vrm', import.meta.url)),
+      readFileSync(new URL('../../../public/avatars/woman.vrm', import.meta.url)),
     );
     const { vrm } = await parseAvatar(bytes, 'painted-eyes.vrm');
     const avatar = createAvatar({ name: 'painted-eyes.vrm', vrm, nodeIndices: new Map() });
@@ -266,7 +266,7 @@ describe('a mouth', () => {
   test.each(['viseme_aa', 'jawOpen', 'mouthOpen'])(
     'of a file without expressions moves by its shape %s, and by one alone',
     async (name) => {
-      const file = readFileSync(new URL('../../../../public/avatars/woman.vrm', import.meta.url));
+      const file = readFileSync(new URL('../../../public/avatars/woman.vrm', import.meta.url));
       const bytes = changed(
         (json) => {
           delete (json.extensions.VRMC_vrm as unknown as Record<string, unknown>).expressions;

@@ -14,7 +14,7 @@ interface Vertex {
 }
 
 describe.each(figures.map((figure) => [figure.name, figure] as const))('the %s', (name, figure) => {
-  const file = readFileSync(new URL(`../../../../public/avatars/${name}.vrm`, import.meta.url));
+  const file = readFileSync(new URL(`../../../public/avatars/${name}.vrm`, import.meta.url));
 
   /** All triangles of all primitives, each corner by a key of its position: seams between materials close again. */
   let corners: string[] = [];

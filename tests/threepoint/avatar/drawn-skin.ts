@@ -19,7 +19,7 @@ type Grasp = (holding: Holding, side: Side, wrist: Pose<'floor'>, target: Mutabl
 
 /** A body of ours on that person. */
 export async function ownBody(body: string): Promise<Avatar> {
-  const file = readFileSync(new URL(`../../../../public/avatars/${body}.vrm`, import.meta.url));
+  const file = readFileSync(new URL(`../../../public/avatars/${body}.vrm`, import.meta.url));
   const bytes = file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer;
   const avatar = createAvatar(await parseAvatar(bytes, `${body}.vrm`));
   avatar.fitTo(wearer);

@@ -1,6 +1,6 @@
 import { readFileSync } from 'node:fs';
 
-const bytes = readFileSync(new URL('../../../../public/avatars/mannequin.vrm', import.meta.url));
+const bytes = readFileSync(new URL('../../../public/avatars/mannequin.vrm', import.meta.url));
 
 /** The JSON of a GLB file, as far as tests change it. */
 export interface GltfJson {

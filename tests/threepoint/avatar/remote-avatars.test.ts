@@ -25,7 +25,7 @@ import { describe, expect, onTestFinished, test } from 'vitest';
 import { poseOf } from '../core/estimation/drawn';
 
 function bytesOf(body: OwnBody): ArrayBuffer {
-  const file = readFileSync(new URL(`../../../../public/avatars/${body}.vrm`, import.meta.url));
+  const file = readFileSync(new URL(`../../../public/avatars/${body}.vrm`, import.meta.url));
   return file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer;
 }
 const estimator = createIk(defaultCalibration);

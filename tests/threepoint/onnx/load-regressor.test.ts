@@ -6,7 +6,7 @@ import { loadRegressor } from 'threepoint/onnx/load-regressor';
 import { parseContract } from 'threepoint/onnx/model-contract';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 
-const model = (name: string) => readFileSync(new URL(`../../../../public/models/${name}`, import.meta.url));
+const model = (name: string) => readFileSync(new URL(`../../../public/models/${name}`, import.meta.url));
 const contract = JSON.parse(model('learned.json').toString()) as Record<string, unknown>;
 
 /** Files by path, served as a page's server would; what is absent is a 404. */

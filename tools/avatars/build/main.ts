@@ -17,7 +17,7 @@ for (const figure of figures.filter(({ name }) => positionals.length === 0 || po
   const file = await buildBody(figure, (what) => console.log(`  ${what}`), values.quick ? 2 : 1);
   const target = values.out
     ? `${values.out}/${figure.name}.vrm`
-    : fileURLToPath(new URL(`../../../../public/avatars/${figure.name}.vrm`, import.meta.url));
+    : fileURLToPath(new URL(`../../../public/avatars/${figure.name}.vrm`, import.meta.url));
   mkdirSync(dirname(target), { recursive: true });
   writeFileSync(target, file);
   console.log(`${target}: ${(file.byteLength / 1000).toFixed(0)} kB`);

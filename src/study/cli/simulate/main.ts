@@ -13,7 +13,7 @@ import { openStudyStore } from '../../server/study-store';
 import { modelsWith, simulatedPlan, simulateStudy, statedInWords } from '../../simulation/simulate-study';
 import { simulateOptions } from './options';
 
-const root = fileURLToPath(new URL('../../../../../..', import.meta.url));
+const root = fileURLToPath(new URL('../../../..', import.meta.url));
 /** When the first simulated participant begins: a fixed day, so that the same seed gives the same files. */
 const firstSession = Date.UTC(2026, 0, 5, 9) / 1000;
 

@@ -13,8 +13,8 @@ const mostShown = 50;
 try {
   if (!existsSync(path)) throw new Error('there is no such file');
   const here = softwareIn(
-    fileURLToPath(new URL('../../../../../../public', import.meta.url)),
-    new URL('../../../../../../package.json', import.meta.url),
+    fileURLToPath(new URL('../../../../public', import.meta.url)),
+    new URL('../../../../package.json', import.meta.url),
   );
   const { complaints, files, records, exportedBy } = verifyExport(readFileSync(path));
   if (exportedBy.version !== here.version) {

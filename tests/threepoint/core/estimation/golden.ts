@@ -67,7 +67,7 @@ export interface GoldenModel {
 }
 
 export function readGolden<Content>(name: string): Content {
-  return JSON.parse(readFileSync(new URL(`../../../../golden/${name}`, import.meta.url), 'utf8')) as Content;
+  return JSON.parse(readFileSync(new URL(`../../../golden/${name}`, import.meta.url), 'utf8')) as Content;
 }
 
 /** A hand that is seen, or not; where it is said to be does not matter. */

@@ -23,7 +23,7 @@ export function openPlainModel(): PoseRegressor {
   return createPlainRegressor(contract, bytes);
 }
 
-const folder = new URL('../../../../../public/models/', import.meta.url);
+const folder = new URL('../../../../public/models/', import.meta.url);
 
 /** A model as the page ships it, run by the runtime that the page uses. */
 export async function openShippedModel(name: NetworkName): Promise<PoseRegressor> {

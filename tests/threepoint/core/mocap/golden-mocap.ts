@@ -17,7 +17,7 @@ export interface GoldenMocap {
 }
 
 export const goldenMocap: readonly GoldenMocap[] = JSON.parse(
-  readFileSync(new URL('../../../../golden/mocap.json', import.meta.url), 'utf8'),
+  readFileSync(new URL('../../../golden/mocap.json', import.meta.url), 'utf8'),
 );
 
 /** The file as the page opens it. */

@@ -15,7 +15,7 @@ interface GoldenFile {
 }
 
 const files: readonly GoldenFile[] = JSON.parse(
-  readFileSync(new URL('../../../../golden/bvh.json', import.meta.url), 'utf8'),
+  readFileSync(new URL('../../../golden/bvh.json', import.meta.url), 'utf8'),
 );
 
 test.each(files)('a BVH is read as Python reads it, every order of channels within 1e-5: file %#', (golden) => {
