@@ -46,15 +46,30 @@ function published() {
   };
 }
 
-/** In the package the weights lie beside the code: the sources' own way to them leads nowhere there. */
-const weightsBeside = {
-  name: 'weights-beside',
-  transform: {
-    filter: { id: /load-learned\.ts$/ },
-    handler(code) {
-      const moved = code.replace("'../../../public/models/learned.bin'", "'./models/learned.bin'");
-      if (moved === code) throw new Error('load-learned.ts no longer states where the weights lie');
-      return { code: moved, map: null };
+const weightsModule = '\0learned-weights';
+
+/**
+ * Puts the weights into a module of JavaScript that loads when they are needed: a file that code names by its address is lost by bundlers that
+ * know nothing of such addresses, and a page would draw inverse kinematics for ever.
+ */
+const weightsInModule = {
+  name: 'weights-in-module',
+  resolveId: { filter: { id: /^\0learned-weights$/ }, handler: (id) => id },
+  load: {
+    filter: { id: /^\0learned-weights$|\/api\/own-weights\.ts$/ },
+    handler(id) {
+      if (id === weightsModule) {
+        const bytes = readFileSync(join(root, 'public/models/learned.bin'));
+        return `export default ${JSON.stringify(bytes.toString('base64'))};`;
+      }
+      return {
+        moduleType: 'js',
+        code: `export async function readOwnWeights(_stated, onProgress) {
+          const { default: text } = await import(${JSON.stringify(weightsModule)});
+          onProgress?.(1);
+          return Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
+        }`,
+      };
     },
   },
 };
@@ -75,10 +90,13 @@ async function bundle(input, plugins) {
 }
 
 /** Chunks lie beside the entries: what is stated relative to one is true of all. */
-const output = { format: 'esm', chunkFileNames: 'shared-[hash].js' };
+const output = {
+  format: 'esm',
+  chunkFileNames: ({ name }) => (name.includes('learned-weights') ? 'learned-weights.js' : 'shared-[hash].js'),
+};
 
 async function writeCode() {
-  const build = await bundle(Object.fromEntries(entries.map((name) => [name, sourceOf(name)])), [weightsBeside]);
+  const build = await bundle(Object.fromEntries(entries.map((name) => [name, sourceOf(name)])), [weightsInModule]);
   await build.write({ ...output, dir: out, sourcemap: true });
   await build.close();
 }
@@ -116,7 +134,7 @@ const trackerAlone = {
 };
 
 /** Bytes of code with all that it loads at once, minified, and the same as brotli; what it loads later or as a peer is not in it. */
-async function weigh(input, plugins = [weightsBeside]) {
+async function weigh(input, plugins = [weightsInModule]) {
   const build = await bundle({ entry: input }, plugins);
   const { output: files } = await build.generate({ ...output, minify: true });
   await build.close();

@@ -2,6 +2,8 @@
 // declarations included, and runs examples/in-node.mjs.
 import { copyFileSync, mkdirSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { build } from 'esbuild';
+import { rolldown } from 'rolldown';
 import { main, root, run, runQuietly, SetupError } from './run-command.mjs';
 
 const folder = join(root, 'artifacts/library-consumer');
@@ -70,9 +72,27 @@ async function runExample() {
   if (code !== 0) throw new SetupError(`A program of Node that uses the package ends with code ${code}:\n${output}`);
 }
 
+/** Bundlers that know nothing of addresses in code keep the weights, too: a page without them would draw inverse kinematics for ever. */
+async function bundleWeights() {
+  const program = join(folder, 'weights.mjs');
+  writeFileSync(
+    program,
+    "import { loadLearned } from 'threepoint';\nif ((await loadLearned()).provider !== 'plain') process.exit(1);\n",
+  );
+  const out = (bundler) => join(folder, `bundled-by-${bundler}`);
+  await build({ entryPoints: [program], outdir: out('esbuild'), bundle: true, format: 'esm', splitting: true });
+  const bundle = await rolldown({ input: program, logLevel: 'silent' });
+  await bundle.write({ dir: out('rolldown') });
+  for (const bundler of ['esbuild', 'rolldown']) {
+    const { code, output } = await run(process.execPath, [join(out(bundler), 'weights.js')], { capture: true });
+    if (code !== 0) throw new SetupError(`A bundle by ${bundler} does not load the learned network:\n${output}`);
+  }
+}
+
 await main(async () => {
   await unpack();
   writeFileSync(join(folder, 'package.json'), '{ "type": "module" }');
   await compileConsumer();
   await runExample();
+  await bundleWeights();
 });

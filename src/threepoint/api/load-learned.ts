@@ -2,17 +2,17 @@ import contract from '../../../public/models/learned.json';
 import type { NetworkName } from '../core/estimation/estimators';
 import { createPlainRegressor, weightsOf } from '../core/estimation/learned-network';
 import type { ModelContract, PoseRegressor } from '../core/estimation/pose-regressor';
-import { fetchFile } from '../onnx/model-files';
+import { readOwnWeights } from './own-weights';
 
 export interface LearnedOptions {
-  /** Where another contract (.json) lies, its weights beside it; in Node on the disk as well (`file:`). Default: the weights that the package brings, whose contract is built in. */
+  /**
+   * The address of another contract (.json), with its weights in the same folder; in Node also a file (`file:`). Default: the network that the
+   * package brings.
+   */
   readonly modelUrl?: string | URL;
   /** Share [0, 1] of the weights that has arrived. */
   readonly onProgress?: (share: number) => void;
 }
-
-/** Stated where a bundler looks for files: it copies the weights and puts their address here. */
-const ownWeights = () => new URL('../../../public/models/learned.bin', import.meta.url);
 
 /**
  * The learned network without a runtime: 91 kB, answered within the frame. Rejects with a sentence that says what is wrong with which file.
@@ -24,7 +24,7 @@ export async function loadLearned({ modelUrl, onProgress }: LearnedOptions = {})
     return loadPlainRegressor(String(modelUrl), progress);
   }
   const own = contract as unknown as ModelContract;
-  return createPlainRegressor(own, await fetchFile(ownWeights().href, weightsOf(own), onProgress));
+  return createPlainRegressor(own, await readOwnWeights(weightsOf(own), onProgress));
 }
 
 /** The networks of who has no runtime. */
