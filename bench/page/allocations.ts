@@ -7,7 +7,7 @@ import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { createInferenceWorker } from 'threepoint/onnx/create-inference-worker';
 import { loadRegressor } from 'threepoint/onnx/load-regressor';
-import { createTracker } from 'threepoint/xr/tracker';
+import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { createRenderer } from 'threepoint-page/scene/renderer';
 import { createStudio } from 'threepoint-page/studio/studio';
 import { Court } from './court';
@@ -97,7 +97,7 @@ async function hands(): Promise<FrameOf> {
   const estimator = createEstimator('ik', defaultCalibration);
   const moves = Array.from({ length: preparedFrames }, (_, i) => actorFrame(i / rateHz, defaultCalibration));
   const device = trackedHandsDevice(moves);
-  const tracker = createTracker(device.session, device.floor);
+  const tracker = new TrackedSession(device);
   return (index) => {
     const time = index / rateHz;
     const frame = tracker.read(device.at(index), time);

@@ -80,10 +80,12 @@ export class PageFrame implements FrameParts<XRFrame> {
   }
 
   estimate(frame: TrackingFrame | null): AvatarPose | null {
-    const { source, impaired } = this.#options;
-    if (frame) return this.#replayed.update(this.#embodied, source.standIn);
-    impaired.reset();
-    return this.#replayed.update(null, source.standIn);
+    const { source, impaired, headset, body } = this.#options;
+    if (!frame) impaired.reset();
+    const embodied = frame && this.#embodied;
+    if (!headset.worn) return this.#replayed.update(embodied, source.standIn);
+    this.#replayed.stop();
+    return body.update(embodied);
   }
 
   skin(pose: AvatarPose): void {
@@ -137,11 +139,9 @@ export class PageFrame implements FrameParts<XRFrame> {
   }
 
   #turn(time: number): void {
-    const { headset, stage, body, activities } = this.#options;
+    const { headset, stage, activities } = this.#options;
     if (headset.takePress()) activities.ball?.voices.toggleMuted();
-    if (!headset.turnByStick()) return;
-    stage.vignette.close(time);
-    body.jumped();
+    if (headset.turnByStick()) stage.vignette.close(time);
   }
 
   #shot(time: number, frame: TrackingFrame | null): Shot {

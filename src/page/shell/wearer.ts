@@ -74,7 +74,9 @@ export class Wearer {
   recentre(): void {
     const { headset, view, body } = this.#options;
     if (headset.worn) headset.recentre();
-    else view.recentre();
-    body.jumped();
+    else {
+      view.recentre();
+      body.jumped();
+    }
   }
 }

@@ -5,15 +5,13 @@ import type { EstimatorName, InferenceRequest } from '../core/estimation/pose-es
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
+import { admittedFrames, type TrackedPoint, TrackingGate } from '../core/tracking/tracking-gate';
 import { type AfterFrame, createAfterFrame } from './after-frame';
 import { type AskTiming, withTiming } from './ask-timing';
 import { EstimatorChoice } from './estimator-choice';
 import { HeightPolicy } from './height-policy';
-import { SeenFrames, seenOf } from './seen-frames';
 
-/** A point that a headset tracks. */
-export type TrackedPoint = 'head' | 'left' | 'right';
-const trackedPoints = ['head', 'left', 'right'] as const;
+export type { TrackedPoint } from '../core/tracking/tracking-gate';
 
 /**
  * Where a body's measures come from: told by the page, the height at which a session began, a wearer who stood up taller, a stand-in who
@@ -71,8 +69,9 @@ export class BareBody {
   #events: BodyEvents;
   readonly #clock: Pick<PageClock, 'frame' | 'paused'>;
   readonly #timing: AskTiming | null;
-  readonly #frames = new SeenFrames();
-  readonly #seen: Record<TrackedPoint, boolean> = { head: false, left: false, right: false };
+  readonly #gate = new TrackingGate({
+    onChange: (point, tracked) => (tracked ? this.#events.found?.(point) : this.#events.lost?.(point)),
+  });
   #afterFrame: AfterFrame | null = null;
   /** In force: the wearer's, or those of a stand-in. */
   #calibration: Calibration;
@@ -203,10 +202,7 @@ export class BareBody {
    * throws.
    */
   update(tracked: TrackingFrame | null, standIn: Calibration | null = null): AvatarPose | null {
-    const frame = this.#frames.next(tracked);
-    this.#notice('head', frame !== null);
-    this.#notice('left', frame?.leftHand?.tracking === 'tracked');
-    this.#notice('right', frame?.rightHand?.tracking === 'tracked');
+    const frame = this.#gate.admit(tracked);
     if (frame === null) {
       this.#height.lose();
       return this.#pose;
@@ -226,7 +222,7 @@ export class BareBody {
    * where the body jumps meanwhile, or another method is chosen.
    */
   relive(frames: Iterable<TrackingFrame>): Promise<void> {
-    return this.#choice.relive(seenOf(frames), (pose) => {
+    return this.#choice.relive(admittedFrames(frames), (pose) => {
       this.#pose = pose;
     });
   }
@@ -241,7 +237,7 @@ export class BareBody {
 
   /** Forgets which points were seen, without a word: another session begins. */
   forgetPoints(): void {
-    for (const point of trackedPoints) this.#seen[point] = false;
+    this.#gate.reset();
   }
 
   /** Measures that a page gives, apart from its own object, unless it had them of this body. */
@@ -275,13 +271,6 @@ export class BareBody {
     this.#calibration = calibration;
     this.#choice.calibrate(calibration);
     this.#events.calibrated?.(calibration, source);
-  }
-
-  #notice(point: TrackedPoint, seen: boolean): void {
-    if (this.#seen[point] === seen) return;
-    this.#seen[point] = seen;
-    if (seen) this.#events.found?.(point);
-    else this.#events.lost?.(point);
   }
 
   /** Asks a network that answers later once the picture is on its way; a newer frame's question takes the place of one that still waits. */

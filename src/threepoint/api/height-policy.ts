@@ -1,4 +1,5 @@
 import { type Calibration, provisionalCalibration } from '../core/body/calibration';
+import { isTracked } from '../core/math/pose';
 import { createHeightWatch } from '../core/tracking/height-watch';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 
@@ -58,7 +59,7 @@ export class HeightPolicy {
 
   #settle({ time, head }: TrackingFrame): void {
     if (this.#settledSince === 'done') return;
-    if (head.tracking !== 'tracked') {
+    if (!isTracked(head)) {
       this.#settledSince = null;
       return;
     }

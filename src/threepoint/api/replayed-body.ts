@@ -57,8 +57,7 @@ export class ReplayedBody {
   update(frame: TrackingFrame | null, standIn: Calibration | null): AvatarPose | null {
     const { mode, paused } = this.#replay;
     if (!frame || mode !== 'replaying') {
-      this.#stood = 0;
-      this.#moment.recording = null;
+      this.stop();
       return this.#body.update(frame, standIn);
     }
     if (paused) return this.#stand(frame, standIn);
@@ -67,6 +66,12 @@ export class ReplayedBody {
     const pose = this.#body.update(this.#dated(frame), standIn);
     this.#arrive();
     return pose;
+  }
+
+  /** Forgets the replay that moved the body. */
+  stop(): void {
+    this.#stood = 0;
+    this.#moment.recording = null;
   }
 
   #stand(frame: TrackingFrame, standIn: Calibration | null): AvatarPose | null {

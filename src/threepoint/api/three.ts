@@ -9,7 +9,7 @@ import { reasonOf } from '../core/errors/reasons';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { DeviceBodyReader } from '../xr/device-body-reader';
-import { SessionReading } from '../xr/session-reading';
+import { TrackedSession } from '../xr/tracked-session';
 import type { CalibrationSource, TrackedPoint } from './bare-body';
 import type { MotionWriter } from './bare-export';
 import { Body, type BodyOptions } from './body';
@@ -95,15 +95,12 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   readonly #renderer: WebGLRenderer;
   readonly #deviceBody: boolean;
   readonly #object = new Group();
-  /** The renderer's, whose end is awaited. */
+  /** The renderer's session and its tracking; null: there is none. */
   #session: XRSession | null = null;
-  /** How that session is read; null before its first frame. */
-  #reading: SessionReading | null = null;
+  #tracked: TrackedSession | null = null;
   /** Whether the wearer's eyes are in the head that is drawn. */
   #firstPerson = false;
   #disposed = false;
-  readonly #jumped = () => this.body.jumped();
-  readonly #left = () => this.#leave();
 
   /** Throws a RangeError where the calibration is no person's. */
   constructor(renderer: WebGLRenderer, { avatar, modelUrl, deviceBody = false, ...options }: BodyTrackerOptions) {
@@ -179,13 +176,12 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   update(timeMs: number, frame: XRFrame | null | undefined): void {
     if (this.#disposed) return;
     const time = this.body.frame(timeMs);
-    const session = this.#attend();
-    // Before the first frame of a session the renderer may still have the space of the one before.
-    if (!session || !frame) return;
-    const reading = this.#reading ?? this.#enter(session);
-    if (!reading) return;
-    const tracked = reading.read(frame, time);
-    const { position, orientation } = reading.floorPose;
+    this.#attend();
+    const session = this.#tracked;
+    // The renderer may still have the space of the session before: the first frame starts the tracking.
+    if (!session || !frame || !session.start()) return;
+    const tracked = session.read(frame, time);
+    const { position, orientation } = session.floorPose;
     this.avatar.object.position.copy(position);
     this.avatar.object.quaternion.copy(orientation);
     this.#apply(tracked, null);
@@ -204,8 +200,8 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   /** The wearer stands at the floor's origin from now on and looks along −Z; the renderer's reference space moves along. */
   recentre(): void {
     if (this.#disposed) return;
-    this.#reading?.recentre();
-    this.body.jumped();
+    if (this.#tracked) this.#tracked.recentre();
+    else this.body.jumped();
   }
 
   /** Ends what it listens to and takes the avatar apart; no frame changes anything from then on. Resolves when every network is let go that was loaded for it. */
@@ -227,29 +223,29 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     this.#object.visible = true;
   }
 
-  /** The renderer's session; what was of another is over. */
-  #attend(): XRSession | null {
+  /** Follows the renderer's session; the tracking of the one before is over. */
+  #attend(): void {
     const session = this.#renderer.xr.getSession();
-    if (session === this.#session) return session;
+    if (session === this.#session) return;
     this.#leave();
     this.#session = session;
-    session?.addEventListener('end', this.#left);
-    return session;
-  }
-
-  #enter(session: XRSession): SessionReading | null {
-    const bodyReader = this.#deviceBody ? new DeviceBodyReader() : null;
-    this.#reading = SessionReading.of(session, this.#renderer.xr, bodyReader, this.#jumped);
-    if (this.#reading) this.body.begin();
-    return this.#reading;
+    this.#tracked =
+      session &&
+      new TrackedSession({
+        session,
+        drawing: this.#renderer.xr,
+        bodyReader: this.#deviceBody ? new DeviceBodyReader() : null,
+        onStart: () => this.body.begin(),
+        onDiscontinuity: () => this.body.jumped(),
+        onEnd: () => this.#leave(),
+      });
   }
 
   #leave(): void {
     if (!this.#session) return;
-    this.#session.removeEventListener('end', this.#left);
+    this.#tracked?.dispose();
+    this.#tracked = null;
     this.#session = null;
-    this.#reading?.dispose();
-    this.#reading = null;
     this.body.forgetPoints();
     this.#setFirstPerson(false);
     this.avatar.object.position.set(0, 0, 0);

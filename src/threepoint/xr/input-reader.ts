@@ -1,14 +1,8 @@
 import type { HandShape } from '../core/body/hand-shape';
 import { allReleased, type HandButtons } from '../core/input/button-presses';
-import type { Pose, TrackedPose } from '../core/math/pose';
-import { conjugate, fromAxisAngle, multiply, rotate } from '../core/math/quat';
+import type { TrackedPose } from '../core/math/pose';
 import { type Side, sides } from '../core/math/side';
-import { subtract, up } from '../core/math/vec3';
-import { headingOf } from '../core/tracking/heading';
-import type { TrackingFrame } from '../core/tracking/tracking-frame';
-import { Belief } from './believed';
 import { ControllerFingers, squeezeButton, triggerButton } from './controller-fingers';
-import type { DeviceBodyReader } from './device-body-reader';
 import { handleFit, wristFromGrip } from './grip-offsets';
 import { HandReader } from './hand-reader';
 import { toTrackedPose } from './tracked-pose';
@@ -25,152 +19,69 @@ const more = (a: HandButtons, b: HandButtons): HandButtons => ({
   pinch: Math.max(a.pinch, b.pinch),
 });
 
-/** How a side is tracked at the moment. */
+/** How a side is tracked. */
 export type InputKind = 'controller' | 'hand' | 'none';
 
 const kindOf = ({ hand, gripSpace }: XRInputSource): InputKind =>
   hand?.get('wrist') ? 'hand' : gripSpace ? 'controller' : 'none';
 
-/** XRFrame -> TrackingFrame: the only place that touches XRFrame. */
-export interface Tracker {
-  /** Head and wrists of this frame, floor frame; null while the head is not seen. Call it before any await of the frame. */
-  read(frame: XRFrame, time: number): TrackingFrame | null;
-  readonly kinds: Readonly<Record<Side, InputKind>>;
-  /** What both sides held until now, since the session began: mixed where it changed or differed. */
-  readonly input: 'controllers' | 'hands' | 'mixed';
-  /** How far the buttons of each side are pressed; a bare hand has a pinch and nothing else. */
-  readonly buttons: Readonly<Record<Side, HandButtons>>;
-  /** Moves the floor's origin under the head, its −Z to where the head looks, as of the last frame read. */
-  recentre(): void;
-  /** Turns the floor about the head by this angle [rad], to the left where it is above 0, as of the last frame read. */
-  turn(angle: number): void;
-  /** Which way a stick was pushed since the last call: 1 left, −1 right, 0 neither. One push is one turn. */
-  takeTurn(): -1 | 0 | 1;
-  /** Whether a stick was pressed down since the last call. */
-  takePress(): boolean;
-  /** Ends what it listens to: the session is over, or read by another tracker. */
-  dispose(): void;
-}
-
 /** A stick pushed this far to the side turns, and may turn again once it is back below the second. */
 const stickPushed = 0.7;
 const stickBack = 0.35;
-/** Where a stick's own button is among those of an “xr-standard” gamepad. */
+/** The index of a stick's button in an “xr-standard” gamepad. */
 const stickButton = 3;
 
-/**
- * Reads by handedness, never by index, so that swapped and returning controllers stay where they belong. `onSpace` hears of the
- * reference space that drawing must use too, after each `recentre` and `turn`. When the device recentres by itself, what was turned
- * here before is forgotten. Behind a menu of the device (session not `visible`) no hand is read: it is busy there. `bodyReader` reads the
- * device's own body into each frame; without it none is read.
- */
-export const createTracker = (
-  session: XRSession,
-  floor: XRReferenceSpace,
-  onSpace?: (space: XRReferenceSpace) => void,
-  bodyReader: DeviceBodyReader | null = null,
-): Tracker => new SessionTracker(session, floor, bodyReader, onSpace);
-
-class SessionTracker implements Tracker {
+/** Reads wrists, fingers and buttons of a session by handedness, never by index: swapped and returning devices keep their sides. */
+export class InputReader {
+  /** How each side was tracked in the newest frame. */
   readonly kinds: Record<Side, InputKind> = { left: 'none', right: 'none' };
+  /** How far the buttons of each side were pressed in the newest frame; a bare hand has a pinch and nothing else. */
   readonly buttons: Record<Side, HandButtons> = { left: allReleased, right: allReleased };
+  /** The finger bends of the newest frame, in memory that the next one overwrites. */
+  readonly fingers: Record<Side, HandShape | null> = { left: null, right: null };
   readonly #session: XRSession;
-  readonly #onSpace: ((space: XRReferenceSpace) => void) | undefined;
-  readonly #bodyReader: DeviceBodyReader | null;
   readonly #held = { controller: false, hand: false };
   readonly #sticks = new Sticks();
-  readonly #belief = new Belief();
-  readonly #fingers: Record<Side, HandShape | null> = { left: null, right: null };
   readonly #handReaders = { left: new HandReader('left'), right: new HandReader('right') };
   readonly #controllerFingers = { left: new ControllerFingers(), right: new ControllerFingers() };
-  /** Devices in the order in which they came. */
+  /** Input sources, numbered in the order in which they appeared. */
   readonly #devices = new WeakMap<XRInputSource, number>();
   #deviceCount = 0;
-  readonly #floor: XRReferenceSpace;
-  #space: XRReferenceSpace;
-  #lastHead: Pose<'floor'> | null = null;
-  readonly #reset = () => {
-    this.#lastHead = null;
-    if (this.#space !== this.#floor) this.#moveTo(this.#floor);
-  };
 
-  constructor(
-    session: XRSession,
-    floor: XRReferenceSpace,
-    bodyReader: DeviceBodyReader | null,
-    onSpace?: (space: XRReferenceSpace) => void,
-  ) {
+  constructor(session: XRSession) {
     this.#session = session;
-    this.#bodyReader = bodyReader;
-    this.#floor = floor;
-    this.#space = floor;
-    this.#onSpace = onSpace;
-    floor.addEventListener('reset', this.#reset);
   }
 
-  get input(): Tracker['input'] {
+  /** The inputs used since the session began: 'mixed' where they changed or differed between the sides. */
+  get input(): 'controllers' | 'hands' | 'mixed' {
     const { controller, hand } = this.#held;
     if (controller && hand) return 'mixed';
     return hand ? 'hands' : 'controllers';
   }
 
-  read(frame: XRFrame, time: number): TrackingFrame | null {
-    const viewer = frame.getViewerPose(this.#space);
-    const suspended = this.#session.visibilityState !== 'visible';
-    if (suspended) this.#sticks.waitForRelease();
-    else this.#sticks.watch(this.#session.inputSources);
-    const { left, right } = this.#readHands(frame, suspended, time);
-    const head = viewer && toTrackedPose(viewer);
-    if (!head) return null;
-    this.#lastHead = head;
-    const deviceBody = this.#bodyReader?.read(frame, this.#space);
-    const poses = { time, head, leftHand: left, rightHand: right, fingers: this.#fingers };
-    return this.#belief.of({ ...poses, ...(deviceBody && { deviceBody }), ...(suspended && { suspended }) });
-  }
-
-  recentre(): void {
-    const head = this.#lastHead;
-    if (!head) return;
-    const turned = headingOf(head.orientation);
-    const origin = { ...head.position, y: 0 };
-    // The new space's origin in the old one: under the head, turned as it looks.
-    this.#moveTo(this.#space.getOffsetReferenceSpace(new XRRigidTransform({ ...origin, w: 1 }, turned)));
-    const { y } = head.position;
-    this.#lastHead = { position: { x: 0, y, z: 0 }, orientation: multiply(conjugate(turned), head.orientation) };
-  }
-
-  turn(angle: number): void {
-    const head = this.#lastHead;
-    if (!head) return;
-    const oldFromNew = fromAxisAngle(up, -angle);
-    const under = { ...head.position, y: 0 };
-    // The head stays where it is, and everything turns about it.
-    const origin = subtract(under, rotate(oldFromNew, under));
-    this.#moveTo(this.#space.getOffsetReferenceSpace(new XRRigidTransform({ ...origin, w: 1 }, oldFromNew)));
-    this.#lastHead = { ...head, orientation: multiply(conjugate(oldFromNew), head.orientation) };
-  }
-
+  /** Returns −1 or 1 once for each push of a stick to the right or left; else 0. */
   takeTurn(): -1 | 0 | 1 {
     return this.#sticks.take();
   }
 
+  /** Returns whether a stick was pressed down since the last call. */
   takePress(): boolean {
     return this.#sticks.takePress();
   }
 
-  dispose(): void {
-    this.#floor.removeEventListener('reset', this.#reset);
-  }
-
-  #moveTo(next: XRReferenceSpace): void {
-    this.#space = next;
-    this.#onSpace?.(next);
-  }
-
-  /** The wrists of this frame; kinds and buttons are those of this frame too. */
-  #readHands(frame: XRFrame, suspended: boolean, time: number): Record<Side, TrackedPose | null> {
-    const { kinds, buttons } = this;
-    const fingers = this.#fingers;
+  /**
+   * Returns the wrists of this frame in the space, and updates kinds, buttons and fingers; null: not seen. While the session is `suspended`
+   * behind a menu of the device, no hand is read: it is busy there.
+   */
+  read(
+    frame: XRFrame,
+    space: XRReferenceSpace,
+    time: number,
+    suspended: boolean,
+  ): Readonly<Record<Side, TrackedPose | null>> {
+    const { kinds, buttons, fingers } = this;
+    if (suspended) this.#sticks.waitForRelease();
+    else this.#sticks.watch(this.#session.inputSources);
     const hands: Record<Side, TrackedPose | null> = { left: null, right: null };
     for (const side of sides) {
       kinds[side] = 'none';
@@ -180,9 +91,9 @@ class SessionTracker implements Tracker {
     if (suspended) return hands;
     for (const source of this.#session.inputSources) {
       const side = source.handedness;
-      if (side === 'none' || this.#tellsOfHandAgain(source)) continue;
-      const pose = this.#readHand(frame, source, side, time);
-      // A device may list a controller that lies on the table beside the hand that left it: what is seen wins.
+      if (side === 'none' || this.#repeatsHand(source)) continue;
+      const pose = this.#readHand(frame, space, source, time);
+      // A device may list a controller on the table as well as the hand that left it: the source that is seen wins.
       const wins = pose !== null && (hands[side] === null || pose.tracking === 'tracked');
       if (wins) {
         hands[side] = pose;
@@ -202,8 +113,8 @@ class SessionTracker implements Tracker {
     return hands;
   }
 
-  /** A pinch that a device tells of as a pointer of its own, for as long as it lasts: where it tells of the hand as well, that has it all. */
-  #tellsOfHandAgain({ targetRayMode, handedness }: XRInputSource): boolean {
+  /** Returns whether a source is the transient pointer of a pinch whose hand the device reports as well: the hand has all of it. */
+  #repeatsHand({ targetRayMode, handedness }: XRInputSource): boolean {
     if (targetRayMode !== 'transient-pointer') return false;
     for (const other of this.#session.inputSources) {
       if (other.handedness === handedness && other.targetRayMode !== 'transient-pointer') return true;
@@ -211,16 +122,17 @@ class SessionTracker implements Tracker {
     return false;
   }
 
-  #readHand(frame: XRFrame, source: XRInputSource, side: Side, time: number): TrackedPose | null {
-    if (source.hand?.get('wrist')) return this.#handReaders[side].read(frame, source.hand, this.#space, time);
+  #readHand(frame: XRFrame, space: XRReferenceSpace, source: XRInputSource, time: number): TrackedPose | null {
+    const side = source.handedness as Side;
+    if (source.hand?.get('wrist')) return this.#handReaders[side].read(frame, source.hand, space, time);
     if (!source.gripSpace) return null;
-    const grip = frame.getPose(source.gripSpace, this.#space);
+    const grip = frame.getPose(source.gripSpace, space);
     if (!grip) return null;
     const tracked = toTrackedPose(grip);
     return tracked && { ...wristFromGrip(tracked, side, handleFit(source.profiles)), tracking: tracked.tracking };
   }
 
-  /** What a source that was just read presses: of a bare hand the pinch; its gamepad would only say so once it is over. */
+  /** Returns the buttons of a source that was just read; a bare hand has its pinch, which its gamepad reports only at its end. */
   #pressedBy(source: XRInputSource, side: Side): HandButtons {
     if (!source.hand) return pressed(source.gamepad);
     const { pinch } = this.#handReaders[side];
@@ -240,7 +152,7 @@ class SessionTracker implements Tracker {
   }
 }
 
-/** The sticks of a session's controllers: one push to the side is one turn, and one press is one press. */
+/** Detects pushes to the side and presses of the controllers' sticks. */
 class Sticks {
   #pushed = false;
   #wanted: -1 | 0 | 1 = 0;
@@ -264,7 +176,7 @@ class Sticks {
     }
   }
 
-  /** A stick that is pushed now turns only after it was back. */
+  /** Ignores sticks that are pushed or pressed now until they were released. */
   waitForRelease(): void {
     this.#pushed = true;
     this.#down = true;

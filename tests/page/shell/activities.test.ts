@@ -79,7 +79,7 @@ function page() {
       seen.aims = on;
     },
   };
-  const headset = { worn: false, emulator: null, buttons: nothingPressed, read: () => null };
+  const headset = { worn: false, emulator: null, tracking: null };
   const recorder = new Recorder();
   const study = new PageStudy();
   const common = { settings, stage, mouse, headset, body: { calibration: defaultCalibration } };

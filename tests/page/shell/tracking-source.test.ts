@@ -24,10 +24,8 @@ function worn() {
   const source = new TrackingSource({
     settings: { actor: true },
     headset: {
-      worn: true,
       emulator: null,
-      buttons: nothingPressed,
-      read: (_, time) => actorFrame(time, defaultCalibration),
+      tracking: { inputs: { buttons: nothingPressed }, read: (_, time) => actorFrame(time, defaultCalibration) },
     },
     recorder,
     body,
@@ -46,7 +44,7 @@ test('with the actor off before a real headset is put on, the body stands still'
   const asked: number[] = [];
   const source = new TrackingSource({
     settings: { actor: false },
-    headset: { worn: false, emulator: null, buttons: nothingPressed, read: () => null },
+    headset: { emulator: null, tracking: null },
     recorder: new Recorder(),
     body: { wearerCalibration: defaultCalibration },
     actor: createActor(),

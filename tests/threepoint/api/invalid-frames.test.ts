@@ -1,10 +1,10 @@
 import { Body } from 'threepoint/api/body';
-import { SeenFrames } from 'threepoint/api/seen-frames';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { TrackedPose } from 'threepoint/core/math/pose';
 import { deviceBodySize } from 'threepoint/core/tracking/device-body';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { TrackingGate } from 'threepoint/core/tracking/tracking-gate';
 import { describe, expect, test } from 'vitest';
 import { movingPerson } from '../core/estimation/moving-person';
 import { openPlainModel } from '../core/estimation/shipped-models';
@@ -139,7 +139,7 @@ test('a moment is relived without what is no place', async () => {
 });
 
 test('a frame without a slip is taken as it is: nothing is copied', () => {
-  const frames = new SeenFrames();
+  const gate = new TrackingGate();
   const whole = { ...at(0), deviceBody: new Float32Array(deviceBodySize) };
-  for (const frame of [at(0), { ...at(0), leftHand: null }, whole]) expect(frames.next(frame)).toBe(frame);
+  for (const frame of [at(0), { ...at(0), leftHand: null }, whole]) expect(gate.admit(frame)).toBe(frame);
 });

@@ -13,7 +13,7 @@ import { makePose, type Pose } from 'threepoint/core/math/pose';
 import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { addScaled, distance, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { createTracker } from 'threepoint/xr/tracker';
+import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { afterEach, describe, expect, test, vi } from 'vitest';
 import { tell } from '../../tell';
 import { fakeHeadset } from '../xr/fake-headset';
@@ -32,9 +32,9 @@ const wrists: Readonly<Record<Side, Pose<'floor'>>> = {
 
 /** What the tracker says of both hands when a headset sees them so. */
 function seen(hand: RecordedHand): Readonly<Record<Side, HandShape>> {
-  const { session, floor, frame, setInputs } = fakeHeadset();
+  const { session, drawing, frame, setInputs } = fakeHeadset();
   setInputs(trackedHand('left', wrists.left, hand), trackedHand('right', wrists.right, hand));
-  const { fingers } = createTracker(session, floor).read(frame, 1)!;
+  const { fingers } = new TrackedSession({ session, drawing }).read(frame, 1)!;
   return { left: fingers!.left!, right: fingers!.right! };
 }
 
