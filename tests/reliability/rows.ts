@@ -55,14 +55,22 @@ export const faultRows = {
     inject: 'A controller off and on, both off, their handedness swapped while holding',
     sees: 'Ball and bow are let go of or taken over by handedness',
     target: '0 stuck in a hand, 0 thrown or shot',
-    tests: ['tests/reliability/controllers.test.ts', 'tests/threepoint/xr/tracked-session.test.ts', 'e2e/page/archery.spec.ts'],
+    tests: [
+      'tests/reliability/controllers.test.ts',
+      'tests/threepoint/xr/tracked-session.test.ts',
+      'e2e/page/archery.spec.ts',
+    ],
     manual: ['Take a battery out of the controller that holds a ball: the ball goes back to the rack.'],
   },
   'changing-hands': {
     inject: 'Controllers → hands → controllers, ten times while drawing',
     sees: 'The right kind each time, the draw cancelled',
     target: '10 of 10 cancelled, 0 shots, 0 leaks',
-    tests: ['tests/reliability/controllers.test.ts', 'tests/threepoint/xr/tracked-session.test.ts', 'e2e/page/hands.spec.ts'],
+    tests: [
+      'tests/reliability/controllers.test.ts',
+      'tests/threepoint/xr/tracked-session.test.ts',
+      'e2e/page/hands.spec.ts',
+    ],
     manual: ['Lay the controllers down and take them up again while drawing.'],
   },
   'space-reset': {

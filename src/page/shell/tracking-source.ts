@@ -1,4 +1,4 @@
-import type { BareBody } from 'threepoint/api/bare-body';
+import type { BodySolver } from 'threepoint/api/body-solver';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
@@ -18,7 +18,7 @@ export interface TrackingSourceOptions {
   readonly settings: Pick<Settings, 'actor'>;
   readonly headset: Pick<Headset, 'emulator'> & { readonly tracking: SessionTracking | null };
   readonly recorder: Pick<Recorder, 'sample' | 'person' | 'giveWay'>;
-  readonly body: Pick<BareBody, 'wearerCalibration'>;
+  readonly body: Pick<BodySolver, 'wearerCalibration'>;
   readonly actor: Pick<Actor, 'frameAt' | 'standAt'>;
   readonly activities: Pick<Activities, 'begin' | 'act' | 'watched'>;
   readonly study: Pick<PageStudy, 'idle'>;

@@ -1,6 +1,6 @@
+import { type AvatarRef, plainAvatar } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { plainAvatar, type WornAvatar } from 'threepoint/core/body/worn-avatar';
 import type { Transform } from 'threepoint/core/math/pose';
 import type { BallRoomMessage } from 'threepoint-games/ball/ball-messages';
 import type { BallDeed, BallEvent } from 'threepoint-games/ball/ball-state';
@@ -43,7 +43,7 @@ export abstract class RoomSession implements Connection {
   readonly #clock = createClockSync();
   readonly #replica = new RoomReplica();
   #calibration: Calibration;
-  #avatar: WornAvatar;
+  #avatar: AvatarRef;
   #voice: Voice | null = null;
   #voiceListener: VoiceListener | null = null;
   #skeleton: Skeleton;
@@ -140,7 +140,7 @@ export abstract class RoomSession implements Connection {
     if (this.#replica.known) this.transmit({ type: 'calibration', calibration: this.#calibration });
   }
 
-  wear(avatar: WornAvatar): void {
+  wear(avatar: AvatarRef): void {
     if (avatar === this.#avatar) return;
     this.#avatar = avatar;
     if (this.#replica.known) this.transmit({ type: 'wear', avatar });

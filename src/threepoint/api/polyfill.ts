@@ -121,8 +121,8 @@ class SessionBody {
       session: this.#session,
       // The page draws where it likes: estimates are in the floor's space.
       drawing: { getReferenceSpace: () => floor, setReferenceSpace: () => undefined },
-      onStart: () => this.#body.begin(),
-      onDiscontinuity: () => this.#body.jumped(),
+      onStart: () => this.#body.startSession(),
+      onDiscontinuity: () => this.#body.discontinuity(),
       onEnd: () => this.#end(),
     });
     this.#tracked.start();
@@ -130,7 +130,7 @@ class SessionBody {
 
   #end(): void {
     this.#tracked = null;
-    this.#body.forgetPoints();
+    this.#body.endSession();
   }
 
   frame(timeMs: number): void {
@@ -191,7 +191,7 @@ class SessionBody {
   #estimate(frame: XRFrame): XRBodyJoints | null {
     if (this.#estimatedMs === this.#frameMs || !this.#tracked) return this.#joints;
     this.#estimatedMs = this.#frameMs;
-    const time = this.#body.frame(this.#frameMs);
+    const time = this.#body.tick(this.#frameMs);
     const tracked = this.#tracked.read(frame, time);
     const pose = this.#body.update(tracked);
     // One body serves all sessions: until this one sees the head, its pose is of the session before.

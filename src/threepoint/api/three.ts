@@ -10,10 +10,10 @@ import type { EstimatorName } from '../core/estimation/pose-estimator';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { DeviceBodyReader } from '../xr/device-body-reader';
 import { TrackedSession } from '../xr/tracked-session';
-import type { CalibrationSource, TrackedPoint } from './bare-body';
-import type { MotionWriter } from './bare-export';
 import { Body, type BodyOptions } from './body';
+import type { CalibrationSource, TrackedPoint } from './body-solver';
 import { loadLearned } from './load-learned';
+import type { MotionWriter } from './motion-export';
 
 export type { Avatar } from '../avatar/avatar';
 export type { BoneMap } from '../avatar/humanoid/bone-names';
@@ -76,12 +76,12 @@ export interface BodyTrackerOptions extends Omit<BodyOptions, 'events'> {
 
 export interface BodyTrackerEvents {
   readonly calibrated: { readonly calibration: Calibration; readonly source: CalibrationSource };
-  readonly outgrown: { readonly difference: number };
+  readonly heightmismatch: { readonly difference: number };
   readonly fallback: { readonly estimator: EstimatorName; readonly reason: string };
   readonly changed: object;
-  readonly jumped: object;
-  readonly lost: { readonly point: TrackedPoint };
-  readonly found: { readonly point: TrackedPoint };
+  readonly discontinuity: object;
+  readonly trackinglost: { readonly point: TrackedPoint };
+  readonly trackingfound: { readonly point: TrackedPoint };
 }
 
 /**
@@ -117,18 +117,18 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
       ...options,
       events: {
         calibrated: (calibration, source) => {
-          avatar.fitTo(calibration);
+          avatar.setCalibration(calibration);
           this.dispatchEvent({ type: 'calibrated', calibration, source });
         },
-        outgrown: (difference) => this.dispatchEvent({ type: 'outgrown', difference }),
+        heightmismatch: (difference) => this.dispatchEvent({ type: 'heightmismatch', difference }),
         changed: () => this.dispatchEvent({ type: 'changed' }),
-        jumped: () => this.dispatchEvent({ type: 'jumped' }),
+        discontinuity: () => this.dispatchEvent({ type: 'discontinuity' }),
         fallback: (estimator, reason) => this.dispatchEvent({ type: 'fallback', estimator, reason }),
-        lost: (point) => this.dispatchEvent({ type: 'lost', point }),
-        found: (point) => this.dispatchEvent({ type: 'found', point }),
+        trackinglost: (point) => this.dispatchEvent({ type: 'trackinglost', point }),
+        trackingfound: (point) => this.dispatchEvent({ type: 'trackingfound', point }),
       },
     });
-    avatar.fitTo(this.body.calibration);
+    avatar.setCalibration(this.body.calibration);
     this.#object.name = 'body';
     this.#object.add(avatar.object);
     this.#object.visible = false;
@@ -160,8 +160,8 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   }
 
   /** Resolves when this estimator draws, or when the event `fallback` told why it cannot. */
-  choose(estimator: EstimatorName): Promise<void> {
-    return this.body.choose(estimator);
+  setEstimator(estimator: EstimatorName): Promise<void> {
+    return this.body.setEstimator(estimator);
   }
 
   /** The wearer's measures [m], or 'auto'. Throws a RangeError where they are no person's. */
@@ -175,7 +175,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
    */
   update(timeMs: number, frame: XRFrame | null | undefined): void {
     if (this.#disposed) return;
-    const time = this.body.frame(timeMs);
+    const time = this.body.tick(timeMs);
     this.#attend();
     const session = this.#tracked;
     // The renderer may still have the space of the session before: the first frame starts the tracking.
@@ -191,7 +191,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
    * The same from head and wrists that the page has itself, floor frame [m, s]: of another device of the wearer's, or of a stand-in with these
    * measures (an actor, a recording).
    */
-  follow(frame: TrackingFrame | null, standIn: Calibration | null = null): void {
+  updateFrom(frame: TrackingFrame | null, standIn: Calibration | null = null): void {
     if (this.#disposed) return;
     this.#attend();
     this.#apply(frame, standIn);
@@ -201,7 +201,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   recentre(): void {
     if (this.#disposed) return;
     if (this.#tracked) this.#tracked.recentre();
-    else this.body.jumped();
+    else this.body.discontinuity();
   }
 
   /** Ends what it listens to and takes the avatar apart; no frame changes anything from then on. Resolves when every network is let go that was loaded for it. */
@@ -219,7 +219,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     if (!tracked || !pose) return;
     this.avatar.setFingers('left', tracked.fingers?.left ?? null);
     this.avatar.setFingers('right', tracked.fingers?.right ?? null);
-    this.avatar.apply(pose, tracked.time);
+    this.avatar.setPose(pose, tracked.time);
     this.#object.visible = true;
   }
 
@@ -235,8 +235,8 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
         session,
         drawing: this.#renderer.xr,
         bodyReader: this.#deviceBody ? new DeviceBodyReader() : null,
-        onStart: () => this.body.begin(),
-        onDiscontinuity: () => this.body.jumped(),
+        onStart: () => this.body.startSession(),
+        onDiscontinuity: () => this.body.discontinuity(),
         onEnd: () => this.#leave(),
       });
   }
@@ -246,7 +246,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     this.#tracked?.dispose();
     this.#tracked = null;
     this.#session = null;
-    this.body.forgetPoints();
+    this.body.endSession();
     this.#setFirstPerson(false);
     this.avatar.object.position.set(0, 0, 0);
     this.avatar.object.quaternion.identity();

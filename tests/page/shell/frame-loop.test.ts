@@ -31,7 +31,7 @@ function observedParts(change: Partial<FrameParts<string>> = {}) {
     fail: (error) => void calls.push(`fail ${String(error)}`),
     ...change,
   };
-  const body = new Body({ estimator: 'ik', events: { jumped: () => void calls.push('jumped') } });
+  const body = new Body({ estimator: 'ik', events: { discontinuity: () => void calls.push('jumped') } });
   return {
     calls,
     loop: createFrameLoop(

@@ -1,4 +1,4 @@
-import { BareBody } from 'threepoint/api/bare-body';
+import { BodySolver } from 'threepoint/api/body-solver';
 import { ReplayedBody } from 'threepoint/api/replayed-body';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
@@ -15,7 +15,7 @@ const skeleton = skeletonFromCalibration(defaultCalibration);
 /** A page whose headset is worn by a person who moves as the actor does, with its recorder and its body. */
 function worn() {
   const recorder = new Recorder();
-  const body = new BareBody({
+  const body = new BodySolver({
     estimator: 'ik',
     calibration: defaultCalibration,
     networks: () => Promise.reject(new Error('inverse kinematics has none')),

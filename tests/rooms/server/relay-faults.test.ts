@@ -1,6 +1,6 @@
 // @module-tag full
 
-import { plainAvatar } from 'threepoint/core/body/worn-avatar';
+import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { nextRandom } from 'threepoint/core/math/random';
 import { ballKind } from 'threepoint-games/ball/ball-messages';
 import { createRemotePlayers } from 'threepoint-rooms/client/remote-players';

@@ -76,21 +76,21 @@ function skinEnds(avatar: Avatar): (side: Side, finger: FingerName) => Vec3 {
 /** The mannequin, whose hands are 18.7 cm long at this eye height, as the recorded ones are. */
 async function wearer(bytes = mannequin()) {
   const avatar = createAvatar(await parseAvatar(bytes, 'mannequin.vrm'));
-  avatar.fitTo({ eyeHeight: 1.59, armSpan: 1.39 });
+  avatar.setCalibration({ eyeHeight: 1.59, armSpan: 1.39 });
   const body = { head: { ...makePose<'floor'>(), tracking: 'tracked' as const }, body: null };
   const hands = {
     leftHand: { ...wrists.left, tracking: 'tracked' as const },
     rightHand: { ...wrists.right, tracking: 'tracked' as const },
   };
   for (const side of sides) avatar.setFingers(side, flatHand);
-  avatar.apply({ ...body, ...hands }, 0);
+  avatar.setPose({ ...body, ...hands }, 0);
   const end = skinEnds(avatar);
   return {
     avatar,
     end,
     show(shapes: Readonly<Record<Side, HandShape | null>>, time: number) {
       for (const side of sides) avatar.setFingers(side, shapes[side]);
-      avatar.apply({ ...body, ...hands }, time);
+      avatar.setPose({ ...body, ...hands }, time);
       avatar.object.updateMatrixWorld(true);
     },
   };

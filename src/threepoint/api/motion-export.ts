@@ -29,17 +29,17 @@ export interface MotionWriter {
   write(motion: Motion): Work<MotionFile['parts']>;
 }
 
-export interface BareExportOptions extends WorkOptions, BvhOptions {
+export interface MotionExportOptions extends WorkOptions, BvhOptions {
   readonly to: MotionFormat | MotionWriter;
   /** The method that draws the body between the points; default: 'learned'. */
   readonly estimator?: EstimatorName;
-  /** Brings the networks, as of a BareBody. What it brings is let go in the end. */
+  /** Brings the networks, as of a BodySolver. What it brings is let go in the end. */
   readonly networks: (name: NetworkName) => Promise<PoseRegressor>;
   /** Whose body; default: as the recording says, else by the height of its first frame. */
   readonly calibration?: Calibration | undefined;
 }
 
-function writerOf({ to, ...options }: BareExportOptions): MotionWriter {
+function writerOf({ to, ...options }: MotionExportOptions): MotionWriter {
   if (typeof to === 'object') return to;
   if (to === 'bvh') return { extension: 'bvh', type: 'text/plain', write: (motion) => writeBvh(motion, options) };
   if (to === 'csv') return { extension: 'csv', type: 'text/csv', write: writeCsv };
@@ -109,7 +109,7 @@ async function* exportWork(
   recording: Replayable,
   calibration: Calibration,
   regressor: PoseRegressor | null,
-  { estimator = 'learned' }: BareExportOptions,
+  { estimator = 'learned' }: MotionExportOptions,
   writer: MotionWriter,
 ): AsyncGenerator<number, MotionFile['parts']> {
   if (estimator === 'device') yield* demandBody(recording);
@@ -142,7 +142,7 @@ async function unlessGivenUp(loading: Promise<PoseRegressor>, signal: AbortSigna
  * sentence where the method draws no body or fails, no network comes, the measures are no person's, times do not rise, or the device's body is asked
  * for that no frame has; with the signal's reason where it is given up.
  */
-export async function exportMotionBare(recording: Replayable, options: BareExportOptions): Promise<MotionFile> {
+export async function exportMotionWith(recording: Replayable, options: MotionExportOptions): Promise<MotionFile> {
   const { estimator = 'learned', networks } = options;
   const writer = writerOf(options);
   const calibration = personOf(recording, options.calibration);
