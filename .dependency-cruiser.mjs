@@ -127,7 +127,7 @@ export default {
         'threepoint/polyfill serves pages of any engine: it reads sessions, and has neither three nor a runtime.',
       severity: 'error',
       from: { path: '^src/threepoint/api/polyfill\\.ts$' },
-      to: { path: '^src/threepoint/(avatar|onnx|xr/(?!tracker)|api/(three|onnx|onnx-worker))' },
+      to: { path: '^src/threepoint/(avatar|onnx|xr/(?!tracked-session)|api/(three|onnx|onnx-worker))' },
     },
     {
       name: 'library-draws-without-runtime',

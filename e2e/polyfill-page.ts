@@ -12,7 +12,7 @@ type FrameWithBody = XRFrame & {
 const device = new XRDevice(metaQuest3, { stereoEnabled: false });
 device.installRuntime({ forceInstall: true });
 const faults: string[] = [];
-const takeBack = installBodyTracking({ estimator: 'ik', onFault: (reason) => faults.push(reason) });
+const uninstall = installBodyTracking({ estimator: 'ik', onFault: (reason) => faults.push(reason) });
 
 function hold(height: number): void {
   device.position.set(0.3, 1.6, -0.2);
@@ -94,7 +94,7 @@ Object.assign(window, {
     const plain = await begin({ optionalFeatures: ['local-floor'] });
     const without = await after(plain, 2, (frame) => frame.body);
     await plain.end();
-    takeBack();
+    uninstall();
     const taken = !('body' in XRFrame.prototype);
     return { low, ...seen, enabled, without, taken, faults };
   },

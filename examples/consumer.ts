@@ -2,9 +2,9 @@
 import type { Scene, WebGLRenderer } from 'three';
 import {
   type AvatarPose,
-  BareBody,
   Body,
   type BodyEvents,
+  BodySolver,
   type Calibration,
   createPageClock,
   forwardKinematics,
@@ -23,12 +23,12 @@ import { type Avatar, avatarMotion, BodyTracker, type BodyTrackerEvents, loadAva
 /** With three.js, its session and an avatar. */
 export async function inTheHeadset(renderer: WebGLRenderer, scene: Scene): Promise<BodyTracker> {
   const avatar: Avatar = await loadAvatar('/avatars/me.glb', { bones: { hips: 'Hips', head: 'Head' } });
-  const body = new BodyTracker(renderer, { avatar, estimator: 'learned', calibration: 'auto', grows: false });
+  const body = new BodyTracker(renderer, { avatar, estimator: 'learned', calibration: 'auto', autoGrow: false });
   body.addEventListener('calibrated', ({ calibration, source }) => console.log(calibration.eyeHeight, source));
   body.addEventListener('fallback', ({ estimator, reason }: BodyTrackerEvents['fallback']) =>
     console.log(estimator, reason),
   );
-  body.addEventListener('lost', ({ point }) => console.log(point));
+  body.addEventListener('trackinglost', ({ point }) => console.log(point));
   scene.add(body.object);
   renderer.setAnimationLoop((timeMs, frame) => {
     body.update(timeMs, frame);
@@ -40,15 +40,18 @@ export async function inTheHeadset(renderer: WebGLRenderer, scene: Scene): Promi
 
 /** Without three.js, by the runtime, with a clock that the page shares and frame times that it measures. */
 export function withoutThree(options: OnnxOptions, recorded: TrackingFrame, person: Calibration): number | undefined {
-  const events: BodyEvents = { jumped: () => console.log('jumped'), outgrown: (difference) => console.log(difference) };
-  const body = new BareBody({
+  const events: BodyEvents = {
+    discontinuity: () => console.log('moved'),
+    heightmismatch: (difference) => console.log(difference),
+  };
+  const body = new BodySolver({
     estimator: 'paper',
     networks: onnxNetworks(options),
     clock: createPageClock(() => performance.now()),
-    timing: { resume: () => undefined, mark: (part: 'features' | 'inference') => console.log(part) },
+    profiler: { resume: () => undefined, mark: (part: 'features' | 'inference') => console.log(part) },
     events,
   });
-  const time = body.frame(performance.now());
+  const time = body.tick(performance.now());
   const pose: AvatarPose | null = body.update({ ...recorded, time }, person);
   return pose?.body
     ? forwardKinematics(skeletonFromCalibration(body.calibration), pose.body).head.position.y

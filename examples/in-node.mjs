@@ -13,7 +13,7 @@ const frames = Array.from({ length: 60 }, (_, i) => ({
 }));
 
 const body = new Body({ calibration });
-await body.choose('learned');
+await body.setEstimator('learned');
 if (body.estimator !== 'learned') throw new Error(body.unavailable.learned);
 for (const frame of frames) body.update(frame);
 const joints = forwardKinematics(skeletonFromCalibration(calibration), body.pose.body);

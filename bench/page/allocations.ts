@@ -7,7 +7,7 @@ import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { createInferenceWorker } from 'threepoint/onnx/create-inference-worker';
 import { loadRegressor } from 'threepoint/onnx/load-regressor';
-import { createTracker } from 'threepoint/xr/tracker';
+import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { createRenderer } from 'threepoint-page/scene/renderer';
 import { createStudio } from 'threepoint-page/studio/studio';
 import { Court } from './court';
@@ -68,7 +68,7 @@ async function crowd(): Promise<FrameOf> {
   const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
   const court = new Court(studio, mannequin, bodies);
   const avatar = createAvatar(await parseAvatar(mannequin, 'mannequin.vrm'));
-  avatar.fitTo(defaultCalibration);
+  avatar.setCalibration(defaultCalibration);
   studio.scene.add(avatar.object);
   const estimator = createEstimator('ik', defaultCalibration);
   const senders = createSenders(bodies - 1);
@@ -78,7 +78,7 @@ async function crowd(): Promise<FrameOf> {
   return (index) => {
     const time = index / rateHz;
     const frame = frames[index % preparedFrames]!;
-    avatar.apply(estimator.update(frame).pose, time);
+    avatar.setPose(estimator.update(frame).pose, time);
     if (index % framesPerPacket === 0) court.receive(packets[(index % preparedFrames) / framesPerPacket]!, time);
     court.showOthers(time);
     court.showCourt(time, frame.head);
@@ -91,20 +91,20 @@ async function hands(): Promise<FrameOf> {
   const { renderer, studio, camera, draw } = picture();
   const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
   const avatar = createAvatar(await parseAvatar(mannequin, 'mannequin.vrm'));
-  avatar.fitTo(defaultCalibration);
+  avatar.setCalibration(defaultCalibration);
   const mirror = createMirror({ distance: 1.5, resolution: 256, samples: 0 });
   studio.scene.add(mirror.object, avatar.object);
   const estimator = createEstimator('ik', defaultCalibration);
   const moves = Array.from({ length: preparedFrames }, (_, i) => actorFrame(i / rateHz, defaultCalibration));
   const device = trackedHandsDevice(moves);
-  const tracker = createTracker(device.session, device.floor);
+  const tracker = new TrackedSession(device);
   return (index) => {
     const time = index / rateHz;
     const frame = tracker.read(device.at(index), time);
     if (!frame) throw new Error('the device sees no head');
     avatar.setFingers('left', frame.fingers?.left ?? null);
     avatar.setFingers('right', frame.fingers?.right ?? null);
-    avatar.apply(estimator.update(frame).pose, time);
+    avatar.setPose(estimator.update(frame).pose, time);
     mirror.reflect(renderer, studio.scene, camera);
     draw();
   };

@@ -70,7 +70,7 @@ export async function measureArchery(stage: ArcheryStage): Promise<Record<Estima
         const { state, bow, time, events, cues } = round.play.follow(frame, buttons);
         view.hear(events, cues);
         const { pose, request } = estimator.update(frame);
-        avatar.apply(pose, frame.time);
+        avatar.setPose(pose, frame.time);
         view.show(state, bow, time, frame.head);
         mirror.reflect(renderer, studio.scene, camera);
         renderer.render(studio.scene, camera);

@@ -69,7 +69,7 @@ async function measureCrowd(
     const started = performance.now();
     const frame = actorFrame(time, defaultCalibration);
     const { pose, request } = estimator.update(frame);
-    avatar.apply(pose, frame.time);
+    avatar.setPose(pose, frame.time);
     const receiving = performance.now();
     court.receive(due, time);
     court.showOthers(time);

@@ -1,9 +1,9 @@
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { createRemoteAvatars, type SeenPerson } from 'threepoint/avatar/remote-avatars';
+import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { plainAvatar } from 'threepoint/core/body/worn-avatar';
 import { composeTransforms, invertTransform, type TrackedPose } from 'threepoint/core/math/pose';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { createBallView } from 'threepoint-page/ball/ball-view';

@@ -69,7 +69,7 @@ export async function measureSixteen(
     const packets = due && everyone ? packetsAt(time) : [];
     const frame = actorFrame(time, defaultCalibration);
     const started = performance.now();
-    avatar.apply(estimator.update(frame).pose, frame.time);
+    avatar.setPose(estimator.update(frame).pose, frame.time);
     const own = performance.now();
     court.receive(packets, time);
     const received = performance.now();

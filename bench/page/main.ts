@@ -111,7 +111,7 @@ async function openPicture() {
   const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
   const avatar = createAvatar(await parseAvatar(mannequin, 'mannequin.vrm'));
   studio.scene.add(mirror.object, avatar.object);
-  avatar.fitTo(defaultCalibration);
+  avatar.setCalibration(defaultCalibration);
   const camera = new PerspectiveCamera(42, 480 / 270, 0.05, 90);
   camera.position.set(1.9, 1.5, 2.75);
   camera.lookAt(0, 1, -0.4);
@@ -131,7 +131,7 @@ const loadNetwork = (name: NetworkName): Promise<PoseRegressor> =>
   loadRegressor(`/models/${name}.json`, { createWorker: createInferenceWorker });
 
 /** Every round is dated alike: the same motion for every method. */
-const roundClock = { frame: (timestampMs: number) => timestampMs / 1000, paused: false };
+const roundClock = { tick: (timestampMs: number) => timestampMs / 1000, paused: false };
 
 /** A body for each method, as the page has one. */
 async function openBodies(timing: FrameTiming): Promise<Record<EstimatorName, Body>> {
@@ -142,9 +142,9 @@ async function openBodies(timing: FrameTiming): Promise<Record<EstimatorName, Bo
       calibration: defaultCalibration,
       networks: loadNetwork,
       clock: roundClock,
-      timing,
+      profiler: timing,
     });
-    await body.choose(name);
+    await body.setEstimator(name);
     if (body.estimator !== name) throw new Error(`${name}: ${body.unavailable[name]}`);
     bodies[name] = body;
   }
@@ -252,7 +252,7 @@ class FrameBench {
         observe: () => undefined,
         estimate: (frame) => this.#bodies[this.#method].update(frame, defaultCalibration),
         skin: (pose, frame) => {
-          this.#picture.avatar.apply(pose, frame.time);
+          this.#picture.avatar.setPose(pose, frame.time);
           if (pose.body) this.#skinned = pose;
         },
         render: () => this.#draw(),
@@ -285,7 +285,7 @@ class FrameBench {
     const { inFrame, withLater, whole, thread } = this.#measured[condition];
     const gl = this.#picture.renderer.getContext();
     if (name !== 'ccdik') this.#method = name;
-    for (const body of Object.values(this.#bodies)) body.jumped();
+    for (const body of Object.values(this.#bodies)) body.discontinuity();
     for (let i = 0; i < settleFrames + blockFrames; i++) {
       await nextFrame();
       // The same motion for every method of a round: what a picture costs depends on what it shows.
@@ -321,7 +321,7 @@ class FrameBench {
     this.#inFrameMs = performance.now() - solving;
     this.#withLaterMs = this.#inFrameMs;
     // It solves a rig of its own; the avatar is skinned all the same, so that the frame is as much work.
-    if (this.#skinned) this.#picture.avatar.apply(this.#skinned, frame.time);
+    if (this.#skinned) this.#picture.avatar.setPose(this.#skinned, frame.time);
     this.#draw();
   }
 }

@@ -71,12 +71,12 @@ export function trackedHandsDevice(frames: readonly TrackingFrame[]) {
       return matrices !== null;
     },
   };
+  const floor = new EventTarget() as unknown as XRReferenceSpace;
+  const session = new EventTarget() as unknown as XRSession;
+  const inputSources = [sourceOf('left'), sourceOf('right')];
   return {
-    session: {
-      visibilityState: 'visible',
-      inputSources: [sourceOf('left'), sourceOf('right')],
-    } as unknown as XRSession,
-    floor: new EventTarget() as unknown as XRReferenceSpace,
+    session: Object.assign(session, { visibilityState: 'visible', inputSources }),
+    drawing: { getReferenceSpace: () => floor, setReferenceSpace: () => undefined },
     /** The next frame of the device; the same object every time. */
     at(index: number): XRFrame {
       now = seen[index % seen.length];

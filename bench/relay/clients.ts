@@ -1,9 +1,9 @@
 // The load, in a process of its own: lean clients that speak WebSocket without socket.io's client, so that the relay is what is measured.
 
+import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { relaxedHand } from 'threepoint/core/body/hand-shape';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { plainAvatar } from 'threepoint/core/body/worn-avatar';
 import { createIk } from 'threepoint/core/estimation/estimators';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { ballKind } from 'threepoint-games/ball/ball-messages';

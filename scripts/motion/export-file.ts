@@ -1,6 +1,6 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { basename, extname, join } from 'node:path';
-import { exportMotionBare, type MotionWriter } from 'threepoint/api/bare-export';
+import { exportMotionWith, type MotionWriter } from 'threepoint/api/motion-export';
 import { type MotionFormat, motionFormats } from 'threepoint/api/motion-formats';
 import type { WorkOptions } from 'threepoint/api/run-work';
 import { avatarClip } from 'threepoint/avatar/avatar-clip';
@@ -90,7 +90,7 @@ export async function exportFile(request: MotionRequest, work: WorkOptions = {})
   } catch (error) {
     throw new MotionError(`${basename(file)}: ${reasonOf(error)}`);
   }
-  const made = await exportMotionBare(recording, { ...options, ...work, to, estimator: name, networks: network });
+  const made = await exportMotionWith(recording, { ...options, ...work, to, estimator: name, networks: network });
   const out = request.out ?? join(file, '..', `${basename(file, extname(file))}.${made.extension}`);
   work.signal?.throwIfAborted();
   try {

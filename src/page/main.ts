@@ -82,7 +82,7 @@ async function start(): Promise<void> {
 
   // The way to the first body: the chosen network loads beside the avatar, and IK draws until it is there.
   const sessionsOffered = offerSessions(headset, enterButton);
-  const chosen = body.choose(switches.estimator ?? store.preferences.estimator ?? 'learned');
+  const chosen = body.setEstimator(switches.estimator ?? store.preferences.estimator ?? 'learned');
   void chosen.then(() => loading.report('the network', 1));
   await showFirstBody(page, loading);
   await Promise.all([chosen, sessionsOffered, goWhereAsked(page, visit)]);

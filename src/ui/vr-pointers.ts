@@ -35,7 +35,7 @@ export interface VrPointers {
 /** Two hands, and a pinch of each: where eyes aim, hands themselves select nothing, and a pinch is an input source beside them. */
 const mostSources = 4;
 
-/** Reads target rays, triggers and index fingers through three; poses themselves belong to xr/tracker. */
+/** Reads target rays, triggers and index fingers through three; poses themselves belong to xr/input-reader. */
 export function createVrPointers(renderer: WebGLRenderer): VrPointers {
   const objects = new Group();
   const sources = Array.from({ length: mostSources }, (_, index) => {

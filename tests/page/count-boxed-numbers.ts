@@ -9,7 +9,7 @@ import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { fromAxisAngle, multiply, quat, rotate } from 'threepoint/core/math/quat';
 import { add, vec3 } from 'threepoint/core/math/vec3';
 import 'threepoint-study/model/study-api';
-import { ImpairedTracking } from 'threepoint/core/tracking/impaired-tracking';
+import { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
 import 'threepoint-rooms/client/loopback-connection';
 
 const calls = 20_000;
@@ -58,14 +58,14 @@ const hand = {
   tracking: 'tracked',
 } as const;
 const frame = { time: 3.1, head: hand, leftHand: hand, rightHand: hand };
-const impairedTracking = new ImpairedTracking();
-impairedTracking.impair({
+const impairedTracking = new TrackingDegradation();
+impairedTracking.configure({
   latencyMs: 100,
   trackerNoise: { positionMm: 5, rotationDegrees: 1 },
   dropouts: { perMinute: 20, seconds: 0.5 },
 });
 const impaired = await bytesPerCall(() => {
   frame.time += 1 / 72;
-  impairedTracking.follow(frame);
+  impairedTracking.apply(frame);
 });
 console.log(JSON.stringify({ vector, quaternion, impaired }));

@@ -39,7 +39,7 @@ export const faultRows = {
     inject: '`visible-blurred` for 10 s: a menu of the system lies before the page',
     sees: 'Drawing goes on, hands rest, input is ignored, nothing is dropped',
     target: 'no exception; 0 throws and shots released',
-    tests: ['tests/reliability/blurred.test.ts', 'tests/threepoint/xr/tracker.test.ts'],
+    tests: ['tests/reliability/blurred.test.ts', 'tests/threepoint/xr/tracked-session.test.ts'],
     manual: ['Draw the bow, open the system menu, press the trigger in it, close it: no arrow has flown.'],
   },
   hidden: {
@@ -55,14 +55,22 @@ export const faultRows = {
     inject: 'A controller off and on, both off, their handedness swapped while holding',
     sees: 'Ball and bow are let go of or taken over by handedness',
     target: '0 stuck in a hand, 0 thrown or shot',
-    tests: ['tests/reliability/controllers.test.ts', 'tests/threepoint/xr/tracker.test.ts', 'e2e/page/archery.spec.ts'],
+    tests: [
+      'tests/reliability/controllers.test.ts',
+      'tests/threepoint/xr/tracked-session.test.ts',
+      'e2e/page/archery.spec.ts',
+    ],
     manual: ['Take a battery out of the controller that holds a ball: the ball goes back to the rack.'],
   },
   'changing-hands': {
     inject: 'Controllers → hands → controllers, ten times while drawing',
     sees: 'The right kind each time, the draw cancelled',
     target: '10 of 10 cancelled, 0 shots, 0 leaks',
-    tests: ['tests/reliability/controllers.test.ts', 'tests/threepoint/xr/tracker.test.ts', 'e2e/page/hands.spec.ts'],
+    tests: [
+      'tests/reliability/controllers.test.ts',
+      'tests/threepoint/xr/tracked-session.test.ts',
+      'e2e/page/hands.spec.ts',
+    ],
     manual: ['Lay the controllers down and take them up again while drawing.'],
   },
   'space-reset': {
@@ -72,7 +80,7 @@ export const faultRows = {
     tests: [
       'tests/reliability/space-reset.test.ts',
       'tests/rooms/client/remote-players.test.ts',
-      'tests/threepoint/xr/tracker.test.ts',
+      'tests/threepoint/xr/tracked-session.test.ts',
     ],
     manual: ['Hold the system button to recentre, turned by a quarter: the range lies ahead at once.'],
   },
@@ -104,7 +112,7 @@ export const faultRows = {
     tests: [
       'e2e/desktop.spec.ts',
       'tests/reliability/comfort.test.ts',
-      'tests/threepoint/xr/tracker.test.ts',
+      'tests/threepoint/xr/tracked-session.test.ts',
       'tests/page/archery/boards.test.ts',
       'tests/page/archery/captions.test.ts',
       'tests/study/model/trial-log.test.ts',

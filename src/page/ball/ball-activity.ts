@@ -1,8 +1,8 @@
 import type { Holding } from 'threepoint/avatar/hands/holding';
 import { createRemoteAvatars, type RemoteAvatars } from 'threepoint/avatar/remote-avatars';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import type { AvatarRef, OwnBody } from 'threepoint/core/body/avatar-ref';
 import type { Fingers, MutableHandShape } from 'threepoint/core/body/hand-shape';
-import type { OwnBody, WornAvatar } from 'threepoint/core/body/worn-avatar';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { Buttons } from 'threepoint/core/input/button-presses';
 import { type Pose, type Transform, transformPoint, transformPose } from 'threepoint/core/math/pose';
@@ -323,7 +323,7 @@ class CourtActivity implements BallActivity {
   }
 
   /** Others are seen all the same, as the plain one. */
-  #tellRefused(avatar: WornAvatar, reason: unknown): void {
+  #tellRefused(avatar: AvatarRef, reason: unknown): void {
     const seats = this.play.room?.seats ?? [];
     const names = seats.flatMap((seat, index) =>
       seat?.avatar === avatar && index !== this.play.room?.mySeat ? [seat.name] : [],

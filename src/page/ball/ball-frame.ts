@@ -1,7 +1,7 @@
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import { type AvatarRef, plainAvatar } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { type Fingers, unknownFingers } from 'threepoint/core/body/hand-shape';
-import { plainAvatar, type WornAvatar } from 'threepoint/core/body/worn-avatar';
 import {
   composeTransforms,
   type MutableTransform,
@@ -50,7 +50,7 @@ export interface BodyFrame {
   readonly id: number;
   readonly calibration: Calibration;
   readonly station: number;
-  readonly avatar: WornAvatar;
+  readonly avatar: AvatarRef;
   /** One of the avatar's palettes. */
   readonly palette: string;
   readonly pose: AvatarPose;

@@ -1,7 +1,7 @@
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { Fingers } from 'threepoint/core/body/hand-shape';
-import type { WornAvatar } from 'threepoint/core/body/worn-avatar';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import type { Buttons } from 'threepoint/core/input/button-presses';
 import { invertTransform, type Transform } from 'threepoint/core/math/pose';
@@ -68,7 +68,7 @@ export interface BallPlay {
   away(on: boolean): void;
   calibrate(calibration: Calibration): void;
   /** What the others are to see this player with. */
-  wear(avatar: WornAvatar): void;
+  wear(avatar: AvatarRef): void;
   probe(): BallProbe | null;
   leave(): void;
 }
@@ -277,7 +277,7 @@ class MatchPlay implements BallPlay {
     this.connection?.calibrate(next);
   }
 
-  wear(avatar: WornAvatar): void {
+  wear(avatar: AvatarRef): void {
     this.connection?.wear(avatar);
   }
 

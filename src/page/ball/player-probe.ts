@@ -1,5 +1,5 @@
 import type { RemoteAvatars } from 'threepoint/avatar/remote-avatars';
-import { plainAvatar, type WornAvatar } from 'threepoint/core/body/worn-avatar';
+import { type AvatarRef, plainAvatar } from 'threepoint/core/body/avatar-ref';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { BallPlay } from './ball-play';
 
@@ -11,8 +11,8 @@ export interface PlayerProbe {
   readonly presence: string;
   readonly opacity: number;
   /** What the player has on, and as what they are drawn. */
-  readonly avatar: WornAvatar;
-  readonly drawnAs: WornAvatar | null;
+  readonly avatar: AvatarRef;
+  readonly drawnAs: AvatarRef | null;
   /** Joints as drawn, own floor frame [m]. */
   readonly joints: Readonly<Record<string, readonly [number, number, number]>>;
 }

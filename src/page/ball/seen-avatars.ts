@@ -4,12 +4,12 @@ import { seenAvatarLimits } from 'threepoint/avatar/file/inspect-avatar';
 import { type LoadedAvatar, parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
 import {
   type AvatarHash,
+  type AvatarRef,
   bodyOf,
   isOwnAvatar,
   type OwnBody,
   plainAvatar,
-  type WornAvatar,
-} from 'threepoint/core/body/worn-avatar';
+} from 'threepoint/core/body/avatar-ref';
 import { PassingFault } from 'threepoint/core/errors/passing-fault';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
@@ -48,7 +48,7 @@ export class SeenAvatars {
   }
 
   /** Rejects with a PassingFault where it could not be fetched. */
-  async load(avatar: WornAvatar): Promise<LoadedAvatar> {
+  async load(avatar: AvatarRef): Promise<LoadedAvatar> {
     if (!isOwnAvatar(avatar)) return this.#loadFile(avatar);
     const body = bodyOf(avatar);
     const known = this.#own.get(body);

@@ -1,10 +1,10 @@
 import {
   type AvatarHash,
+  type AvatarRef,
   mostAvatarBytes,
   type OwnAvatar,
   plainAvatar,
-  type WornAvatar,
-} from 'threepoint/core/body/worn-avatar';
+} from 'threepoint/core/body/avatar-ref';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import type { BallRoomView } from 'threepoint-games/ball/ball-client';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
@@ -25,7 +25,7 @@ export interface SharedAvatarOptions {
   /** What the others are to see, asked for in every frame, the same object for as long as it is worn; null: the wearer wants theirs seen by no one. */
   wear(): OwnWear | null;
   /** Says to the room what this player has on. */
-  tell(avatar: WornAvatar): void;
+  tell(avatar: AvatarRef): void;
   notify(level: 'info' | 'warning', text: string): void;
 }
 

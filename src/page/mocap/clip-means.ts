@@ -1,4 +1,4 @@
-import type { BareBodyOptions } from 'threepoint/api/bare-body';
+import type { BodySolverOptions } from 'threepoint/api/body-solver';
 import { runWork, type WorkProgress } from 'threepoint/api/run-work';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { createEstimator, networkOf } from 'threepoint/core/estimation/estimators';
@@ -16,12 +16,12 @@ const notBegun: WorkProgress = { share: 0, secondsLeft: null };
 export class ClipMeans {
   readonly #recording: Replayable;
   readonly #truth: Truth;
-  readonly #networks: BareBodyOptions['networks'];
+  readonly #networks: BodySolverOptions['networks'];
   readonly #means = new Map<EstimatorName, ClipMean>();
   readonly #giveUp = new AbortController();
   #busy = false;
 
-  constructor(recording: Replayable, truth: Truth, networks: BareBodyOptions['networks']) {
+  constructor(recording: Replayable, truth: Truth, networks: BodySolverOptions['networks']) {
     this.#recording = recording;
     this.#truth = truth;
     this.#networks = networks;

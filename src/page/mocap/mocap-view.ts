@@ -1,5 +1,5 @@
 import type { Object3D } from 'three';
-import type { BareBodyOptions } from 'threepoint/api/bare-body';
+import type { BodySolverOptions } from 'threepoint/api/body-solver';
 import type { MovingReplay } from 'threepoint/api/replayed-body';
 import type { Avatar } from 'threepoint/avatar/avatar';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
@@ -47,7 +47,7 @@ export interface MocapViewOptions {
   readonly replay: Replay;
   /** The method of the page's body. */
   readonly method: { readonly wanted: EstimatorName; choose(estimator: EstimatorName): void };
-  readonly networks: BareBodyOptions['networks'];
+  readonly networks: BodySolverOptions['networks'];
   loadAvatar(): Promise<Avatar>;
   /** Brings what an object needs to the graphics device before it is seen. */
   prepare(object: Object3D): Promise<void>;

@@ -1,5 +1,5 @@
 import { Group, type Object3D } from 'three';
-import { BareBody, type BareBodyOptions } from 'threepoint/api/bare-body';
+import { BodySolver, type BodySolverOptions } from 'threepoint/api/body-solver';
 import { type MovingReplay, ReplayedBody } from 'threepoint/api/replayed-body';
 import type { Avatar } from 'threepoint/avatar/avatar';
 import type { UpperBodyPose } from 'threepoint/core/body/avatar-pose';
@@ -11,7 +11,7 @@ export interface SecondBodyOptions {
   readonly scene: Object3D;
   readonly calibration: Calibration;
   readonly estimator: EstimatorName;
-  readonly networks: BareBodyOptions['networks'];
+  readonly networks: BodySolverOptions['networks'];
   /** Moves it. */
   readonly replay: MovingReplay;
   /** Where it stands beside the first [m], to the right. */
@@ -23,7 +23,7 @@ export interface SecondBodyOptions {
 /** Another method's body of the same person, beside the first. */
 export class SecondBody {
   readonly place = new Group();
-  readonly #body: BareBody;
+  readonly #body: BodySolver;
   readonly #replayed: ReplayedBody;
   #avatar: Avatar | null = null;
   #gone = false;
@@ -32,13 +32,13 @@ export class SecondBody {
   readonly ready: Promise<void>;
 
   constructor({ scene, calibration, estimator, networks, replay, aside, loadAvatar, onFallback }: SecondBodyOptions) {
-    this.#body = new BareBody({ calibration, estimator, networks, events: { fallback: onFallback } });
+    this.#body = new BodySolver({ calibration, estimator, networks, events: { fallback: onFallback } });
     this.#replayed = new ReplayedBody(this.#body, replay);
     this.place.position.x = aside;
     scene.add(this.place);
     this.ready = loadAvatar().then((avatar) => {
       if (this.#gone) return avatar.dispose();
-      avatar.fitTo(calibration);
+      avatar.setCalibration(calibration);
       this.place.add(avatar.object);
       this.#avatar = avatar;
     });
@@ -52,13 +52,13 @@ export class SecondBody {
   /** One frame; the body that is drawn, null: this method draws none. */
   update(frame: TrackingFrame): UpperBodyPose | null {
     const pose = this.#replayed.update(frame, null);
-    if (pose) this.#avatar?.apply(pose, frame.time);
+    if (pose) this.#avatar?.setPose(pose, frame.time);
     return pose?.body ?? null;
   }
 
   /** The next frame lies elsewhere. */
   jumped(): void {
-    this.#body.jumped();
+    this.#body.discontinuity();
   }
 
   dispose(): void {

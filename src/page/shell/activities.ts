@@ -1,4 +1,4 @@
-import type { BareBody } from 'threepoint/api/bare-body';
+import type { BodySolver } from 'threepoint/api/body-solver';
 import { Holding } from 'threepoint/avatar/hands/holding';
 import type { HandGeometry } from 'threepoint/core/body/hand-geometry';
 import type { MutableHandShape } from 'threepoint/core/body/hand-shape';
@@ -46,7 +46,7 @@ export interface ActivitiesOptions {
   readonly mouse: MouseAim;
   readonly headset: Pick<Headset, 'worn'>;
   readonly recorder: Pick<Recorder, 'giveWay'>;
-  readonly body: Pick<BareBody, 'calibration'>;
+  readonly body: Pick<BodySolver, 'calibration'>;
   readonly study: Pick<PageStudy, 'joined' | 'idle' | 'paused'>;
   /** The colours of a seat for the own body; null: the user's own. */
   wear(palette: string | null): void;

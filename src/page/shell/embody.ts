@@ -1,5 +1,5 @@
-import type { BareBody } from 'threepoint/api/bare-body';
-import type { ImpairedTracking } from 'threepoint/core/tracking/impaired-tracking';
+import type { BodySolver } from 'threepoint/api/body-solver';
+import type { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
 import type { Embodiment } from 'threepoint-study/model/embodiment';
 import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
 import type { SettingsWriter } from './settings';
@@ -9,8 +9,8 @@ import type { ShownAvatar } from './shown-avatar';
 export interface EmbodyingParts {
   readonly writer: Pick<SettingsWriter, 'change'>;
   readonly avatar: Pick<ShownAvatar, 'openOwn' | 'ownBody'>;
-  readonly body: Pick<BareBody, 'choose' | 'estimator'>;
-  readonly impaired: Pick<ImpairedTracking, 'impair'>;
+  readonly body: Pick<BodySolver, 'setEstimator' | 'estimator'>;
+  readonly impaired: Pick<TrackingDegradation, 'configure'>;
 }
 
 /**
@@ -25,8 +25,8 @@ export async function embody(parts: EmbodyingParts, embodiment: Embodiment, seed
     ...(upperBodyOnly !== undefined && { upperBodyOnly }),
     ...(ownBody !== undefined && { ownBody }),
   });
-  impaired.impair(impairments, seed);
+  impaired.configure(impairments, seed);
   const wears = ownBody === undefined || ownBody === avatar.ownBody || avatar.openOwn();
-  const [worn] = await Promise.all([wears, body.choose(estimator)]);
+  const [worn] = await Promise.all([wears, body.setEstimator(estimator)]);
   if (!worn || body.estimator !== estimator) throw new PhrasedError('round.body');
 }

@@ -1,4 +1,4 @@
-import type { BareBody } from 'threepoint/api/bare-body';
+import type { BodySolver } from 'threepoint/api/body-solver';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { FrameTiming } from './frame-timing';
@@ -22,12 +22,12 @@ export interface FrameParts<DeviceFrame> {
 /** One frame of the page, stage by stage, each with its time. It waits for nothing. */
 export function createFrameLoop<DeviceFrame>(
   parts: FrameParts<DeviceFrame>,
-  body: Pick<BareBody, 'frame'>,
+  body: Pick<BodySolver, 'tick'>,
   timing: FrameTiming,
 ): (timestampMs: number, deviceFrame?: DeviceFrame) => void {
   return (timestampMs, deviceFrame) => {
     try {
-      const time = body.frame(timestampMs);
+      const time = body.tick(timestampMs);
       timing.begin(time * 1000);
       const frame = parts.track(time, deviceFrame);
       if (frame) parts.observe(frame);

@@ -1,5 +1,5 @@
-import type { BareBody } from 'threepoint/api/bare-body';
-import { plainAvatar } from 'threepoint/core/body/worn-avatar';
+import type { BodySolver } from 'threepoint/api/body-solver';
+import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import type { PageClock } from 'threepoint/core/tracking/page-clock';
 import type { ServerPresence } from 'threepoint-http/server-presence';
 import type { TaskPlace } from 'threepoint-study/participant/task-runner';
@@ -26,7 +26,7 @@ export interface GamesOptions {
   readonly stage: { readonly studio: SurroundingsHost; readonly view: Pick<Stage['view'], 'rayThrough'> };
   readonly mouse: MouseAim;
   readonly headset: Pick<Headset, 'worn' | 'emulator'>;
-  readonly body: Pick<BareBody, 'calibration'>;
+  readonly body: Pick<BodySolver, 'calibration'>;
   readonly avatar: Pick<ShownAvatar, 'own' | 'worn'>;
   readonly server: Pick<ServerPresence, 'known'>;
   readonly notices: Pick<Notices, 'show'>;

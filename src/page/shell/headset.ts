@@ -1,11 +1,9 @@
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { DeviceBodyReader } from 'threepoint/xr/device-body-reader';
 import { giveFramesToEvents } from 'threepoint/xr/frameless-events';
 import { buzz, type Pulse } from 'threepoint/xr/haptics';
 import { describeXrSupport, type PlayRoom, requestVrSession, roomOf, type XrFault } from 'threepoint/xr/session';
-import { createTracker, type Tracker } from 'threepoint/xr/tracker';
+import { TrackedSession } from 'threepoint/xr/tracked-session';
 import type { Notices } from 'threepoint-ui/notices';
 import { type Emulator, installEmulator } from '../emulator/emulator';
 import { easeEmulatedPicture, type Quality } from '../scene/renderer';
@@ -52,9 +50,7 @@ interface Session {
   readonly xr: XRSession;
   /** What the device's boundary leaves [m]; null: it does not tell. */
   readonly room: PlayRoom | null;
-  readonly tracker: Tracker;
-  /** null: the device was not asked for its own body. */
-  readonly bodyReader: DeviceBodyReader | null;
+  readonly tracking: TrackedSession;
 }
 
 async function end(xr: XRSession): Promise<void> {
@@ -106,8 +102,13 @@ export class Headset {
     return this.#session?.xr.visibilityState ?? 'none';
   }
 
-  get input(): Tracker['input'] | null {
-    return this.#session?.tracker.input ?? null;
+  get input(): TrackedSession['inputs']['input'] | null {
+    return this.#session?.tracking.inputs.input ?? null;
+  }
+
+  /** The tracking of the session; null: no headset is worn. */
+  get tracking(): TrackedSession | null {
+    return this.#session?.tracking ?? null;
   }
 
   /** Of the device [Hz]; null: it does not say, or there is none. */
@@ -123,12 +124,8 @@ export class Headset {
   /** Why the device's own body is not there; null: it is, or no headset is worn. */
   get bodyComplaint(): string | null {
     if (!this.#session) return null;
-    const { bodyReader } = this.#session;
+    const { bodyReader } = this.#session.tracking;
     return bodyReader ? bodyReader.complaint : 'the headset was not asked for its body';
-  }
-
-  get buttons(): Buttons {
-    return this.#session?.tracker.buttons ?? nothingPressed;
   }
 
   /** Asks the browser what there is; the emulator is loaded where it is wanted at once. */
@@ -187,25 +184,20 @@ export class Headset {
     if (this.#session) void end(this.#session.xr);
   }
 
-  /** Head, hands and buttons as the device has them; null: the head is not seen. */
-  read(deviceFrame: XRFrame | undefined, time: number): TrackingFrame | null {
-    return this.#session && deviceFrame ? this.#session.tracker.read(deviceFrame, time) : null;
-  }
-
   recentre(): void {
-    this.#session?.tracker.recentre();
+    this.#session?.tracking.recentre();
   }
 
-  /** Turns a wearer who pushed a stick; whether one was pushed. */
+  /** Turns the user where a stick was pushed; returns whether one was. */
   turnByStick(): boolean {
-    const pushed = this.#session?.tracker.takeTurn() ?? 0;
-    if (pushed !== 0) this.#session?.tracker.turn(pushed * snapAngle);
+    const pushed = this.#session?.tracking.inputs.takeTurn() ?? 0;
+    if (pushed !== 0) this.#session?.tracking.turn(pushed * snapAngle);
     return pushed !== 0;
   }
 
-  /** Whether a stick was pressed down since the last call. */
+  /** Returns whether a stick was pressed down since the last call. */
   takePress(): boolean {
-    return this.#session?.tracker.takePress() ?? false;
+    return this.#session?.tracking.inputs.takePress() ?? false;
   }
 
   buzz(pulses: readonly Pulse[]): void {
@@ -218,8 +210,8 @@ export class Headset {
       xr.addEventListener('end', () => reject(new Error('the session ended before it had begun')));
     });
     try {
-      const { space, room } = await Promise.race([this.#drawIn(xr), over]);
-      this.#follow(xr, space, room);
+      const room = await Promise.race([this.#drawIn(xr), over]);
+      this.#follow(xr, room);
     } catch (error) {
       // Else the headset waits for pictures that never come, and no other session can begin.
       await end(xr);
@@ -227,31 +219,31 @@ export class Headset {
     }
   }
 
-  /** Has the session drawn; its floor, and the room that its boundary leaves. */
-  async #drawIn(xr: XRSession): Promise<{ readonly space: XRReferenceSpace; readonly room: PlayRoom | null }> {
+  /** Lets the renderer draw the session; returns the room that its boundary leaves. */
+  async #drawIn(xr: XRSession): Promise<PlayRoom | null> {
     const { renderer, quality } = this.#options;
     giveFramesToEvents(xr);
     await renderer.xr.setSession(xr);
-    const space = renderer.xr.getReferenceSpace();
-    if (!space) throw new Error('the headset offers no floor to stand on (local-floor)');
+    if (!renderer.xr.getReferenceSpace()) throw new Error('the headset offers no floor to stand on (local-floor)');
     if (this.#emulator) easeEmulatedPicture(renderer, quality);
-    return { space, room: await roomOf(xr) };
+    return roomOf(xr);
   }
 
-  /** From now on the session is worn, until it ends. */
-  #follow(xr: XRSession, space: XRReferenceSpace, room: PlayRoom | null): void {
+  /** Tracks the session until it ends. */
+  #follow(xr: XRSession, room: PlayRoom | null): void {
     const { renderer, settings } = this.#options;
-    const bodyReader = settings.deviceBody ? new DeviceBodyReader() : null;
-    const tracker = createTracker(xr, space, (moved) => renderer.xr.setReferenceSpace(moved), bodyReader);
-    this.#session = { xr, room, tracker, bodyReader };
-    const jumped = () => this.#listener?.jumped();
-    space.addEventListener('reset', jumped);
-    xr.addEventListener('end', () => {
-      space.removeEventListener('reset', jumped);
-      tracker.dispose();
-      this.#session = null;
-      this.#listener?.left();
+    const tracking = new TrackedSession({
+      session: xr,
+      drawing: renderer.xr,
+      bodyReader: settings.deviceBody ? new DeviceBodyReader() : null,
+      onDiscontinuity: () => this.#listener?.jumped(),
+      onEnd: () => {
+        this.#session = null;
+        this.#listener?.left();
+      },
     });
+    tracking.start();
+    this.#session = { xr, room, tracking };
     xr.addEventListener('visibilitychange', () => this.#listener?.visibilityChanged());
     if (!settings.actor) this.#emulator?.release();
   }

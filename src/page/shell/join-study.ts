@@ -1,4 +1,4 @@
-import type { BareBody } from 'threepoint/api/bare-body';
+import type { BodySolver } from 'threepoint/api/body-solver';
 import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
 import type { Activities } from './activities';
 import { type EmbodyingParts, embody } from './embody';
@@ -21,7 +21,7 @@ export interface JoinStudyOptions extends EmbodyingParts {
   readonly headset: Headset;
   readonly activities: Activities;
   readonly timing: FrameTiming;
-  readonly body: EmbodyingParts['body'] & Pick<BareBody, 'wearerCalibration'>;
+  readonly body: EmbodyingParts['body'] & Pick<BodySolver, 'wearerCalibration'>;
   readonly wearer: Pick<Wearer, 'calibrate' | 'forget'>;
 }
 

@@ -1,4 +1,4 @@
-import type { BareBodyOptions } from 'threepoint/api/bare-body';
+import type { BodySolverOptions } from 'threepoint/api/body-solver';
 import { createInferenceWorker } from 'threepoint/onnx/create-inference-worker';
 import type { Notices } from 'threepoint-ui/notices';
 import { pageFolder } from 'threepoint-ui/page-folder';
@@ -17,7 +17,7 @@ export interface NetworkLoadingOptions {
 }
 
 /** Brings networks by name, by the runtime. The code that runs them is asked for at once. */
-export function createNetworkLoader(options: NetworkLoadingOptions): BareBodyOptions['networks'] {
+export function createNetworkLoader(options: NetworkLoadingOptions): BodySolverOptions['networks'] {
   const { provider, notices, loading } = options;
   const networksArrive = import('threepoint/api/onnx').then(({ onnxNetworks }) =>
     onnxNetworks({

@@ -1,11 +1,11 @@
-import type { BareBody } from 'threepoint/api/bare-body';
+import type { BodySolver } from 'threepoint/api/body-solver';
 import { type MovingReplay, ReplayedBody } from 'threepoint/api/replayed-body';
 import { shapeOfButtons } from 'threepoint/avatar/hands/pressed-fingers';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { type HandShape, makeHandShape } from 'threepoint/core/body/hand-shape';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { Side } from 'threepoint/core/math/side';
-import type { ImpairedTracking } from 'threepoint/core/tracking/impaired-tracking';
+import type { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Notices } from 'threepoint-ui/notices';
 import type { Recorder } from '../studio/recorder';
@@ -26,8 +26,8 @@ export interface PageFrameOptions {
   readonly notices: Pick<Notices, 'show'>;
   readonly source: TrackingSource;
   /** Between what is tracked and the body, where a study wants the body worse than it could be. */
-  readonly impaired: Pick<ImpairedTracking, 'follow' | 'reset'>;
-  readonly body: Pick<BareBody, 'update' | 'relive' | 'pose' | 'estimator' | 'jumped' | 'calibration'>;
+  readonly impaired: Pick<TrackingDegradation, 'apply' | 'reset'>;
+  readonly body: Pick<BodySolver, 'update' | 'warmUp' | 'pose' | 'estimator' | 'discontinuity' | 'calibration'>;
   readonly recorder: Pick<Recorder, 'observe'> & MovingReplay;
   readonly difference: Pick<DeviceDifference, 'observe'>;
   readonly avatar: Pick<ShownAvatar, 'current'>;
@@ -75,15 +75,17 @@ export class PageFrame implements FrameParts<XRFrame> {
     const { recorder, controls, headset, activities, source, impaired } = this.#options;
     recorder.observe(frame);
     controls.observe(frame);
-    this.#embodied = impaired.follow(frame);
+    this.#embodied = impaired.apply(frame);
     headset.buzz(activities.play(this.#embodied, source.buttons));
   }
 
   estimate(frame: TrackingFrame | null): AvatarPose | null {
-    const { source, impaired } = this.#options;
-    if (frame) return this.#replayed.update(this.#embodied, source.standIn);
-    impaired.reset();
-    return this.#replayed.update(null, source.standIn);
+    const { source, impaired, headset, body } = this.#options;
+    if (!frame) impaired.reset();
+    const embodied = frame && this.#embodied;
+    if (!headset.worn) return this.#replayed.update(embodied, source.standIn);
+    this.#replayed.stop();
+    return body.update(embodied);
   }
 
   skin(pose: AvatarPose): void {
@@ -94,7 +96,7 @@ export class PageFrame implements FrameParts<XRFrame> {
     this.#bendFingers('left', frame);
     this.#bendFingers('right', frame);
     avatar.current?.setMouth(activities.ball?.voices.ownMouth ?? 0);
-    avatar.current?.apply(pose, frame.time);
+    avatar.current?.setPose(pose, frame.time);
     activities.ball?.send(frame, pose, this.#fingers);
     mocap.frame(frame, pose);
   }
@@ -137,11 +139,9 @@ export class PageFrame implements FrameParts<XRFrame> {
   }
 
   #turn(time: number): void {
-    const { headset, stage, body, activities } = this.#options;
+    const { headset, stage, activities } = this.#options;
     if (headset.takePress()) activities.ball?.voices.toggleMuted();
-    if (!headset.turnByStick()) return;
-    stage.vignette.close(time);
-    body.jumped();
+    if (headset.turnByStick()) stage.vignette.close(time);
   }
 
   #shot(time: number, frame: TrackingFrame | null): Shot {

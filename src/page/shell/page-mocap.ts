@@ -1,5 +1,5 @@
 import type { Object3D } from 'three';
-import type { BareBody, BareBodyOptions } from 'threepoint/api/bare-body';
+import type { BodySolver, BodySolverOptions } from 'threepoint/api/body-solver';
 import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { labelOf } from 'threepoint/avatar/own-bodies';
@@ -20,8 +20,8 @@ export interface PageMocapOptions {
   readonly scene: Object3D;
   readonly recorder: Recorder;
   readonly settings: Pick<Settings, 'ownBody' | 'palette'>;
-  readonly body: Pick<BareBody, 'wanted' | 'choose' | 'jumped'>;
-  readonly networks: BareBodyOptions['networks'];
+  readonly body: Pick<BodySolver, 'wanted' | 'setEstimator' | 'discontinuity'>;
+  readonly networks: BodySolverOptions['networks'];
   readonly store: Pick<PreferenceStore, 'remember'>;
   readonly notices: Pick<Notices, 'show'>;
   /** Brings what an object needs to the graphics device before it is seen. */
@@ -96,7 +96,7 @@ export class PageMocap {
         },
         choose(estimator) {
           store.remember({ estimator });
-          void body.choose(estimator);
+          void body.setEstimator(estimator);
           onChange();
         },
       },
@@ -119,7 +119,7 @@ export class PageMocap {
     const { recorder, body, onChange } = this.#options;
     const changed = (change: () => void): void => {
       change();
-      body.jumped();
+      body.discontinuity();
       onChange();
     };
     return {

@@ -1,9 +1,9 @@
 import type { Object3D } from 'three';
-import { BareBody, type CalibrationSource } from 'threepoint/api/bare-body';
+import { BodySolver, type CalibrationSource } from 'threepoint/api/body-solver';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { firstLine } from 'threepoint/core/errors/reasons';
-import { ImpairedTracking } from 'threepoint/core/tracking/impaired-tracking';
 import { createPageClock } from 'threepoint/core/tracking/page-clock';
+import { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
 import { ServerPresence } from 'threepoint-http/server-presence';
 import { pageElement } from 'threepoint-ui/element';
 import { createMouseAim } from 'threepoint-ui/mouse-aim';
@@ -52,18 +52,18 @@ function createBody({ visit, notices, loading }: PageOptions, timing: FrameTimin
   const outgrown = new Emitter<[difference: number]>();
   const jumps = new Emitter();
   const networks = createNetworkLoader({ provider: switches.executionProvider, notices, loading });
-  const body = new BareBody({
+  const body = new BodySolver({
     estimator: 'ik',
     calibration: store.preferences.calibration ?? 'auto',
     // A study measures its participants itself.
-    grows: switches.study === null,
+    autoGrow: switches.study === null,
     networks,
     clock,
-    timing,
+    profiler: timing,
     events: {
       calibrated: calibrated.emit,
-      outgrown: outgrown.emit,
-      jumped: jumps.emit,
+      heightmismatch: outgrown.emit,
+      discontinuity: jumps.emit,
       changed: changes.emit,
       fallback(name, reason) {
         const { label } = estimatorTexts[name];
@@ -108,7 +108,7 @@ function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof c
   const { switches, settings, writer, store, changes } = visit;
   const { canvas, quality, stage, body, clock, avatar, headset, recorder } = ground;
   const study = new PageStudy();
-  const impaired = new ImpairedTracking();
+  const impaired = new TrackingDegradation();
   const server = new ServerPresence(pageFolder(), changes.emit);
   const actor = createActor();
   const mouse = createMouseAim(canvas);
@@ -141,7 +141,7 @@ function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof c
     wearer.measured(source);
     actor.calibrate(calibration);
     activities.ball?.play.calibrate(calibration);
-    avatar.current?.fitTo(calibration);
+    avatar.current?.setCalibration(calibration);
   });
   ground.outgrown.listen((difference) => wearer.outgrown(difference));
   ground.jumps.listen(() => {
@@ -210,7 +210,7 @@ export function createPage(options: PageOptions) {
   play.arrivals.listen(() => {
     recorder.stop();
     if (activities.name !== 'studio') controls.setPanelOpen(false);
-    body.jumped();
+    body.discontinuity();
     timing.reset();
     controls.show();
   });

@@ -1,6 +1,6 @@
 import { type BoneName, boneNames } from 'threepoint/avatar/humanoid/bone-names';
+import { avatarHash, ownBodies, skinTones } from 'threepoint/core/body/avatar-ref';
 import { calibrationComplaint } from 'threepoint/core/body/calibration';
-import { avatarHash, ownBodies, skinTones } from 'threepoint/core/body/worn-avatar';
 import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
 import { handTiltsSchema } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';

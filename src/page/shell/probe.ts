@@ -1,4 +1,4 @@
-import type { BareBody } from 'threepoint/api/bare-body';
+import type { BodySolver } from 'threepoint/api/body-solver';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { FingerName } from 'threepoint/core/body/hand-shape';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
@@ -84,7 +84,7 @@ export interface ProbeParts {
   readonly timing: Pick<FrameTiming, 'summary'>;
   readonly frame: { readonly count: number };
   readonly source: Pick<TrackingSource, 'newest'>;
-  readonly body: Pick<BareBody, 'estimator' | 'provider' | 'calibration'>;
+  readonly body: Pick<BodySolver, 'estimator' | 'provider' | 'calibration'>;
   readonly avatar: Pick<ShownAvatar, 'current' | 'name'>;
   readonly headset: Pick<Headset, 'worn' | 'visibility' | 'emulator'>;
   readonly recorder: Pick<Recorder, 'mode' | 'frameCount' | 'seconds'>;

@@ -1,4 +1,4 @@
-import type { BareBody } from 'threepoint/api/bare-body';
+import type { BodySolver } from 'threepoint/api/body-solver';
 import type { DesktopView } from '../scene/desktop-view';
 import type { Recorder } from '../studio/recorder';
 import type { Activities } from './activities';
@@ -12,7 +12,7 @@ export interface SessionChangesOptions {
   readonly recorder: Pick<Recorder, 'mode' | 'stop'>;
   readonly timing: FrameTiming;
   readonly view: DesktopView;
-  readonly body: Pick<BareBody, 'begin' | 'jumped'>;
+  readonly body: Pick<BodySolver, 'startSession' | 'discontinuity'>;
   readonly activities: Pick<Activities, 'ball' | 'sessionChanged'>;
   readonly controls: Pick<Controls, 'show' | 'setWorn' | 'layOut'>;
   readonly study: Pick<PageStudy, 'run'>;
@@ -29,7 +29,7 @@ export class SessionChanges implements HeadsetListener {
   entered(): void {
     const { recorder, controls, body } = this.#options;
     recorder.stop();
-    body.begin();
+    body.startSession();
     controls.setWorn(true);
     this.#changed();
   }
@@ -51,7 +51,7 @@ export class SessionChanges implements HeadsetListener {
   }
 
   jumped(): void {
-    this.#options.body.jumped();
+    this.#options.body.discontinuity();
   }
 
   visibilityChanged(): void {
@@ -79,7 +79,7 @@ export class SessionChanges implements HeadsetListener {
     const { timing, headset, body, activities, controls, study } = this.#options;
     timing.setRate(headset.pictureRateHz);
     this.#sightChanged();
-    body.jumped();
+    body.discontinuity();
     activities.sessionChanged();
     controls.show();
     study.run?.sessionChanged();

@@ -1,4 +1,4 @@
-import { type OwnBody, plainAvatar, type SkinTone } from 'threepoint/core/body/worn-avatar';
+import { type OwnBody, plainAvatar, type SkinTone } from 'threepoint/core/body/avatar-ref';
 import type { Side } from 'threepoint/core/math/side';
 import type { PreferenceStore } from './preferences';
 import type { Switches } from './switches';

@@ -1,4 +1,4 @@
-import type { BareBody } from 'threepoint/api/bare-body';
+import type { BodySolver } from 'threepoint/api/body-solver';
 import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
 import { decoders } from 'threepoint/avatar/decoders/decoders';
 import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
@@ -10,7 +10,7 @@ import { withNamedBones } from 'threepoint/avatar/humanoid/name-bones';
 import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones';
 import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
 import { labelOf } from 'threepoint/avatar/own-bodies';
-import { bodyOf, type OwnBody, ownAvatarOf, plainAvatar, toneOf } from 'threepoint/core/body/worn-avatar';
+import { bodyOf, type OwnBody, ownAvatarOf, plainAvatar, skinToneOf } from 'threepoint/core/body/avatar-ref';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
 import type { Notices } from 'threepoint-ui/notices';
@@ -23,7 +23,7 @@ import type { Settings } from './settings';
 export interface ShownAvatarOptions {
   readonly scene: Studio['scene'];
   readonly settings: Pick<Settings, 'palette' | 'upperBodyOnly' | 'ownBody' | 'skinTone'>;
-  readonly body: Pick<BareBody, 'calibration'>;
+  readonly body: Pick<BodySolver, 'calibration'>;
   readonly notices: Pick<Notices, 'show'>;
   /** The maps of bones that were given for files of unknown naming. */
   readonly knownBones: Pick<KnownBones, 'of' | 'keep'>;
@@ -286,8 +286,8 @@ export class ShownAvatar {
     if (turn === this.#asked) this.#pending = null;
     scene.add(avatar.object);
     this.recolour();
-    if (typeof worn === 'string') avatar.setSkinTone(toneOf(worn));
+    if (typeof worn === 'string') avatar.setSkinTone(skinToneOf(worn));
     avatar.setUpperBodyOnly(settings.upperBodyOnly);
-    avatar.fitTo(body.calibration);
+    avatar.setCalibration(body.calibration);
   }
 }

@@ -1,7 +1,8 @@
-import type { BareBody } from 'threepoint/api/bare-body';
+import type { BodySolver } from 'threepoint/api/body-solver';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { TrackedSession } from 'threepoint/xr/tracked-session';
 import type { Performance } from '../archery/archery-play';
 import type { Actor } from '../emulator/actor';
 import type { Recorder } from '../studio/recorder';
@@ -10,11 +11,14 @@ import type { Headset } from './headset';
 import type { PageStudy } from './page-study';
 import type { Settings } from './settings';
 
+/** What is read of a session. */
+type SessionTracking = Pick<TrackedSession, 'read'> & { readonly inputs: Pick<TrackedSession['inputs'], 'buttons'> };
+
 export interface TrackingSourceOptions {
   readonly settings: Pick<Settings, 'actor'>;
-  readonly headset: Pick<Headset, 'worn' | 'emulator' | 'read' | 'buttons'>;
+  readonly headset: Pick<Headset, 'emulator'> & { readonly tracking: SessionTracking | null };
   readonly recorder: Pick<Recorder, 'sample' | 'person' | 'giveWay'>;
-  readonly body: Pick<BareBody, 'wearerCalibration'>;
+  readonly body: Pick<BodySolver, 'wearerCalibration'>;
   readonly actor: Pick<Actor, 'frameAt' | 'standAt'>;
   readonly activities: Pick<Activities, 'begin' | 'act' | 'watched'>;
   readonly study: Pick<PageStudy, 'idle'>;
@@ -38,7 +42,7 @@ export class TrackingSource {
   /** The measures of who moves the body where that is no wearer of a headset: of the person in a recording, else the user's. null: a wearer does. */
   get standIn(): Calibration | null {
     const { headset, recorder, body } = this.#options;
-    return headset.worn ? null : (recorder.person ?? body.wearerCalibration);
+    return headset.tracking ? null : (recorder.person ?? body.wearerCalibration);
   }
 
   /** The newest tracked frame; null: none yet. */
@@ -50,12 +54,13 @@ export class TrackingSource {
   read(time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
     this.#buttons = nothingPressed;
     this.#options.activities.begin(time);
-    const frame = this.#options.headset.worn ? this.#readSession(time, deviceFrame) : this.#readDesktop(time);
+    const { tracking } = this.#options.headset;
+    const frame = tracking ? this.#readSession(tracking, time, deviceFrame) : this.#readDesktop(time);
     this.#newest = frame ?? this.#newest;
     return frame;
   }
 
-  #readSession(time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
+  #readSession(tracking: SessionTracking, time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
     const { headset, settings, study, recorder } = this.#options;
     // A file may arrive in a session: the wearer's body neither follows its replay nor stands still with it.
     recorder.giveWay();
@@ -64,8 +69,8 @@ export class TrackingSource {
       const performed = this.#perform(time);
       headset.emulator.drive(performed.frame, performed.buttons);
     }
-    const tracked = headset.read(deviceFrame, time);
-    this.#buttons = headset.buttons;
+    const tracked = deviceFrame ? tracking.read(deviceFrame, time) : null;
+    this.#buttons = tracking.inputs.buttons;
     return tracked;
   }
 

@@ -1,4 +1,4 @@
-import type { BareBody, CalibrationSource } from 'threepoint/api/bare-body';
+import type { BodySolver, CalibrationSource } from 'threepoint/api/body-solver';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { Notices } from 'threepoint-ui/notices';
 import type { DesktopView } from '../scene/desktop-view';
@@ -13,7 +13,7 @@ const sourceTexts: Partial<Readonly<Record<CalibrationSource, string>>> = {
 };
 
 export interface WearerOptions {
-  readonly body: Pick<BareBody, 'calibrate' | 'jumped'>;
+  readonly body: Pick<BodySolver, 'calibrate' | 'discontinuity'>;
   readonly headset: Pick<Headset, 'worn' | 'recentre'>;
   readonly view: Pick<DesktopView, 'recentre'>;
   readonly writer: Pick<SettingsWriter, 'change'>;
@@ -74,7 +74,9 @@ export class Wearer {
   recentre(): void {
     const { headset, view, body } = this.#options;
     if (headset.worn) headset.recentre();
-    else view.recentre();
-    body.jumped();
+    else {
+      view.recentre();
+      body.discontinuity();
+    }
   }
 }

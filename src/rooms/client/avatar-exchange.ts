@@ -1,4 +1,4 @@
-import { type AvatarHash, avatarHash } from 'threepoint/core/body/worn-avatar';
+import { type AvatarHash, avatarHash } from 'threepoint/core/body/avatar-ref';
 import * as v from 'valibot';
 import type { RoomPass } from './room-pass';
 

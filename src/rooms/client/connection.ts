@@ -1,5 +1,5 @@
+import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
-import type { WornAvatar } from 'threepoint/core/body/worn-avatar';
 import type { Transform } from 'threepoint/core/math/pose';
 import type { Farewell, SeatInfo } from '../protocol/messages';
 import type { PosePacket } from '../protocol/pose-packet';
@@ -115,7 +115,7 @@ export interface Connection<Game extends HostedGame> {
   calibrate(calibration: Calibration): void;
   readonly voices: VoiceLine;
   /** To be seen with another avatar from now on. Said again after every return. */
-  wear(avatar: WornAvatar): void;
+  wear(avatar: AvatarRef): void;
   /** Where a seat's floor lies in the arena. */
   arenaFromFloor(seat: number): Transform<'arena', 'floor'>;
   /** Gives the seat up; the connection has ended. */
@@ -127,7 +127,7 @@ export interface Visitor {
   readonly name: string;
   readonly calibration: Calibration;
   /** Absent: the plain one. */
-  readonly avatar?: WornAvatar;
+  readonly avatar?: AvatarRef;
   /** Watches only. */
   readonly spectate?: boolean;
   /** Is no person: gives its seat to the first person who finds none, and is marked. */

@@ -1,6 +1,6 @@
+import { type AvatarRef, plainAvatar } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { plainAvatar, type WornAvatar } from 'threepoint/core/body/worn-avatar';
 import type { Transform } from 'threepoint/core/math/pose';
 import { type ClientMessage, type Joining, type RoomMessage, toMillimetres } from '../protocol/messages';
 import { packetMs } from '../protocol/packet-time';
@@ -43,7 +43,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   readonly #clock = createClockSync();
   readonly #replica: RoomReplica<Game>;
   #calibration: Calibration;
-  #avatar: WornAvatar;
+  #avatar: AvatarRef;
   #voice: Voice | null = null;
   #voiceListener: VoiceListener | null = null;
   #skeleton: Skeleton;
@@ -141,7 +141,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     if (this.#replica.known) this.transmit({ type: 'calibration', calibration: this.#calibration });
   }
 
-  wear(avatar: WornAvatar): void {
+  wear(avatar: AvatarRef): void {
     if (avatar === this.#avatar) return;
     this.#avatar = avatar;
     if (this.#replica.known) this.transmit({ type: 'wear', avatar });

@@ -1,5 +1,5 @@
+import { type AvatarRef, avatarHash, isOwnAvatar, type OwnAvatar } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
-import { avatarHash, isOwnAvatar, type OwnAvatar, type WornAvatar } from 'threepoint/core/body/worn-avatar';
 import * as v from 'valibot';
 import { cleanName } from './names';
 import { packedVoice, packVoice, signalFrom, signalTo, unpackVoice, type Voice, voice } from './voice-messages';
@@ -31,7 +31,7 @@ const calibration = v.strictObject({
 });
 
 const name = v.pipe(v.string(), v.maxLength(200), v.transform(cleanName));
-/** A WornAvatar. */
+/** An AvatarRef. */
 const avatar = v.union([v.custom<OwnAvatar>(isOwnAvatar), v.pipe(v.string(), v.regex(avatarHash))]);
 
 /** First of all: who this is to the others. Where a seat is free and none is named, the first. */
@@ -102,7 +102,7 @@ export interface SeatInfo {
   readonly calibration: Calibration;
   readonly bot: boolean;
   readonly presence: (typeof presences)[number];
-  readonly avatar: WornAvatar;
+  readonly avatar: AvatarRef;
   /** null: takes no part in the voices. */
   readonly voice: Voice | null;
 }

@@ -1,4 +1,4 @@
-import { plainAvatar, type WornAvatar } from 'threepoint/core/body/worn-avatar';
+import { type AvatarRef, plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { transformPoint, transformSeen } from 'threepoint/core/math/pose';
 import { type ClientMessage, type Joining, packSeatInfo, protocolVersion } from '../protocol/messages';
 import { decodePoints, makePoints } from '../protocol/pose-codec';
@@ -95,7 +95,7 @@ export class Room<Game extends HostedGame> {
   }
 
   /** What this person has on, on a seat that is theirs or held for them; null: they have none. */
-  wornBy(identity: string): WornAvatar | null {
+  wornBy(identity: string): AvatarRef | null {
     const index = this.#seats.heldBy(identity);
     return index === null ? null : (this.#seats.at(index)?.avatar ?? null);
   }

@@ -1,5 +1,5 @@
+import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
-import type { WornAvatar } from 'threepoint/core/body/worn-avatar';
 import type { SeatAction } from 'threepoint/core/tracking/seat-action';
 import type { SeatInfo } from '../protocol/messages';
 import type { Voice } from '../protocol/voice-messages';
@@ -26,7 +26,7 @@ export interface Client {
   readonly name: string;
   readonly bot: boolean;
   calibration: Calibration;
-  avatar: WornAvatar;
+  avatar: AvatarRef;
   voice: Voice | null;
   /** Limits how often the client changes seats. */
   readonly moves: TokenBucket;
@@ -39,7 +39,7 @@ export interface Seat {
   client: ClientId | null;
   name: string;
   calibration: Calibration;
-  avatar: WornAvatar;
+  avatar: AvatarRef;
   voice: Voice | null;
   readonly bot: boolean;
   /** Room time [s] of losing the connection. */

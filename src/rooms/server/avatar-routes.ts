@@ -1,7 +1,7 @@
 import { createHash } from 'node:crypto';
 import type { IncomingMessage } from 'node:http';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
-import { avatarHash, mostAvatarBytes } from 'threepoint/core/body/worn-avatar';
+import { avatarHash, mostAvatarBytes } from 'threepoint/core/body/avatar-ref';
 import { type Answer, done, HttpError, json } from 'threepoint-http/answer';
 import { readBody } from 'threepoint-http/body';
 import { clientAddressOf } from 'threepoint-http/client-address';

@@ -1,10 +1,10 @@
-import { type AvatarHash, mostAvatarBytes, type WornAvatar } from 'threepoint/core/body/worn-avatar';
+import { type AvatarHash, type AvatarRef, mostAvatarBytes } from 'threepoint/core/body/avatar-ref';
 
 export interface AvatarStoreOptions {
   /** All files together, those on their way included [bytes]; 0: none is taken. */
   readonly mostBytes: number;
   /** What a person has on in a room of this process; null: they have no seat there. */
-  readonly wornBy: (room: string, identity: string) => WornAvatar | null;
+  readonly wornBy: (room: string, identity: string) => AvatarRef | null;
   /** Seconds, monotonic. */
   readonly now: () => number;
 }

@@ -1,6 +1,6 @@
-import { ownBodies } from 'threepoint/core/body/worn-avatar';
+import { ownBodies } from 'threepoint/core/body/avatar-ref';
 import { threePointNames } from 'threepoint/core/estimation/pose-estimator';
-import { mostLatencyMs } from 'threepoint/core/tracking/impaired-tracking';
+import { mostLatencyMs } from 'threepoint/core/tracking/tracking-degradation';
 import type { StudyPlan } from './plan';
 import { boolean, number, type Table, text } from './tidy-csv';
 

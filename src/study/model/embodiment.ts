@@ -1,6 +1,6 @@
-import { ownBodies } from 'threepoint/core/body/worn-avatar';
+import { ownBodies } from 'threepoint/core/body/avatar-ref';
 import { type ThreePointName, threePointNames } from 'threepoint/core/estimation/pose-estimator';
-import { mostLatencyMs } from 'threepoint/core/tracking/impaired-tracking';
+import { mostLatencyMs } from 'threepoint/core/tracking/tracking-degradation';
 import { numberBetween } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
 

@@ -38,7 +38,7 @@ export class EstimatorChoice {
     this.#wanted = options.estimator;
     const loads = networkOf(this.#wanted) !== null;
     this.#current = this.#make(loads ? 'ik' : this.#wanted, null);
-    if (loads) void this.choose(this.#wanted);
+    if (loads) void this.setEstimator(this.#wanted);
   }
 
   get current(): PoseEstimator {
@@ -63,7 +63,7 @@ export class EstimatorChoice {
    * Resolves when this estimator draws, or when it turned out that it cannot. Rejects with a RangeError where there is none of this name, and changes
    * nothing; else only with what a listener throws.
    */
-  async choose(name: EstimatorName): Promise<void> {
+  async setEstimator(name: EstimatorName): Promise<void> {
     if (this.#disposed || this.#unavailable[name] !== undefined) return;
     const needed = networkOf(name);
     if (needed) {
@@ -108,7 +108,7 @@ export class EstimatorChoice {
    * An estimator of the current method lives through these frames, each answer of its network waited for, and draws from then on; `then` hears
    * what it draws of the last. Not where another draws by then, or everything was forgotten.
    */
-  async relive(frames: Iterable<TrackingFrame>, then: (pose: AvatarPose) => void): Promise<void> {
+  async warmUp(frames: Iterable<TrackingFrame>, then: (pose: AvatarPose) => void): Promise<void> {
     this.#changes += 1;
     const begun = this.#changes;
     const living = this.#make(this.#current.name, this.#regressor);

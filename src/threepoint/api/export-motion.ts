@@ -1,8 +1,8 @@
 import type { Recording } from '../core/tracking/recording';
-import type { BareExportOptions, MotionFile } from './bare-export';
 import { learnedAlone } from './load-learned';
+import type { MotionExportOptions, MotionFile } from './motion-export';
 
-export type ExportOptions = Omit<BareExportOptions, 'networks'> & Partial<Pick<BareExportOptions, 'networks'>>;
+export type ExportOptions = Omit<MotionExportOptions, 'networks'> & Partial<Pick<MotionExportOptions, 'networks'>>;
 
 /**
  * A file of what a method draws of a recording, with fingers: BVH, a table of joints (CSV), VRM Animation, or what a writer makes; the networks as
@@ -10,6 +10,6 @@ export type ExportOptions = Omit<BareExportOptions, 'networks'> & Partial<Pick<B
  */
 export async function exportMotion(recording: Recording, options: ExportOptions): Promise<MotionFile> {
   // Pages that export nothing load none of it.
-  const { exportMotionBare } = await import('./bare-export');
+  const { exportMotionWith: exportMotionBare } = await import('./motion-export');
   return exportMotionBare(recording, { ...options, networks: options.networks ?? learnedAlone });
 }

@@ -1,4 +1,5 @@
 import { type Calibration, provisionalCalibration } from '../core/body/calibration';
+import { isTracked } from '../core/math/pose';
 import { createHeightWatch } from '../core/tracking/height-watch';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 
@@ -11,7 +12,7 @@ export interface HeightPolicyOptions {
   /** Whether the wearer has calibrated: what they measured stays, and they are told where it is too small. */
   calibrated(): boolean;
   /** Whether a wearer may turn out to be taller than their measures. */
-  readonly grows: boolean;
+  readonly autoGrow: boolean;
   /** Other measures of a wearer who never calibrated: as high as the headset hangs, or grown because they stood up taller. */
   onMeasured(calibration: Calibration, source: 'headset' | 'stood-taller'): void;
   /** A wearer who calibrated stands this much taller than their calibration says [m]. Told once for each calibration. */
@@ -35,7 +36,7 @@ export class HeightPolicy {
   }
 
   /** The headset was put on: its height is taken once more. */
-  begin(): void {
+  startSession(): void {
     this.#settledSince = null;
   }
 
@@ -53,12 +54,12 @@ export class HeightPolicy {
   /** Every frame in which the wearer's head is seen. */
   observe(frame: TrackingFrame): void {
     if (!this.#options.calibrated()) this.#settle(frame);
-    if (this.#options.grows) this.#grow(frame);
+    if (this.#options.autoGrow) this.#grow(frame);
   }
 
   #settle({ time, head }: TrackingFrame): void {
     if (this.#settledSince === 'done') return;
-    if (head.tracking !== 'tracked') {
+    if (!isTracked(head)) {
       this.#settledSince = null;
       return;
     }

@@ -3,7 +3,7 @@
 import { reasonOf } from '../core/errors/reasons';
 import { copyPose, invertTransform, makePose, type Pose, type Transform, transformPose } from '../core/math/pose';
 import { type XRBodyJoints, XRBodyPoser } from '../core/motion/xr-body';
-import { createTracker, type Tracker } from '../xr/tracker';
+import { TrackedSession } from '../xr/tracked-session';
 import { Body, type BodyOptions } from './body';
 
 export interface BodyTrackingOptions extends Omit<BodyOptions, 'events' | 'clock' | 'timing'> {
@@ -86,7 +86,7 @@ class SessionBody {
   readonly #body: Body;
   readonly #originals: Originals;
   #floor: XRReferenceSpace | null = null;
-  #tracker: Tracker | null = null;
+  #tracked: TrackedSession | null = null;
   #poser: XRBodyPoser | null = null;
   #poserOf: object | null = null;
   /** When the frame at hand began [ms], and of which the joints are. */
@@ -113,19 +113,24 @@ class SessionBody {
     this.spaces = new JointSpaces(jointNames);
   }
 
-  /** Without a floor there are joints, but no poses of them. */
+  /** Starts tracking once the session has a floor; rejects where it has none: then there are joints, but no poses of them. */
   async begin(): Promise<void> {
-    this.#floor = await this.#session.requestReferenceSpace('local-floor');
-    this.#tracker = createTracker(this.#session, this.#floor);
-    this.#floor.addEventListener('reset', this.#jumped);
-    this.#body.begin();
+    const floor = await this.#session.requestReferenceSpace('local-floor');
+    this.#floor = floor;
+    this.#tracked = new TrackedSession({
+      session: this.#session,
+      // The page draws where it likes: estimates are in the floor's space.
+      drawing: { getReferenceSpace: () => floor, setReferenceSpace: () => undefined },
+      onStart: () => this.#body.startSession(),
+      onDiscontinuity: () => this.#body.discontinuity(),
+      onEnd: () => this.#end(),
+    });
+    this.#tracked.start();
   }
 
-  end(): void {
-    this.#floor?.removeEventListener('reset', this.#jumped);
-    this.#tracker?.dispose();
-    this.#tracker = null;
-    this.#body.forgetPoints();
+  #end(): void {
+    this.#tracked = null;
+    this.#body.endSession();
   }
 
   frame(timeMs: number): void {
@@ -154,8 +159,6 @@ class SessionBody {
     }
     return all;
   }
-
-  readonly #jumped = () => this.#body.jumped();
 
   /** Floor frame. */
   #locate(frame: XRFrame, space: XRSpace): Place | null {
@@ -186,10 +189,10 @@ class SessionBody {
   }
 
   #estimate(frame: XRFrame): XRBodyJoints | null {
-    if (this.#estimatedMs === this.#frameMs || !this.#tracker) return this.#joints;
+    if (this.#estimatedMs === this.#frameMs || !this.#tracked) return this.#joints;
     this.#estimatedMs = this.#frameMs;
-    const time = this.#body.frame(this.#frameMs);
-    const tracked = this.#tracker.read(frame, time);
+    const time = this.#body.tick(this.#frameMs);
+    const tracked = this.#tracked.read(frame, time);
     const pose = this.#body.update(tracked);
     // One body serves all sessions: until this one sees the head, its pose is of the session before.
     if (!tracked) return this.#joints;
@@ -306,7 +309,6 @@ export function installBodyTracking({ onFault, ...options }: BodyTrackingOptions
         const emulated = new SessionBody(session, body, originals, jointNames);
         bodies.set(session, emulated);
         replace(session, 'enabledFeatures', { value: [...new Set([...enabled, feature])] });
-        session.addEventListener('end', () => emulated.end());
         emulated.begin().catch((error: unknown) => onFault?.(`no floor to stand on: ${reasonOf(error)}`));
         return session;
       },

@@ -2,7 +2,7 @@ import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
 import { type Replayable, sampleRecording } from '../core/tracking/recording';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
-import type { BareBody } from './bare-body';
+import type { BodySolver } from './body-solver';
 
 /** A replay that may move a body. */
 export interface MovingReplay {
@@ -35,7 +35,7 @@ export function* leadUpTo(recording: Replayable, seconds: number, time: number):
  * replay stands at another second, or another method draws, the body lives through the seconds before.
  */
 export class ReplayedBody {
-  readonly #body: Pick<BareBody, 'update' | 'relive' | 'jumped' | 'pose' | 'estimator'>;
+  readonly #body: Pick<BodySolver, 'update' | 'warmUp' | 'discontinuity' | 'pose' | 'estimator'>;
   readonly #replay: MovingReplay;
   /** How long replays stood still since the last one began [s]. */
   #stood = 0;
@@ -48,7 +48,10 @@ export class ReplayedBody {
     method: '',
   };
 
-  constructor(body: Pick<BareBody, 'update' | 'relive' | 'jumped' | 'pose' | 'estimator'>, replay: MovingReplay) {
+  constructor(
+    body: Pick<BodySolver, 'update' | 'warmUp' | 'discontinuity' | 'pose' | 'estimator'>,
+    replay: MovingReplay,
+  ) {
     this.#body = body;
     this.#replay = replay;
   }
@@ -57,16 +60,21 @@ export class ReplayedBody {
   update(frame: TrackingFrame | null, standIn: Calibration | null): AvatarPose | null {
     const { mode, paused } = this.#replay;
     if (!frame || mode !== 'replaying') {
-      this.#stood = 0;
-      this.#moment.recording = null;
+      this.stop();
       return this.#body.update(frame, standIn);
     }
     if (paused) return this.#stand(frame, standIn);
     this.#time = frame.time;
-    if (this.#beginsAnew()) this.#body.jumped();
+    if (this.#beginsAnew()) this.#body.discontinuity();
     const pose = this.#body.update(this.#dated(frame), standIn);
     this.#arrive();
     return pose;
+  }
+
+  /** Forgets the replay that moved the body. */
+  stop(): void {
+    this.#stood = 0;
+    this.#moment.recording = null;
   }
 
   #stand(frame: TrackingFrame, standIn: Calibration | null): AvatarPose | null {
@@ -76,7 +84,7 @@ export class ReplayedBody {
     const dated = this.#dated(frame);
     this.#body.update(dated, standIn);
     const { recording, seconds } = this.#replay;
-    if (recording) void this.#body.relive(leadUpTo(recording, seconds, dated.time));
+    if (recording) void this.#body.warmUp(leadUpTo(recording, seconds, dated.time));
     return this.#body.pose;
   }
 

@@ -9,11 +9,11 @@ import { reasonOf } from '../core/errors/reasons';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { DeviceBodyReader } from '../xr/device-body-reader';
-import { SessionReading } from '../xr/session-reading';
-import type { CalibrationSource, TrackedPoint } from './bare-body';
-import type { MotionWriter } from './bare-export';
+import { TrackedSession } from '../xr/tracked-session';
 import { Body, type BodyOptions } from './body';
+import type { CalibrationSource, TrackedPoint } from './body-solver';
 import { loadLearned } from './load-learned';
+import type { MotionWriter } from './motion-export';
 
 export type { Avatar } from '../avatar/avatar';
 export type { BoneMap } from '../avatar/humanoid/bone-names';
@@ -76,12 +76,12 @@ export interface BodyTrackerOptions extends Omit<BodyOptions, 'events'> {
 
 export interface BodyTrackerEvents {
   readonly calibrated: { readonly calibration: Calibration; readonly source: CalibrationSource };
-  readonly outgrown: { readonly difference: number };
+  readonly heightmismatch: { readonly difference: number };
   readonly fallback: { readonly estimator: EstimatorName; readonly reason: string };
   readonly changed: object;
-  readonly jumped: object;
-  readonly lost: { readonly point: TrackedPoint };
-  readonly found: { readonly point: TrackedPoint };
+  readonly discontinuity: object;
+  readonly trackinglost: { readonly point: TrackedPoint };
+  readonly trackingfound: { readonly point: TrackedPoint };
 }
 
 /**
@@ -95,15 +95,12 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   readonly #renderer: WebGLRenderer;
   readonly #deviceBody: boolean;
   readonly #object = new Group();
-  /** The renderer's, whose end is awaited. */
+  /** The renderer's session and its tracking; null: there is none. */
   #session: XRSession | null = null;
-  /** How that session is read; null before its first frame. */
-  #reading: SessionReading | null = null;
+  #tracked: TrackedSession | null = null;
   /** Whether the wearer's eyes are in the head that is drawn. */
   #firstPerson = false;
   #disposed = false;
-  readonly #jumped = () => this.body.jumped();
-  readonly #left = () => this.#leave();
 
   /** Throws a RangeError where the calibration is no person's. */
   constructor(renderer: WebGLRenderer, { avatar, modelUrl, deviceBody = false, ...options }: BodyTrackerOptions) {
@@ -120,18 +117,18 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
       ...options,
       events: {
         calibrated: (calibration, source) => {
-          avatar.fitTo(calibration);
+          avatar.setCalibration(calibration);
           this.dispatchEvent({ type: 'calibrated', calibration, source });
         },
-        outgrown: (difference) => this.dispatchEvent({ type: 'outgrown', difference }),
+        heightmismatch: (difference) => this.dispatchEvent({ type: 'heightmismatch', difference }),
         changed: () => this.dispatchEvent({ type: 'changed' }),
-        jumped: () => this.dispatchEvent({ type: 'jumped' }),
+        discontinuity: () => this.dispatchEvent({ type: 'discontinuity' }),
         fallback: (estimator, reason) => this.dispatchEvent({ type: 'fallback', estimator, reason }),
-        lost: (point) => this.dispatchEvent({ type: 'lost', point }),
-        found: (point) => this.dispatchEvent({ type: 'found', point }),
+        trackinglost: (point) => this.dispatchEvent({ type: 'trackinglost', point }),
+        trackingfound: (point) => this.dispatchEvent({ type: 'trackingfound', point }),
       },
     });
-    avatar.fitTo(this.body.calibration);
+    avatar.setCalibration(this.body.calibration);
     this.#object.name = 'body';
     this.#object.add(avatar.object);
     this.#object.visible = false;
@@ -163,8 +160,8 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   }
 
   /** Resolves when this estimator draws, or when the event `fallback` told why it cannot. */
-  choose(estimator: EstimatorName): Promise<void> {
-    return this.body.choose(estimator);
+  setEstimator(estimator: EstimatorName): Promise<void> {
+    return this.body.setEstimator(estimator);
   }
 
   /** The wearer's measures [m], or 'auto'. Throws a RangeError where they are no person's. */
@@ -178,14 +175,13 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
    */
   update(timeMs: number, frame: XRFrame | null | undefined): void {
     if (this.#disposed) return;
-    const time = this.body.frame(timeMs);
-    const session = this.#attend();
-    // Before the first frame of a session the renderer may still have the space of the one before.
-    if (!session || !frame) return;
-    const reading = this.#reading ?? this.#enter(session);
-    if (!reading) return;
-    const tracked = reading.read(frame, time);
-    const { position, orientation } = reading.floorPose;
+    const time = this.body.tick(timeMs);
+    this.#attend();
+    const session = this.#tracked;
+    // The renderer may still have the space of the session before: the first frame starts the tracking.
+    if (!session || !frame || !session.start()) return;
+    const tracked = session.read(frame, time);
+    const { position, orientation } = session.floorPose;
     this.avatar.object.position.copy(position);
     this.avatar.object.quaternion.copy(orientation);
     this.#apply(tracked, null);
@@ -195,7 +191,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
    * The same from head and wrists that the page has itself, floor frame [m, s]: of another device of the wearer's, or of a stand-in with these
    * measures (an actor, a recording).
    */
-  follow(frame: TrackingFrame | null, standIn: Calibration | null = null): void {
+  updateFrom(frame: TrackingFrame | null, standIn: Calibration | null = null): void {
     if (this.#disposed) return;
     this.#attend();
     this.#apply(frame, standIn);
@@ -204,8 +200,8 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   /** The wearer stands at the floor's origin from now on and looks along −Z; the renderer's reference space moves along. */
   recentre(): void {
     if (this.#disposed) return;
-    this.#reading?.recentre();
-    this.body.jumped();
+    if (this.#tracked) this.#tracked.recentre();
+    else this.body.discontinuity();
   }
 
   /** Ends what it listens to and takes the avatar apart; no frame changes anything from then on. Resolves when every network is let go that was loaded for it. */
@@ -223,34 +219,34 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     if (!tracked || !pose) return;
     this.avatar.setFingers('left', tracked.fingers?.left ?? null);
     this.avatar.setFingers('right', tracked.fingers?.right ?? null);
-    this.avatar.apply(pose, tracked.time);
+    this.avatar.setPose(pose, tracked.time);
     this.#object.visible = true;
   }
 
-  /** The renderer's session; what was of another is over. */
-  #attend(): XRSession | null {
+  /** Follows the renderer's session; the tracking of the one before is over. */
+  #attend(): void {
     const session = this.#renderer.xr.getSession();
-    if (session === this.#session) return session;
+    if (session === this.#session) return;
     this.#leave();
     this.#session = session;
-    session?.addEventListener('end', this.#left);
-    return session;
-  }
-
-  #enter(session: XRSession): SessionReading | null {
-    const bodyReader = this.#deviceBody ? new DeviceBodyReader() : null;
-    this.#reading = SessionReading.of(session, this.#renderer.xr, bodyReader, this.#jumped);
-    if (this.#reading) this.body.begin();
-    return this.#reading;
+    this.#tracked =
+      session &&
+      new TrackedSession({
+        session,
+        drawing: this.#renderer.xr,
+        bodyReader: this.#deviceBody ? new DeviceBodyReader() : null,
+        onStart: () => this.body.startSession(),
+        onDiscontinuity: () => this.body.discontinuity(),
+        onEnd: () => this.#leave(),
+      });
   }
 
   #leave(): void {
     if (!this.#session) return;
-    this.#session.removeEventListener('end', this.#left);
+    this.#tracked?.dispose();
+    this.#tracked = null;
     this.#session = null;
-    this.#reading?.dispose();
-    this.#reading = null;
-    this.body.forgetPoints();
+    this.body.endSession();
     this.#setFirstPerson(false);
     this.avatar.object.position.set(0, 0, 0);
     this.avatar.object.quaternion.identity();

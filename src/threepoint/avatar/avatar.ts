@@ -1,25 +1,25 @@
 import { type VRM, VRMFirstPerson, VRMUtils } from '@pixiv/three-vrm';
 import { Group, type Object3D } from 'three';
 import { handBoneRotation } from '../core/body/arm-rotations';
-import { type AvatarPose, type UpperBodyPose } from '../core/body/avatar-pose';
-import { type Calibration } from '../core/body/calibration';
+import type { AvatarPose, UpperBodyPose } from '../core/body/avatar-pose';
+import type { SkinTone } from '../core/body/avatar-ref';
+import type { Calibration } from '../core/body/calibration';
 import { forwardKinematics, makeJointPoses } from '../core/body/forward-kinematics';
 import { type HandGeometry, scaledHand } from '../core/body/hand-geometry';
-import { type FingerName, type HandShape } from '../core/body/hand-shape';
+import type { FingerName, HandShape } from '../core/body/hand-shape';
 import { headJointOf } from '../core/body/head-joint';
 import { type JointName, jointNames } from '../core/body/joints';
 import { type Skeleton, skeletonFromCalibration } from '../core/body/skeleton';
-import { type SkinTone } from '../core/body/worn-avatar';
-import { type GaitPoints } from '../core/estimation/gait-features';
-import { type Quat, identity, quat, rotate } from '../core/math/quat';
-import { type Side } from '../core/math/side';
-import { type Vec3, addScaled, setVec3, subtract, vec3 } from '../core/math/vec3';
+import type { GaitPoints } from '../core/estimation/gait-features';
+import { identity, type Quat, quat, rotate } from '../core/math/quat';
+import type { Side } from '../core/math/side';
+import { addScaled, setVec3, subtract, type Vec3, vec3 } from '../core/math/vec3';
 import { finishWork } from '../core/motion/work';
 import { Face } from './face';
 import { Fingers } from './hands/fingers';
-import { type Steps, betweenFrames } from './in-steps';
+import { betweenFrames, type Steps } from './in-steps';
 import { Legs } from './legs/legs';
-import { type LoadedAvatar } from './load-avatar';
+import type { LoadedAvatar } from './load-avatar';
 import { ArmHelperJoints } from './rig/arm-helpers';
 import { type AvatarMesh, BodyMeshes, readMeshes } from './rig/body-meshes';
 import { OwnTrunk } from './rig/own-trunk';
@@ -32,9 +32,9 @@ export interface Avatar {
   /** How high its head reaches when it stands upright [m]. */
   readonly height: number;
   /** Scales the rig to this body, limb by limb, not by its own proportions. May be called again at any time. */
-  fitTo(calibration: Calibration): void;
+  setCalibration(calibration: Calibration): void;
   /** Bends the body to a pose; time [s] on the clock of the tracking frames. */
-  apply(pose: AvatarPose, time: number): void;
+  setPose(pose: AvatarPose, time: number): void;
   /** Hides the own head from the own eyes; mirrors and others still see it. */
   setFirstPerson(on: boolean): void;
   setUpperBodyOnly(on: boolean): void;
@@ -140,14 +140,14 @@ class VrmAvatar implements Avatar {
     this.springs = new Springs(vrm);
     made += 1;
     this.face = new Face(vrm, made);
-    this.fitTo(averageBody);
+    this.setCalibration(averageBody);
   }
 
   get height(): number {
     return this.meshes.top * this.scale;
   }
 
-  fitTo(calibration: Calibration): void {
+  setCalibration(calibration: Calibration): void {
     this.skeleton = skeletonFromCalibration(calibration);
     const hipsPosition = this.skeleton.restOffsets.hips;
     const tPose = forwardKinematics(this.skeleton, { hipsPosition, localRotations: upright });
@@ -164,7 +164,7 @@ class VrmAvatar implements Avatar {
     this.springs.scaleTo(this.scale * Math.abs(this.vrm.scene.scale.x));
   }
 
-  apply(pose: AvatarPose, time: number): void {
+  setPose(pose: AvatarPose, time: number): void {
     const elapsed = this.lastTime === null ? 0 : time - this.lastTime;
     // Written so that a time that is no number is no step.
     const deltaSeconds = elapsed > 0 ? Math.min(longestStep, elapsed) : 0;

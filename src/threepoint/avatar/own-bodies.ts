@@ -1,4 +1,4 @@
-import type { OwnBody } from '../core/body/worn-avatar';
+import type { OwnBody } from '../core/body/avatar-ref';
 
 /** Our own bodies as people call them, in the order in which they are offered. */
 export const bodyLabels: readonly { readonly name: OwnBody; readonly label: string }[] = [

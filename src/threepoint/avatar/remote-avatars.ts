@@ -1,8 +1,8 @@
 import { Group, type Mesh, type MeshBasicMaterial, type Object3D, type PlaneGeometry } from 'three';
 import type { AvatarPose } from '../core/body/avatar-pose';
+import { type AvatarRef, bodyOf, isAvatarHash, isOwnAvatar, plainAvatar, skinToneOf } from '../core/body/avatar-ref';
 import { type Calibration, sameMeasures } from '../core/body/calibration';
 import type { Fingers } from '../core/body/hand-shape';
-import { bodyOf, isAvatarHash, isOwnAvatar, plainAvatar, toneOf, type WornAvatar } from '../core/body/worn-avatar';
 import { PassingFault } from '../core/errors/passing-fault';
 import { type MutableTransform, makeTransform, type Transform, transformPoint } from '../core/math/pose';
 import { copyQuat } from '../core/math/quat';
@@ -16,7 +16,7 @@ export interface SeenPerson {
   /** Who it is, for as long as they are there: the same number is the same body. */
   readonly id: number;
   readonly calibration: Calibration;
-  readonly avatar: WornAvatar;
+  readonly avatar: AvatarRef;
   /** Of a body of our own. */
   readonly palette: string;
   /** In their own floor's frame. */
@@ -33,13 +33,13 @@ export interface RemoteAvatarsOptions {
    * The body for what a person has on; asked once for a file, and for one of ours with every body that is needed. Rejects where there is none: with a
    * PassingFault it is asked again after some seconds.
    */
-  load(avatar: WornAvatar): Promise<LoadedAvatar>;
+  load(avatar: AvatarRef): Promise<LoadedAvatar>;
   /** All are to be drawn as the plain one; asked in every frame. */
   plain(): boolean;
   /** How far a person's mouth is open: 0 shut to 1; asked in every frame for each who is drawn. */
   mouthOf(id: number): number;
   /** A person's avatar cannot be shown: the plain one stays. Told once for each avatar, and not of a fault that has passed soon. */
-  onRefused(avatar: WornAvatar, reason: unknown): void;
+  onRefused(avatar: AvatarRef, reason: unknown): void;
 }
 
 /** The bodies of other people. Those of one of ours share what the graphics device holds of it. */
@@ -50,13 +50,13 @@ export interface RemoteAvatars {
   /** Where a person's joints are drawn, floor frame of this room [m]; null: no one of this number is drawn. */
   jointsOf(id: number): Readonly<Record<string, Vec3>> | null;
   /** As what a person is drawn; null: no one of this number is. */
-  drawnAs(id: number): WornAvatar | null;
+  drawnAs(id: number): AvatarRef | null;
   dispose(): void;
 }
 
 interface Body {
   readonly avatar: Avatar;
-  readonly of: WornAvatar;
+  readonly of: AvatarRef;
   /** Not one of ours. */
   readonly fromFile: boolean;
   readonly place: Group;
@@ -122,7 +122,7 @@ class OthersBodies implements RemoteAvatars {
   readonly #bodies: Body[] = [];
   /** What is being made: of our own bodies and of files, one each. */
   readonly #making: { own: boolean; file: boolean } = { own: false, file: false };
-  readonly #refused = new Map<WornAvatar, Refusal>();
+  readonly #refused = new Map<AvatarRef, Refusal>();
   #disposed = false;
   /** The time of the newest frame [s]. */
   #now = 0;
@@ -161,7 +161,7 @@ class OthersBodies implements RemoteAvatars {
     return Object.fromEntries(joints.map(([joint, at]) => [joint, transformPoint(body.placement, at)]));
   }
 
-  drawnAs(id: number): WornAvatar | null {
+  drawnAs(id: number): AvatarRef | null {
     return this.#bodyOf(id)?.of ?? null;
   }
 
@@ -177,7 +177,7 @@ class OthersBodies implements RemoteAvatars {
   }
 
   /** The body of a person with this avatar on, else with the plain one; null while that is being made. */
-  #bodyFor({ id }: SeenPerson, avatar: WornAvatar, people: readonly SeenPerson[]): Body | null {
+  #bodyFor({ id }: SeenPerson, avatar: AvatarRef, people: readonly SeenPerson[]): Body | null {
     const own = this.#bodyOf(id);
     if (own?.of === avatar) return own;
     const wanted = this.#freeBody(avatar, people);
@@ -198,14 +198,14 @@ class OthersBodies implements RemoteAvatars {
     return own;
   }
 
-  #freeBody(avatar: WornAvatar, people: readonly SeenPerson[]): Body | null {
+  #freeBody(avatar: AvatarRef, people: readonly SeenPerson[]): Body | null {
     for (const body of this.#bodies) {
       if (body.of === avatar && (body.id === null || !isAmong(people, body.id))) return body;
     }
     return null;
   }
 
-  #make(avatar: WornAvatar): void {
+  #make(avatar: AvatarRef): void {
     const lane = isAvatarHash(avatar) ? 'file' : 'own';
     if (this.#making[lane]) return;
     this.#making[lane] = true;
@@ -215,7 +215,7 @@ class OthersBodies implements RemoteAvatars {
   }
 
   /** Never rejects: where it is not to be had the plain body stays; without the plain one the next frame throws why. */
-  async #load(avatar: WornAvatar): Promise<void> {
+  async #load(avatar: AvatarRef): Promise<void> {
     try {
       const loaded = await this.#options.load(avatar);
       const made = await createAvatarBetweenFrames(loaded);
@@ -228,7 +228,7 @@ class OthersBodies implements RemoteAvatars {
     }
   }
 
-  #refuse(avatar: WornAvatar, error: unknown): void {
+  #refuse(avatar: AvatarRef, error: unknown): void {
     const before = this.#refused.get(avatar);
     const passes = error instanceof PassingFault;
     const attempts = (before?.attempts ?? 0) + 1;
@@ -238,13 +238,13 @@ class OthersBodies implements RemoteAvatars {
     if (tells && !this.#disposed) this.#options.onRefused(avatar, error);
   }
 
-  #add(avatar: Avatar, of: WornAvatar): void {
+  #add(avatar: Avatar, of: AvatarRef): void {
     const fromFile = isAvatarHash(of);
     // One of ours stays for as long as the others do; a file's memory is given back body by body.
     if (isOwnAvatar(of)) {
       const first = this.#bodies.find((body) => isOwnAvatar(body.of) && bodyOf(body.of) === bodyOf(of));
       if (first) shareGeometry(first.avatar.object, avatar.object);
-      avatar.setSkinTone(toneOf(of));
+      avatar.setSkinTone(skinToneOf(of));
     }
     const place = new Group();
     const shadow = createBlobShadow();
@@ -275,7 +275,7 @@ function draw(body: Body, person: SeenPerson, time: number): void {
   const { avatar, place, shadow } = body;
   const { calibration, palette, pose, placement, fingers, opacity } = person;
   if (!body.fitted || !sameMeasures(body.fitted, calibration)) {
-    avatar.fitTo(calibration);
+    avatar.setCalibration(calibration);
     body.fitted = calibration;
   }
   if (!body.fromFile && body.palette !== palette) {
@@ -293,7 +293,7 @@ function draw(body: Body, person: SeenPerson, time: number): void {
   place.quaternion.copy(placement.orientation);
   avatar.setFingers('left', fingers.left);
   avatar.setFingers('right', fingers.right);
-  avatar.apply(pose, time);
+  avatar.setPose(pose, time);
   const { hips, head } = avatar.jointPositions();
   const over = hips ?? head;
   if (over) shadow.position.set(over.x, shadow.position.y, over.z);

@@ -21,7 +21,7 @@ function range(settings: { readonly seconds?: number } = {}) {
   const frame = (pose: Posed, trigger: number, ms = frameMs) => {
     stamp += ms;
     const buttons = { left: allReleased, right: { ...allReleased, trigger } };
-    const { cues, events } = play.follow(posed(clock.frame(stamp), pose), buttons);
+    const { cues, events } = play.follow(posed(clock.tick(stamp), pose), buttons);
     said.push(...[...cues, ...events].map(({ type }) => type).filter((type) => type !== 'creak'));
   };
   return {

@@ -1,7 +1,7 @@
 import { createHash } from 'node:crypto';
 import { createServer, type RequestListener } from 'node:http';
 import type { AddressInfo } from 'node:net';
-import type { AvatarHash } from 'threepoint/core/body/worn-avatar';
+import type { AvatarHash } from 'threepoint/core/body/avatar-ref';
 import { PassingFault } from 'threepoint/core/errors/passing-fault';
 import { SeenAvatars } from 'threepoint-page/ball/seen-avatars';
 import { expect, onTestFinished, test } from 'vitest';

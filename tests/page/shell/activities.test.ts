@@ -1,6 +1,6 @@
 import { Scene } from 'three';
+import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { plainAvatar } from 'threepoint/core/body/worn-avatar';
 import { allReleased, nothingPressed } from 'threepoint/core/input/button-presses';
 import type { Side } from 'threepoint/core/math/side';
 import { vec3 } from 'threepoint/core/math/vec3';
@@ -79,7 +79,7 @@ function page() {
       seen.aims = on;
     },
   };
-  const headset = { worn: false, emulator: null, buttons: nothingPressed, read: () => null };
+  const headset = { worn: false, emulator: null, tracking: null };
   const recorder = new Recorder();
   const study = new PageStudy();
   const common = { settings, stage, mouse, headset, body: { calibration: defaultCalibration } };
@@ -264,7 +264,7 @@ describe('a player who takes the headset off', () => {
       recorder: new Recorder(),
       timing: createFrameTiming(() => 0),
       view: { view: 'third-person', setView: nothing } as unknown as SessionChangesOptions['view'],
-      body: { begin: nothing, jumped: () => activities.jumped() },
+      body: { startSession: nothing, discontinuity: () => activities.jumped() },
       controls: { show: nothing, setWorn: nothing, layOut: nothing },
       ...{ activities, study },
     });

@@ -1,6 +1,6 @@
-import type { OwnBody } from 'threepoint/core/body/worn-avatar';
+import type { OwnBody } from 'threepoint/core/body/avatar-ref';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
-import { ImpairedTracking } from 'threepoint/core/tracking/impaired-tracking';
+import { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
 import { type EmbodyingParts, embody } from 'threepoint-page/shell/embody';
 import type { Settings } from 'threepoint-page/shell/settings';
 import { describe, expect, test } from 'vitest';
@@ -20,7 +20,7 @@ const frameAt = (time: number, height: number) => ({
 /** A page without a device to draw on; `missing`: what it cannot load. */
 function pageOf(missing: readonly string[] = []) {
   const settings: Partial<Settings> = {};
-  const impaired = new ImpairedTracking();
+  const impaired = new TrackingDegradation();
   let worn: OwnBody = 'mannequin';
   let drawn: EstimatorName = 'ik';
   const parts: EmbodyingParts = {
@@ -41,7 +41,7 @@ function pageOf(missing: readonly string[] = []) {
       get estimator() {
         return drawn;
       },
-      async choose(name) {
+      async setEstimator(name) {
         drawn = missing.includes(name) ? 'ik' : name;
       },
     },
@@ -62,11 +62,11 @@ describe('the body of a round', () => {
   test('is impaired for as long as a condition says so', async () => {
     const { parts, impaired } = pageOf();
     await embody(parts, { estimator: 'ik', latencyMs: 100 }, 1);
-    impaired.follow(frameAt(1, 1.6));
-    expect(impaired.follow(frameAt(1.05, 1.7)).head.position.y).toBe(1.6);
+    impaired.apply(frameAt(1, 1.6));
+    expect(impaired.apply(frameAt(1.05, 1.7)).head.position.y).toBe(1.6);
     await embody(parts, { estimator: 'ik' }, 1);
-    impaired.follow(frameAt(1.1, 1.7));
-    expect(impaired.follow(frameAt(1.15, 1.8)).head.position.y).toBe(1.8);
+    impaired.apply(frameAt(1.1, 1.7));
+    expect(impaired.apply(frameAt(1.15, 1.8)).head.position.y).toBe(1.8);
   });
 
   test.each(['paper', 'child'])('is refused where "%s" cannot be had', async (missing) => {

@@ -34,10 +34,10 @@ function running(change: Partial<FrameParts<undefined>> = {}) {
     fail: (error) => void seen.failures.push(error),
     ...change,
   };
-  const jumped = () => {
+  const discontinuity = () => {
     seen.jumps += 1;
   };
-  const body = new Body({ estimator: 'ik', events: { jumped } });
+  const body = new Body({ estimator: 'ik', events: { discontinuity } });
   const timing = createFrameTiming(() => 0);
   return { seen, loop: createFrameLoop(parts, body, timing) };
 }

@@ -57,7 +57,9 @@ async function page(draw: () => Promise<void> = () => Promise.resolve()) {
   const told: string[] = [];
   const space = new EventTarget() as XRReferenceSpace;
   const headset = new Headset({
-    renderer: { xr: { setSession: draw, getReferenceSpace: () => space } } as unknown as HeadsetOptions['renderer'],
+    renderer: {
+      xr: { setSession: draw, getReferenceSpace: () => space, setReferenceSpace: () => undefined },
+    } as unknown as HeadsetOptions['renderer'],
     quality: 'low',
     switches: { emulate: false },
     settings: { actor: true, emulatorPanel: false, deviceBody: false },

@@ -1,5 +1,4 @@
 import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
-import { nothingPressed } from 'threepoint/core/input/button-presses';
 import type { TrackedPose } from 'threepoint/core/math/pose';
 import { vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
@@ -52,7 +51,7 @@ function page({ actor = false, emulator = null as Emulator | null } = {}) {
   const remembered: Calibration[] = [];
   const recorder = new Recorder();
   const settings = { actor };
-  const headset = { worn: false, emulator, buttons: nothingPressed, read: () => null };
+  const headset = { worn: false, emulator, tracking: null };
   const body = { wearerCalibration: defaultCalibration };
   const measuring = new Measuring({
     ...{ settings, headset, body, recorder },

@@ -75,7 +75,7 @@ function files() {
         giveBones: async () => true,
       },
       mocap: { open: async (sources) => void mocap.push(sources) },
-      body: { jumped: () => void done.push(`the body begins anew while ${recorder.mode}`) },
+      body: { discontinuity: () => void done.push(`the body begins anew while ${recorder.mode}`) },
       onChange: () => void done.push('shown'),
     }),
   };

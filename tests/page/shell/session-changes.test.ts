@@ -25,7 +25,7 @@ function player(recorder = new Recorder()) {
     recorder,
     timing: createFrameTiming(() => 0),
     view: { view: 'third-person', setView: nothing } as unknown as SessionChangesOptions['view'],
-    body: { begin: nothing, jumped: nothing },
+    body: { startSession: nothing, discontinuity: nothing },
     activities: { ball: { play }, sessionChanged: nothing } as unknown as SessionChangesOptions['activities'],
     controls: { show: nothing, setWorn: nothing, layOut: nothing },
     study: { run: null },

@@ -1,4 +1,4 @@
-import { BareBody } from 'threepoint/api/bare-body';
+import { BodySolver } from 'threepoint/api/body-solver';
 import { ReplayedBody } from 'threepoint/api/replayed-body';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
@@ -15,7 +15,7 @@ const skeleton = skeletonFromCalibration(defaultCalibration);
 /** A page whose headset is worn by a person who moves as the actor does, with its recorder and its body. */
 function worn() {
   const recorder = new Recorder();
-  const body = new BareBody({
+  const body = new BodySolver({
     estimator: 'ik',
     calibration: defaultCalibration,
     networks: () => Promise.reject(new Error('inverse kinematics has none')),
@@ -24,10 +24,8 @@ function worn() {
   const source = new TrackingSource({
     settings: { actor: true },
     headset: {
-      worn: true,
       emulator: null,
-      buttons: nothingPressed,
-      read: (_, time) => actorFrame(time, defaultCalibration),
+      tracking: { inputs: { buttons: nothingPressed }, read: (_, time) => actorFrame(time, defaultCalibration) },
     },
     recorder,
     body,
@@ -46,7 +44,7 @@ test('with the actor off before a real headset is put on, the body stands still'
   const asked: number[] = [];
   const source = new TrackingSource({
     settings: { actor: false },
-    headset: { worn: false, emulator: null, buttons: nothingPressed, read: () => null },
+    headset: { emulator: null, tracking: null },
     recorder: new Recorder(),
     body: { wearerCalibration: defaultCalibration },
     actor: createActor(),

@@ -1,7 +1,7 @@
 import { createHash } from 'node:crypto';
 import fc from 'fast-check';
+import { ownAvatarOf, ownBodies, plainAvatar, skinTones } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { ownAvatarOf, ownBodies, plainAvatar, skinTones } from 'threepoint/core/body/worn-avatar';
 import { ballActionFrom, ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
 import {
   type ClientMessage,

@@ -1,6 +1,6 @@
+import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { plainAvatar } from 'threepoint/core/body/worn-avatar';
 import { type BallRoomMessage, ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
 import { type BallGame, BallPolicy } from 'threepoint-games/ball/ball-policy';
 import type { BallAction, BallDeed, BallEvent, BallOptions, BallState } from 'threepoint-games/ball/ball-state';

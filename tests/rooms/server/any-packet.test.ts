@@ -1,7 +1,7 @@
 import { setTimeout as after } from 'node:timers/promises';
 import fc from 'fast-check';
+import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { plainAvatar } from 'threepoint/core/body/worn-avatar';
 import { ballKind } from 'threepoint-games/ball/ball-messages';
 import { protocolVersion } from 'threepoint-rooms/protocol/messages';
 import { createRoomTokens } from 'threepoint-rooms/server/room-tokens';

@@ -1,6 +1,6 @@
 import { createHash, randomBytes } from 'node:crypto';
 import { request as httpRequest } from 'node:http';
-import { mostAvatarBytes } from 'threepoint/core/body/worn-avatar';
+import { mostAvatarBytes } from 'threepoint/core/body/avatar-ref';
 import { createAvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
 import { createRoomPass } from 'threepoint-rooms/client/room-pass';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';

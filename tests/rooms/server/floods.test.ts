@@ -1,5 +1,5 @@
+import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { plainAvatar } from 'threepoint/core/body/worn-avatar';
 import { protocolVersion } from 'threepoint-rooms/protocol/messages';
 import { lobbyNamespace } from 'threepoint-rooms/server/lobby-hall';
 import { expect, onTestFinished, test } from 'vitest';

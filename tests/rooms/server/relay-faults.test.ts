@@ -1,6 +1,6 @@
 // @module-tag full
 
-import { plainAvatar } from 'threepoint/core/body/worn-avatar';
+import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { nextRandom } from 'threepoint/core/math/random';
 import { ballClientPolicy } from 'threepoint-games/ball/ball-client';
 import { ballKind } from 'threepoint-games/ball/ball-messages';

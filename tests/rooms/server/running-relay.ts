@@ -1,8 +1,8 @@
 import { io, type Socket } from 'socket.io-client';
+import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { plainAvatar } from 'threepoint/core/body/worn-avatar';
 import { identity } from 'threepoint/core/math/quat';
 import { vec3 } from 'threepoint/core/math/vec3';
 import { ballClientPolicy } from 'threepoint-games/ball/ball-client';

@@ -1,4 +1,4 @@
-import { plainAvatar } from 'threepoint/core/body/worn-avatar';
+import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { assignedSeat } from 'threepoint-page/ball/ball-connections';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/relay-configuration';
 import { createExperimenterClient, createParticipantClient } from 'threepoint-study/client/study-client';

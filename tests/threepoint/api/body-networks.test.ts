@@ -32,7 +32,7 @@ describe('a body whose network is not to be had', () => {
   test('the paper’s network asks for a runtime', async () => {
     const told: string[] = [];
     const body = new Body({ estimator: 'ik', events: { fallback: (name, reason) => told.push(`${name} ${reason}`) } });
-    await body.choose('paper');
+    await body.setEstimator('paper');
     expect(told).toEqual([expect.stringMatching(/^paper .*onnxNetworks/)]);
     expect(body.estimator).toBe('ik');
   });
@@ -75,7 +75,7 @@ describe('a network that answers later', () => {
     });
     const { body } = await observed({ calibration, networks: async (name) => network(name) });
     body.update(at(0));
-    body.jumped();
+    body.discontinuity();
     for (let turn = 0; turn < 3; turn++) await new Promise((resolve) => setTimeout(resolve, 0));
     expect(runs).toBe(0);
     body.update(at(1 / 60));
@@ -88,7 +88,7 @@ describe('a network that answers later', () => {
     const { body } = await observed({
       calibration,
       networks: async (name) => network(name),
-      timing: { resume: () => void marks.push('resume'), mark: (part) => void marks.push(part) },
+      profiler: { resume: () => void marks.push('resume'), mark: (part) => void marks.push(part) },
     });
     body.update(at(0));
     expect(marks, 'nothing of it lies in the frame').toEqual([]);
@@ -119,8 +119,8 @@ describe('a network that answers later', () => {
         return network(name);
       },
     });
-    await body.choose('ik');
-    const chosen = body.choose('paper');
+    await body.setEstimator('ik');
+    const chosen = body.setEstimator('paper');
     const over = body.dispose();
     arrive();
     await Promise.all([chosen, over]);

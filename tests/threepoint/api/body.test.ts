@@ -80,7 +80,7 @@ describe('a body', () => {
   });
 
   test('takes no height from a headset that is not tracked yet, nor from the moments around', async () => {
-    const { body, told } = await observed({ estimator: 'ik', grows: false });
+    const { body, told } = await observed({ estimator: 'ik', autoGrow: false });
     const guessed = (time: number): TrackingFrame => {
       const frame = standing(time, 1.9);
       return { ...frame, head: { ...frame.head, tracking: 'emulated' } };
@@ -96,9 +96,9 @@ describe('a body', () => {
 
   test.each([
     ['is not seen', (body: Body) => body.update(null)],
-    ['pauses', (body: Body) => body.jumped()],
+    ['pauses', (body: Body) => body.discontinuity()],
   ])('takes no height from the moments before a headset %s, nor at once after', async (_, interrupt) => {
-    const { body, told } = await observed({ estimator: 'ik', grows: false });
+    const { body, told } = await observed({ estimator: 'ik', autoGrow: false });
     for (let frame = 0; frame < 30; frame++) body.update(standing(frame / 60, 0.9));
     interrupt(body);
     for (let frame = 600; frame < 630; frame++) body.update(standing(frame / 60, 1.4));
@@ -149,8 +149,8 @@ describe('a body', () => {
   });
 
   test('that is told not to grow does not, and says nothing of it', async () => {
-    const given = await observed({ estimator: 'ik', calibration, grows: false });
-    const guessed = await observed({ estimator: 'ik', grows: false });
+    const given = await observed({ estimator: 'ik', calibration, autoGrow: false });
+    const guessed = await observed({ estimator: 'ik', autoGrow: false });
     for (let frame = 0; frame < 60; frame++) guessed.body.update(standing(frame / 60, 1.6));
     for (let frame = 60; frame < 300; frame++) {
       given.body.update(standing(frame / 60, 1.72));
@@ -171,7 +171,7 @@ describe('a body', () => {
   test('takes measures anew with another session, and as told', async () => {
     const { body, told } = await observed({ estimator: 'ik' });
     for (let frame = 0; frame < 60; frame++) body.update(standing(frame / 60, 1.6));
-    body.begin();
+    body.startSession();
     for (let frame = 60; frame < 120; frame++) body.update(standing(frame / 60, 1.5));
     body.calibrate(calibration);
     expect(told.filter((line) => line.startsWith('calibrated'))).toEqual([
@@ -191,7 +191,7 @@ describe('a body', () => {
       events: { changed: () => told.push('changed'), fallback: (name, reason) => told.push(`${name}: ${reason}`) },
     });
     expect(told).toEqual([]);
-    await body.choose(estimator);
+    await body.setEstimator(estimator);
     expect(body.estimator).toBe(estimator === 'learned' ? 'ik' : estimator);
     expect(told.includes('learned: no networks here')).toBe(estimator !== 'ik');
   });
@@ -232,7 +232,7 @@ describe('a body that another moves', () => {
 
   test('is where they are in their first frame: nothing is drawn on the way', async () => {
     let jumps = 0;
-    const body = new Body({ estimator: 'ik', calibration, events: { jumped: () => (jumps += 1) } });
+    const body = new Body({ estimator: 'ik', calibration, events: { discontinuity: () => (jumps += 1) } });
     for (let frame = 0; frame < 30; frame++) body.update(at(frame / 60));
     expect(jumps).toBe(0);
     const elsewhere = standing(0.5, 1.5);
@@ -249,7 +249,10 @@ describe('measures of a stand-in', () => {
     const told: string[] = [];
     const body = new Body({
       estimator: 'ik',
-      events: { jumped: () => told.push('jumped'), calibrated: (_, source) => told.push(`calibrated ${source}`) },
+      events: {
+        discontinuity: () => told.push('jumped'),
+        calibrated: (_, source) => told.push(`calibrated ${source}`),
+      },
     });
     const handTilts = { left: { pitch: 0.1, yaw: 0.2 } };
     for (let frame = 0; frame < 90; frame++)
@@ -284,24 +287,24 @@ describe('measures of a stand-in', () => {
 
 test('time is its own: after a pause a body begins anew, half a second on', () => {
   let jumps = 0;
-  const body = new Body({ estimator: 'ik', events: { jumped: () => (jumps += 1) } });
-  const first = body.frame(5000);
-  expect(body.frame(5020) - first).toBeCloseTo(0.02);
+  const body = new Body({ estimator: 'ik', events: { discontinuity: () => (jumps += 1) } });
+  const first = body.tick(5000);
+  expect(body.tick(5020) - first).toBeCloseTo(0.02);
   expect(jumps).toBe(0);
-  expect(body.frame(65_020) - first).toBeCloseTo(0.52);
+  expect(body.tick(65_020) - first).toBeCloseTo(0.52);
   expect(jumps).toBe(1);
-  expect(body.frame(10) - first).toBeGreaterThan(0.52);
+  expect(body.tick(10) - first).toBeGreaterThan(0.52);
 });
 
 test('bodies that share a clock are at one time, and each begins anew after a pause', () => {
   const clock = createPageClock(() => 0);
   const jumped: string[] = [];
   const [first, second] = ['first', 'second'].map(
-    (name) => new Body({ estimator: 'ik', clock, events: { jumped: () => jumped.push(name) } }),
+    (name) => new Body({ estimator: 'ik', clock, events: { discontinuity: () => jumped.push(name) } }),
   );
   for (const timestampMs of [5000, 5020, 65_020]) {
-    const time = first!.frame(timestampMs);
-    expect(second!.frame(timestampMs)).toBe(time);
+    const time = first!.tick(timestampMs);
+    expect(second!.tick(timestampMs)).toBe(time);
   }
   expect(jumped).toEqual(['first', 'second']);
 });

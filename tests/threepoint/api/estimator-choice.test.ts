@@ -55,7 +55,7 @@ describe('which estimator draws', () => {
   test('inverse kinematics draws while the network loads, then the network does', async () => {
     let arrive: (network: PoseRegressor) => void = () => undefined;
     const { choice, faults } = choiceThat(() => new Promise((resolve) => (arrive = resolve)));
-    const chosen = choice.choose('learned');
+    const chosen = choice.setEstimator('learned');
     expect([choice.wanted, choice.current.name]).toEqual(['learned', 'ik']);
     arrive(networkOn('wasm'));
     await chosen;
@@ -66,13 +66,13 @@ describe('which estimator draws', () => {
   test('what draws already goes on where it is chosen again', async () => {
     const { choice } = choiceThat(async () => networkOn('wasm'));
     const { current } = choice;
-    await choice.choose('ik');
+    await choice.setEstimator('ik');
     expect(choice.current).toBe(current);
-    await choice.choose('learned');
+    await choice.setEstimator('learned');
     const learned = choice.current;
-    await choice.choose('learned');
+    await choice.setEstimator('learned');
     expect(choice.current).toBe(learned);
-    await choice.choose('ik');
+    await choice.setEstimator('ik');
     expect(choice.current).not.toBe(learned);
   });
 
@@ -80,7 +80,7 @@ describe('which estimator draws', () => {
     const { choice, faults } = choiceThat(async () => {
       throw new Error('learned.onnx: 404');
     });
-    await choice.choose('learned');
+    await choice.setEstimator('learned');
     expect([choice.wanted, choice.current.name]).toEqual(['ik', 'ik']);
     expect(choice.unavailable.learned).toBe('learned.onnx: 404');
     expect(faults).toEqual(['learned: learned.onnx: 404']);
@@ -91,8 +91,8 @@ describe('which estimator draws', () => {
       if (name === 'paper') throw new Error('paper.onnx: 404');
       return networkOn('wasm');
     });
-    await choice.choose('learned');
-    await choice.choose('paper');
+    await choice.setEstimator('learned');
+    await choice.setEstimator('paper');
     expect([choice.wanted, choice.current.name, choice.regressor]).toEqual(['ik', 'ik', null]);
     expect(changes).toEqual(['learned wasm', 'ik alone']);
   });
@@ -110,7 +110,7 @@ describe('which estimator draws', () => {
       onChange: () => undefined,
       onFault: (network, reason) => faults.push(`${network}: ${reason}`),
     });
-    await choice.choose(name);
+    await choice.setEstimator(name);
     const needed = networkOf(name);
     expect([choice.wanted, choice.current.name]).toEqual(name === 'paper' ? ['ik', 'ik'] : ['device', 'device']);
     expect(faults).toEqual([`${needed}: estimator “${needed}” needs the regressor of the same name`]);
@@ -118,20 +118,20 @@ describe('which estimator draws', () => {
 
   test('a name of no estimator is refused in a sentence, and changes nothing', async () => {
     const { choice, changes } = choiceThat(async () => networkOn('wasm'));
-    await choice.choose('learned');
+    await choice.setEstimator('learned');
     const lerned = 'lerned' as EstimatorName;
-    await expect(choice.choose(lerned)).rejects.toThrow('“lerned” is no estimator: hands-only, ik');
+    await expect(choice.setEstimator(lerned)).rejects.toThrow('“lerned” is no estimator: hands-only, ik');
     expect([choice.wanted, choice.current.name]).toEqual(['learned', 'learned']);
     expect(changes).toHaveLength(1);
   });
 
   test('a network that fails while it runs gives way to inverse kinematics, once', async () => {
     const { choice, faults, changes } = choiceThat(async () => networkOn('broken'));
-    await choice.choose('learned');
+    await choice.setEstimator('learned');
     expect(choice.current.name).toBe('learned');
     choice.check();
     choice.check();
-    await choice.choose('learned');
+    await choice.setEstimator('learned');
     expect(choice.current.name).toBe('ik');
     expect(faults).toEqual(['learned: out of memory']);
     expect(changes, 'each told once').toEqual(['learned broken', 'ik alone']);
@@ -148,14 +148,14 @@ describe('which estimator draws', () => {
     ],
   ])('the device’s body is drawn without its network where that %s', async (_, load, reason) => {
     const { choice, faults } = choiceThat(load);
-    await choice.choose('device');
+    await choice.setEstimator('device');
     choice.check();
     choice.check();
     expect([choice.wanted, choice.current.name, choice.regressor]).toEqual(['device', 'device', null]);
     expect(choice.unavailable).toEqual({ learned: reason });
     expect(faults).toEqual([`learned: ${reason}`]);
-    await choice.choose('ik');
-    await choice.choose('device');
+    await choice.setEstimator('ik');
+    await choice.setEstimator('device');
     choice.check();
     expect([choice.current.name, choice.regressor], 'and chosen again').toEqual(['device', null]);
     expect(faults).toHaveLength(1);
@@ -168,7 +168,7 @@ describe('which estimator draws', () => {
         throw new Error('a bug of the page');
       },
     );
-    await expect(choice.choose('learned')).rejects.toThrow('a bug of the page');
+    await expect(choice.setEstimator('learned')).rejects.toThrow('a bug of the page');
     expect([choice.wanted, choice.current.name, choice.regressor?.provider]).toEqual(['learned', 'learned', 'wasm']);
     expect([choice.unavailable, faults]).toEqual([{}, []]);
   });
@@ -182,8 +182,8 @@ describe('which estimator draws', () => {
         if (name === 'learned') throw new Error('the device is lost');
       },
     }));
-    await choice.choose('learned');
-    await choice.choose('paper');
+    await choice.setEstimator('learned');
+    await choice.setEstimator('paper');
     await expect(choice.dispose()).rejects.toThrow('the device is lost');
     expect(letGo).toEqual(['learned', 'paper']);
   });
@@ -191,8 +191,8 @@ describe('which estimator draws', () => {
   test('a person who changes their mind while a network loads keeps the later choice', async () => {
     let arrive: (network: PoseRegressor) => void = () => undefined;
     const { choice } = choiceThat(() => new Promise((resolve) => (arrive = resolve)));
-    const first = choice.choose('paper');
-    await choice.choose('hands-only');
+    const first = choice.setEstimator('paper');
+    await choice.setEstimator('hands-only');
     arrive(networkOn('wasm'));
     await first;
     expect(choice.current.name).toBe('hands-only');

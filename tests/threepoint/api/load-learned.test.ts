@@ -11,7 +11,7 @@ const models = new URL('../../../public/models/', import.meta.url);
 test('a program of Node has the learned network from the disk, without a word of where it lies', async () => {
   const told: string[] = [];
   const body = new Body({ events: { fallback: (_, reason) => told.push(reason) } });
-  await body.choose('learned');
+  await body.setEstimator('learned');
   expect(told).toEqual([]);
   expect([body.estimator, body.provider]).toEqual(['learned', 'plain']);
   await body.dispose();

@@ -16,12 +16,12 @@ export async function observed(options: BodyOptions = {}) {
     ...options,
     events: {
       calibrated: ({ eyeHeight }, source) => told.push(`calibrated ${eyeHeight.toFixed(2)} ${source}`),
-      outgrown: (difference) => told.push(`outgrown by ${difference.toFixed(2)}`),
+      heightmismatch: (difference) => told.push(`outgrown by ${difference.toFixed(2)}`),
       fallback: (estimator, reason) => told.push(`fallback ${estimator} ${reason}`),
-      lost: (point) => told.push(`lost ${point}`),
-      found: (point) => told.push(`found ${point}`),
+      trackinglost: (point) => told.push(`lost ${point}`),
+      trackingfound: (point) => told.push(`found ${point}`),
     },
   });
-  await body.choose(options.estimator ?? 'learned');
+  await body.setEstimator(options.estimator ?? 'learned');
   return { body, told };
 }

@@ -34,10 +34,10 @@ test.each(['paper', 'learned'] as const)(
       networks: onnxNetworks({ modelUrl: (network) => `${models}/${network}.json` }),
       events: { fallback: (_, reason) => told.push(reason) },
     });
-    await body.choose(name);
+    await body.setEstimator(name);
     expect(body.estimator).toBe(name);
     const ik = new Body({ estimator: 'ik', calibration: defaultCalibration });
-    await ik.choose('ik');
+    await ik.setEstimator('ik');
     const first = actorFrame(1, defaultCalibration);
     const chestOf = (drawn: Body, time: number) => ({
       ...drawn.update({ ...first, time })!.body!.localRotations.chest,

@@ -54,7 +54,7 @@ type BodyFrame = XRFrame & {
 };
 
 let headset: Fake;
-let takeBack: () => void;
+let uninstall: () => void;
 let timeMs = 1000;
 
 beforeEach(() => {
@@ -63,11 +63,11 @@ beforeEach(() => {
   vi.stubGlobal('XRFrame', Frame);
   vi.stubGlobal('XRSession', Session);
   vi.stubGlobal('navigator', { xr: { requestSession: async () => new Session(headset) } });
-  takeBack = installBodyTracking({ estimator: 'ik' });
+  uninstall = installBodyTracking({ estimator: 'ik' });
 });
 
 afterEach(() => {
-  takeBack();
+  uninstall();
   vi.unstubAllGlobals();
 });
 

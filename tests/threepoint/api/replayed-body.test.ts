@@ -28,7 +28,7 @@ async function replaying(method: EstimatorName, later = false) {
   recorder.replay();
   const networks = async () => (later ? answeringLater(await openPlainModel()) : openPlainModel());
   const body = new Body({ networks, calibration, estimator: method });
-  await body.choose(method);
+  await body.setEstimator(method);
   const replayed = new ReplayedBody(body, recorder);
   const skeleton = skeletonFromCalibration(calibration);
   let page = 100;
@@ -43,7 +43,7 @@ async function replaying(method: EstimatorName, later = false) {
   };
   const seek = (seconds: number) => {
     recorder.seek(seconds);
-    body.jumped();
+    body.discontinuity();
   };
   return { recorder, body, draw, seek };
 }
@@ -83,7 +83,7 @@ describe('a replay that stands still', () => {
       recorder.setPaused(true);
       seek(moment);
       draw(1);
-      await body.choose(method);
+      await body.setEstimator(method);
       expect(apart(draw(1), await playedUpTo(method))).toBeLessThan(1e-3);
     },
   );
@@ -98,7 +98,7 @@ describe('a replay that stands still', () => {
     const { draw: drawStanding, recorder: other, body } = await replaying('learned');
     other.seek(moment);
     drawStanding(1);
-    body.jumped();
+    body.discontinuity();
     for (let i = 0; i < rateHz; i++) body.update({ ...at(moment), time: 200 + i / rateHz });
     expect(apart(drawStanding(0), scrubbed), 'a person who stands there is drawn otherwise').toBeGreaterThan(0.005);
   });
@@ -117,8 +117,8 @@ describe('a replay that stands still', () => {
   test('is given up where the body jumps before a late network has answered', async () => {
     const { body } = await replaying('learned', true);
     body.update(at(1));
-    const lived = body.relive([at(1.5), at(1.6)]);
-    body.jumped();
+    const lived = body.warmUp([at(1.5), at(1.6)]);
+    body.discontinuity();
     const before = body.pose;
     await lived;
     expect(body.pose).toBe(before);
@@ -129,7 +129,7 @@ test('a replay that begins anew is drawn without a way from its end', async () =
   const { recorder, body, draw } = await replaying('ik');
   recorder.setLoop(true);
   draw(1);
-  const jumped = vi.spyOn(body, 'jumped');
+  const jumped = vi.spyOn(body, 'discontinuity');
   draw(frames.length - 1);
   expect(recorder.seconds).toBeCloseTo((frames.length - 1) / rateHz, 6);
   expect(jumped).not.toHaveBeenCalled();
@@ -138,7 +138,7 @@ test('a replay that begins anew is drawn without a way from its end', async () =
   expect(jumped).toHaveBeenCalledTimes(1);
   const { body: other, draw: drawOther } = await replaying('ik');
   drawOther(frames.length);
-  other.jumped();
+  other.discontinuity();
   const pose = other.update({ ...frames[0]!, time: 200 }, calibration);
   expect(apart(begun, structuredClone(forwardKinematics(skeletonFromCalibration(calibration), pose!.body!)))).toBe(0);
 });

@@ -21,7 +21,7 @@ test('a body whose hands meet or cross in front and hold still moves by no more 
   return fc.assert(
     fc.asyncProperty(hands, fc.constantFrom('ik' as const, 'learned' as const), async ({ x, y, ahead }, estimator) => {
       const body = new Body({ calibration, estimator, networks: async () => openPlainModel() });
-      await body.choose(estimator);
+      await body.setEstimator(estimator);
       const joints = (row: number) => {
         const pose = body.update({
           time: row * rate,

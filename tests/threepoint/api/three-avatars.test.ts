@@ -39,8 +39,8 @@ describe('an avatar', () => {
     const [own, other] = [await loadAvatar(mannequin()), await loadAvatar(foreign, { bones })];
     const pose = poseOf(createIk(defaultCalibration), actorFrame(1, defaultCalibration));
     const wrist = (avatar: typeof own) => {
-      avatar.fitTo(defaultCalibration);
-      avatar.apply(pose, 1);
+      avatar.setCalibration(defaultCalibration);
+      avatar.setPose(pose, 1);
       return avatar.jointPositions().leftHand!;
     };
     expect(distance(wrist(own), pose.leftHand!.position)).toBeLessThan(0.001);

@@ -63,8 +63,8 @@ export async function begin(options: Partial<BodyTrackerOptions> = {}) {
     ...options,
   });
   const told: string[] = [];
-  for (const type of ['lost', 'found'] as const) {
-    tracker.addEventListener(type, ({ point }) => told.push(`${type} ${point}`));
+  for (const type of ['trackinglost', 'trackingfound'] as const) {
+    tracker.addEventListener(type, ({ point }) => told.push(`${type.slice('tracking'.length)} ${point}`));
   }
   tracker.addEventListener('calibrated', ({ source }) => told.push(`calibrated ${source}`));
   tracker.addEventListener('fallback', ({ reason }) => told.push(`fallback ${reason}`));

@@ -83,7 +83,7 @@ describe('a body in a session of three.js', () => {
   test('goes on after a frame of the page’s own with a time that is no number', async () => {
     const { tracker } = await begin({ calibration: defaultCalibration });
     const wearer = (time: number) => actorFrame(time, defaultCalibration);
-    for (let i = 0; i < 72; i++) tracker.follow({ ...wearer(i / 72), ...(i === 20 && { time: Number.NaN }) });
+    for (let i = 0; i < 72; i++) tracker.updateFrom({ ...wearer(i / 72), ...(i === 20 && { time: Number.NaN }) });
     const turned: number[] = [];
     tracker.object.traverse(({ quaternion }) => turned.push(...quaternion));
     expect(turned.every(Number.isFinite)).toBe(true);
@@ -133,7 +133,7 @@ describe('a body in a session of three.js', () => {
 
   test('a frame of the page’s own moves it without a session', async () => {
     const { tracker } = await begin({ calibration: defaultCalibration });
-    tracker.follow(standing);
+    tracker.updateFrom(standing);
     expect(tracker.object.visible).toBe(true);
     expect(ownHeadSeen(tracker)).toBe(true);
   });
@@ -141,11 +141,11 @@ describe('a body in a session of three.js', () => {
   test('of a page’s own frames hides its head from the wearer of a session, but shows them the head of a stand-in', async () => {
     const { headset, tracker } = await begin({ calibration: defaultCalibration });
     headset.putOn();
-    tracker.follow(standing);
+    tracker.updateFrom(standing);
     expect(ownHeadSeen(tracker)).toBe(false);
-    tracker.follow({ ...standing, time: 1.1 }, defaultCalibration);
+    tracker.updateFrom({ ...standing, time: 1.1 }, defaultCalibration);
     expect(ownHeadSeen(tracker)).toBe(true);
-    tracker.follow({ ...standing, time: 1.2 });
+    tracker.updateFrom({ ...standing, time: 1.2 });
     headset.takeOff();
     expect(ownHeadSeen(tracker)).toBe(true);
   });
@@ -161,7 +161,7 @@ describe('a body in a session of three.js', () => {
     await tracker.dispose();
     headset.setHead({ position: { x: 1, y: 1.6, z: 0 }, orientation: identity });
     run(2);
-    tracker.follow(standing);
+    tracker.updateFrom(standing);
     tracker.recentre();
     expect(scene.children).toEqual([]);
     expect(tracker.object.visible).toBe(false);

@@ -78,11 +78,11 @@ function radiiOf(crossings: readonly Crossing[]): { readonly least: number; read
 
 async function wearer(file: ArrayBuffer) {
   const avatar = createAvatar(await parseAvatar(file, 'test.glb'));
-  avatar.fitTo(defaultCalibration);
+  avatar.setCalibration(defaultCalibration);
   let time = 0;
   const show = (turn: ArmTurn) => {
     time += 0.1;
-    avatar.apply(poseOf(turn), time);
+    avatar.setPose(poseOf(turn), time);
     avatar.object.updateMatrixWorld(true);
   };
   show({});
@@ -178,7 +178,7 @@ describe('our mannequin’s arm', () => {
     const head = { ...makePose<'floor'>(), tracking: 'tracked' as const };
     const hand = { position: vec3(-0.3, 1.1, -0.4), orientation: quat(0, 0, 0, 1), tracking: 'tracked' as const };
     head.position.y = 1.59;
-    body.avatar.apply({ head, leftHand: hand, rightHand: null, body: null }, 10);
+    body.avatar.setPose({ head, leftHand: hand, rightHand: null, body: null }, 10);
     body.avatar.object.updateMatrixWorld(true);
     let longest = 0;
     body.avatar.object.traverse((node) => {

@@ -42,7 +42,7 @@ const living = (): ArrayBuffer =>
 async function opened(body: Calibration = defaultCalibration): Promise<{ loaded: LoadedAvatar; avatar: Avatar }> {
   const loaded = await parseAvatar(living(), 'living.vrm');
   const avatar = createAvatar(loaded);
-  avatar.fitTo(body);
+  avatar.setCalibration(body);
   return { loaded, avatar };
 }
 
@@ -62,7 +62,7 @@ function stand(
       orientation: place.yaw === 0 ? identity : fromAxisAngle(up, place.yaw),
       tracking: 'tracked' as const,
     };
-    avatar.apply(poseOf(ik, { time, head, leftHand: null, rightHand: null }), time);
+    avatar.setPose(poseOf(ik, { time, head, leftHand: null, rightHand: null }), time);
   }
   return time;
 }
@@ -168,7 +168,7 @@ describe('eyes', () => {
     );
     const { vrm } = await parseAvatar(bytes, 'painted-eyes.vrm');
     const avatar = createAvatar({ name: 'painted-eyes.vrm', vrm, nodeIndices: new Map() });
-    avatar.fitTo(defaultCalibration);
+    avatar.setCalibration(defaultCalibration);
     const lookRight = () => {
       const shapes: number[] = [];
       avatar.object.traverse((node) => {
@@ -243,7 +243,7 @@ describe('a mouth', () => {
         'mannequin.vrm',
       ),
     );
-    avatar.fitTo(defaultCalibration);
+    avatar.setCalibration(defaultCalibration);
     const shaped = (): number => {
       let meshes = 0;
       avatar.object.traverse((node) => {
@@ -277,7 +277,7 @@ describe('a mouth', () => {
       );
       const loaded = await parseAvatar(bytes, 'shaped.vrm');
       const avatar = createAvatar(loaded);
-      avatar.fitTo(defaultCalibration);
+      avatar.setCalibration(defaultCalibration);
       avatar.setMouth(1);
       stand(avatar, 0, 1);
       const influences: number[][] = [];

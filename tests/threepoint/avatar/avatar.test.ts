@@ -100,7 +100,7 @@ async function play(
   const ik = createIk(body);
   for (let i = 0; i < seconds * rateHz; i++) {
     const frame = actorFrame(i / rateHz, body);
-    avatar.apply(poseOf(ik, frame), frame.time);
+    avatar.setPose(poseOf(ik, frame), frame.time);
     look(frame);
   }
 }
@@ -114,7 +114,7 @@ describe.each(avatars)('%s', (_, file) => {
   });
 
   test.each(bodies)('its wrists lie on the tracked ones within 1 mm for eyes at $eyeHeight m', async (body) => {
-    avatar.fitTo(body);
+    avatar.setCalibration(body);
     let hands = 0;
     await play(avatar, body, ({ leftHand, rightHand }) => {
       for (const [name, hand] of [
@@ -130,12 +130,12 @@ describe.each(avatars)('%s', (_, file) => {
   });
 
   test('its joints are those of the pose, and left is left', () => {
-    avatar.fitTo(defaultCalibration);
+    avatar.setCalibration(defaultCalibration);
     const skeleton = skeletonFromCalibration(defaultCalibration);
     const frame = actorFrame(11.5, defaultCalibration);
     const { body } = poseOf(createIk(defaultCalibration), frame);
     if (!body) throw new Error('IK draws a body');
-    avatar.apply(poseOf(createIk(defaultCalibration), frame), 0);
+    avatar.setPose(poseOf(createIk(defaultCalibration), frame), 0);
     const joints = forwardKinematics(skeleton, body);
     for (const name of jointNames) {
       if (!loaded.vrm.humanoid.getRawBoneNode(name)) continue;
@@ -149,19 +149,19 @@ describe.each(avatars)('%s', (_, file) => {
     ['both hands', {}],
     ['one hand', { leftHand: null }],
   ])('drawn as head and %s, no skin reaches from one to another', (_, lost) => {
-    avatar.fitTo(defaultCalibration);
+    avatar.setCalibration(defaultCalibration);
     const frame = { ...actorFrame(11.5, defaultCalibration), ...lost };
     const pose = poseOf(createIk(defaultCalibration), frame);
-    avatar.apply({ ...pose, body: null }, 0);
+    avatar.setPose({ ...pose, body: null }, 0);
     const drawn = drawnSkin(avatar);
     const longest = longestEdge(avatar, drawn);
-    avatar.apply(pose, 0.1);
+    avatar.setPose(pose, 0.1);
     expect(longest).toBeGreaterThan(0.005);
     expect(longest, 'against the same skin on a whole body').toBeLessThan(1.3 * longestEdge(avatar, drawn));
   });
 
   test('its feet stay on the floor and nothing is NaN', async () => {
-    avatar.fitTo(defaultCalibration);
+    avatar.setCalibration(defaultCalibration);
     await play(avatar, defaultCalibration, () => {
       const joints = Object.entries(avatar.jointPositions());
       expect(joints.length).toBeGreaterThan(9);
@@ -177,9 +177,9 @@ describe('our mannequin', () => {
   test('turns its hands as the tracked ones are turned', async () => {
     const loaded = await parseAvatar(mannequin(), 'mannequin.vrm');
     const avatar = createAvatar(loaded);
-    avatar.fitTo(defaultCalibration);
+    avatar.setCalibration(defaultCalibration);
     const frame = actorFrame(5.2, defaultCalibration);
-    avatar.apply(poseOf(createIk(defaultCalibration), frame), 0);
+    avatar.setPose(poseOf(createIk(defaultCalibration), frame), 0);
     for (const [name, sign] of [
       ['leftHand', 1],
       ['rightHand', -1],
@@ -199,8 +199,8 @@ describe('our mannequin', () => {
     const avatar = createAvatar(loaded);
     const frame = actorFrame(3, defaultCalibration);
     const bodyAfter = (fits: readonly Calibration[]) => {
-      for (const fit of fits) avatar.fitTo(fit);
-      avatar.apply(poseOf(createIk(defaultCalibration), frame), 0);
+      for (const fit of fits) avatar.setCalibration(fit);
+      avatar.setPose(poseOf(createIk(defaultCalibration), frame), 0);
       return worldOf(loaded, avatar, 'leftFoot').position;
     };
     const once = { ...bodyAfter([defaultCalibration]) };
@@ -210,9 +210,9 @@ describe('our mannequin', () => {
 
   test('shown as head and hands ends at its wrists, not in shreds of sleeves', async () => {
     const avatar = createAvatar(await parseAvatar(mannequin(), 'mannequin.vrm'));
-    avatar.fitTo(defaultCalibration);
+    avatar.setCalibration(defaultCalibration);
     const frame = actorFrame(1, defaultCalibration);
-    avatar.apply({ ...frame, body: null }, 0);
+    avatar.setPose({ ...frame, body: null }, 0);
     avatar.object.updateMatrixWorld(true);
     const at = new Vector3();
     let furthest = 0;
@@ -241,11 +241,11 @@ describe('our mannequin', () => {
       return count;
     };
     const frame = actorFrame(1, defaultCalibration);
-    avatar.apply(poseOf(createIk(defaultCalibration), frame), 0);
+    avatar.setPose(poseOf(createIk(defaultCalibration), frame), 0);
     const whole = triangles();
     avatar.setUpperBodyOnly(true);
     const upper = triangles();
-    avatar.apply({ ...frame, body: null }, 0.1);
+    avatar.setPose({ ...frame, body: null }, 0.1);
     const handsAndHead = triangles();
     expect(handsAndHead).toBeGreaterThan(1000);
     expect(upper).toBeGreaterThan(handsAndHead);

@@ -140,7 +140,7 @@ describe.each(bodyLabels.map(({ name }) => name))('the hands of our %s', async (
     const estimator = method === 'ik' ? createIk(wearer) : createWithNetwork(method, wearer, openPlainModel());
     for (let step = 0; step <= 30; step++) {
       const time = step / 30;
-      avatar.apply(await show(estimator, { ...frame, time }), time);
+      avatar.setPose(await show(estimator, { ...frame, time }), time);
     }
     const skin = drawnSkin(avatar, /hips|UpperLeg|LowerLeg/);
     for (const hand of [frame.leftHand, frame.rightHand]) {

@@ -22,7 +22,7 @@ export async function ownBody(body: string): Promise<Avatar> {
   const file = readFileSync(new URL(`../../../public/avatars/${body}.vrm`, import.meta.url));
   const bytes = file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer;
   const avatar = createAvatar(await parseAvatar(bytes, `${body}.vrm`));
-  avatar.fitTo(wearer);
+  avatar.setCalibration(wearer);
   return avatar;
 }
 
@@ -52,7 +52,7 @@ export function drawnHands(avatar: Avatar, wrists: Wrists, grasp: Grasp): DrawnS
   }
   const tracked = (pose: Pose<'floor'>) => ({ ...pose, tracking: 'tracked' as const });
   const [leftHand, rightHand] = [tracked(wrists.left), tracked(wrists.right)];
-  avatar.apply({ head: tracked(makePose<'floor'>()), leftHand, rightHand, body: null }, 0);
+  avatar.setPose({ head: tracked(makePose<'floor'>()), leftHand, rightHand, body: null }, 0);
   return drawnSkin(avatar, ofHand);
 }
 

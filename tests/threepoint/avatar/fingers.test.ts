@@ -13,7 +13,7 @@ import { makePose, type Pose } from 'threepoint/core/math/pose';
 import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { addScaled, distance, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { createTracker } from 'threepoint/xr/tracker';
+import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { afterEach, describe, expect, test, vi } from 'vitest';
 import { tell } from '../../tell';
 import { fakeHeadset } from '../xr/fake-headset';
@@ -32,9 +32,9 @@ const wrists: Readonly<Record<Side, Pose<'floor'>>> = {
 
 /** What the tracker says of both hands when a headset sees them so. */
 function seen(hand: RecordedHand): Readonly<Record<Side, HandShape>> {
-  const { session, floor, frame, setInputs } = fakeHeadset();
+  const { session, drawing, frame, setInputs } = fakeHeadset();
   setInputs(trackedHand('left', wrists.left, hand), trackedHand('right', wrists.right, hand));
-  const { fingers } = createTracker(session, floor).read(frame, 1)!;
+  const { fingers } = new TrackedSession({ session, drawing }).read(frame, 1)!;
   return { left: fingers!.left!, right: fingers!.right! };
 }
 
@@ -76,21 +76,21 @@ function skinEnds(avatar: Avatar): (side: Side, finger: FingerName) => Vec3 {
 /** The mannequin, whose hands are 18.7 cm long at this eye height, as the recorded ones are. */
 async function wearer(bytes = mannequin()) {
   const avatar = createAvatar(await parseAvatar(bytes, 'mannequin.vrm'));
-  avatar.fitTo({ eyeHeight: 1.59, armSpan: 1.39 });
+  avatar.setCalibration({ eyeHeight: 1.59, armSpan: 1.39 });
   const body = { head: { ...makePose<'floor'>(), tracking: 'tracked' as const }, body: null };
   const hands = {
     leftHand: { ...wrists.left, tracking: 'tracked' as const },
     rightHand: { ...wrists.right, tracking: 'tracked' as const },
   };
   for (const side of sides) avatar.setFingers(side, flatHand);
-  avatar.apply({ ...body, ...hands }, 0);
+  avatar.setPose({ ...body, ...hands }, 0);
   const end = skinEnds(avatar);
   return {
     avatar,
     end,
     show(shapes: Readonly<Record<Side, HandShape | null>>, time: number) {
       for (const side of sides) avatar.setFingers(side, shapes[side]);
-      avatar.apply({ ...body, ...hands }, time);
+      avatar.setPose({ ...body, ...hands }, time);
       avatar.object.updateMatrixWorld(true);
     },
   };

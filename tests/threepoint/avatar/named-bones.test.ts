@@ -38,8 +38,8 @@ function memory(): Pick<Storage, 'getItem' | 'setItem'> {
 /** Where the joints are of a body that stands as the built-in actor does. */
 function posed(loaded: LoadedAvatar) {
   const avatar = createAvatar(loaded);
-  avatar.fitTo(defaultCalibration);
-  avatar.apply(poseOf(estimator, actorFrame(9.5, defaultCalibration)), 0);
+  avatar.setCalibration(defaultCalibration);
+  avatar.setPose(poseOf(estimator, actorFrame(9.5, defaultCalibration)), 0);
   return structuredClone(avatar.jointPositions());
 }
 

@@ -2,19 +2,19 @@ import { readFileSync } from 'node:fs';
 import { Mesh, type MeshStandardMaterial, SkinnedMesh } from 'three';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { createRemoteAvatars, type RemoteAvatars, type SeenPerson } from 'threepoint/avatar/remote-avatars';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import {
   type AvatarHash,
+  type AvatarRef,
   bodyOf,
   isOwnAvatar,
   type OwnBody,
   ownAvatarOf,
   plainAvatar,
-  type WornAvatar,
-} from 'threepoint/core/body/worn-avatar';
+} from 'threepoint/core/body/avatar-ref';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { unknownFingers } from 'threepoint/core/body/hand-shape';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { PassingFault } from 'threepoint/core/errors/passing-fault';
 import { createIk } from 'threepoint/core/estimation/estimators';
 import { transformPoint } from 'threepoint/core/math/pose';
@@ -133,7 +133,7 @@ describe('an avatar that could not be had', () => {
     const told: string[] = [];
     let asked = 0;
     const others = createRemoteAvatars({
-      async load(avatar: WornAvatar) {
+      async load(avatar: AvatarRef) {
         if (avatar === file) {
           const fault = answers[Math.min(asked, answers.length - 1)];
           asked += 1;

@@ -21,7 +21,7 @@ export interface Worn {
 
 export function wear(loaded: LoadedAvatar): Worn {
   const avatar = createAvatar(loaded);
-  avatar.fitTo(defaultCalibration);
+  avatar.setCalibration(defaultCalibration);
   return { loaded, avatar };
 }
 
@@ -56,7 +56,7 @@ const middle = (corners: readonly Vector3[]): Vector3 =>
 export function hold(avatar: Avatar, seconds: number): TrackingFrame {
   const ik = createIk(defaultCalibration);
   const frame = actorFrame(seconds, defaultCalibration);
-  for (let step = 0; step < 30; step++) avatar.apply(poseOf(ik, { ...frame, time: step / 30 }), step / 30);
+  for (let step = 0; step < 30; step++) avatar.setPose(poseOf(ik, { ...frame, time: step / 30 }), step / 30);
   return frame;
 }
 

@@ -4,7 +4,7 @@ import { vec3 } from 'threepoint/core/math/vec3';
 import { XRBodyPoser } from 'threepoint/core/motion/xr-body';
 import { deviceJoint, deviceJointNames } from 'threepoint/core/tracking/device-body';
 import { DeviceBodyReader } from 'threepoint/xr/device-body-reader';
-import { createTracker } from 'threepoint/xr/tracker';
+import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { describe, expect, test } from 'vitest';
 import { fakeHeadset, type Seen } from './fake-headset';
 
@@ -108,8 +108,8 @@ describe('the body that a device reports', () => {
   test('is in the tracked frame of a tracker that reads it, and in no other', () => {
     const headset = headsetWithBody();
     const frame = headset.frame as unknown as XRFrame;
-    const reads = createTracker(headset.session, headset.floor, undefined, new DeviceBodyReader());
+    const reads = new TrackedSession({ ...headset, bodyReader: new DeviceBodyReader() });
     expect(reads.read(frame, 1)?.deviceBody).toHaveLength(3 * deviceJointNames.length);
-    expect(createTracker(headset.session, headset.floor).read(frame, 1)).not.toHaveProperty('deviceBody');
+    expect(new TrackedSession(headset).read(frame, 1)).not.toHaveProperty('deviceBody');
   });
 });

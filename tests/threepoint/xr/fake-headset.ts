@@ -2,6 +2,7 @@ import { composeTransforms, invertTransform, type Pose, transformPose } from 'th
 import { identity, type Quat, rotate } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { type Vec3, vec3, zero } from 'threepoint/core/math/vec3';
+import type { DrawingSpace } from 'threepoint/xr/tracked-session';
 import { vi } from 'vitest';
 
 type Place = Pose<'floor'>;
@@ -83,7 +84,19 @@ export function fakeHeadset() {
   };
   /** How often the page asked for single joints, and for all of a hand. */
   const asked = { joints: 0, fills: 0 };
+  /** Spaces that the renderer was given to draw in, in that order. */
+  const spaces: XRReferenceSpace[] = [];
+  let drawnIn: XRReferenceSpace | null = null;
+  const drawing: DrawingSpace = {
+    getReferenceSpace: () => drawnIn ?? (floor as unknown as XRReferenceSpace),
+    setReferenceSpace(space) {
+      drawnIn = space;
+      if (space) spaces.push(space);
+    },
+  };
   return {
+    drawing,
+    spaces,
     session: session as unknown as XRSession,
     asked,
     floor: floor as unknown as XRReferenceSpace,

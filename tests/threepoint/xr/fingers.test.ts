@@ -2,7 +2,7 @@ import { fingerNames, type HandShape, relaxedHand } from 'threepoint/core/body/h
 import type { Pose } from 'threepoint/core/math/pose';
 import { fromAxisAngle } from 'threepoint/core/math/quat';
 import { normalise, vec3 } from 'threepoint/core/math/vec3';
-import { createTracker } from 'threepoint/xr/tracker';
+import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { afterEach, describe, expect, test, vi } from 'vitest';
 import { controller, fakeHeadset, type Input } from './fake-headset';
 import { recordedHands, trackedHand } from './recorded-hands';
@@ -17,7 +17,7 @@ const wrist: Pose<'floor'> = {
 /** A headset that reads one frame after the other, 72 a second. */
 function tracked() {
   const headset = fakeHeadset();
-  const tracker = createTracker(headset.session, headset.floor);
+  const tracker = new TrackedSession(headset);
   let time = 1;
   return {
     ...headset,

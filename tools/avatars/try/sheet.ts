@@ -57,7 +57,7 @@ function hold(avatar: Avatar, frame: TrackingFrame, from: number): void {
   const estimator = createIk(defaultCalibration);
   for (let step = 0; step < heldSeconds * rateHz; step++) {
     const time = from + step / rateHz;
-    avatar.apply(estimator.update({ ...frame, time }).pose, time);
+    avatar.setPose(estimator.update({ ...frame, time }).pose, time);
   }
 }
 
@@ -110,7 +110,7 @@ async function draw(sheet: CanvasRenderingContext2D, address: string, name: stri
   const loadMs = performance.now() - began;
   const scene = createScene();
   scene.add(avatar.object);
-  avatar.fitTo(defaultCalibration);
+  avatar.setCalibration(defaultCalibration);
   const outside = [fromOutside(-0.9, -3.8), fromOutside(2.4, 3.1)];
   let seenFromInside = 0;
   let waving: string | null = null;

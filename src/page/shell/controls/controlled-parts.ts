@@ -1,4 +1,4 @@
-import type { BareBody, BareBodyOptions } from 'threepoint/api/bare-body';
+import type { BodySolver, BodySolverOptions } from 'threepoint/api/body-solver';
 import type { ServerPresence } from 'threepoint-http/server-presence';
 import type { Notices } from 'threepoint-ui/notices';
 import type { Recorder } from '../../studio/recorder';
@@ -25,9 +25,9 @@ export interface ControlledParts {
   readonly timing: Pick<FrameTiming, 'summary'>;
   readonly difference: Pick<DeviceDifference, 'report'>;
   readonly stage: Pick<Stage, 'renderer' | 'studio' | 'view' | 'layOut' | 'setSkeletonVisible'>;
-  readonly body: BareBody;
+  readonly body: BodySolver;
   /** Brings networks of their own for what is made of recordings. */
-  readonly networks: BareBodyOptions['networks'];
+  readonly networks: BodySolverOptions['networks'];
   readonly recorder: Recorder;
   readonly headset: Headset;
   readonly avatar: ShownAvatar;

@@ -1,4 +1,4 @@
-import type { BareBody } from 'threepoint/api/bare-body';
+import type { BodySolver } from 'threepoint/api/body-solver';
 import { linkTo } from 'threepoint-ui/invitation';
 import type { FrameReport } from 'threepoint-ui/overlay';
 import { qrCode } from 'threepoint-ui/qr-code';
@@ -20,7 +20,7 @@ export interface HeadsetControlsOptions
   extends Pick<ControlledParts, 'switches' | 'settings' | 'writer' | 'notices' | 'study'> {
   readonly server: Pick<ControlledParts['server'], 'state'>;
   readonly pointers: VrPointers;
-  readonly body: Pick<BareBody, 'estimator' | 'unavailable'>;
+  readonly body: Pick<BodySolver, 'estimator' | 'unavailable'>;
   readonly activities: Pick<Activities, 'name' | 'archery' | 'ball' | 'goTo' | 'rule' | 'restartRound' | 'point'>;
   readonly measuring: Pick<Measuring, 'step' | 'begin' | 'cancel'>;
   readonly actions: Pick<

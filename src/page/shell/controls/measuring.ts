@@ -1,4 +1,4 @@
-import type { BareBody } from 'threepoint/api/bare-body';
+import type { BodySolver } from 'threepoint/api/body-solver';
 import { withForearm } from 'threepoint/core/body/calibration';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import {
@@ -15,7 +15,7 @@ import type { Settings } from '../settings';
 import type { Wearer } from '../wearer';
 
 export interface MeasuringOptions {
-  readonly body: Pick<BareBody, 'wearerCalibration'>;
+  readonly body: Pick<BodySolver, 'wearerCalibration'>;
   readonly headset: Pick<Headset, 'worn' | 'emulator'>;
   readonly settings: Pick<Settings, 'actor'>;
   readonly recorder: Pick<Recorder, 'mode'>;

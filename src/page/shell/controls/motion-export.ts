@@ -1,5 +1,5 @@
-import type { BareBody, BareBodyOptions } from 'threepoint/api/bare-body';
-import type { MotionWriter } from 'threepoint/api/bare-export';
+import type { BodySolver, BodySolverOptions } from 'threepoint/api/body-solver';
+import type { MotionWriter } from 'threepoint/api/motion-export';
 import type { MotionFormat } from 'threepoint/api/motion-formats';
 import { decoders } from 'threepoint/avatar/decoders/decoders';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
@@ -12,9 +12,9 @@ import type { ShownAvatar } from '../shown-avatar';
 
 export interface MotionExportOptions {
   readonly recorder: Pick<Recorder, 'recording' | 'name'>;
-  readonly body: Pick<BareBody, 'wanted' | 'wearerCalibration'>;
+  readonly body: Pick<BodySolver, 'wanted' | 'wearerCalibration'>;
   readonly avatar: Pick<ShownAvatar, 'name' | 'file'>;
-  readonly networks: BareBodyOptions['networks'];
+  readonly networks: BodySolverOptions['networks'];
   readonly notices: Pick<Notices, 'show'>;
   onChange(): void;
 }
@@ -51,7 +51,7 @@ export class MotionExport {
     const { signal } = this.#giveUp;
     this.#tell({ name: stem, method: label, share: 0, secondsLeft: null });
     try {
-      const { exportMotionBare } = await import('threepoint/api/bare-export');
+      const { exportMotionWith: exportMotionBare } = await import('threepoint/api/motion-export');
       const { extension, type, parts } = await exportMotionBare(recording, {
         to: await this.#formatOf(choice),
         unit: choice === 'bvh-cm' ? 'cm' : 'm',

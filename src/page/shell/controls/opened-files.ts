@@ -1,4 +1,4 @@
-import type { BareBody } from 'threepoint/api/bare-body';
+import type { BodySolver } from 'threepoint/api/body-solver';
 import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { isSkeletonMap } from 'threepoint/core/mocap/is-skeleton-map';
@@ -15,7 +15,7 @@ export interface OpenedFilesOptions {
   readonly avatar: Pick<ShownAvatar, 'open' | 'openOwn' | 'giveBones' | 'name'>;
   readonly recorder: Pick<Recorder, 'ask' | 'open' | 'replay'>;
   readonly notices: Pick<Notices, 'show'>;
-  readonly body: Pick<BareBody, 'jumped'>;
+  readonly body: Pick<BodySolver, 'discontinuity'>;
   readonly mocap: Pick<PageMocap, 'open'>;
   onChange(): void;
 }
@@ -88,7 +88,7 @@ export class OpenedFiles {
   replay(): void {
     const { recorder, body, onChange } = this.#options;
     recorder.replay();
-    body.jumped();
+    body.discontinuity();
     onChange();
   }
 }

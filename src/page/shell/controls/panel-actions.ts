@@ -17,7 +17,7 @@ function bodyActions({ store, writer, body, notices, wearer, measuring }: PanelA
   return {
     chooseEstimator(name) {
       store.remember({ estimator: name });
-      void body.choose(name);
+      void body.setEstimator(name);
     },
     calibrate: () => measuring.start(),
     setMeasures({ heightCm, armSpanCm, forearmCm }) {
@@ -89,7 +89,7 @@ function recordingActions(options: PanelActionsOptions): RecordingActions {
     openFiles: (chosen) => files.openAll(chosen),
     seek(seconds) {
       recorder.seek(seconds);
-      body.jumped();
+      body.discontinuity();
       onChange();
     },
     setPaused(on) {
@@ -102,7 +102,7 @@ function recordingActions(options: PanelActionsOptions): RecordingActions {
     },
     setActor(on) {
       writer.change({ actor: on });
-      body.jumped();
+      body.discontinuity();
       // Without the actor a person must hold the headset: a real one, or the emulated one.
       if (!on) void headset.ensureEmulator().then((emulator) => emulator?.release());
     },

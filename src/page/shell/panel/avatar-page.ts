@@ -1,6 +1,6 @@
 import { bodyLabels } from 'threepoint/avatar/own-bodies';
 import { skinColors } from 'threepoint/avatar/palettes';
-import { plainAvatar, skinTones } from 'threepoint/core/body/worn-avatar';
+import { plainAvatar, skinTones } from 'threepoint/core/body/avatar-ref';
 import { button, element } from 'threepoint-ui/element';
 import { fileButton } from 'threepoint-ui/file-button';
 import { createRunningLine } from 'threepoint-ui/running-line';

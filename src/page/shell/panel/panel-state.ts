@@ -1,5 +1,5 @@
 import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
-import type { OwnBody, SkinTone } from 'threepoint/core/body/worn-avatar';
+import type { OwnBody, SkinTone } from 'threepoint/core/body/avatar-ref';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { ViewName } from '../../scene/desktop-view';
 import type { WaitingForBones } from '../shown-avatar';

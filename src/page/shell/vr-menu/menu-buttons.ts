@@ -1,5 +1,5 @@
 import { labelOf } from 'threepoint/avatar/own-bodies';
-import { type OwnBody, ownBodies, plainAvatar, type SkinTone, skinTones } from 'threepoint/core/body/worn-avatar';
+import { type OwnBody, ownBodies, plainAvatar, type SkinTone, skinTones } from 'threepoint/core/body/avatar-ref';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { Side } from 'threepoint/core/math/side';
 import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';

@@ -9,7 +9,7 @@ import {
   SkinnedMesh,
   Vector3,
 } from 'three';
-import type { SkinTone } from '../../core/body/worn-avatar';
+import type { SkinTone } from '../../core/body/avatar-ref';
 import type { Steps } from '../in-steps';
 import { palettes, skinColors } from '../palettes';
 import type { Rig } from './rig';

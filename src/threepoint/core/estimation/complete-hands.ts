@@ -3,6 +3,7 @@ import { type ChestSpaceBody, sideSign } from '../body/skeleton';
 import { trapezoidalEasing } from '../math/damper';
 import {
   copyPose,
+  isTracked,
   type MutablePose,
   type MutableTransform,
   makePose,
@@ -255,7 +256,7 @@ function completeHand(
   const { floorFromBody } = state;
   const { y } = state.frame.headJoint;
   uprightShoulder(side, y, body, shoulder);
-  if (tracked !== null && tracked.tracking === 'tracked') followSeen(state[side], tracked, floorFromBody, deltaSeconds);
+  if (isTracked(tracked)) followSeen(state[side], tracked, floorFromBody, deltaSeconds);
   else followLost(state[side], side, restingHand(side, y, body, rest), floorFromBody, deltaSeconds);
   state[side].known = true;
 }

@@ -1,7 +1,7 @@
 import type { Calibration } from '../body/calibration';
 import { makePose, type TrackedPose } from '../math/pose';
+import { HeadsetMountCorrection } from './headset-mount-correction';
 import type { PoseEstimator } from './pose-estimator';
-import { WornHeadset } from './worn-headset';
 
 /** What `update` returns, overwritten by the next. */
 interface OwnedPose {
@@ -13,7 +13,7 @@ interface OwnedPose {
 
 /** Head and hands as they are tracked, and no body. */
 export function createHandsOnly(calibration: Calibration): PoseEstimator {
-  const headset = new WornHeadset(calibration);
+  const headset = new HeadsetMountCorrection(calibration);
   const pose: OwnedPose = {
     head: { ...makePose<'floor'>(), tracking: 'emulated' },
     leftHand: null,
@@ -26,7 +26,7 @@ export function createHandsOnly(calibration: Calibration): PoseEstimator {
     calibrate: (next) => headset.calibrate(next),
     reset: () => undefined,
     update({ head, leftHand, rightHand }) {
-      pose.head = headset.head(head, 0);
+      pose.head = headset.apply(head, 0);
       pose.leftHand = leftHand;
       pose.rightHand = rightHand;
       return estimate;

@@ -11,6 +11,7 @@ import { completeHands, makeCompleteHandsState, resetCompleteHands } from './com
 import { composeBody } from './compose-body';
 import { armBones, fitArms, makeFitArmsState, resetFitArms } from './fit-arms';
 import { fitTorso, makeFitTorsoState, resetFitTorso, torsoBones } from './fit-torso';
+import { HeadsetMountCorrection } from './headset-mount-correction';
 import { makeJoints } from './joint-positions';
 import type { JointSource, SolvedFrame } from './joint-source';
 import { limitJoints, makeLimitJointsState, resetLimitJoints } from './limit-joints';
@@ -19,7 +20,6 @@ import { forgetHeadsetRise, makeHeadsetRiseState, noticeHeadsetRise } from './no
 import type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from './pose-estimator';
 import { makeIkSolution, makeThreePoints, solveIk, turnHands } from './solve-ik';
 import { makeSteadyTrackersState, resetSteadyTrackers, steadyTrackers } from './steady-trackers';
-import { WornHeadset } from './worn-headset';
 
 /** A gap longer than this [s] is no motion: filters and memories begin anew. */
 const longestGapSeconds = 0.5;
@@ -88,7 +88,7 @@ export class Pipeline implements PoseEstimator {
   readonly #poles = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
   readonly #estimate: { readonly pose: OwnedPose; request: InferenceRequest | null };
   readonly #request: InferenceRequest;
-  readonly #headset: WornHeadset;
+  readonly #headset: HeadsetMountCorrection;
   #body: ReturnType<typeof measure>;
   #lastTime = Number.NaN;
 
@@ -100,7 +100,7 @@ export class Pipeline implements PoseEstimator {
     this.#frameByFrame = frameByFrame;
     this.source = source;
     this.state = makeEstimatorState(calibration);
-    this.#headset = new WornHeadset(calibration);
+    this.#headset = new HeadsetMountCorrection(calibration);
     this.#body = measure(calibration);
     this.#request = { ask: () => source.network?.ask(this.state.solved) ?? Promise.resolve() };
     this.#estimate = {
@@ -137,7 +137,7 @@ export class Pipeline implements PoseEstimator {
     const body = this.#body;
     const deltaSeconds = this.#elapsed(frame.time);
     const { rise } = state.headset;
-    const head = this.#headset.head(frame.head, rise);
+    const head = this.#headset.apply(frame.head, rise);
 
     const completed = completeHands(state.hands, head, frame, body.chestSpace, deltaSeconds);
     const step = this.#frameByFrame ? Number.POSITIVE_INFINITY : deltaSeconds;

@@ -20,8 +20,11 @@ export interface Pose<F extends Frame> {
 /** tracked: seen in this frame. emulated: the device guesses the position (WebXR `emulatedPosition`). */
 export type TrackedPose = Pose<'floor'> & { readonly tracking: 'tracked' | 'emulated' };
 
-/** The pose where the device sees it, null where it is lost or only guessed. */
-export const seenPose = (pose: TrackedPose | null): TrackedPose | null => (pose?.tracking === 'tracked' ? pose : null);
+/** Returns whether the device sees this point; one that is lost, or whose position is only guessed, does not count. */
+export const isTracked = (pose: TrackedPose | null | undefined): pose is TrackedPose => pose?.tracking === 'tracked';
+
+/** Returns the pose where the device sees it, null where it is lost or only guessed. */
+export const seenPose = (pose: TrackedPose | null): TrackedPose | null => (isTracked(pose) ? pose : null);
 
 /** A pose that its owner overwrites: an optional last argument `target`, as with `MutableVec3`. */
 export interface MutablePose<F extends Frame> extends Pose<F> {
@@ -98,7 +101,7 @@ export function transformPose<To extends Frame, From extends Frame>(
   return target;
 }
 
-/** The pose in To where the device sees it, null where it is lost or only guessed. */
+/** Returns the pose in To where the device sees it, null where it is lost or only guessed. */
 export function transformSeen<To extends Frame>(
   t: Transform<To, 'floor'>,
   pose: TrackedPose | null,

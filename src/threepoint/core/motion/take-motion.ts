@@ -15,6 +15,7 @@ import { jointNames } from '../body/joints';
 import { wristFromHandBone } from '../body/skeleton';
 import { estimateRecording } from '../estimation/estimate-recording';
 import type { PoseEstimator } from '../estimation/pose-estimator';
+import { isTracked } from '../math/pose';
 import { conjugate, copyQuat, type MutableQuat, multiply, type Quat, quat } from '../math/quat';
 import { type Side, sides } from '../math/side';
 import { vec3 } from '../math/vec3';
@@ -130,7 +131,7 @@ export class MotionTaker {
     const at = turnPoint(body.hipsPosition, hipsOfBody);
     hips.set([at.x, at.y, at.z], 3 * index);
     // Where the device only guesses, the arm is a guess.
-    seen[index] = (leftHand?.tracking === 'tracked' ? 1 : 0) + (rightHand?.tracking === 'tracked' ? 2 : 0);
+    seen[index] = (isTracked(leftHand) ? 1 : 0) + (isTracked(rightHand) ? 2 : 0);
     const deltaSeconds = index === 0 ? 0 : times[index] - times[index - 1]!;
     this.#rotations.write(body, fingers, deltaSeconds, rotations, 4 * index * measured);
     this.#count += 1;

@@ -1,4 +1,4 @@
-import type { TrackedPose } from '../math/pose';
+import { isTracked, type TrackedPose } from '../math/pose';
 import { type Recording, recordingDuration } from '../tracking/recording';
 import type { TrackingFrame } from '../tracking/tracking-frame';
 
@@ -63,7 +63,7 @@ const poseChannels = points.flatMap(({ of: part, point, placement }) =>
     read(frame: TrackingFrame): string {
       const pose = frame[part];
       // Where the device only guesses a hand, nothing was measured.
-      return pose && (part === 'head' || pose.tracking === 'tracked') ? of(pose).toFixed(6) : absent;
+      return pose && (part === 'head' || isTracked(pose)) ? of(pose).toFixed(6) : absent;
     },
   })),
 );

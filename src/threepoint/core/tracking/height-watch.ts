@@ -6,6 +6,7 @@ import {
   withEyeHeight,
 } from '../body/calibration';
 import { skeletonFromCalibration } from '../body/skeleton';
+import { isTracked } from '../math/pose';
 import { fromAxisAngle, rotate } from '../math/quat';
 import { right, zero } from '../math/vec3';
 import type { TrackingFrame } from './tracking-frame';
@@ -74,7 +75,7 @@ export function createHeightWatch(): HeightWatch {
       if (calibration !== current) take(calibration);
       const height = levelHeight(head);
       const zone = calibration.eyeHeight > measured ? grownDeadZone : deadZone;
-      const proves = head.tracking === 'tracked' && height > calibration.eyeHeight * (1 + zone) && height <= highest;
+      const proves = isTracked(head) && height > calibration.eyeHeight * (1 + zone) && height <= highest;
       stand = proves ? prolonged(stand, time, height) : null;
       if (!stand || time - stand.since < provingSeconds) return null;
       const grown = withEyeHeight(calibration, (stand.lowest + stand.highest) / 2);

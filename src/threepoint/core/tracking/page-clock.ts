@@ -16,7 +16,7 @@ export interface PageClock {
    * one again within half a frame is the same frame's, asked by another part of the page: its time stays, and `paused`. In
    * place of one that is no finite number stands what `read` says.
    */
-  frame(timestampMs: number): number;
+  tick(timestampMs: number): number;
   /** Whether the newest frame follows a pause. */
   readonly paused: boolean;
   /** What was left out of all pauses so far [s]. */
@@ -37,7 +37,7 @@ export function createPageClock(read: () => number): PageClock {
   let leftOut = 0;
 
   return {
-    frame(dated) {
+    tick(dated) {
       const timestampMs = Number.isFinite(dated) ? dated : read();
       // Devices that round their time stamps date frames alike too, but a whole frame apart.
       if (timestampMs === stamp && Math.abs(read() - readAt) < 500 * step) return time;

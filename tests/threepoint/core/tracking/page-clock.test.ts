@@ -13,7 +13,7 @@ function timesOf(
   const clock = createPageClock(() => read);
   return stamps.map((stamp, index) => {
     read = readOf(stamp, index);
-    return clock.frame(stamp);
+    return clock.tick(stamp);
   });
 }
 
@@ -57,10 +57,10 @@ describe('the page’s clock', () => {
     const stamps = Array.from({ length: 91 }, (_, frame) => 1000 + frame * frameMs);
     const times = stamps.map((stamp) => {
       read = stamp;
-      const first = clock.frame(stamp);
+      const first = clock.tick(stamp);
       read = stamp + 0.4 * frameMs;
       expect(clock.now()).toBeGreaterThan(first);
-      expect(clock.frame(stamp)).toBe(first);
+      expect(clock.tick(stamp)).toBe(first);
       return first;
     });
     expect(times.at(-1)! - times[0]!).toBeCloseTo((90 * frameMs) / 1000, 6);
@@ -69,11 +69,11 @@ describe('the page’s clock', () => {
   test('a pause is one for all who ask in its frame', () => {
     let read = 1000;
     const clock = createPageClock(() => read);
-    clock.frame(1000);
+    clock.tick(1000);
     read = 9000;
     const heard = [0, 1, 2].map((later) => {
       read = 9000 + later;
-      return [clock.frame(9000), clock.paused];
+      return [clock.tick(9000), clock.paused];
     });
     expect(heard).toEqual([0, 1, 2].map(() => [expect.closeTo(1.5, 9), true]));
     expect(clock.leftOut).toBeCloseTo(7.5, 9);
@@ -97,24 +97,24 @@ describe('the page’s clock', () => {
     const clock = createPageClock(() => read);
     for (const stamp of [0, 16, 20_016]) {
       read = stamp;
-      clock.frame(stamp);
+      clock.tick(stamp);
     }
     expect([clock.paused, clock.leftOut]).toEqual([true, expect.closeTo(20 - longestStep, 9)]);
-    clock.frame(16);
+    clock.tick(16);
     expect([clock.paused, clock.leftOut]).toEqual([false, expect.closeTo(20 - longestStep, 9)]);
   });
 
   test('between frames it goes on with the browser’s, for as long as a frame may take, and no frame is before it', () => {
     let read = 5000;
     const clock = createPageClock(() => read);
-    const first = clock.frame(4990);
+    const first = clock.tick(4990);
     read = 5008;
     expect(clock.now()).toBeCloseTo(first + 0.008, 9);
     read = 65_000;
     expect(clock.now()).toBeCloseTo(first + longestStep, 9);
     read = 100;
     expect(clock.now()).toBeCloseTo(first + longestStep, 9);
-    expect(clock.frame(64_990)).toBeGreaterThanOrEqual(first + longestStep);
+    expect(clock.tick(64_990)).toBeGreaterThanOrEqual(first + longestStep);
   });
 });
 

@@ -1,10 +1,10 @@
 import { Body } from 'threepoint/api/body';
-import { SeenFrames } from 'threepoint/api/seen-frames';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { TrackedPose } from 'threepoint/core/math/pose';
 import { deviceBodySize } from 'threepoint/core/tracking/device-body';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { TrackingGate } from 'threepoint/core/tracking/tracking-gate';
 import { describe, expect, test } from 'vitest';
 import { movingPerson } from '../core/estimation/moving-person';
 import { openPlainModel } from '../core/estimation/shipped-models';
@@ -55,7 +55,7 @@ async function bodyBy(estimator: EstimatorName) {
     networks: async () => openPlainModel(),
     events: { fallback: (name, reason) => faults.push(`${name} ${reason}`) },
   });
-  await body.choose(estimator);
+  await body.setEstimator(estimator);
   return { body, faults };
 }
 
@@ -85,7 +85,10 @@ test('a point that is no place is lost for its frame, and found again', async ()
   const body = new Body({
     estimator: 'ik',
     calibration,
-    events: { lost: (point) => told.push(`lost ${point}`), found: (point) => told.push(`found ${point}`) },
+    events: {
+      trackinglost: (point) => told.push(`lost ${point}`),
+      trackingfound: (point) => told.push(`found ${point}`),
+    },
   });
   body.update(at(0));
   body.update({ ...at(1 / rate), leftHand: { ...at(1 / rate).leftHand!, position: nowhere } });
@@ -133,13 +136,13 @@ test('a time that is no number is that of the frame before; before any with one,
 test('a moment is relived without what is no place', async () => {
   const { body } = await bodyBy('learned');
   const frames = Array.from({ length: rate }, (_, i) => at(i / rate));
-  await body.relive(frames.map((frame, i) => (i % 7 === 3 ? slips[i % slips.length]![1](frame) : frame)));
+  await body.warmUp(frames.map((frame, i) => (i % 7 === 3 ? slips[i % slips.length]![1](frame) : frame)));
   expect(body.pose).not.toBeNull();
   expect(numbersIn(body.pose).every(Number.isFinite)).toBe(true);
 });
 
 test('a frame without a slip is taken as it is: nothing is copied', () => {
-  const frames = new SeenFrames();
+  const gate = new TrackingGate();
   const whole = { ...at(0), deviceBody: new Float32Array(deviceBodySize) };
-  for (const frame of [at(0), { ...at(0), leftHand: null }, whole]) expect(frames.next(frame)).toBe(frame);
+  for (const frame of [at(0), { ...at(0), leftHand: null }, whole]) expect(gate.admit(frame)).toBe(frame);
 });

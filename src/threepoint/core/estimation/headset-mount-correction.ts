@@ -6,7 +6,7 @@ import { addScaled, right, up, vec3 } from '../math/vec3';
 const headUp = vec3(0, 0, 0);
 
 /** Takes how a headset sits on its wearer's head out of its pose: the pitch that a calibration measured, and how far it sits above its usual place. */
-export class WornHeadset {
+export class HeadsetMountCorrection {
   readonly #corrected: MutablePose<'floor'> & { tracking: TrackedPose['tracking'] } = {
     ...makePose<'floor'>(),
     tracking: 'tracked',
@@ -23,7 +23,7 @@ export class WornHeadset {
   }
 
   /** The head as its wearer holds it, lower by `rise` [m] along its own up, floor frame; overwritten by the next call. */
-  head(tracked: TrackedPose, rise: number): TrackedPose {
+  apply(tracked: TrackedPose, rise: number): TrackedPose {
     if (this.#levelling === null && rise === 0) return tracked;
     const { position, orientation } = this.#corrected;
     multiply(tracked.orientation, this.#levelling ?? identity, orientation);

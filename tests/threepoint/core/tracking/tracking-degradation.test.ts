@@ -4,7 +4,7 @@ import type { TrackedPose } from 'threepoint/core/math/pose';
 import { angleBetween, fromAxisAngle, multiply } from 'threepoint/core/math/quat';
 import { distance, vec3 } from 'threepoint/core/math/vec3';
 import { deviceBodySize } from 'threepoint/core/tracking/device-body';
-import { ImpairedTracking, type Impairments } from 'threepoint/core/tracking/impaired-tracking';
+import { TrackingDegradation, type TrackingImpairments } from 'threepoint/core/tracking/tracking-degradation';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { describe, expect, test } from 'vitest';
 import { evenly, seed } from '../arbitraries';
@@ -28,12 +28,12 @@ const frameAt = (time: number): TrackingFrame => ({
 });
 
 /** Frames of a device of so many Hz, each up to a third of a frame late, as this tracking has them; a copy of each. */
-function followed(impairments: Impairments, seconds: number, rateHz = 72, of = 7): readonly TrackingFrame[] {
-  const tracking = new ImpairedTracking();
-  tracking.impair(impairments, of);
+function followed(impairments: TrackingImpairments, seconds: number, rateHz = 72, of = 7): readonly TrackingFrame[] {
+  const tracking = new TrackingDegradation();
+  tracking.configure(impairments, of);
   return Array.from({ length: seconds * rateHz }, (_, index) => {
     const time = 50 + (index + (index % 4) / 12) / rateHz;
-    return structuredClone(tracking.follow(frameAt(time)));
+    return structuredClone(tracking.apply(frameAt(time)));
   });
 }
 
@@ -66,43 +66,43 @@ describe('an added latency', () => {
   });
 
   test('holds the first pose until there is an older one, also after a jump', () => {
-    const tracking = new ImpairedTracking();
-    tracking.impair({ latencyMs: 100 });
-    for (const time of [1, 1.02, 1.04]) expect(tracking.follow(frameAt(time)).head).toMatchObject(frameAt(1).head);
+    const tracking = new TrackingDegradation();
+    tracking.configure({ latencyMs: 100 });
+    for (const time of [1, 1.02, 1.04]) expect(tracking.apply(frameAt(time)).head).toMatchObject(frameAt(1).head);
     tracking.reset();
-    expect(tracking.follow(frameAt(1.06)).head).toMatchObject(frameAt(1.06).head);
+    expect(tracking.apply(frameAt(1.06)).head).toMatchObject(frameAt(1.06).head);
   });
 
   test('loses a hand, finds it and bends its fingers as much later', () => {
-    const tracking = new ImpairedTracking();
-    tracking.impair({ latencyMs: 50 });
+    const tracking = new TrackingDegradation();
+    tracking.configure({ latencyMs: 50 });
     const shapes = [0, 0.25, 0.5, 0.75, 1].map((share) => mixHandShape(relaxedHand, closedHand, share));
     const seen = shapes.map((shape, index) => {
       const time = 3 + index * 0.05;
       const leftHand = index === 1 ? null : swinging(time, 0.7);
       const fingers = { left: index === 1 ? null : shape, right: null };
-      return structuredClone(tracking.follow({ ...frameAt(time), leftHand, fingers }));
+      return structuredClone(tracking.apply({ ...frameAt(time), leftHand, fingers }));
     });
     expect(seen.map(({ leftHand }) => leftHand !== null)).toEqual([true, true, false, true, true]);
     expect(seen[4]?.fingers?.left?.index.knuckle).toBeCloseTo(shapes[3]?.index.knuckle ?? 0, 6);
     expect(seen[2]?.fingers?.left).toBeNull();
     // A device without fingers says nothing of them, then as now.
-    expect(tracking.follow(frameAt(3.25)).fingers).toBeDefined();
-    expect(tracking.follow(frameAt(3.3)).fingers).toBeUndefined();
+    expect(tracking.apply(frameAt(3.25)).fingers).toBeDefined();
+    expect(tracking.apply(frameAt(3.3)).fingers).toBeUndefined();
   });
 });
 
 describe('a body of the device’s own', () => {
   /** Every joint so many metres along each axis as it is late. */
   const bodyAt = (time: number) => new Float32Array(deviceBodySize).fill(time);
-  const followBodies = (impairments: Impairments, times: readonly number[]) => {
-    const tracking = new ImpairedTracking();
-    tracking.impair(impairments);
+  const followBodies = (impairments: TrackingImpairments, times: readonly number[]) => {
+    const tracking = new TrackingDegradation();
+    tracking.configure(impairments);
     // In memory that the device overwrites.
     const deviceBody = new Float32Array(deviceBodySize);
     return times.map((time) => {
       deviceBody.set(bodyAt(time));
-      return structuredClone(tracking.follow({ ...frameAt(time), ...(time < 4 && { deviceBody }) }));
+      return structuredClone(tracking.apply({ ...frameAt(time), ...(time < 4 && { deviceBody }) }));
     });
   };
 
@@ -195,10 +195,10 @@ describe('dropouts', () => {
 });
 
 test('without impairments a frame goes on as it came', () => {
-  const tracking = new ImpairedTracking();
+  const tracking = new TrackingDegradation();
   const frame = frameAt(4);
-  expect(tracking.follow(frame)).toBe(frame);
-  tracking.impair({ latencyMs: 100 });
-  tracking.impair(null);
-  expect(tracking.follow(frame)).toBe(frame);
+  expect(tracking.apply(frame)).toBe(frame);
+  tracking.configure({ latencyMs: 100 });
+  tracking.configure(null);
+  expect(tracking.apply(frame)).toBe(frame);
 });

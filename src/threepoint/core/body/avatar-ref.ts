@@ -32,13 +32,13 @@ export function ownAvatarOf(body: OwnBody, tone: SkinTone | undefined): OwnAvata
 export const bodyOf = (avatar: OwnAvatar): OwnBody => looks.get(avatar)?.body ?? ownBodies[0];
 
 /** null: as the body's file has it. */
-export const toneOf = (avatar: OwnAvatar): SkinTone | null => looks.get(avatar)?.tone ?? null;
+export const skinToneOf = (avatar: OwnAvatar): SkinTone | null => looks.get(avatar)?.tone ?? null;
 
 /** The SHA-256 of a file of no more than `mostAvatarBytes`, as base64url without padding: 43 characters, which no own avatar's name has. */
 export type AvatarHash = string;
 
 /** What a player has on to the others: a body of our own by its name, or a file by its content. */
-export type WornAvatar = OwnAvatar | AvatarHash;
+export type AvatarRef = OwnAvatar | AvatarHash;
 
 export const plainAvatar: OwnBody = ownBodies[0];
 
@@ -49,4 +49,4 @@ export const avatarHash = /^[\w-]{43}$/;
 export const mostAvatarBytes = 20 * 2 ** 20;
 
 /** Whether this is the content of a file, and no name. */
-export const isAvatarHash = (avatar: WornAvatar): avatar is AvatarHash => avatarHash.test(avatar);
+export const isAvatarHash = (avatar: AvatarRef): avatar is AvatarHash => avatarHash.test(avatar);

@@ -10,9 +10,9 @@ import { writeCsv } from '../core/motion/write-csv';
 import { writeVrma } from '../core/motion/write-vrma';
 import type { Replayable, TrackingFrames } from '../core/tracking/recording';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
+import { admittedFrames, TrackingGate } from '../core/tracking/tracking-gate';
 import { type MotionFormat, motionFormats } from './motion-formats';
 import { runWork, type WorkOptions } from './run-work';
-import { SeenFrames, seenOf } from './seen-frames';
 
 /** A file that was made, in memory: `new Blob(parts, {type})` or written one after the other. */
 export interface MotionFile {
@@ -29,17 +29,17 @@ export interface MotionWriter {
   write(motion: Motion): Work<MotionFile['parts']>;
 }
 
-export interface BareExportOptions extends WorkOptions, BvhOptions {
+export interface MotionExportOptions extends WorkOptions, BvhOptions {
   readonly to: MotionFormat | MotionWriter;
   /** The method that draws the body between the points; default: 'learned'. */
   readonly estimator?: EstimatorName;
-  /** Brings the networks, as of a BareBody. What it brings is let go in the end. */
+  /** Brings the networks, as of a BodySolver. What it brings is let go in the end. */
   readonly networks: (name: NetworkName) => Promise<PoseRegressor>;
   /** Whose body; default: as the recording says, else by the height of its first frame. */
   readonly calibration?: Calibration | undefined;
 }
 
-function writerOf({ to, ...options }: BareExportOptions): MotionWriter {
+function writerOf({ to, ...options }: MotionExportOptions): MotionWriter {
   if (typeof to === 'object') return to;
   if (to === 'bvh') return { extension: 'bvh', type: 'text/plain', write: (motion) => writeBvh(motion, options) };
   if (to === 'csv') return { extension: 'csv', type: 'text/csv', write: writeCsv };
@@ -59,8 +59,8 @@ function* demandBody({ frames }: Replayable): Generator<number, void> {
   throw new Error('The recording has no body of its device: choose another method.');
 }
 
-/** What a body takes of a recording that a program has made itself; one without the head is left out. */
-class SeenRecording implements TrackingFrames {
+/** The admitted frames of a recording, which a program may have made itself; frames without a head are left out. */
+class AdmittedRecording implements TrackingFrames {
   readonly #frames: TrackingFrames;
 
   constructor({ frames }: Replayable) {
@@ -78,16 +78,17 @@ class SeenRecording implements TrackingFrames {
 
   /** Throws a sentence where times do not rise, or no frame has a head. */
   *[Symbol.iterator](): Generator<TrackingFrame> {
-    const seen = new SeenFrames();
+    const gate = new TrackingGate();
     let number = 0;
     let last = Number.NEGATIVE_INFINITY;
     for (const frame of this.#frames) {
       number += 1;
-      const taken = seen.next(frame);
-      if (!taken) continue;
-      if (taken.time <= last) throw new Error(`Frame ${number} of the recording is not later than the one before it.`);
-      last = taken.time;
-      yield taken;
+      const admitted = gate.admit(frame);
+      if (!admitted) continue;
+      if (admitted.time <= last)
+        throw new Error(`Frame ${number} of the recording is not later than the one before it.`);
+      last = admitted.time;
+      yield admitted;
     }
     if (last === Number.NEGATIVE_INFINITY) throw new Error('The recording has no frame in which the head is seen.');
   }
@@ -97,7 +98,7 @@ class SeenRecording implements TrackingFrames {
 function personOf({ calibration, frames }: Replayable, given: Calibration | undefined): Calibration {
   const person = given ?? calibration;
   if (!person) {
-    const [first] = seenOf(frames);
+    const [first] = admittedFrames(frames);
     return provisionalCalibration(first?.head.position.y ?? Number.NaN);
   }
   demandPerson(person);
@@ -108,13 +109,13 @@ async function* exportWork(
   recording: Replayable,
   calibration: Calibration,
   regressor: PoseRegressor | null,
-  { estimator = 'learned' }: BareExportOptions,
+  { estimator = 'learned' }: MotionExportOptions,
   writer: MotionWriter,
 ): AsyncGenerator<number, MotionFile['parts']> {
   if (estimator === 'device') yield* demandBody(recording);
   const drawn = createEstimator(estimator, calibration, regressor);
-  const seen = { ...recording, frames: new SeenRecording(recording) };
-  const motion = yield* partOf(estimateMotion(seen, calibration, drawn), 0, estimating);
+  const admitted = { ...recording, frames: new AdmittedRecording(recording) };
+  const motion = yield* partOf(estimateMotion(admitted, calibration, drawn), 0, estimating);
   return yield* partOf(writer.write(motion), estimating, 1);
 }
 
@@ -141,7 +142,7 @@ async function unlessGivenUp(loading: Promise<PoseRegressor>, signal: AbortSigna
  * sentence where the method draws no body or fails, no network comes, the measures are no person's, times do not rise, or the device's body is asked
  * for that no frame has; with the signal's reason where it is given up.
  */
-export async function exportMotionBare(recording: Replayable, options: BareExportOptions): Promise<MotionFile> {
+export async function exportMotionWith(recording: Replayable, options: MotionExportOptions): Promise<MotionFile> {
   const { estimator = 'learned', networks } = options;
   const writer = writerOf(options);
   const calibration = personOf(recording, options.calibration);

@@ -1,7 +1,7 @@
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
 
 /** Hears what a body does on this thread once a frame is over. Each part is the time since the mark before it, or since `resume`. */
-export interface AskTiming {
+export interface InferenceProfiler {
   /** Work begins that a frame left for later. */
   resume(): void;
   /** features: until the network is asked. inference: what it takes before it first waits; what runs elsewhere is no cost of this thread. */
@@ -9,7 +9,7 @@ export interface AskTiming {
 }
 
 /** The same regressor, with its runs told. One that answers within the frame is part of that frame and not told. */
-export function withTiming(regressor: PoseRegressor, timing: AskTiming): PoseRegressor {
+export function profiled(regressor: PoseRegressor, timing: InferenceProfiler): PoseRegressor {
   return {
     contract: regressor.contract,
     // Live: it changes with a graphics device that is lost.

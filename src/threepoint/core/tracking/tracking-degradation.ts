@@ -8,7 +8,7 @@ import { deviceBodySize, mixDeviceBodies } from './device-body';
 import type { TrackingFrame } from './tracking-frame';
 
 /** What a body is to suffer on purpose, so that its effect on people can be studied. */
-export interface Impairments {
+export interface TrackingImpairments {
   /** By how much the body follows later than it could [ms], up to `mostLatencyMs`. */
   readonly latencyMs?: number;
   /** Normal and new in every frame: standard deviation along and about each axis. */
@@ -89,8 +89,8 @@ function mixPose(a: TrackedPose, b: TrackedPose, t: number, target: MutableTrack
  * Head and hands as a worse tracker would have them: later, noisy, with hands that are lost. What the device itself says of the body is as late,
  * else as it was: it does not come from these trackers. Leaves no garbage.
  */
-export class ImpairedTracking {
-  #impairments: Impairments | null = null;
+export class TrackingDegradation {
+  #impairments: TrackingImpairments | null = null;
   /** A ring; `#newest` is the index of the newest frame, `#count` how many there are. */
   readonly #ring = Array.from({ length: kept }, () => new KeptFrame());
   #newest = 0;
@@ -112,7 +112,7 @@ export class ImpairedTracking {
   };
 
   /** From the next frame on; null: nothing. What is random follows from the seed and the frames' times. */
-  impair(impairments: Impairments | null, seed = 0): void {
+  configure(impairments: TrackingImpairments | null, seed = 0): void {
     this.#impairments = impairments;
     this.#seed[0] = seed;
     this.#lossesDrawn = false;
@@ -125,7 +125,7 @@ export class ImpairedTracking {
   }
 
   /** The frame as the body is to have it, at the same time [s]: itself, or a frame that the next call overwrites. */
-  follow(frame: TrackingFrame): TrackingFrame {
+  apply(frame: TrackingFrame): TrackingFrame {
     const impairments = this.#impairments;
     if (!impairments) return frame;
     if (frame.suspended) {
@@ -151,7 +151,7 @@ export class ImpairedTracking {
   }
 
   /** What was tracked by the latency earlier: between two frames, or the oldest where it is later. */
-  #delay(frame: TrackingFrame, { latencyMs = 0 }: Impairments): WrittenFrame {
+  #delay(frame: TrackingFrame, { latencyMs = 0 }: TrackingImpairments): WrittenFrame {
     const time = frame.time - latencyMs / 1000;
     let steps = 0;
     while (steps < this.#count - 1 && this.#frameBefore(steps).time > time) steps += 1;
@@ -180,7 +180,7 @@ export class ImpairedTracking {
     this.#fingers[side] = before.shapeKnown ? shape : null;
   }
 
-  #drop(written: WrittenFrame, dropouts: NonNullable<Impairments['dropouts']>): void {
+  #drop(written: WrittenFrame, dropouts: NonNullable<TrackingImpairments['dropouts']>): void {
     const { time } = written;
     for (let i = 0; i < sides.length; i++) {
       const side = sides[i]!;
@@ -198,13 +198,16 @@ export class ImpairedTracking {
     this.#lossesDrawn = true;
   }
 
-  #shake(written: WrittenFrame, noise: NonNullable<Impairments['trackerNoise']>): void {
+  #shake(written: WrittenFrame, noise: NonNullable<TrackingImpairments['trackerNoise']>): void {
     this.#shakePose(this.#head, noise);
     if (written.leftHand) this.#shakePose(this.#hands.left, noise);
     if (written.rightHand) this.#shakePose(this.#hands.right, noise);
   }
 
-  #shakePose({ position, orientation }: MutableTrackedPose, noise: NonNullable<Impairments['trackerNoise']>): void {
+  #shakePose(
+    { position, orientation }: MutableTrackedPose,
+    noise: NonNullable<TrackingImpairments['trackerNoise']>,
+  ): void {
     const normals = this.#drawNormals();
     const far = noise.positionMm / 1000;
     setVec3(offset, far * normals[0]!, far * normals[1]!, far * normals[2]!);

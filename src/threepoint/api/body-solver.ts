@@ -5,15 +5,13 @@ import type { EstimatorName, InferenceRequest } from '../core/estimation/pose-es
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
+import { admittedFrames, type TrackedPoint, TrackingGate } from '../core/tracking/tracking-gate';
 import { type AfterFrame, createAfterFrame } from './after-frame';
-import { type AskTiming, withTiming } from './ask-timing';
 import { EstimatorChoice } from './estimator-choice';
 import { HeightPolicy } from './height-policy';
-import { SeenFrames, seenOf } from './seen-frames';
+import { type InferenceProfiler, profiled } from './inference-profiler';
 
-/** A point that a headset tracks. */
-export type TrackedPoint = 'head' | 'left' | 'right';
-const trackedPoints = ['head', 'left', 'right'] as const;
+export type { TrackedPoint } from '../core/tracking/tracking-gate';
 
 /**
  * Where a body's measures come from: told by the page, the height at which a session began, a wearer who stood up taller, a stand-in who
@@ -26,32 +24,32 @@ export interface BodyEvents {
   /** Other measures of who moves the body, from the next frame on. */
   calibrated?(calibration: Calibration, source: CalibrationSource): void;
   /** The wearer stands this much taller [m] than the measures that were given, which stay. Once for each calibration. */
-  outgrown?(difference: number): void;
+  heightmismatch?(difference: number): void;
   /** This estimator's network is not to be had, and why: inverse kinematics draws instead; with 'device' where the device reports no body. */
   fallback?(estimator: EstimatorName, reason: string): void;
   /** `estimator`, `provider` or `unavailable` is another. */
   changed?(): void;
   /** The body begins anew where it is next: nothing may be drawn, sent or scored on the way there. */
-  jumped?(): void;
+  discontinuity?(): void;
   /** No longer tracked: the body of a head that is not seen stands still; the arm of a hand that is not, or only guessed, sinks to rest. */
-  lost?(point: TrackedPoint): void;
+  trackinglost?(point: TrackedPoint): void;
   /** Tracked, for the first time or again. */
-  found?(point: TrackedPoint): void;
+  trackingfound?(point: TrackedPoint): void;
 }
 
-export interface BareBodyOptions {
+export interface BodySolverOptions {
   /** Default: 'learned', which is inverse kinematics until its weights have arrived. */
   readonly estimator?: EstimatorName;
   /** 'auto' (default): from the height of the headset, and grown when its wearer stands up taller. */
   readonly calibration?: Calibration | 'auto';
   /** Whether a wearer may turn out taller than their measures (default): those of 'auto' grow then, of given ones `outgrown` tells. */
-  readonly grows?: boolean;
+  readonly autoGrow?: boolean;
   /** Brings a network by name; rejects with a sentence. `onnxNetworks` of threepoint/onnx brings both. */
   readonly networks: (name: NetworkName) => Promise<PoseRegressor>;
   /** The time of `frame`, for pages that share one clock. Default: a clock of the body's own. */
-  readonly clock?: Pick<PageClock, 'frame' | 'paused'>;
+  readonly clock?: Pick<PageClock, 'tick' | 'paused'>;
   /** Told what is done after a frame, where frame times are measured. */
-  readonly timing?: AskTiming;
+  readonly profiler?: InferenceProfiler;
   readonly events?: BodyEvents;
 }
 
@@ -65,14 +63,15 @@ function copyChecked(calibration: Calibration): Calibration {
  * One wearer's body from three tracked points: estimator, fallback to inverse kinematics, a height that settles, points that are lost and found.
  * A frame is `frame`, then `update`. Told where its networks come from, it has the code of none in it; Body brings the learned one along.
  */
-export class BareBody {
+export class BodySolver {
   readonly #choice: EstimatorChoice;
   readonly #height: HeightPolicy;
   #events: BodyEvents;
-  readonly #clock: Pick<PageClock, 'frame' | 'paused'>;
-  readonly #timing: AskTiming | null;
-  readonly #frames = new SeenFrames();
-  readonly #seen: Record<TrackedPoint, boolean> = { head: false, left: false, right: false };
+  readonly #clock: Pick<PageClock, 'tick' | 'paused'>;
+  readonly #timing: InferenceProfiler | null;
+  readonly #gate = new TrackingGate({
+    onChange: (point, tracked) => (tracked ? this.#events.trackingfound?.(point) : this.#events.trackinglost?.(point)),
+  });
   #afterFrame: AfterFrame | null = null;
   /** In force: the wearer's, or those of a stand-in. */
   #calibration: Calibration;
@@ -93,8 +92,8 @@ export class BareBody {
   };
 
   /** Throws a RangeError where the calibration is no person's, or there is no estimator of this name. */
-  constructor(options: BareBodyOptions) {
-    const { estimator = 'learned', calibration = 'auto', networks, timing = null } = options;
+  constructor(options: BodySolverOptions) {
+    const { estimator = 'learned', calibration = 'auto', networks, profiler: timing = null } = options;
     this.#events = options.events ?? {};
     this.#clock = options.clock ?? createPageClock(() => performance.now());
     this.#timing = timing;
@@ -105,16 +104,16 @@ export class BareBody {
       estimator,
       calibration: this.#calibration,
       create: createEstimator,
-      load: timing ? async (name) => withTiming(await networks(name), timing) : networks,
+      load: timing ? async (name) => profiled(await networks(name), timing) : networks,
       onChange: () => this.#events.changed?.(),
       onFault: (name, reason) => this.#events.fallback?.(name, reason),
     });
     this.#height = new HeightPolicy({
       calibration: () => this.#wearer,
       calibrated: () => this.#given,
-      grows: options.grows ?? true,
+      autoGrow: options.autoGrow ?? true,
       onMeasured: (measured, source) => this.#measure(measured, source),
-      onTooSmall: (difference) => this.#events.outgrown?.(difference),
+      onTooSmall: (difference) => this.#events.heightmismatch?.(difference),
     });
   }
 
@@ -157,8 +156,8 @@ export class BareBody {
    * Resolves when this estimator draws, or when `fallback` told why it cannot; rejects with a RangeError where there is none of this name, else only
    * with what an event's listener throws.
    */
-  choose(estimator: EstimatorName): Promise<void> {
-    return this.#choice.choose(estimator);
+  setEstimator(estimator: EstimatorName): Promise<void> {
+    return this.#choice.setEstimator(estimator);
   }
 
   /** Measures of the wearer [m], or 'auto', which forgets what was known of them. Throws a RangeError where they are no person's. */
@@ -166,32 +165,32 @@ export class BareBody {
     const given = calibration !== 'auto';
     const measures = given ? this.#own(calibration) : defaultCalibration;
     this.#given = given;
-    if (!given) this.#height.begin();
+    if (!given) this.#height.startSession();
     this.#measure(measures, given ? 'given' : 'default');
   }
 
   /** A headset was put on: its height is taken anew. */
-  begin(): void {
-    this.#height.begin();
-    this.jumped();
+  startSession(): void {
+    this.#height.startSession();
+    this.discontinuity();
   }
 
   /** The floor lies elsewhere from one frame to the next (recentre, teleport, pause): nothing may be drawn on the way. */
-  jumped(): void {
+  discontinuity(): void {
     // A question that still waits is about a frame from before.
     this.#request = null;
     this.#choice.reset();
     this.#height.reset();
-    this.#events.jumped?.();
+    this.#events.discontinuity?.();
   }
 
   /**
    * Begins an animation frame that the browser dates `timestampMs`: its time [s], which never goes back and leaps half a second at most, for
    * the frame of tracking that follows. After a pause the body has jumped.
    */
-  frame(timestampMs: number): number {
-    const time = this.#clock.frame(timestampMs);
-    if (this.#clock.paused) this.jumped();
+  tick(timestampMs: number): number {
+    const time = this.#clock.tick(timestampMs);
+    if (this.#clock.paused) this.discontinuity();
     return time;
   }
 
@@ -203,10 +202,7 @@ export class BareBody {
    * throws.
    */
   update(tracked: TrackingFrame | null, standIn: Calibration | null = null): AvatarPose | null {
-    const frame = this.#frames.next(tracked);
-    this.#notice('head', frame !== null);
-    this.#notice('left', frame?.leftHand?.tracking === 'tracked');
-    this.#notice('right', frame?.rightHand?.tracking === 'tracked');
+    const frame = this.#gate.admit(tracked);
     if (frame === null) {
       this.#height.lose();
       return this.#pose;
@@ -225,8 +221,8 @@ export class BareBody {
    * network is waited for; with one that answers at once `pose` is the moment's when this returns, else when it resolves. Nothing comes of it
    * where the body jumps meanwhile, or another method is chosen.
    */
-  relive(frames: Iterable<TrackingFrame>): Promise<void> {
-    return this.#choice.relive(seenOf(frames), (pose) => {
+  warmUp(frames: Iterable<TrackingFrame>): Promise<void> {
+    return this.#choice.warmUp(admittedFrames(frames), (pose) => {
       this.#pose = pose;
     });
   }
@@ -240,8 +236,8 @@ export class BareBody {
   }
 
   /** Forgets which points were seen, without a word: another session begins. */
-  forgetPoints(): void {
-    for (const point of trackedPoints) this.#seen[point] = false;
+  endSession(): void {
+    this.#gate.reset();
   }
 
   /** Measures that a page gives, apart from its own object, unless it had them of this body. */
@@ -259,7 +255,7 @@ export class BareBody {
   /** Another moves the body from this frame on: with their measures, and without a way from the one to the other. */
   #handOver(standIn: Calibration | null): void {
     this.#standsIn = standIn !== null;
-    this.jumped();
+    this.discontinuity();
     this.#fit(standIn ?? this.#wearer, 'stand-in');
   }
 
@@ -275,13 +271,6 @@ export class BareBody {
     this.#calibration = calibration;
     this.#choice.calibrate(calibration);
     this.#events.calibrated?.(calibration, source);
-  }
-
-  #notice(point: TrackedPoint, seen: boolean): void {
-    if (this.#seen[point] === seen) return;
-    this.#seen[point] = seen;
-    if (seen) this.#events.found?.(point);
-    else this.#events.lost?.(point);
   }
 
   /** Asks a network that answers later once the picture is on its way; a newer frame's question takes the place of one that still waits. */

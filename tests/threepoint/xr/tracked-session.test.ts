@@ -1,7 +1,7 @@
 import type { Pose } from 'threepoint/core/math/pose';
 import { angleBetween, fromAxisAngle, identity } from 'threepoint/core/math/quat';
 import { distance, up, vec3 } from 'threepoint/core/math/vec3';
-import { createTracker, type Tracker } from 'threepoint/xr/tracker';
+import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { afterEach, describe, expect, test, vi } from 'vitest';
 import { measured } from '../../reliability/measured';
 import { bareHand, controller, fakeHeadset } from './fake-headset';
@@ -12,13 +12,12 @@ const right = at(0.25, 1.1, -0.35);
 
 function tracked() {
   const headset = fakeHeadset();
-  const spaces: XRReferenceSpace[] = [];
-  const tracker = createTracker(headset.session, headset.floor, (space) => spaces.push(space));
+  const tracker = new TrackedSession(headset);
   let time = 1;
   return {
     ...headset,
     tracker,
-    spaces,
+    inputs: tracker.inputs,
     read() {
       time += 1 / 72;
       return tracker.read(headset.frame, time);
@@ -74,85 +73,129 @@ describe('poses', () => {
 
 describe('behind a menu of the device', () => {
   test.each(['visible-blurred', 'hidden'] as const)('(%s) the head goes on, no hand and no button is read', (state) => {
-    const { read, setInputs, setVisibility, tracker } = tracked();
+    const { read, setInputs, setVisibility, inputs } = tracked();
     setInputs(controller('left', left, 1), controller('right', right, 1));
     expect(read()?.suspended).toBeUndefined();
     setVisibility(state);
     expect(read()).toMatchObject({ suspended: true, leftHand: null, rightHand: null });
-    expect(tracker.buttons.right.trigger).toBe(0);
+    expect(inputs.buttons.right.trigger).toBe(0);
     setVisibility('visible');
     expect(read()).toMatchObject({ leftHand: { tracking: 'tracked' } });
-    expect(tracker.buttons.right.trigger).toBe(1);
+    expect(inputs.buttons.right.trigger).toBe(1);
   });
 });
 
 describe('which hand it is', () => {
   test('is told by handedness, in any order, and a swap is another device on each side', () => {
-    const { read, setInputs, tracker } = tracked();
+    const { read, setInputs, inputs } = tracked();
     setInputs(controller('right', right), controller('left', left));
     expect(read()).toMatchObject({ leftHand: {}, rightHand: {} });
     expect(read()?.leftHand?.position.x).toBeLessThan(0);
-    const before = { left: tracker.buttons.left.device, right: tracker.buttons.right.device };
+    const before = { left: inputs.buttons.left.device, right: inputs.buttons.right.device };
     // WebXR makes new input sources where handedness changes.
     setInputs(controller('left', right), controller('right', left));
     expect(read()?.leftHand?.position.x).toBeGreaterThan(0);
-    expect(tracker.buttons.left.device).not.toBe(before.left);
-    expect(tracker.buttons.right.device).not.toBe(before.right);
+    expect(inputs.buttons.left.device).not.toBe(before.left);
+    expect(inputs.buttons.right.device).not.toBe(before.right);
   });
 
   test('is what is seen of two devices on one side, in whichever order they are listed', () => {
-    const { read, setInputs, tracker } = tracked();
+    const { read, setInputs, inputs } = tracked();
     const onTheTable = controller('left', null, 1);
     const hand = bareHand('left', left, 0.005);
-    for (const inputs of [
+    for (const listed of [
       [onTheTable, hand],
       [hand, onTheTable],
     ]) {
-      setInputs(...inputs);
+      setInputs(...listed);
       expect(read()?.leftHand?.position.x).toBeCloseTo(left.position.x, 6);
-      expect(tracker.kinds.left).toBe('hand');
-      expect(tracker.buttons.left).toMatchObject({ kind: 'hand', device: 2 });
+      expect(inputs.kinds.left).toBe('hand');
+      expect(inputs.buttons.left).toMatchObject({ kind: 'hand', device: 2 });
     }
-    expect(tracker.input).toBe('hands');
+    expect(inputs.input).toBe('hands');
   });
 
   test('is the hand itself while its pinch is told as a pointer of its own', () => {
-    const { read, setInputs, tracker } = tracked();
+    const { read, setInputs, inputs } = tracked();
     const hand = bareHand('right', right, 0.005);
     setInputs(hand);
     const before = read()?.rightHand;
     const pinch = { ...controller('right', at(0.3, 1.2, -0.45), 1), targetRayMode: 'transient-pointer' as const };
     setInputs(hand, pinch);
     expect(read()?.rightHand).toEqual(before);
-    expect(tracker.kinds.right).toBe('hand');
-    expect(tracker.buttons.right).toMatchObject({ kind: 'hand', trigger: 0 });
-    expect(tracker.input).toBe('hands');
+    expect(inputs.kinds.right).toBe('hand');
+    expect(inputs.buttons.right).toMatchObject({ kind: 'hand', trigger: 0 });
+    expect(inputs.input).toBe('hands');
   });
 
   test('is where it pinches, of a device that tells of nothing else', () => {
-    const { read, setInputs, tracker } = tracked();
+    const { read, setInputs, inputs } = tracked();
     setInputs({ ...controller('right', right, 1), targetRayMode: 'transient-pointer' });
     expect(read()?.rightHand).not.toBeNull();
-    expect(tracker.buttons.right.trigger).toBe(1);
+    expect(inputs.buttons.right.trigger).toBe(1);
   });
 
   test('and of which kind, through ten changes between controllers and hands, nothing kept of the other', () => {
-    const { read, setInputs, tracker } = tracked();
+    const { read, setInputs, inputs } = tracked();
     let correct = 0;
     for (let i = 0; i < 10; i++) {
       setInputs(controller('left', left, 1), controller('right', right, 1));
       read();
-      if (tracker.kinds.left === 'controller' && tracker.buttons.left.pinch === 0) correct += 1;
+      if (inputs.kinds.left === 'controller' && inputs.buttons.left.pinch === 0) correct += 1;
       setInputs(bareHand('left', left, 0.005), bareHand('right', right, 0.005));
       read();
-      const { trigger, grip, pinch } = tracker.buttons.left;
-      if (tracker.kinds.left === 'hand' && trigger === 0 && grip === 0 && pinch === 1) correct += 1;
+      const { trigger, grip, pinch } = inputs.buttons.left;
+      if (inputs.kinds.left === 'hand' && trigger === 0 && grip === 0 && pinch === 1) correct += 1;
     }
     setInputs();
     expect(read()).toMatchObject({ leftHand: null, rightHand: null });
-    expect(tracker.kinds).toEqual({ left: 'none', right: 'none' });
+    expect(inputs.kinds).toEqual({ left: 'none', right: 'none' });
     expect(correct).toBe(20);
     measured('changing-hands', { 'right kind': `${correct} of 20` });
+  });
+});
+
+describe('events', () => {
+  /** A session whose events are recorded in their order. */
+  function observed() {
+    const headset = fakeHeadset();
+    const events: string[] = [];
+    const session = new TrackedSession({
+      ...headset,
+      onStart: () => void events.push('start'),
+      onDiscontinuity: () => void events.push('discontinuity'),
+      onEnd: () => void events.push('end'),
+    });
+    return { ...headset, tracked: session, events };
+  }
+
+  test('report the start with the first frame, and each move of the floor', () => {
+    const { tracked, frame, events, reset } = observed();
+    expect(events).toEqual([]);
+    tracked.read(frame, 1);
+    tracked.read(frame, 1.01);
+    tracked.recentre();
+    tracked.turn(0.5);
+    reset({ position: vec3(1, 0, 0), orientation: identity });
+    expect(events).toEqual(['start', 'discontinuity', 'discontinuity', 'discontinuity']);
+  });
+
+  test('report the end once; a floor that the device moves later is not the session’s any more', () => {
+    const { tracked, session, frame, events, reset } = observed();
+    tracked.read(frame, 1);
+    session.dispatchEvent(new Event('end'));
+    session.dispatchEvent(new Event('end'));
+    reset({ position: vec3(1, 0, 0), orientation: identity });
+    expect(events).toEqual(['start', 'end']);
+  });
+
+  test('start once the renderer has a space', () => {
+    const { tracked, drawing, floor, frame, events } = observed();
+    drawing.getReferenceSpace = () => null;
+    expect(tracked.read(frame, 1)).toBeNull();
+    drawing.getReferenceSpace = () => floor;
+    expect(tracked.read(frame, 1.01)).not.toBeNull();
+    expect(events).toEqual(['start']);
   });
 });
 
@@ -174,8 +217,8 @@ describe('where the floor is', () => {
   });
 
   test.each([
-    ['again', (tracker: Tracker) => tracker.recentre(), 0],
-    ['and turned', (tracker: Tracker) => tracker.turn(1), 1],
+    ['again', (tracker: TrackedSession) => tracker.recentre(), 0],
+    ['and turned', (tracker: TrackedSession) => tracker.turn(1), 1],
   ])('after recentring %s before the next frame lies under the head too', (_, then, yaw) => {
     const { read, setHead, tracker } = tracked();
     setHead({ position: vec3(1, 1.6, 2), orientation: fromAxisAngle(up, 2) });
@@ -188,16 +231,16 @@ describe('where the floor is', () => {
   });
 
   test('turns about the head, which stays: thirty degrees a push, one turn for one push', () => {
-    const { read, setHead, setInputs, tracker } = tracked();
+    const { read, setHead, setInputs, tracker, inputs } = tracked();
     setHead({ position: vec3(1, 1.6, 2), orientation: fromAxisAngle(up, 0.4) });
     const source = controller('right', right);
     setInputs(source);
     const before = read()!;
     source.gamepad.axes[2] = 0.9;
     read();
-    expect(tracker.takeTurn()).toBe(-1);
+    expect(inputs.takeTurn()).toBe(-1);
     read();
-    expect(tracker.takeTurn(), 'the stick is still there').toBe(0);
+    expect(inputs.takeTurn(), 'the stick is still there').toBe(0);
     tracker.turn(-Math.PI / 6);
     const after = read()!;
     const off = 1000 * distance(after.head.position, before.head.position);
@@ -207,7 +250,7 @@ describe('where the floor is', () => {
     read();
     source.gamepad.axes[2] = -0.9;
     read();
-    expect(tracker.takeTurn()).toBe(1);
+    expect(inputs.takeTurn()).toBe(1);
     measured('comfort', { 'a turn moves the head by': `${off.toFixed(3)} mm` });
   });
 

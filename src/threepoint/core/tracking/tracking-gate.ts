@@ -1,0 +1,104 @@
+import { isFinitePose, isTracked, type TrackedPose } from '../math/pose';
+import { normaliseQuat, type Quat } from '../math/quat';
+import { isFiniteDeviceBody } from './device-body';
+import type { TrackingFrame } from './tracking-frame';
+
+/** A point that a headset tracks. */
+export type TrackedPoint = 'head' | 'left' | 'right';
+const trackedPoints = ['head', 'left', 'right'] as const;
+
+/** The largest deviation of a rotation's squared length from 1 that is accepted: files round. */
+const unitTolerance = 2e-3;
+
+const isUnit = ({ x, y, z, w }: Quat): boolean => Math.abs(x * x + y * y + z * z + w * w - 1) <= unitTolerance;
+
+/**
+ * Returns the pose with a rotation of length 1 and a tracking state; null: it is absent or not finite. A pose without a state is tracked: pages
+ * without types leave it out.
+ */
+function validPose(pose: TrackedPose | null | undefined): TrackedPose | null {
+  if (!pose || !isFinitePose(pose)) return null;
+  const { position, orientation, tracking } = pose;
+  const unit = isUnit(orientation);
+  if (tracking !== undefined && unit) return pose;
+  return { position, orientation: unit ? orientation : normaliseQuat(orientation), tracking: tracking ?? 'tracked' };
+}
+
+export interface TrackingGateOptions {
+  /**
+   * Whether a point that the source has never reported as tracked counts as tracked. Emulators and controllers without cameras report every
+   * position as guessed; without this their arms would hang and their hands could not play.
+   */
+  readonly assumesTracked?: boolean;
+  /** Called when a point becomes tracked or is lost. */
+  readonly onChange?: (point: TrackedPoint, tracked: boolean) => void;
+}
+
+/** Decides what is tracked in the frames of one source: the only place that checks poses, their tracking state and their times. */
+export class TrackingGate {
+  readonly #options: TrackingGateOptions;
+  /** The time of the newest frame [s]; NaN before the first. */
+  #time = Number.NaN;
+  /** The points that the source has reported as tracked at least once. */
+  readonly #reported: Record<TrackedPoint, boolean> = { head: false, left: false, right: false };
+  readonly #tracked: Record<TrackedPoint, boolean> = { head: false, left: false, right: false };
+
+  constructor(options: TrackingGateOptions = {}) {
+    this.#options = options;
+  }
+
+  /**
+   * Returns the frame itself, or a copy in which an invalid hand is null, every point has a tracking state, rotations have length 1, an
+   * invalid device body is absent, and an invalid time is that of the frame before. Returns null while the head is not seen or no time is
+   * known. A head counts as tracked in each frame that has one, because the body follows a guessed head too.
+   */
+  admit(frame: TrackingFrame | null | undefined): TrackingFrame | null {
+    const admitted = this.#check(frame);
+    this.#follow('head', admitted !== null);
+    this.#follow('left', isTracked(admitted?.leftHand));
+    this.#follow('right', isTracked(admitted?.rightHand));
+    return admitted;
+  }
+
+  /** Marks every point as not tracked without a call of `onChange`: the session is over. */
+  reset(): void {
+    for (const point of trackedPoints) this.#tracked[point] = false;
+  }
+
+  #check(frame: TrackingFrame | null | undefined): TrackingFrame | null {
+    const head = this.#checkPoint('head', frame?.head);
+    if (!frame || !head) return null;
+    const validTime = Number.isFinite(frame.time);
+    if (validTime) this.#time = frame.time;
+    else if (Number.isNaN(this.#time)) return null;
+    const leftHand = this.#checkPoint('left', frame.leftHand);
+    const rightHand = this.#checkPoint('right', frame.rightHand);
+    const validBody = frame.deviceBody === undefined || isFiniteDeviceBody(frame.deviceBody);
+    const same = head === frame.head && leftHand === frame.leftHand && rightHand === frame.rightHand;
+    if (validTime && validBody && same) return frame;
+    return { ...frame, time: this.#time, head, leftHand, rightHand, ...(!validBody && { deviceBody: undefined }) };
+  }
+
+  #checkPoint(point: TrackedPoint, pose: TrackedPose | null | undefined): TrackedPose | null {
+    const valid = validPose(pose);
+    if (!valid) return null;
+    this.#reported[point] ||= isTracked(valid);
+    const assumed = this.#options.assumesTracked && !this.#reported[point];
+    return assumed ? { ...valid, tracking: 'tracked' } : valid;
+  }
+
+  #follow(point: TrackedPoint, tracked: boolean): void {
+    if (this.#tracked[point] === tracked) return;
+    this.#tracked[point] = tracked;
+    this.#options.onChange?.(point, tracked);
+  }
+}
+
+/** Yields the admitted frames of a recording; frames without a head or a time are left out. */
+export function* admittedFrames(frames: Iterable<TrackingFrame>): Generator<TrackingFrame> {
+  const gate = new TrackingGate();
+  for (const frame of frames) {
+    const admitted = gate.admit(frame);
+    if (admitted) yield admitted;
+  }
+}
