@@ -16,6 +16,7 @@ import {
 import { archeryRules, delayed, fullScore, isArmed, matchTime, secondsLeft } from 'threepoint-games/archery/rules';
 import { createSteeredArcher, type SteeredArcher } from 'threepoint-games/archery/steered-archer';
 import { createMatch, type Match } from 'threepoint-games/match';
+import type { PlayerInput } from '../activity/activity';
 
 /** What the player may choose; asked for in every frame. */
 export interface ArcherySettings {
@@ -39,12 +40,6 @@ export interface ArcheryFrame {
   readonly haptics: readonly HapticPulse[];
 }
 
-/** Head, hands and buttons of a player. */
-export interface Performance {
-  readonly frame: TrackingFrame;
-  readonly buttons: Buttons;
-}
-
 /** A round and who plays it, apart from everything that is seen of it. */
 export interface ArcheryPlay {
   /** Where they stand in this round. */
@@ -54,9 +49,9 @@ export interface ArcheryPlay {
   /** The tracked frame and its buttons become play. */
   follow(frame: TrackingFrame, buttons: Buttons): ArcheryFrame;
   /** Head, hands and buttons of the built-in archer at `time` [s]. */
-  act(time: number): Performance;
-  /** The same of an archer who aims along a ray (arena frame; unit direction) as a person at a desk tells it. */
-  steer(time: number, ray: Ray, wish: { readonly pressed: boolean; readonly cancelled: boolean }): Performance;
+  act(time: number): PlayerInput;
+  /** Returns the input of an archer who is steered by a mouse: aims along a ray (arena frame, unit direction). */
+  steer(time: number, ray: Ray, wish: { readonly pressed: boolean; readonly cancelled: boolean }): PlayerInput;
   /** Another round, for a person with these measures whose eyes are this high now [m], standing or seated. */
   restart(calibration: Calibration, eyeHeight?: number): void;
   /** The floor lies elsewhere from the next frame on. */

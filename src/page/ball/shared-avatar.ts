@@ -1,23 +1,8 @@
-import {
-  type AvatarHash,
-  mostAvatarBytes,
-  type OwnAvatar,
-  plainAvatar,
-  type WornAvatar,
-} from 'threepoint/core/body/worn-avatar';
+import { type AvatarHash, mostAvatarBytes, plainAvatar, type WornAvatar } from 'threepoint/core/body/worn-avatar';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
 import type { RoomView } from 'threepoint-rooms/client/connection';
-
-/** What the wearer has on: one of ours by name, or a file. */
-export type OwnWear =
-  | OwnAvatar
-  | {
-      readonly name: string;
-      readonly file: Blob;
-      /** null: this page cannot tell, as its connection is not secure. */
-      readonly hash: AvatarHash | null;
-    };
+import type { OwnWear } from '../activity/activity-context';
 
 export interface SharedAvatarOptions {
   /** null: there is no server, or its rooms are a study's, where all look alike. */

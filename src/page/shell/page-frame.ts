@@ -93,9 +93,9 @@ export class PageFrame implements FrameParts<XRFrame> {
     difference.observe(frame, pose, body.calibration);
     this.#bendFingers('left', frame);
     this.#bendFingers('right', frame);
-    avatar.current?.setMouth(activities.ball?.voices.ownMouth ?? 0);
+    avatar.current?.setMouth(activities.mouth);
     avatar.current?.apply(pose, frame.time);
-    activities.ball?.send(frame, pose, this.#fingers);
+    activities.send(frame, pose, this.#fingers);
     mocap.frame(frame, pose);
   }
 
@@ -138,7 +138,7 @@ export class PageFrame implements FrameParts<XRFrame> {
 
   #turn(time: number): void {
     const { headset, stage, body, activities } = this.#options;
-    if (headset.takePress()) activities.ball?.voices.toggleMuted();
+    if (headset.takePress()) activities.toggleMuted();
     if (!headset.turnByStick()) return;
     stage.vignette.close(time);
     body.jumped();
@@ -159,7 +159,6 @@ export class PageFrame implements FrameParts<XRFrame> {
 
   #mirror(): Shot['mirror'] {
     const { settings, activities } = this.#options;
-    if (!settings.mirror || activities.name === 'ball') return 'never';
-    return activities.name === 'archery' ? 'always' : 'unless-behind';
+    return settings.mirror ? activities.mirror : 'never';
   }
 }

@@ -15,12 +15,12 @@ import { prepareFirstPicture } from '../scene/first-picture';
 import { affordableQuality } from '../scene/renderer';
 import { Recorder } from '../studio/recorder';
 import { Activities } from './activities';
+import { activities as registeredActivities } from './activity-registry';
 import { Controls } from './controls/controls';
 import { DeviceDifference } from './device-difference';
 import { Emitter } from './emitter';
 import { estimatorTexts } from './estimator-texts';
 import { createFrameTiming, type FrameTiming } from './frame-timing';
-import { PageGames } from './games';
 import { Headset } from './headset';
 import { KnownBones } from './known-bones';
 import { createNetworkLoader } from './network-loading';
@@ -114,25 +114,35 @@ function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof c
   const mouse = createMouseAim(canvas);
   const captions = new Emitter<[text: string]>();
   const arrivals = new Emitter();
-  const onCaption = captions.emit;
-  const activities = new Activities({
+  const services = {
+    quality,
+    clock,
     settings,
     writer,
-    notices,
-    games: new PageGames({
-      ...{ quality, switches, settings, clock, stage, mouse, headset, body, avatar, server, notices, onCaption },
-    }),
-    seed: switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31),
+    switches,
     stage,
     mouse,
     headset,
+    body,
+    avatar,
+    fetchOwnAvatar,
+    server,
+    notices,
+    study,
+    onCaption: captions.emit,
+    onChange: changes.emit,
+  };
+  const activities = new Activities({
+    activities: registeredActivities,
+    services,
+    seed: switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31),
+    stage,
+    mouse,
     recorder,
     body,
     study,
     wear: (palette) => avatar.wear(palette),
-    onCaption,
     onArrival: arrivals.emit,
-    onChange: changes.emit,
   });
   const wearer = new Wearer({ body, headset, view: stage.view, writer, store, notices });
   const source = new TrackingSource({ settings, headset, recorder, body, actor, activities, study });
@@ -140,7 +150,7 @@ function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof c
   ground.calibrated.listen((calibration, source) => {
     wearer.measured(source);
     actor.calibrate(calibration);
-    activities.ball?.play.calibrate(calibration);
+    activities.calibrate(calibration);
     avatar.current?.fitTo(calibration);
   });
   ground.outgrown.listen((difference) => wearer.outgrown(difference));
@@ -209,7 +219,7 @@ export function createPage(options: PageOptions) {
   });
   play.arrivals.listen(() => {
     recorder.stop();
-    if (activities.name !== 'studio') controls.setPanelOpen(false);
+    if (activities.current) controls.setPanelOpen(false);
     body.jumped();
     timing.reset();
     controls.show();

@@ -7,7 +7,7 @@ export interface SheetPointingOptions {
   readonly canvas: HTMLCanvasElement;
   readonly view: Pick<DesktopView, 'rayThrough'>;
   readonly headset: Pick<Headset, 'worn'>;
-  readonly study: Pick<PageStudy, 'joined'>;
+  readonly study: Pick<PageStudy, 'run'>;
   readonly activities: Pick<Activities, 'point'>;
 }
 
@@ -15,7 +15,7 @@ export interface SheetPointingOptions {
 export function pressSheetsByMouse({ canvas, view, headset, study, activities }: SheetPointingOptions): void {
   /** The distance [m] to the sheet under the mouse; null: none. */
   function pointAt({ clientX, clientY }: MouseEvent, press: boolean): number | null {
-    if (headset.worn || study.joined) return null;
+    if (headset.worn || study.run) return null;
     const { width, height } = canvas.getBoundingClientRect();
     return activities.point(view.rayThrough((2 * clientX) / width - 1, 1 - (2 * clientY) / height), press);
   }

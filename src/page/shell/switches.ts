@@ -4,7 +4,7 @@ import type { Outlook } from '../mocap/mocap-view';
 import { truthPlaces } from '../mocap/truth-places';
 import { type ViewName, viewNames } from '../scene/desktop-view';
 import type { Quality } from '../scene/renderer';
-import { type ActivityName, activityNames } from './play-bar';
+import { home, placeNames } from './activity-registry';
 
 /** What the address asks for; null: nothing asked, the page decides. Listed in docs/page.md. */
 export interface Switches {
@@ -21,7 +21,7 @@ export interface Switches {
   /** Whether the controls are open; null: as they were left. */
   readonly panel: boolean | null;
   /** What the page opens with. */
-  readonly play: ActivityName;
+  readonly play: string;
   /** Of the first round's layout; null: another one with each visit. */
   readonly seed: number | null;
   /** Of a round, until the bell [s]; null: as the game has it. */
@@ -58,7 +58,7 @@ const schema = v.object({
   beside: v.optional(v.picklist(threePointNames)),
   truth: v.optional(v.picklist(truthPlaces)),
   view: v.optional(v.picklist(viewNames)),
-  play: v.optional(v.picklist(activityNames), 'studio'),
+  play: v.optional(v.picklist(placeNames), home),
   seconds: v.optional(wholeNumber(1, 3600)),
   room: v.optional(v.pipe(v.string(), v.regex(/^[a-z0-9][a-z0-9-]{0,31}$/))),
   bots: v.optional(onOff),
@@ -84,7 +84,7 @@ const takes: Readonly<Record<keyof typeof schema.entries, string>> = {
   beside: oneOf(threePointNames),
   truth: oneOf(truthPlaces),
   view: oneOf(viewNames),
-  play: oneOf(activityNames),
+  play: oneOf(placeNames),
   seconds: 'a whole number from 1 to 3600',
   room: 'small letters, digits and hyphens, 32 at most, the first no hyphen',
   bots: 'on or off',

@@ -2,7 +2,7 @@ import type { BareBody } from 'threepoint/api/bare-body';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { Performance } from '../archery/archery-play';
+import type { PlayerInput } from '../activity/activity';
 import type { Actor } from '../emulator/actor';
 import type { Recorder } from '../studio/recorder';
 import type { Activities } from './activities';
@@ -82,7 +82,7 @@ export class TrackingSource {
   }
 
   /** Needs no person: the players built into the games, else the actor. */
-  #perform(time: number): Performance {
+  #perform(time: number): PlayerInput {
     const { activities, actor } = this.#options;
     return activities.act(time) ?? { frame: actor.frameAt(time), buttons: nothingPressed };
   }

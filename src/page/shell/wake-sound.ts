@@ -1,12 +1,6 @@
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { Notices } from 'threepoint-ui/notices';
-
-/** The sound of a game. */
-export interface GameSound {
-  setMuted(muted: boolean): void;
-  /** Lets the browser play it; rejects where it cannot. */
-  unlock(): Promise<void>;
-}
+import type { ActivitySound } from '../activity/activity';
 
 /** By which a user may touch the page. */
 const touches = ['pointerdown', 'pointerup', 'keydown'];
@@ -15,7 +9,7 @@ const touches = ['pointerdown', 'pointerup', 'keydown'];
  * Lets a game be heard as the user wants it. Browsers let a page sound only once its user has touched it: until then that is waited for, unless
  * what is returned is called, because the game is over.
  */
-export function wakeSound(sound: GameSound, wanted: boolean, notices: Pick<Notices, 'show'>): () => void {
+export function wakeSound(sound: ActivitySound, wanted: boolean, notices: Pick<Notices, 'show'>): () => void {
   const waiting = new AbortController();
   const giveUp = () => waiting.abort();
   sound.setMuted(!wanted);

@@ -15,18 +15,18 @@ function player(recorder = new Recorder()) {
   const headset = { pictureRateHz: 72, visibility: 'none' as Headset['visibility'] };
   let away = false;
   const nothing = () => undefined;
-  const play = {
-    away(on: boolean) {
-      away = on;
-    },
-  };
   const changes = new SessionChanges({
     headset,
     recorder,
     timing: createFrameTiming(() => 0),
     view: { view: 'third-person', setView: nothing } as unknown as SessionChangesOptions['view'],
     body: { begin: nothing, jumped: nothing },
-    activities: { ball: { play }, sessionChanged: nothing } as unknown as SessionChangesOptions['activities'],
+    activities: {
+      sessionChanged: nothing,
+      setAway(on) {
+        away = on;
+      },
+    },
     controls: { show: nothing, setWorn: nothing, layOut: nothing },
     study: { run: null },
   });

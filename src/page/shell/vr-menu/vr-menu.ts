@@ -3,15 +3,9 @@ import type { FrameReport } from 'threepoint-ui/overlay';
 import { createVrPanel } from 'threepoint-ui/vr-panel';
 import type { Pointer } from 'threepoint-ui/vr-pointers';
 import { createPanelTouch } from 'threepoint-ui/vr-touch';
+import { type MenuButton, menuHeight, menuWidth } from '../../activity/activity-menu';
 import { drawFrameTimes, frameTimesHeight, frameTimesWidth } from './frame-times-drawing';
-import {
-  type MenuButton,
-  menuButtons,
-  menuHeight,
-  menuWidth,
-  type VrMenuActions,
-  type VrMenuState,
-} from './menu-buttons';
+import { menuButtons, type VrMenuActions, type VrMenuState } from './menu-buttons';
 import { drawMenu } from './menu-drawing';
 
 const pixelsPerMetre = 1000;
