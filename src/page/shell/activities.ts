@@ -1,73 +1,53 @@
 import type { BareBody } from 'threepoint/api/bare-body';
 import { Holding } from 'threepoint/avatar/hands/holding';
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import type { Calibration } from 'threepoint/core/body/calibration';
 import type { HandGeometry } from 'threepoint/core/body/hand-geometry';
-import type { Fingers, MutableHandShape } from 'threepoint/core/body/hand-shape';
+import type { MutableHandShape } from 'threepoint/core/body/hand-shape';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { Buttons } from 'threepoint/core/input/button-presses';
 import type { Pose } from 'threepoint/core/math/pose';
-import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Pulse } from 'threepoint/xr/haptics';
 import type { TaskPlace } from 'threepoint-study/participant/task-runner';
-import type { MouseAim } from 'threepoint-ui/mouse-aim';
-import type { Activity, OpenActivity, PlayerInput, Watched } from '../activity/activity';
+import type { Activity, OpenActivity, PlayerInput } from '../activity/activity';
 import type { ActivityContext, ActivityServices, InputSource } from '../activity/activity-context';
-import { type CameraScene, studioScene } from '../scene/desktop-view';
 import type { Recorder } from '../studio/recorder';
 import { home } from './activity-registry';
+import { ActivityStaging, type StagingOptions } from './activity-staging';
 import type { PageStudy } from './page-study';
 import type { Shot, Stage } from './stage';
 import { wakeSound } from './wake-sound';
 
-export interface ActivitiesOptions {
+export interface ActivitiesOptions extends StagingOptions {
   readonly activities: readonly Activity[];
   readonly services: ActivityServices;
   /** The seed of the first layout. */
   readonly seed: number;
-  readonly stage: {
-    readonly studio: Pick<Stage['studio'], 'setMarkVisible'>;
-    readonly view: Pick<Stage['view'], 'setScene' | 'setOrbit'>;
-    readonly placeMirror: Stage['placeMirror'];
-  };
-  readonly mouse: Pick<MouseAim, 'setEnabled'>;
+  readonly stage: StagingOptions['stage'] & { readonly studio: Pick<Stage['studio'], 'setMarkVisible'> };
   readonly recorder: Pick<Recorder, 'mode' | 'giveWay'>;
   readonly body: Pick<BareBody, 'calibration'>;
   readonly study: Pick<PageStudy, 'idle' | 'runnerOf'>;
-  /** Gives the user's avatar this palette; null: the user's own choice. */
-  wear(palette: string | null): void;
   /** The user is somewhere else now: filters and clocks restart. */
   onArrival(): void;
 }
-
-/** The wishes of the mirror. */
-const mirrorWishes: Pick<OpenActivity, 'scene' | 'mirrorSide' | 'palette' | 'watched'> = {
-  scene: studioScene,
-  mirrorSide: null,
-};
 
 /** The activity that the user is in, and the way from one to another. Knows activities by their interface only. */
 export class Activities {
   readonly #options: ActivitiesOptions;
   readonly #holding = new Holding();
   readonly #layout: { seed: number };
+  readonly #staging: ActivityStaging;
   #name = home as string;
   #current: OpenActivity | null = null;
   #arriving = false;
   /** The seat that a study assigned; null: none. */
   #place: TaskPlace | null = null;
-  /** The wishes of the current activity that have been met. */
-  #scene: CameraScene = studioScene;
-  #mirrorSide: Side | null = null;
-  #palette: string | null = null;
-  #steering = false;
   /** Cancels the wait for the user's first touch, which lets the browser play sound. */
   #cancelSound: () => void = () => undefined;
 
   constructor(options: ActivitiesOptions) {
     this.#options = options;
+    this.#staging = new ActivityStaging(options);
     this.#layout = { seed: options.seed };
   }
 
@@ -105,7 +85,7 @@ export class Activities {
     const next = this.all.find((activity) => activity.name === name);
     if (next) await this.#open(next);
     this.#options.services.writer.change({ following: null });
-    this.#arrange(true);
+    this.#staging.arrange(this.#current, true);
     this.#options.stage.studio.setMarkVisible(this.#current === null);
     this.#options.services.onCaption('');
     this.#options.onArrival();
@@ -144,46 +124,18 @@ export class Activities {
   chooseInput(source: 'mouse' | 'actor'): void {
     this.#options.recorder.giveWay();
     this.#options.services.writer.change({ actor: true, mouse: source === 'mouse' });
-    this.#arrange();
-  }
-
-  jumped(): void {
-    this.#current?.jumped?.();
+    this.#staging.arrange(this.#current);
   }
 
   sessionChanged(): void {
     this.#current?.sessionChanged?.();
-    this.#arrange();
-  }
-
-  calibrate(calibration: Calibration): void {
-    this.#current?.calibrate?.(calibration);
-  }
-
-  setAway(away: boolean): void {
-    this.#current?.setAway?.(away);
-  }
-
-  toggleMuted(): void {
-    this.#current?.toggleMuted?.();
+    this.#staging.arrange(this.#current);
   }
 
   /** When the mirror is visible, if the user has not turned it off. */
   get mirror(): Shot['mirror'] {
     if (!this.#current) return 'unless-behind';
     return this.#current.mirrorSide === null ? 'never' : 'always';
-  }
-
-  get mouth(): number {
-    return this.#current?.mouth ?? 0;
-  }
-
-  watched(): Watched | null {
-    return this.#current?.watched ?? null;
-  }
-
-  begin(time: number): void {
-    this.#current?.begin?.(time);
   }
 
   act(time: number): PlayerInput | null {
@@ -205,18 +157,10 @@ export class Activities {
     return this.#current?.grasp?.(side, wrist, this.#holding, target) ?? false;
   }
 
-  send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void {
-    this.#current?.send?.(frame, pose, fingers);
-  }
-
   /** Draws the newest frame of play. `frame`: null if the head is not tracked. */
   show(time: number, frame: TrackingFrame | null): void {
     this.#current?.show(time, frame);
-    this.#arrange();
-  }
-
-  point(ray: Ray, press: boolean): number | null {
-    return this.#current?.point?.(ray, press) ?? null;
+    this.#staging.arrange(this.#current);
   }
 
   async #open(activity: Activity): Promise<void> {
@@ -255,32 +199,7 @@ export class Activities {
       chooseInput: (source) => this.chooseInput(source),
       setSound: (on) => this.setSound(on),
       reopen: () => void this.reopen(),
-      placeCamera: () => this.#arrange(true),
+      placeCamera: () => this.#staging.arrange(this.#current, true),
     };
-  }
-
-  /** Meets the wishes of the current activity for camera, mirror, colours and mouse. `again`: also moves the camera to an unchanged scene. */
-  #arrange(again = false): void {
-    const { stage, wear, mouse, services } = this.#options;
-    const { scene, mirrorSide, palette = null, watched = null } = this.#current ?? mirrorWishes;
-    const steering = this.#current !== null && services.settings.mouse && !services.headset.worn && !watched;
-    if (steering !== this.#steering) {
-      this.#steering = steering;
-      mouse.setEnabled(steering);
-      // A mouse that aims does not turn the camera.
-      stage.view.setOrbit(!steering);
-    }
-    if (again || scene !== this.#scene) {
-      this.#scene = scene;
-      stage.view.setScene(scene);
-    }
-    if (mirrorSide !== this.#mirrorSide) {
-      this.#mirrorSide = mirrorSide;
-      stage.placeMirror(mirrorSide);
-    }
-    if (palette !== this.#palette) {
-      this.#palette = palette;
-      wear(palette);
-    }
   }
 }

@@ -93,9 +93,9 @@ export class PageFrame implements FrameParts<XRFrame> {
     difference.observe(frame, pose, body.calibration);
     this.#bendFingers('left', frame);
     this.#bendFingers('right', frame);
-    avatar.current?.setMouth(activities.mouth);
+    avatar.current?.setMouth(activities.current?.mouth ?? 0);
     avatar.current?.apply(pose, frame.time);
-    activities.send(frame, pose, this.#fingers);
+    activities.current?.send?.(frame, pose, this.#fingers);
     mocap.frame(frame, pose);
   }
 
@@ -138,7 +138,7 @@ export class PageFrame implements FrameParts<XRFrame> {
 
   #turn(time: number): void {
     const { headset, stage, body, activities } = this.#options;
-    if (headset.takePress()) activities.toggleMuted();
+    if (headset.takePress()) activities.current?.toggleMuted?.();
     if (!headset.turnByStick()) return;
     stage.vignette.close(time);
     body.jumped();
@@ -152,7 +152,7 @@ export class PageFrame implements FrameParts<XRFrame> {
       frame,
       avatar: avatar.current,
       inSession: headset.worn,
-      watched: activities.watched(),
+      watched: activities.current?.watched ?? null,
       mirror: this.#mirror(),
     };
   }

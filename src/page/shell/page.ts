@@ -150,13 +150,13 @@ function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof c
   ground.calibrated.listen((calibration, source) => {
     wearer.measured(source);
     actor.calibrate(calibration);
-    activities.calibrate(calibration);
+    activities.current?.calibrate?.(calibration);
     avatar.current?.fitTo(calibration);
   });
   ground.outgrown.listen((difference) => wearer.outgrown(difference));
   ground.jumps.listen(() => {
     impaired.reset();
-    activities.jumped();
+    activities.current?.jumped?.();
   });
   return { study, impaired, server, activities, captions, arrivals, wearer, source };
 }

@@ -13,7 +13,7 @@ export interface SessionChangesOptions {
   readonly timing: FrameTiming;
   readonly view: DesktopView;
   readonly body: Pick<BareBody, 'begin' | 'jumped'>;
-  readonly activities: Pick<Activities, 'setAway' | 'sessionChanged'>;
+  readonly activities: Pick<Activities, 'current' | 'sessionChanged'>;
   readonly controls: Pick<Controls, 'show' | 'setWorn' | 'layOut'>;
   readonly study: Pick<PageStudy, 'run'>;
 }
@@ -72,7 +72,7 @@ export class SessionChanges implements HeadsetListener {
     const { headset, timing, activities } = this.#options;
     timing.reset();
     const hidden = headset.visibility === 'none' ? document.hidden : headset.visibility === 'hidden';
-    activities.setAway(hidden);
+    activities.current?.setAway?.(hidden);
   }
 
   #changed(): void {

@@ -16,7 +16,7 @@ export interface TrackingSourceOptions {
   readonly recorder: Pick<Recorder, 'sample' | 'person' | 'giveWay'>;
   readonly body: Pick<BareBody, 'wearerCalibration'>;
   readonly actor: Pick<Actor, 'frameAt' | 'standAt'>;
-  readonly activities: Pick<Activities, 'begin' | 'act' | 'watched'>;
+  readonly activities: Pick<Activities, 'current' | 'act'>;
   readonly study: Pick<PageStudy, 'idle'>;
 }
 
@@ -49,7 +49,7 @@ export class TrackingSource {
   /** Head and hands at this time [s], floor frame; null: the head is not seen. */
   read(time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
     this.#buttons = nothingPressed;
-    this.#options.activities.begin(time);
+    this.#options.activities.current?.begin?.(time);
     const frame = this.#options.headset.worn ? this.#readSession(time, deviceFrame) : this.#readDesktop(time);
     this.#newest = frame ?? this.#newest;
     return frame;
@@ -73,7 +73,7 @@ export class TrackingSource {
     const { recorder, activities, settings, headset, actor } = this.#options;
     const replayed = recorder.sample(time);
     if (replayed) return replayed;
-    if (activities.watched()) return null;
+    if (activities.current?.watched) return null;
     // Before a real headset is put on, and while the emulated one loads, no one moves: the body stands there.
     if (!settings.actor) return headset.emulator?.read(time) ?? actor.standAt(time);
     const performed = this.#perform(time);

@@ -254,7 +254,7 @@ describe('a player who takes the headset off', () => {
       recorder: new Recorder(),
       timing: createFrameTiming(() => 0),
       view: { view: 'third-person', setView: nothing } as unknown as SessionChangesOptions['view'],
-      body: { begin: nothing, jumped: () => activities.jumped() },
+      body: { begin: nothing, jumped: () => activities.current?.jumped?.() },
       controls: { show: nothing, setWorn: nothing, layOut: nothing },
       activities,
       study,
@@ -419,13 +419,17 @@ describe('a third activity', () => {
     if (!frame) throw new Error('its own player moves nobody');
     expect(frame.head.position.y).toBe(1.5);
     expect(activities.play(frame, nothingPressed)).toEqual([{ side: 'left', strength: 1, seconds: 0.02 }]);
-    activities.send(frame, { head: frame.head, leftHand: null, rightHand: null, body: null }, unknownFingers);
+    activities.current?.send?.(
+      frame,
+      { head: frame.head, leftHand: null, rightHand: null, body: null },
+      unknownFingers,
+    );
     activities.show(7, frame);
     activities.show(7.1, null);
-    activities.setAway(true);
+    activities.current?.setAway?.(true);
     expect(done).toEqual(['update at 7 s', 'send', 'show', 'show without a head', 'away true']);
     const ray = { origin: vec3(0, 1.6, 0), direction: vec3(0, 0, -1) };
-    expect([activities.point(ray, false), activities.point(ray, true)]).toEqual([null, 1]);
+    expect([activities.current?.point?.(ray, false), activities.current?.point?.(ray, true)]).toEqual([null, 1]);
   });
 
   test('has its button and its part in the menu of the headset', async () => {

@@ -1,4 +1,6 @@
 import { Group, Vector3 } from 'three';
+import type { Ray } from 'threepoint/core/math/ray';
+import type { OpenActivity } from 'threepoint-page/activity/activity';
 import { menuHeight } from 'threepoint-page/activity/activity-menu';
 import { type BallMenuActions, type BallMenuState, ballEntries } from 'threepoint-page/ball/ball-menu';
 import type { OtherPlayer } from 'threepoint-page/ball/other-players';
@@ -53,13 +55,14 @@ function headset() {
     body: { estimator: 'ik', unavailable: {} },
     activities: {
       all: registered,
-      current: null,
+      current: {
+        point({ direction }: Ray, press: boolean) {
+          done.push(press ? 'a sheet of the game is pressed' : 'a sheet of the game is pointed at');
+          // The game's sheet hangs overhead.
+          return direction.y > 0.9 ? 2 : null;
+        },
+      } as OpenActivity,
       goTo: async (name) => void done.push(`go to ${name}`),
-      point({ direction }, press) {
-        done.push(press ? 'a sheet of the game is pressed' : 'a sheet of the game is pointed at');
-        // The game's sheet hangs overhead.
-        return direction.y > 0.9 ? 2 : null;
-      },
     },
     measuring: {
       get step() {

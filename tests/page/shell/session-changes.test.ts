@@ -1,5 +1,6 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import type { OpenActivity } from 'threepoint-page/activity/activity';
 import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
 import type { Headset } from 'threepoint-page/shell/headset';
 import { SessionChanges, type SessionChangesOptions } from 'threepoint-page/shell/session-changes';
@@ -23,9 +24,11 @@ function player(recorder = new Recorder()) {
     body: { begin: nothing, jumped: nothing },
     activities: {
       sessionChanged: nothing,
-      setAway(on) {
-        away = on;
-      },
+      current: {
+        setAway(on: boolean) {
+          away = on;
+        },
+      } as OpenActivity,
     },
     controls: { show: nothing, setWorn: nothing, layOut: nothing },
     study: { run: null },

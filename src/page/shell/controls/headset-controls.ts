@@ -15,7 +15,7 @@ const largerMenu = 1.3;
 export interface HeadsetControlsOptions extends Pick<ControlledParts, 'settings' | 'writer' | 'notices' | 'study'> {
   readonly pointers: VrPointers;
   readonly body: Pick<BareBody, 'estimator' | 'unavailable'>;
-  readonly activities: Pick<Activities, 'all' | 'current' | 'goTo' | 'point'>;
+  readonly activities: Pick<Activities, 'all' | 'current' | 'goTo'>;
   readonly measuring: Pick<Measuring, 'step' | 'begin' | 'cancel'>;
   readonly actions: Pick<PanelActions, 'chooseEstimator' | 'chooseOwnBody' | 'chooseSkinTone' | 'recentre' | 'exitVr'>;
 }
@@ -69,7 +69,8 @@ export class HeadsetControls {
     this.#menu.point(hands);
     const pressingFirst = [...hands].sort((a, b) => Number(b.pressed) - Number(a.pressed));
     for (const { origin, direction, pressed, showRay } of pressingFirst) {
-      const distance = activities.point({ origin: { ...origin }, direction: { ...direction } }, pressed);
+      const ray = { origin: { ...origin }, direction: { ...direction } };
+      const distance = activities.current?.point?.(ray, pressed) ?? null;
       if (distance === null) continue;
       showRay(distance);
       // One hand's ray is lit; the other's would put the light out again.
