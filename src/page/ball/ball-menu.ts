@@ -4,6 +4,7 @@ import type { ActivityContext } from '../activity/activity-context';
 import type { ActivityMenu, MenuEntry } from '../activity/activity-menu';
 import type { BallPlay } from './ball-play';
 import type { BallRound } from './ball-round';
+import type { BlockList } from './block-list';
 import { invitationSheet, type ShownInvitation } from './invitation-sheet';
 import { type OtherPlayer, otherPlayers } from './other-players';
 import { playersSheet } from './players-sheet';
@@ -69,6 +70,7 @@ export function ballEntries(state: BallMenuState, actions: BallMenuActions): rea
 export interface MenuCourt {
   readonly play: Pick<BallPlay, 'ready'>;
   readonly voices: Voices;
+  readonly blocked: BlockList;
   round(): BallRound | null;
   banner(): string | null;
 }
@@ -122,10 +124,10 @@ export class BallMenu {
       });
     if (canInvite && this.#invitation) return invitationSheet(this.#invitation, close);
     if (!this.#listed || others === null) return null;
-    const { voices } = this.#court;
+    const { blocked } = this.#court;
     return playersSheet(others, {
-      silence: (seat, on) => this.#change(() => voices.silence(seat, on)),
-      hide: (seat, on) => this.#change(() => voices.hide(seat, on)),
+      silence: (seat, on) => this.#change(() => blocked.set('silenced', seat, on)),
+      hide: (seat, on) => this.#change(() => blocked.set('hidden', seat, on)),
       close,
     });
   }

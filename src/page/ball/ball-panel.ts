@@ -4,12 +4,14 @@ import type { ActivityContext } from '../activity/activity-context';
 import { type BallBarActions, type BallBarState, createBallBar } from './ball-bar';
 import type { BallPlay } from './ball-play';
 import type { BallRound } from './ball-round';
+import type { BlockList } from './block-list';
 import type { Voices } from './voices';
 
 /** What the panel shows and acts on. */
 export interface CourtControls {
   readonly play: Pick<BallPlay, 'ready' | 'rotate' | 'sit'>;
   readonly voices: Voices;
+  readonly blocked: BlockList;
   round(): BallRound | null;
   followSeat(seat: number | null): void;
 }
@@ -50,7 +52,7 @@ class BallPanel implements ActivityPanel {
 
   #actions(): BallBarActions {
     const { writer, notices, chooseInput, reopen } = this.#context;
-    const { play, voices } = this.#court;
+    const { play, voices, blocked } = this.#court;
     return {
       ready: (on) => play.ready(on),
       rotate: (on) => play.rotate(on),
@@ -72,8 +74,8 @@ class BallPanel implements ActivityPanel {
         leave: () => voices.leave(),
         mute: (on) => void voices.setMuted(on),
         relayOnly: (on) => writer.keep({ voicesByRelay: on }),
-        silence: (seat, on) => voices.silence(seat, on),
-        hide: (seat, on) => voices.hide(seat, on),
+        silence: (seat, on) => blocked.set('silenced', seat, on),
+        hide: (seat, on) => blocked.set('hidden', seat, on),
       },
     };
   }

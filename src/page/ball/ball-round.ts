@@ -47,7 +47,7 @@ export interface BallRoundParts {
   readonly secondsLeft: number;
   /** A simulated player has the user's seat. */
   readonly acting: boolean;
-  readonly voices: { readonly state: VoicesState; voiceOf(seat: number): PersonVoice };
+  readonly voices: { readonly state: VoicesState; readonly seats: { voiceOf(seat: number): PersonVoice } };
 }
 
 const roleOf = (state: BallState, player: number): string => roleTexts[state.players[player]?.station ?? player] ?? '';
@@ -81,7 +81,7 @@ export function ballRound({ play, frame, players, secondsLeft, acting, voices }:
       name: player && (player.me ? player.name : nameOf(player)),
       role: roleOf(state, seat),
       free: player === null || (player.bot && !player.me),
-      ...voices.voiceOf(seat),
+      ...voices.seats.voiceOf(seat),
     })),
     voices: voices.state,
   };

@@ -17,8 +17,8 @@ import { CatchPops } from './catch-pops';
 import { type Court, createCourt } from './court';
 import { createLobbySheet, type LobbySheet } from './lobby-sheet';
 import { createNameLabels, type NameLabels } from './name-labels';
+import type { SeatVoices } from './seat-voices';
 import { type BallSounds, createBallSounds } from './sounds';
-import type { Voices } from './voices';
 import { createWickerBasket } from './wicker-basket';
 import { createZoneRing } from './zone-ring';
 
@@ -54,8 +54,9 @@ export interface BallScene {
   readonly inRoom: boolean;
   /** A built-in player has the own seat. */
   readonly acting: boolean;
-  /** Who talks, and who is not to be seen here. */
-  readonly voices: Pick<Voices, 'hidden' | 'markOf' | 'levelOf'>;
+  readonly voices: Pick<SeatVoices, 'markOf' | 'levelOf'>;
+  /** The seats of players whom the user has hidden. */
+  readonly hidden: ReadonlySet<number>;
   /** Whose eyes and ears these are, own floor frame. */
   readonly head: Pose<'floor'>;
 }
@@ -183,11 +184,11 @@ class CourtView implements BallView {
     return pageTime < until && standing.state.phase === 'running' ? text : waitingLine(standing);
   }
 
-  #showNames({ state, attendants, voices }: BallScene, people: readonly (Person | null)[]): void {
+  #showNames({ state, attendants, voices, hidden }: BallScene, people: readonly (Person | null)[]): void {
     this.#names.show(
       attendants.map((attendant, player) => {
         const person = people[player];
-        if (!attendant?.head || !person || person.me || voices.hidden.has(player)) return null;
+        if (!attendant?.head || !person || person.me || hidden.has(player)) return null;
         const { head, opacity } = attendant;
         const station = state.players[player]?.station ?? player;
         return { person, station, head, opacity, voice: voices.markOf(player), level: voices.levelOf(player) };

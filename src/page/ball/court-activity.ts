@@ -25,6 +25,7 @@ import { createBallPanel } from './ball-panel';
 import { type BallPlay, createBallPlay } from './ball-play';
 import { type BallRound, ballRound } from './ball-round';
 import { type BallView, createBallView } from './ball-view';
+import { BlockList } from './block-list';
 import { type LobbyButton, ownName, seatOfButton } from './board-drawing';
 import { graspAtCourt } from './court-grasp';
 import { seatLooks } from './court-plan';
@@ -43,6 +44,7 @@ export type CourtProbe = BallProbe & { readonly voices: VoicesProbe };
 type Players = BallFrame['players'];
 
 const noBodies: BallFrame['bodies'] = [];
+const noSeats: readonly never[] = [];
 /** How long the notice of a voided match is shown [s]. */
 const noticeSeconds = 8;
 const voidedNotice = 'The server was restarted, so this round does not count. You can start a new one.';
@@ -52,6 +54,7 @@ export class CourtActivity implements OpenActivity {
   readonly play: BallPlay;
   readonly sound: BallView['sound'];
   readonly voices: Voices;
+  readonly blocked = new BlockList(() => this.voices.seats.applyBlocks());
   readonly mirrorSide = null;
   readonly #context: ActivityContext;
   readonly #view: BallView;
@@ -93,6 +96,7 @@ export class CourtActivity implements OpenActivity {
     this.sound = this.#view.sound;
     this.voices = new Voices({
       play: this.play,
+      blocked: this.blocked,
       terms: room.voiceTerms,
       openAudio: () => this.sound.open(),
       relayOnly: () => settings.voicesByRelay,
@@ -101,7 +105,7 @@ export class CourtActivity implements OpenActivity {
     this.#others = createRemoteAvatars({
       load: (worn) => this.#seen.load(worn),
       plain: () => settings.plainOthers,
-      mouthOf: (seat) => this.voices.mouthOf(seat),
+      mouthOf: (seat) => this.voices.seats.mouthOf(seat),
       onRefused: (worn, reason) => this.#notifyRefused(worn, reason),
     });
     this.#shared = new SharedAvatar({
@@ -134,12 +138,13 @@ export class CourtActivity implements OpenActivity {
   }
 
   get mouth(): number {
-    return this.voices.ownMouth;
+    return this.voices.seats.ownMouth;
   }
 
   begin(time: number): void {
     this.#now = time;
     this.play.begin(time);
+    this.blocked.update(this.play.room?.seats ?? noSeats);
     this.voices.begin();
     this.#shared.follow(this.play.room);
     this.#place();
@@ -168,7 +173,9 @@ export class CourtActivity implements OpenActivity {
   show(time: number, frame: TrackingFrame | null): void {
     if (!frame) this.#follow(time, null, nothingPressed);
     const newest = this.play.newest;
-    this.#others.show(this.voices.show(newest?.bodies ?? noBodies), time);
+    const bodies = newest?.bodies ?? noBodies;
+    this.voices.seats.locate(bodies);
+    this.#others.show(this.blocked.visible(bodies), time);
     if (!newest) return;
     const { pose } = this.#context.stage.view;
     this.#view.show({
@@ -185,7 +192,8 @@ export class CourtActivity implements OpenActivity {
       pageTime: time,
       inRoom: !this.#ended,
       acting: this.acting,
-      voices: this.voices,
+      voices: this.voices.seats,
+      hidden: this.blocked.hidden,
     });
     this.#view.hear(newest.events, newest.cues);
   }

@@ -1,3 +1,4 @@
+import { BlockList } from 'threepoint-page/ball/block-list';
 import { Voices } from 'threepoint-page/ball/voices';
 import { createLoopbackHost } from 'threepoint-rooms/client/loopback-connection';
 import type { VoiceTerms } from 'threepoint-rooms/voices/voice-terms';
@@ -48,6 +49,7 @@ function seated() {
   const answers: (() => void)[] = [];
   const voices = new Voices({
     play: { room: play.room, status: play.status, voices: play.voices },
+    blocked: new BlockList(),
     terms: () => new Promise((resolve) => answers.push(() => resolve(told))),
     // Nothing is to be heard here: no one comes as far.
     openAudio: async () => ({}) as AudioContext,
