@@ -23,7 +23,7 @@ export interface BallBarState {
   readonly name: string;
   /** What others call a player who has given no name. */
   readonly guestName: string;
-  /** Of a spectator: free, or the seat that is followed. */
+  /** The seat that a spectator's camera follows; null: the camera is free. */
   readonly following: number | null;
 }
 
@@ -63,7 +63,7 @@ interface Offer {
   readonly pressed?: boolean;
 }
 
-/** A row of buttons that is made anew when what it offers changes. */
+/** A row of buttons that is rebuilt when its offers change. */
 function createOffers(attributes: Record<string, string>) {
   const node = element('div', attributes);
   let shown = '';
@@ -120,7 +120,7 @@ function createPlayers(actions: BallBarActions, setSound: (on: boolean) => void)
   };
 }
 
-/** Where this page plays, as what, and how good the connection is. */
+/** Describes the room, the user's role and the quality of the connection. */
 function whereText({ round, room }: BallBarState): string {
   const place = room ? `Room “${room}”` : 'Your own room';
   if (!round) return `${place} · joining …`;

@@ -9,7 +9,7 @@ export interface StudiedBall {
   readonly play: Pick<BallPlay, 'newest' | 'room' | 'ready' | 'pause'>;
 }
 
-/** How much later than here the room's bell may be heard [s]: the room counts from the moment it started the match. */
+/** The longest delay of the room's bell after this page's [s]: the room counts from the moment it started the match. */
 const bellDelay = 4;
 
 /** What an event of the match is for the participant on this seat, at this second of their trial. */
@@ -52,7 +52,7 @@ class BallTrial {
     if (this.end || this.interrupted) return;
     const { state, connection } = frame;
     const over = state.phase === 'over';
-    // A match that the room has forgotten, or that is told of no more, has no result.
+    // A match that the room has forgotten or disconnected has no result.
     const began = this.#from !== null;
     this.interrupted = (began && frame.epoch !== this.#epoch) || (connection === 'ended' && !(began && over));
     if (this.interrupted) return;
@@ -78,10 +78,10 @@ class BallTrial {
   #follow({ state, connection, me, events }: BallFrame, since: number): void {
     const at = Math.max(0, since);
     this.#happened.push(...events.flatMap((event) => taskEvents(event, me, at)));
-    // Where the room's own bell rings no later, its word is the last one: a ball may still be in the air.
+    // If the room's own bell rings no later, it decides: a ball may still be in the air.
     const limit = state.options.seconds <= this.seconds ? this.seconds + bellDelay : this.seconds;
     const over = state.phase === 'over';
-    // A page that does not hear the room does not know the score: it waits for its return.
+    // Without a connection this page does not know the score: it waits for the connection.
     if (!over && (at < limit || connection !== 'joined')) return;
     this.end = {
       seconds: Math.min(at, limit),

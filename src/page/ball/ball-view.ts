@@ -26,7 +26,7 @@ import { createZoneRing } from './zone-ring';
 export interface Attendant extends Person {
   /** Arena frame; null: not to be seen now. */
   readonly head: Vec3 | null;
-  /** Where a ball lies in each hand, arena frame; null: the hand is not seen. */
+  /** The position of a ball in each hand, arena frame; null: the hand is not tracked. */
   readonly palms: Readonly<Record<'left' | 'right', Vec3 | null>>;
   /** 1: live; less: a ghost. */
   readonly opacity: number;
@@ -57,7 +57,7 @@ export interface BallScene {
   readonly voices: Pick<SeatVoices, 'markOf' | 'levelOf'>;
   /** The seats of players whom the user has hidden. */
   readonly hidden: ReadonlySet<number>;
-  /** Whose eyes and ears these are, own floor frame. */
+  /** The viewer's eyes and ears, floor frame of the user. */
   readonly head: Pose<'floor'>;
 }
 
@@ -91,7 +91,7 @@ const origin: Transform<'floor', 'arena'> = {
 };
 const unseenPalms: Attendant['palms'] = { left: null, right: null };
 
-/** What is written of a player, and no more: a sign is drawn anew when any of it changes. */
+/** Picks what labels show of a player; a label is redrawn when any of it changes. */
 const writtenOf = (attendant: Attendant | null): Person | null =>
   attendant && { name: attendant.name, bot: attendant.bot, presence: attendant.presence, me: attendant.me };
 

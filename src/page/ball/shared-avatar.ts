@@ -26,10 +26,10 @@ async function bring(exchange: AvatarExchange, hash: AvatarHash, file: Blob): Pr
   await exchange.store(hash, file);
 }
 
-/** Shows the others what the wearer has on: brings a file to the room's store, then tells the room of it. */
+/** Shows the user's avatar to other players: uploads a file to the room's store, then sends its reference to the room. */
 export class SharedAvatar {
   readonly #options: SharedAvatarOptions;
-  /** What was told last, and in which stay in the room. */
+  /** The avatar that was sent last, and the stay in the room in which it was sent. */
   #wear: OwnWear | null = null;
   #welcomes = 0;
   #turn = 0;

@@ -13,7 +13,7 @@ interface Point {
   readonly z: number;
 }
 
-/** Where the eyes are and where they look; floor frame. */
+/** The pose of the eyes, floor frame. */
 interface Eyes {
   readonly position: Point;
   readonly orientation: Point & { readonly w: number };
@@ -44,7 +44,7 @@ export interface DesktopView {
   recentre(): void;
   /** The ray through a point of the window (from −1 to 1, right and up); unit direction, floor frame. */
   rayThrough(x: number, y: number): Ray;
-  /** Where the body is now (its pelvis and eyes, floor frame); elapsed [s] since the last call. */
+  /** Follows a body: its pelvis and eyes, floor frame; elapsed [s] since the last call. */
   update(pelvis: Point, eyes: Eyes, elapsed: number): void;
   /** How high the body's head reaches [m]: what is taller than people are is seen whole too. */
   setHeight(height: number): void;
@@ -114,7 +114,7 @@ class DesktopCamera implements DesktopView {
   readonly #raycaster = new Raycaster();
   /** The body's pelvis, as the camera follows it. */
   readonly #target = new Vector3(0, 1, 0);
-  /** Where the target was a frame ago. */
+  /** The target in the previous frame. */
   readonly #before = new Vector3();
   /** How far above the pelvis the camera aims [m], for a head that is larger than people's. */
   #rise = 0;

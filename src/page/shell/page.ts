@@ -44,7 +44,7 @@ export interface PageOptions {
   readonly loading: PageLoading;
 }
 
-/** The body that head and hands move, and what is told of it to parts of the page that are built later. */
+/** Creates the body that head and hands move, and the events that it emits to parts of the page that are built later. */
 function createBody({ visit, notices, loading }: PageOptions, timing: FrameTiming) {
   const { switches, store, changes } = visit;
   const clock = createPageClock(() => performance.now());

@@ -39,7 +39,7 @@ export interface Probe {
   readonly avatar: {
     readonly name: string;
     readonly joints: Readonly<Record<string, Triple>>;
-    /** Where its fingers end. */
+    /** The positions of the finger tips. */
     readonly fingertips: Readonly<Record<Side, Readonly<Partial<Record<FingerName, Triple>>>>>;
   };
   /** What was tracked in the newest frame, floor frame [m]; null: not seen. */
@@ -70,7 +70,7 @@ export interface Probe {
   readonly players: readonly PlayerProbe[];
   /** The round being played; null in the studio. */
   readonly game: GameProbe | null;
-  /** Where a study stands; null: there is none. */
+  /** The state of the study; null: there is none. */
   readonly study: StudyProbe | null;
 }
 

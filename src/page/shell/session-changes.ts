@@ -67,7 +67,7 @@ export class SessionChanges implements HeadsetListener {
     document.addEventListener('visibilitychange', () => this.#sightChanged());
   }
 
-  /** Frame times of before and after do not compare; others are told whether this player sees the match, in the session or else the window. */
+  /** Resets frame times, which do not compare across the change, and notifies other players whether the user can see the match. */
   #sightChanged(): void {
     const { headset, timing, activities } = this.#options;
     timing.reset();

@@ -19,12 +19,12 @@ export interface Settings extends ActivitySettings {
   readonly palette: string;
   /** Which of our own bodies is worn where no other avatar is. */
   readonly ownBody: OwnBody;
-  /** Of people; undefined: the one that the body comes with. */
+  /** The skin tone of a human avatar; undefined: the avatar's own. */
   readonly skinTone: SkinTone | undefined;
   readonly emulatorPanel: boolean;
   /** The next session asks the headset for the body that it tracks itself; never remembered, because a browser has crashed when it was asked. */
   readonly deviceBody: boolean;
-  /** Where the user's measures come from, in words. */
+  /** The source of the user's measurements, in words. */
   readonly calibrationSource: string;
 }
 
@@ -79,7 +79,7 @@ export type LastingSettings = Partial<
     >
 >;
 
-/** The one writer of the settings: every change is told, so that it comes on the screen. */
+/** The only writer of the settings. Every change is reported, so that it appears on the screen. */
 export class SettingsWriter {
   readonly #settings: Settings;
   readonly #store: Pick<PreferenceStore, 'remember'>;

@@ -15,7 +15,7 @@ import { createStudio, type Studio } from '../studio/studio';
 const mirrorDistance = 1.5;
 /** A mirror at the user's right is out of the way of what flies ahead [m, rad]. */
 const mirrorAside = { x: 1.95, z: -0.1, turned: -1.3 };
-/** Where shadow and light of a body go that is not there [m]. */
+/** The position of the shadow and the light of an absent body [m]. */
 const outOfSight = 100;
 /** Longest step of a camera that follows [s]: a page that was asleep does not leap. */
 const longestStep = 0.1;
@@ -32,7 +32,7 @@ export interface Shot {
   readonly inSession: boolean;
   /** How far right of the body the middle of what is looked at lies [m]. */
   readonly aside: number;
-  /** Whom a camera without a body of its own looks at; null: there is a body. */
+  /** The person that a camera without a body of its own looks at; null: there is a body. */
   readonly watched: Watched | null;
   /** never; always; or only for a camera that does not stand behind the mirror: from there one wants to see the body. */
   readonly mirror: 'never' | 'always' | 'unless-behind';

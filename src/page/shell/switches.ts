@@ -22,13 +22,13 @@ export interface Switches {
   readonly panel: boolean | null;
   /** What the page opens with. */
   readonly play: string;
-  /** Of the first round's layout; null: another one with each visit. */
+  /** The seed of the first round's layout; null: a random one. */
   readonly seed: number | null;
-  /** Of a round, until the bell [s]; null: as the game has it. */
+  /** The length of a round [s]; null: the default of the game. */
   readonly seconds: number | null;
   /** A study and who takes part in it (null: to be asked); null: no study. */
   readonly study: { readonly study: string; readonly participant: string | null } | null;
-  /** Where others play too; null: a room in this page. */
+  /** The room on the server; null: a room in this page. */
   readonly room: string | null;
   /** Watches, from a camera of its own. */
   readonly spectate: boolean;
@@ -36,7 +36,7 @@ export interface Switches {
   readonly bots: boolean | null;
   /** What the others call the player of this page; null: the page asks. */
   readonly name: string | null;
-  /** Of a ball game in this page; null: as the game has it. */
+  /** The number of balls in a game in this page; null: the default of the game. */
   readonly balls: number | null;
 }
 

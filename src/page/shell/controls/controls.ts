@@ -77,13 +77,13 @@ export class Controls {
     this.#desktop.setPanelOpen(!worn && this.#panelOpenBefore);
   }
 
-  /** Where there is no place beside the picture, the panel stays closed until its button is pressed, unless the address asks for it. */
+  /** Opens or closes the panel. If there is no place beside the picture it stays closed until its button is pressed, unless the address asks for it. */
   setPanelOpen(open: boolean): void {
     const asked = this.#parts.switches.panel === true;
     this.#desktop.setPanelOpen(open && (asked || !isNarrow()));
   }
 
-  /** What is heard, in words. */
+  /** Shows a caption of a sound. */
   caption(text: string): void {
     this.#play.caption(text);
   }

@@ -25,7 +25,7 @@ export interface VrMenuState {
   readonly deviceBody: boolean;
   /** Which of our bodies is worn, or would be in place of another avatar. */
   readonly ownBody: OwnBody;
-  /** Of people among them; undefined: the one that the body comes with. */
+  /** The skin tone of a human avatar; undefined: the avatar's own. */
   readonly skinTone: SkinTone | undefined;
   /** The activities that the user can go to, with the labels of their buttons. */
   readonly places: readonly { readonly name: string; readonly title: string }[];
@@ -50,11 +50,11 @@ export interface VrMenuActions {
 /** Below the buttons: notices [pixels from the top]. */
 export const noticesTop = 1012;
 
-/** Where the methods stand, as many as there are [pixels]. */
+/** The top of the list of estimators, and its height [pixels]. */
 const estimatorsTop = 116;
 const estimatorsHeight = 404;
 const estimatorGap = 12;
-/** Where everything else begins that can be pressed [pixels]. */
+/** The top of all other buttons [pixels]. */
 const entriesTop = 560;
 
 const isOver = ({ kind }: CalibrationStep): boolean => kind === 'done' || kind === 'failed';

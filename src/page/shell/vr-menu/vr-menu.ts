@@ -19,7 +19,7 @@ export class VrMenu {
   readonly #actions: VrMenuActions;
   #state: VrMenuState | null = null;
   #buttons: readonly MenuButton[] = [];
-  /** Those of them that can be pressed. */
+  /** The buttons that can be pressed. */
   #usable: readonly MenuButton[] = [];
   /** The button that a hand points at. */
   #hovered: string | null = null;
