@@ -141,10 +141,18 @@ export default {
     },
     {
       name: 'activities-are-strangers',
-      comment: 'Each activity of the page can be removed: activities import neither each other nor the shell.',
+      comment:
+        'Each activity of the page can be removed: activities import neither each other nor the shell. They know the shell by activity/.',
       severity: 'error',
       from: { path: `^src/page/(${activity.shell})/` },
-      to: { path: '^src/page/', pathNot: '^src/page/($1|scene)/' },
+      to: { path: '^src/page/', pathNot: '^src/page/($1|scene|activity)/' },
+    },
+    {
+      name: 'shell-knows-activities-by-registry',
+      comment: 'A new game is one line of shell/activity-registry.ts: no other file of the shell names a game.',
+      severity: 'error',
+      from: { path: '^src/page/(shell|activity)/', pathNot: '^src/page/shell/activity-registry\\.ts$' },
+      to: { path: '^src/page/(archery|ball)/' },
     },
     {
       name: 'scene-draws-for-activities',

@@ -1,5 +1,6 @@
 import type { Page } from '@playwright/test';
-import { menuHeight, menuWidth, otherHeight } from 'threepoint-page/shell/vr-menu/menu-buttons';
+import { menuHeight, menuWidth } from 'threepoint-page/activity/activity-menu';
+import { playerHeight } from 'threepoint-page/ball/players-sheet';
 import { emulatedHeadset, frames } from './emulated-headset';
 
 /** What is written on the sheets of the headset, and where on its canvas [pixels]. */
@@ -67,7 +68,7 @@ export async function pressInMenu(page: Page, label: string): Promise<void> {
 /** Presses the button with this word that stands below this name in the menu's list of the other players, as it was drawn last. */
 export async function pressBelow(page: Page, name: string, label: string): Promise<void> {
   const found = await page.waitForFunction(
-    ({ name, label, otherHeight }) => {
+    ({ name, label, playerHeight }) => {
       const written = window.writtenOnCanvases ?? [];
       const list = written.slice(written.findLastIndex(({ text }) => text === 'Other players'));
       const named = list.find(({ text }) => text === name);
@@ -75,9 +76,9 @@ export async function pressBelow(page: Page, name: string, label: string): Promi
         0,
         list.findIndex(({ text }) => text === 'Close'),
       );
-      return named && below.find(({ text, y }) => text === label && y > named.y && y < named.y + otherHeight);
+      return named && below.find(({ text, y }) => text === label && y > named.y && y < named.y + playerHeight);
     },
-    { name, label, otherHeight },
+    { name, label, playerHeight },
   );
   await pullAt(page, (await found.jsonValue()) as Written);
 }

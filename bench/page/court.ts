@@ -68,7 +68,8 @@ export class Court {
       pageTime: 0,
       inRoom: true,
       acting: true,
-      voices: { hidden: new Set<number>(), markOf: () => 'none', levelOf: () => 0 },
+      voices: { markOf: () => 'none', levelOf: () => 0 },
+      hidden: new Set<number>(),
       paused: false,
       head: nowhere,
     };

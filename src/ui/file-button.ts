@@ -11,7 +11,7 @@ export function fileButton(
   input.addEventListener('change', () => {
     const [file, ...others] = input.files ?? [];
     if (file) onFiles([file, ...others]);
-    // The same file again must be a change again.
+    // Choosing the same file again must emit a change too.
     input.value = '';
   });
   return [button(label, () => input.click()), input];

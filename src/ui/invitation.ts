@@ -30,7 +30,7 @@ export const linkTo = (room: string): RoomLink => ({
 
 /** The link to a room, to copy and as a QR code; `main`: the button that copies is what one came for. */
 export function createRoomLink({ main }: { readonly main: boolean }) {
-  // Of two lines: a bar is too narrow for an address, whose end says which room it is.
+  // Two lines: a bar is too narrow for an address, and its end names the room.
   const link = element('textarea', { rows: 2, readonly: true, 'aria-label': 'Link for the others' });
   const code = element('div', { class: 'qr' });
   const said = element('p', { class: 'hint', role: 'status' });

@@ -12,11 +12,11 @@ export const nameOf = (source: string | File): string =>
   typeof source === 'string' ? source.split(/[?#]/)[0]?.split('/').at(-1) || source : source.name;
 
 export interface ReadOptions {
-  /** Hears the share [0, 1] that has come. */
+  /** Called with the share [0, 1] that has arrived. */
   readonly onProgress?: (share: number) => void;
   /** Ends a download on its way. */
   readonly signal?: AbortSignal;
-  /** Of a download. */
+  /** The headers of a download. */
   readonly headers?: Readonly<Record<string, string>>;
 }
 

@@ -4,9 +4,9 @@ const quiet = 4;
 /** A text as a QR code, with the white around it. */
 export interface QrCode {
   readonly text: string;
-  /** Of the square, the white on both sides among it [modules]. */
+  /** The side of the square, including the white margin on both sides [modules]. */
   readonly side: number;
-  /** Of a module, by column and row from the upper left. */
+  /** Whether a module is dark, by column and row from the upper left. */
   readonly isDark: (x: number, y: number) => boolean;
 }
 

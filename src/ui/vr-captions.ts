@@ -6,7 +6,7 @@ import { rotate } from 'threepoint/core/math/quat';
 import { addScaled, forward, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { createVrPanel, fillRounded, vrColors, vrFont } from './vr-panel';
 
-/** What is heard, in words, in the headset: a line low before the eyes for players without sound. */
+/** Shows captions of sounds in the headset: a line low in the view, for players without sound. */
 export interface VrCaptions {
   readonly object: Mesh;
   /** An empty text takes away what is said. */

@@ -13,9 +13,9 @@ export interface VrPanel {
   readonly mesh: Mesh;
   readonly width: number;
   readonly height: number;
-  /** Draws anew; call it only when something changed. */
+  /** Clears the panel and draws. Call it only when something changed. */
   draw(paint: (context: CanvasRenderingContext2D) => void): void;
-  /** Where a point of the world falls on the canvas [pixels], and how far before the sheet it is [m]. */
+  /** Returns a point of the world on the canvas [pixels], and its distance in front of the panel [m]. */
   locate(point: Vector3): { readonly x: number; readonly y: number; readonly distance: number };
 }
 

@@ -209,7 +209,8 @@ function goesOn(step: number): void {
       track: (time) => play.act(time),
       observe(frame, buttons) {
         recorder.observe(frame);
-        runner.played(play.follow(frame, buttons));
+        play.follow(frame, buttons);
+        runner.played();
       },
       render(time, frame) {
         finished ??= trial.follow(time, frame);

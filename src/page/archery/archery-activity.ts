@@ -1,123 +1,198 @@
 import type { Holding } from 'threepoint/avatar/hands/holding';
-import type { Calibration } from 'threepoint/core/body/calibration';
 import type { MutableHandShape } from 'threepoint/core/body/hand-shape';
-import type { Buttons } from 'threepoint/core/input/button-presses';
+import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
 import type { Pose } from 'threepoint/core/math/pose';
 import { identity, rotate } from 'threepoint/core/math/quat';
 import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
 import { copyVec3, up, vec3, zero } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { HapticPulse } from 'threepoint-games/archery/gestures';
-import type { Quality } from '../scene/renderer';
-import type { SurroundingsHost } from '../scene/surroundings';
-import { type ArcherySettings, createArcheryPlay, probeOf, roundOf } from './archery-play';
-import { createArcheryView } from './archery-view';
+import type { Pulse } from 'threepoint/xr/haptics';
+import type { ActivityPanel, OpenActivity, PlayerInput } from '../activity/activity';
+import type { ActivityContext } from '../activity/activity-context';
+import type { ActivityMenu } from '../activity/activity-menu';
+import type { CameraScene } from '../scene/desktop-view';
+import { type ArcheryRound, type ArcheryRules, createArcheryPanel } from './archery-panel';
+import { type ArcheryPlay, type ArcheryProbe, createArcheryPlay, probeOf, roundOf } from './archery-play';
+import { type ArcheryView, createArcheryView } from './archery-view';
 import { eventHaptics } from './haptics';
 import { lineOf } from './scoreboard-drawing';
 
-/** The room's floor is the range's: its zone lies about the origin, the targets ahead. */
+/** The floor frame of the user is the arena frame of the range: the zone lies around the origin, the targets ahead. */
 const floorFromArena = { position: zero, orientation: identity };
+
+/** Past the archer to the targets. */
+export const rangeScene: CameraScene = {
+  'third-person': { offset: { x: -1.35, y: 0.95, z: 3.3 }, aim: { x: 0.15, y: -0.2, z: -2 }, fovDegrees: 46 },
+  front: { offset: { x: 1.6, y: 0.35, z: -2.7 }, aim: { x: 0, y: 0, z: 0 }, fovDegrees: 46 },
+};
 
 /** The leather of the bow's grip, as thick as its riser is there [m]. */
 const grip = { at: vec3(0, 0, 0), axis: vec3(0, 1, 0), radius: 0.019 };
 /** The string, with the arrow's nock on it, where fingers hook it [m]. */
 const string = { at: vec3(0, 0, 0), axis: vec3(0, 1, 0), radius: 0.005 };
 
-export interface ArcheryActivityOptions {
-  readonly quality: Quality;
-  readonly surroundings: SurroundingsHost;
-  readonly calibration: Calibration;
-  settings(): ArcherySettings;
-  /** Of the next round's layout. */
-  seed(): number;
-  onCaption(text: string): void;
-}
+export const createArcheryActivity = (context: ActivityContext): ArcheryActivity => new ArcheryActivity(context);
 
-/** What a frame of play means to the player. */
-export interface ArcheryMoment {
-  readonly haptics: readonly HapticPulse[];
-  /** The hand that has just taken the bow; null: no hand took it. */
-  readonly taken: Side | null;
-  /** Score or clock may have changed. */
-  readonly eventful: boolean;
-}
+/** Archery in the page: the range, the bow, and the current round. */
+export class ArcheryActivity implements OpenActivity {
+  readonly play: ArcheryPlay;
+  readonly scene = rangeScene;
+  readonly #context: ActivityContext;
+  readonly #view: ArcheryView;
+  #newestFrame: TrackingFrame | null = null;
 
-/** Archery in the page: the range, the bow, and the round that is played. */
-export interface ArcheryActivity {
-  readonly play: ReturnType<typeof createArcheryPlay>;
-  readonly sound: ReturnType<typeof createArcheryView>['sound'];
-  /** The tracked frame as play: what it means is heard at once, what it feels like comes back. */
-  follow(frame: TrackingFrame, buttons: Buttons): ArcheryMoment;
-  /** Draws the newest frame of play; bow: whether it is to be seen. */
-  show(head: TrackingFrame['head'], bow: boolean): void;
-  /** What a ray meets of the result's button: the distance [m]; null: nothing. */
-  restartAt(ray: Ray): number | null;
-  setHovered(hovered: boolean): void;
-  /** Closes a hand with this wrist round the bow; false: it does not hold the bow. */
-  grasp(side: Side, wrist: Pose<'floor'>, holding: Holding, target: MutableHandShape): boolean;
-  /** The round in numbers, and what it waits for, in words (null: for nothing). */
-  round(): (ReturnType<typeof roundOf> & { readonly waiting: string | null }) | null;
-  probe(): ReturnType<typeof probeOf> | null;
-  dispose(): void;
-}
+  constructor(context: ActivityContext) {
+    const { quality, stage, body, settings, layout, onCaption } = context;
+    this.#context = context;
+    this.play = createArcheryPlay(
+      body.calibration,
+      () => settings,
+      () => layout.seed,
+    );
+    const distances = this.play.targets.map(({ distance }) => distance);
+    this.#view = createArcheryView({ quality, floorFromArena, distances, onCaption });
+    stage.studio.setSurroundings(this.#view.range);
+    stage.studio.scene.add(this.#view.bow);
+  }
 
-export function createArcheryActivity(options: ArcheryActivityOptions): ArcheryActivity {
-  const { quality, surroundings, calibration, settings, seed, onCaption } = options;
-  const play = createArcheryPlay(calibration, settings, seed);
-  const view = createArcheryView({
-    quality,
-    floorFromArena,
-    distances: play.targets.map(({ distance }) => distance),
-    onCaption,
-  });
-  surroundings.setSurroundings(view.range);
-  surroundings.scene.add(view.bow);
+  get sound(): ArcheryView['sound'] {
+    return this.#view.sound;
+  }
 
-  return {
-    play,
-    sound: view.sound,
-    follow(frame, buttons) {
-      const { events, cues, haptics, bow } = play.follow(frame, buttons);
-      const taken = cues.findLast(({ type }) => type === 'taken')?.side ?? null;
-      view.hear(events, cues);
-      const bowSide = bow?.bowSide ?? taken ?? settings().bowSide;
-      return { haptics: [...haptics, ...eventHaptics(events, bowSide)], taken, eventful: events.length > 0 };
-    },
-    show(head, bow) {
-      const { newest } = play;
-      if (newest) view.show(newest.state, bow ? newest.bow : null, newest.time, head);
-    },
-    restartAt: ({ origin, direction }) => view.result.restartAt(origin, direction),
-    setHovered: (hovered) => view.result.setHovered(hovered),
-    grasp(side, wrist, holding, target) {
-      const bow = play.newest?.bow;
-      if (!bow) return false;
-      if (bow.bowSide === side) {
-        copyVec3(bow.bow.position, grip.at);
-        rotate(bow.bow.orientation, up, grip.axis);
-        holding.rod(side, wrist, grip, target);
-        return true;
-      }
-      // The other hand has the string while an arrow is on it.
-      if (!bow.arrow || settings().oneHanded) return false;
-      copyVec3(bow.arrow.nock, string.at);
-      rotate(bow.bow.orientation, up, string.axis);
-      holding.rod(side, wrist, string, target);
+  /** The side that the archer's chest faces. */
+  get mirrorSide(): Side {
+    return this.#context.settings.bowSide === 'left' ? 'right' : 'left';
+  }
+
+  act(time: number): PlayerInput {
+    const { settings, headset, stage, mouse } = this.#context;
+    if (!settings.mouse || headset.worn) return this.play.act(time);
+    return this.play.steer(time, stage.view.rayThrough(mouse.x, mouse.y), mouse);
+  }
+
+  update(frame: TrackingFrame, allButtons: Buttons): readonly Pulse[] | null {
+    const { study, settings, writer, onChange } = this.#context;
+    this.#newestFrame = frame;
+    if (study.paused) return null;
+    const buttons = study.idle ? nothingPressed : allButtons;
+    const { events, cues, haptics, bow } = this.play.follow(frame, buttons);
+    const taken = cues.findLast(({ type }) => type === 'taken')?.side ?? null;
+    this.#view.hear(events, cues);
+    const bowSide = bow?.bowSide ?? taken ?? settings.bowSide;
+    if (taken) writer.keep({ bowSide: taken });
+    if (events.length > 0) onChange();
+    return [...haptics, ...eventHaptics(events, bowSide)];
+  }
+
+  grasp(side: Side, wrist: Pose<'floor'>, holding: Holding, target: MutableHandShape): boolean {
+    const { study, settings } = this.#context;
+    const bow = this.play.newest?.bow;
+    if (!bow || study.idle) return false;
+    if (bow.bowSide === side) {
+      copyVec3(bow.bow.position, grip.at);
+      rotate(bow.bow.orientation, up, grip.axis);
+      holding.rod(side, wrist, grip, target);
       return true;
-    },
-    round() {
-      const { newest } = play;
-      if (!newest) return null;
-      const { state, time } = newest;
-      const waits = state.phase === 'ready' || (state.phase === 'running' && !state.inZone);
-      return { ...roundOf(newest), waiting: waits ? `${lineOf(state, time)}.` : null };
-    },
-    probe: () => play.newest && probeOf(play.newest),
-    dispose() {
-      view.bow.removeFromParent();
-      surroundings.setSurroundings(null);
-      view.dispose();
-    },
-  };
+    }
+    // The other hand has the string while an arrow is on it.
+    if (!bow.arrow || settings.oneHanded) return false;
+    copyVec3(bow.arrow.nock, string.at);
+    rotate(bow.bow.orientation, up, string.axis);
+    holding.rod(side, wrist, string, target);
+    return true;
+  }
+
+  show(_time: number, frame: TrackingFrame | null): void {
+    const { newest } = this.play;
+    if (!frame || !newest) return;
+    this.#view.show(newest.state, this.#context.study.idle ? null : newest.bow, newest.time, frame.head);
+  }
+
+  point({ origin, direction }: Ray, press: boolean): number | null {
+    const distance = this.#view.result.restartAt(origin, direction);
+    this.#view.result.setHovered(distance !== null);
+    if (distance !== null && press) this.restart();
+    return distance;
+  }
+
+  jumped(): void {
+    this.play.jumped();
+  }
+
+  sessionChanged(): void {
+    this.play.handedOver();
+  }
+
+  createPanel(): ActivityPanel {
+    return createArcheryPanel(this, this.#context);
+  }
+
+  menu(): ActivityMenu {
+    const { bowSide } = this.#context.settings;
+    const entry = this.round()?.over
+      ? { id: 'restart', label: 'New round', act: () => this.restart() }
+      : {
+          id: 'bow',
+          label: `Bow: ${bowSide} hand`,
+          act: () => this.setRules({ bowSide: bowSide === 'left' ? 'right' : 'left' }),
+        };
+    return { entries: [entry], sheet: null, notice: null, hint: null };
+  }
+
+  round(): ArcheryRound | null {
+    const { newest } = this.play;
+    if (!newest) return null;
+    const { state, time } = newest;
+    const waits = state.phase === 'ready' || (state.phase === 'running' && !state.inZone);
+    return { ...roundOf(newest), waiting: waits ? `${lineOf(state, time)}.` : null };
+  }
+
+  probe(): ArcheryProbe | null {
+    return this.play.newest && probeOf(this.play.newest);
+  }
+
+  /** Starts another round with another layout, except in a study, which starts its rounds itself. */
+  restart(): void {
+    if (this.#context.study.run) return;
+    this.#context.layout.seed += 1;
+    this.resetRound();
+  }
+
+  /** Starts a study's round by its signal, with this layout and length [s]. */
+  startRound(layout: number, seconds: number): void {
+    this.#context.writer.change({ seconds, everyHitCounts: false });
+    this.#context.layout.seed = layout;
+    this.resetRound();
+    this.play.signal();
+  }
+
+  /** Replaces the round by one that waits for its start. */
+  resetRound(): void {
+    const { body, headset, onCaption, onChange } = this.#context;
+    // The targets are as high relative to the eyes for a seated player as for a standing one.
+    const eyeHeight = headset.worn ? this.#newestFrame?.head.position.y : undefined;
+    this.play.restart(body.calibration, eyeHeight);
+    onCaption('');
+    onChange();
+  }
+
+  /** Changes hands or rules. The current round continues unless the change affects its score or its simulated archer. */
+  setRules(rules: ArcheryRules): void {
+    const { writer, settings } = this.#context;
+    writer.keep(rules);
+    if (rules.everyHitCounts !== undefined || settings.actor) this.restart();
+  }
+
+  /** Lets the mouse or the simulated archer shoot, in a new round. */
+  chooseShooter(shooter: 'mouse' | 'actor'): void {
+    this.#context.chooseInput(shooter);
+    this.restart();
+  }
+
+  dispose(): void {
+    this.#view.bow.removeFromParent();
+    this.#context.stage.studio.setSurroundings(null);
+    this.#view.dispose();
+  }
 }

@@ -16,6 +16,7 @@ import {
 import { archeryRules, delayed, fullScore, isArmed, matchTime, secondsLeft } from 'threepoint-games/archery/rules';
 import { createSteeredArcher, type SteeredArcher } from 'threepoint-games/archery/steered-archer';
 import { createMatch, type Match } from 'threepoint-games/match';
+import type { PlayerInput } from '../activity/activity';
 
 /** What the player may choose; asked for in every frame. */
 export interface ArcherySettings {
@@ -28,7 +29,7 @@ export interface ArcherySettings {
   readonly seconds?: number;
 }
 
-/** What one frame of play brought: to be seen, heard and felt. */
+/** The result of one frame of play, for view, sound and haptics. */
 export interface ArcheryFrame {
   readonly state: ArcheryState;
   /** Seconds of the match at this frame; they go on when it is over, for what its last arrow left to be seen. */
@@ -39,29 +40,23 @@ export interface ArcheryFrame {
   readonly haptics: readonly HapticPulse[];
 }
 
-/** Head, hands and buttons of a player. */
-export interface Performance {
-  readonly frame: TrackingFrame;
-  readonly buttons: Buttons;
-}
-
 /** A round and who plays it, apart from everything that is seen of it. */
 export interface ArcheryPlay {
-  /** Where they stand in this round. */
+  /** The targets of this round. */
   readonly targets: ArcheryState['targets'];
   /** The newest frame; null before the first. */
   readonly newest: ArcheryFrame | null;
   /** The tracked frame and its buttons become play. */
   follow(frame: TrackingFrame, buttons: Buttons): ArcheryFrame;
   /** Head, hands and buttons of the built-in archer at `time` [s]. */
-  act(time: number): Performance;
-  /** The same of an archer who aims along a ray (arena frame; unit direction) as a person at a desk tells it. */
-  steer(time: number, ray: Ray, wish: { readonly pressed: boolean; readonly cancelled: boolean }): Performance;
+  act(time: number): PlayerInput;
+  /** Returns the input of an archer who is steered by a mouse: aims along a ray (arena frame, unit direction). */
+  steer(time: number, ray: Ray, wish: { readonly pressed: boolean; readonly cancelled: boolean }): PlayerInput;
   /** Another round, for a person with these measures whose eyes are this high now [m], standing or seated. */
   restart(calibration: Calibration, eyeHeight?: number): void;
   /** The floor lies elsewhere from the next frame on. */
   jumped(): void;
-  /** Other hands have the bow from the next frame on: they let go of no arrow that they did not draw. */
+  /** Other hands hold the bow from the next frame on. They do not release the arrow that the previous hands drew. */
   handedOver(): void;
   /** The start signal: the clock of a round that waits runs from the next frame on, not from the first arrow. */
   signal(): void;
@@ -79,7 +74,7 @@ export interface ArcheryProbe {
   readonly bowSide: Side | null;
   readonly stage: BowView['stage'] | null;
   readonly draw: number;
-  /** Where the middle of the string is, floor frame [m]; null: no hand holds the bow. */
+  /** The middle of the string, floor frame [m]; null: no hand holds the bow. */
   readonly nockPoint: readonly [number, number, number] | null;
   readonly hits: readonly (number | null)[];
 }
@@ -122,7 +117,7 @@ export function createArcheryPlay(
   let archer: Archer;
   let steered: SteeredArcher;
   let newest: ArcheryFrame | null = null;
-  /** Of the frame that was followed last, by the page's clock [s]. */
+  /** The time of the newest frame on the page's clock [s]. */
   let followedAt = Number.NaN;
   let signalled = false;
   let otherHands = false;

@@ -37,7 +37,7 @@ export interface ArcheryViewOptions {
   readonly quality: Quality;
   /** Puts the range into the room; must be level. */
   readonly floorFromArena: Transform<'floor', 'arena'>;
-  /** Of the targets along the floor [m], for the signs. */
+  /** The distances of the targets along the floor [m], for the signs. */
   readonly distances: readonly number[];
   /** Every sound in words, with its direction. */
   readonly onCaption: (text: string) => void;

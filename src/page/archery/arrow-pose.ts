@@ -12,7 +12,7 @@ import {
 import type { Arrow } from 'threepoint-games/archery/archery-state';
 import { positionAt, velocityAt } from 'threepoint-games/ballistics';
 
-/** Where an arrow is drawn: its tip and the unit direction it points in; arena frame. */
+/** The pose of a drawn arrow: its tip and its unit direction, arena frame. */
 export interface ArrowPose {
   readonly tip: Vec3;
   readonly direction: Vec3;

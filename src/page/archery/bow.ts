@@ -50,7 +50,7 @@ interface Section {
   /** Half width (along x) and half depth [m]. */
   readonly halfWidth: number;
   readonly halfDepth: number;
-  /** Of the side that faces the archer, and of the other one. */
+  /** The colours of the side that faces the archer, and of the other side. */
   readonly belly: Color;
   readonly back: Color;
 }

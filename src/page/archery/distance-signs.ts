@@ -41,7 +41,7 @@ function paintLabels(context: CanvasRenderingContext2D, labels: readonly string[
 const aside = 4.5;
 const middle = 1.08;
 
-/** Where a sign stands and how it is turned to the archer. */
+/** The position of a sign, and its rotation towards the archer. */
 interface Place {
   readonly x: number;
   readonly z: number;

@@ -2,7 +2,7 @@ import { walls, zone } from 'threepoint-games/archery/rules';
 
 const back = Math.min(...walls.filter(({ axis }) => axis === 'z').map(({ at }) => at));
 
-/** Where things of the range are, arena frame [m]: the archer stands about the origin and shoots along −Z. */
+/** Positions on the range, arena frame [m]. The archer stands around the origin and shoots along −Z. */
 export const field = {
   /** Ropes run along both sides of the mown field. */
   halfWidth: 3.6,
@@ -13,6 +13,6 @@ export const field = {
   stripe: 0.9,
   /** z of the net behind the targets. */
   back,
-  /** Where the archer may stand. */
+  /** The zone in which the archer may stand. */
   zone,
 } as const;

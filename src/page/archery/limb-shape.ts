@@ -15,7 +15,7 @@ export interface LimbPoint {
 /** A point of a limb that its owner overwrites as the limb bends. */
 export type MutableLimbPoint = { -readonly [Key in keyof LimbPoint]: LimbPoint[Key] };
 
-/** Where the limbs leave the riser: y [m] above and below the grip. */
+/** The height at which the limbs leave the riser, above and below the grip: y [m]. */
 export const limbRoot = 0.23;
 export const limbLength = 0.53;
 /** Points along a limb, root and tip included. */
@@ -55,7 +55,7 @@ export const makeLimb = (): readonly MutableLimbPoint[] =>
 /** The limb whose tip is looked for. */
 const tried = makeLimb();
 
-/** Where the string is tied to the upper limb. */
+/** Computes the tip of the upper limb, where the string is tied. */
 function tipOf(bend: number, target: MutableVec3): MutableVec3 {
   bendLimb(bend, tried);
   const { y, z } = tried[limbPoints - 1] as LimbPoint;
@@ -70,7 +70,7 @@ const mostBend = 2.2;
 
 /** A strung bow: how far its limbs bend for each place at which the middle of the string is held. */
 export interface StrungBow {
-  /** Of the whole string [m]. */
+  /** The length of the whole string [m]. */
   readonly stringLength: number;
   /** Bend [rad] at which the string of this length reaches from tip to `nock` to tip; a string too short even for the most bend: the most bend. */
   bendFor(nock: Vec3): number;
@@ -78,7 +78,7 @@ export interface StrungBow {
   tips(bend: number): Tips;
 }
 
-/** Where the string is tied. */
+/** The two ends of the string. */
 interface Tips {
   readonly upper: MutableVec3;
   readonly lower: MutableVec3;

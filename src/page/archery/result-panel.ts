@@ -34,7 +34,7 @@ export function createResultPanel(quality: Quality): ResultPanel {
   object.position.z = -2.1;
   const sheet = createSheet<'restart'>(size, quality);
   object.add(sheet.mesh);
-  /** Of the newest result. Arrows of a round that is over are the same objects from frame to frame. */
+  /** The content for the newest result. The arrows of a finished round are the same objects in every frame. */
   let content: SheetContent<'restart'> | null = null;
   let of: ArcheryState | null = null;
 

@@ -123,7 +123,7 @@ export function paintBoard(context: CanvasRenderingContext2D, text: BoardText): 
 
 export const resultSize = { width: 1024, height: 768 } as const;
 
-/** Where the restart button is on resultSize [pixels]. */
+/** The restart button on a panel of resultSize [pixels]. */
 export const restartButton = { id: 'restart', x: 312, y: 600, width: 400, height: 116 } as const;
 
 const headline: Record<NonNullable<ArcheryState['end']>, string> = {

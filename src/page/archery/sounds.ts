@@ -17,13 +17,13 @@ import { bell, chime, click, warning, whoosh } from '../scene/sound/synthesis';
 import { cueCaption, eventCaption } from './captions';
 import { creak, earth, rattle, thud, twang } from './synthesis';
 
-/** What is heard of archery: from where it happens, and in words. */
+/** Plays the sounds of archery from where they happen, with captions. */
 export interface Sounds {
-  /** Where it plays: to be unlocked, captions come without it. */
+  /** The stage that plays the sounds. It must be unlocked; captions work without it. */
   readonly stage: AudibleStage;
   /** Plays and captions what happened in this frame; cues are in the floor frame, events in the arena frame. */
   hear(state: ArcheryState, events: readonly ArcheryEvent[], cues: readonly BowCue[]): void;
-  /** Where the ears are, floor frame. */
+  /** Sets the pose of the listener's head, floor frame. */
   listen(head: Pose<'floor'>): void;
   dispose(): void;
 }

@@ -248,7 +248,7 @@ class Stands implements TargetStands {
   #built: readonly Target[] = [];
   /** The targets that stand, in writing. */
   #builtAs = '';
-  /** Of each target: where it stands, what it has scored, and the points on its plate; no points where nothing is painted yet. */
+  /** The place of each target, its score, and the points on its plate; no points: nothing is painted yet. */
   #places: readonly Matrix4[] = [];
   #scores: readonly Score[] = [];
   #onPlates: number[] = [];

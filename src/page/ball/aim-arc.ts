@@ -24,7 +24,7 @@ export interface AimArc {
 }
 
 const dots = 36;
-/** Of the first dot; the last is half as large [m]. */
+/** The radius of the first dot [m]; the last is half as large. */
 const dotRadius = 0.035;
 /** Between two dots [s]. */
 const apart = 0.045;

@@ -3,39 +3,9 @@ import { button, element } from 'threepoint-ui/element';
 import { createRoomLink } from 'threepoint-ui/invitation';
 import { ballRulesText, rulesList } from 'threepoint-ui/rules';
 import { toggle } from 'threepoint-ui/toggle';
-import { otherPlayers, type Seated } from './other-players';
+import type { BallRound } from './ball-round';
+import { otherPlayers } from './other-players';
 import { createVoicesBar, type VoicesBarActions } from './voices-bar';
-import type { VoicesState } from './voices-state';
-
-/** A match as the bar shows it. */
-export interface BallRound {
-  readonly phase: 'ready' | 'running' | 'over';
-  readonly score: number;
-  readonly of: number;
-  readonly ballsLeft: number;
-  /** Until the bell; of a match that is over, what was left at its end. */
-  readonly secondsLeft: number;
-  /** How long a match is. */
-  readonly seconds: number;
-  /** The clock stands. */
-  readonly paused: boolean;
-  /** What the match waits for, in a sentence; null: for nothing. */
-  readonly waiting: string | null;
-  /** How good the connection is, in words; null: there is none, the room is in this page. */
-  readonly connection: string | null;
-  /** Why this page is in the room no longer; null: it is. */
-  readonly ended: string | null;
-  /** Oneself: rather than holding the basket, or watching. */
-  readonly throws: boolean;
-  readonly role: string;
-  readonly seat: number | null;
-  readonly ready: boolean;
-  readonly rotate: boolean;
-  readonly spectators: number;
-  /** All seats; `free`: can be taken by a person. */
-  readonly people: readonly (Seated & { readonly free: boolean })[];
-  readonly voices: VoicesState;
-}
 
 /** The ball game as the bar shows it. */
 export interface BallBarState {
@@ -53,7 +23,7 @@ export interface BallBarState {
   readonly name: string;
   /** What others call a player who has given no name. */
   readonly guestName: string;
-  /** Of a spectator: free, or the seat that is followed. */
+  /** The seat that a spectator's camera follows; null: the camera is free. */
   readonly following: number | null;
 }
 
@@ -93,7 +63,7 @@ interface Offer {
   readonly pressed?: boolean;
 }
 
-/** A row of buttons that is made anew when what it offers changes. */
+/** A row of buttons that is rebuilt when its offers change. */
 function createOffers(attributes: Record<string, string>) {
   const node = element('div', attributes);
   let shown = '';
@@ -150,7 +120,7 @@ function createPlayers(actions: BallBarActions, setSound: (on: boolean) => void)
   };
 }
 
-/** Where this page plays, as what, and how good the connection is. */
+/** Describes the room, the user's role and the quality of the connection. */
 function whereText({ round, room }: BallBarState): string {
   const place = room ? `Room “${room}”` : 'Your own room';
   if (!round) return `${place} · joining …`;

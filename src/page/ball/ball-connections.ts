@@ -9,7 +9,7 @@ import { pageFolder } from 'threepoint-ui/page-folder';
 /** Makes one visitor's place in a room; `time`: the page's clock [s]. */
 export type Connect = (visitor: Visitor, time: number) => BallConnection;
 
-/** Where a browser keeps what lasts as long as a tab; undefined where it keeps nothing. */
+/** Returns the storage of this tab, or undefined if the browser denies it. */
 function tabStorage(): Storage | undefined {
   try {
     return window.sessionStorage;
@@ -22,15 +22,13 @@ function tabStorage(): Storage | undefined {
 /** A room to play in. */
 export interface BallPlace {
   readonly connect: Connect;
-  /** Where its people's avatars are exchanged; null: nowhere. */
+  /** The exchange of the players' avatar files; null: avatars are not exchanged. */
   readonly avatars: AvatarExchange | null;
   /** Asks whether its people can talk; null: they cannot. */
   readonly voiceTerms: (() => Promise<VoiceTerms>) | null;
 }
 
-/**
- * The seat that a server assigns, of which it signs a pass; the pass is asked for anew when the first one has expired. All wear the same there.
- */
+/** Connects to the seat that a server assigns by a signed pass. An expired pass is requested again. All players wear the same avatar there. */
 export async function assignedSeat(seat: () => Promise<SignedSeat>, clock: LocalClock): Promise<BallPlace> {
   const [{ createSocketConnection }, first] = await Promise.all([
     import('threepoint-rooms/client/socket-connection'),

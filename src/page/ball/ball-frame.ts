@@ -40,7 +40,7 @@ export interface PlayerFrame {
   readonly ready: boolean;
   /** Arena frame; null: not to be seen now. */
   readonly head: Vec3 | null;
-  /** Where a ball lies in each hand, arena frame; null: the hand is not seen. */
+  /** The position of a ball in each hand, arena frame; null: the hand is not tracked. */
   readonly palms: Readonly<Record<Side, Vec3 | null>>;
   readonly opacity: number;
 }
@@ -59,12 +59,12 @@ export interface BodyFrame {
   readonly opacity: number;
 }
 
-/** What one frame of the match brought: to be seen, heard and felt. */
+/** The result of one frame of the match, for view, sound and haptics. */
 export interface BallFrame {
   readonly state: BallState;
-  /** Of the room that the match is in: see `BallRoomView.epoch`. */
+  /** The epoch of the match's room, see `RoomView.epoch`. */
   readonly epoch: string;
-  /** Whether the room is heard; without it the state is what was known last. */
+  /** The phase of the connection. Unless it is joined, the state may be outdated. */
   readonly connection: ConnectionStatus['phase'];
   /** Seconds of the match. */
   readonly time: number;
@@ -169,13 +169,13 @@ interface Place {
   readonly rightHand: TrackedPose | null;
 }
 
-/** Where the people of a room are, for those who draw them: in memory of its own, which the next frame overwrites. */
+/** The people of a room in one frame, for those parts that draw them. The next frame overwrites all objects. */
 export class CourtPeople {
   readonly players: (PlayerFrame | null)[] = [];
   readonly bodies: BodyFrame[] = [];
-  /** The opening of the basket where its holder's hands had it last, arena frame; null: not since the room told of it. */
+  /** The opening of the basket at the last tracked pose of its holder's hands, arena frame; null: not tracked since the room last moved the basket. */
   opening: Opening | null = null;
-  /** As the room told of it last. */
+  /** The basket in the newest state of the room. */
   private basket: BallState['basket'] | null = null;
   private readonly views: SeatView[] = [];
   private readonly left = makePose<'arena'>();
@@ -295,7 +295,7 @@ function remoteOn(seat: number, others: readonly RemotePlayer[]): RemotePlayer |
   return null;
 }
 
-/** Where a ball lies in a hand, arena frame; null: the hand is not seen. */
+/** Returns the position of a ball in a hand, arena frame, or null if the hand is not tracked. */
 function palmIn(
   arenaFromFloor: Transform<'arena', 'floor'>,
   hand: TrackedPose | null | undefined,

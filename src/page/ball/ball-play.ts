@@ -44,10 +44,10 @@ export interface BallPlay {
   readonly room: BallRoomView | null;
   /** How this page sets up voices with the others; null: not connected yet. */
   readonly voices: VoiceLine | null;
-  /** Where the arena lies in this room: by the own seat; a spectator stands in the arena's own frame. Another object with every change. */
+  /** The arena in the user's floor frame, by the user's seat. A spectator's floor frame is the arena frame. Every change yields another object. */
   readonly floorFromArena: Transform<'floor', 'arena'>;
   readonly newest: BallFrame | null;
-  /** Once a frame, before anything else of it: hears the room and moves the bots. */
+  /** Receives messages from the room and moves the bots. Call it first in every frame. */
   begin(time: number): void;
   /**
    * Head, hands and buttons of a built-in player on the own seat at `time` [s]; null: there is no seat yet. catchUp: what it does

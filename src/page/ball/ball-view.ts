@@ -17,8 +17,8 @@ import { CatchPops } from './catch-pops';
 import { type Court, createCourt } from './court';
 import { createLobbySheet, type LobbySheet } from './lobby-sheet';
 import { createNameLabels, type NameLabels } from './name-labels';
+import type { SeatVoices } from './seat-voices';
 import { type BallSounds, createBallSounds } from './sounds';
-import type { Voices } from './voices';
 import { createWickerBasket } from './wicker-basket';
 import { createZoneRing } from './zone-ring';
 
@@ -26,7 +26,7 @@ import { createZoneRing } from './zone-ring';
 export interface Attendant extends Person {
   /** Arena frame; null: not to be seen now. */
   readonly head: Vec3 | null;
-  /** Where a ball lies in each hand, arena frame; null: the hand is not seen. */
+  /** The position of a ball in each hand, arena frame; null: the hand is not tracked. */
   readonly palms: Readonly<Record<'left' | 'right', Vec3 | null>>;
   /** 1: live; less: a ghost. */
   readonly opacity: number;
@@ -54,9 +54,10 @@ export interface BallScene {
   readonly inRoom: boolean;
   /** A built-in player has the own seat. */
   readonly acting: boolean;
-  /** Who talks, and who is not to be seen here. */
-  readonly voices: Pick<Voices, 'hidden' | 'markOf' | 'levelOf'>;
-  /** Whose eyes and ears these are, own floor frame. */
+  readonly voices: Pick<SeatVoices, 'markOf' | 'levelOf'>;
+  /** The seats of players whom the user has hidden. */
+  readonly hidden: ReadonlySet<number>;
+  /** The viewer's eyes and ears, floor frame of the user. */
   readonly head: Pose<'floor'>;
 }
 
@@ -90,7 +91,7 @@ const origin: Transform<'floor', 'arena'> = {
 };
 const unseenPalms: Attendant['palms'] = { left: null, right: null };
 
-/** What is written of a player, and no more: a sign is drawn anew when any of it changes. */
+/** Picks what labels show of a player; a label is redrawn when any of it changes. */
 const writtenOf = (attendant: Attendant | null): Person | null =>
   attendant && { name: attendant.name, bot: attendant.bot, presence: attendant.presence, me: attendant.me };
 
@@ -183,11 +184,11 @@ class CourtView implements BallView {
     return pageTime < until && standing.state.phase === 'running' ? text : waitingLine(standing);
   }
 
-  #showNames({ state, attendants, voices }: BallScene, people: readonly (Person | null)[]): void {
+  #showNames({ state, attendants, voices, hidden }: BallScene, people: readonly (Person | null)[]): void {
     this.#names.show(
       attendants.map((attendant, player) => {
         const person = people[player];
-        if (!attendant?.head || !person || person.me || voices.hidden.has(player)) return null;
+        if (!attendant?.head || !person || person.me || hidden.has(player)) return null;
         const { head, opacity } = attendant;
         const station = state.players[player]?.station ?? player;
         return { person, station, head, opacity, voice: voices.markOf(player), level: voices.levelOf(player) };

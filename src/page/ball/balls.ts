@@ -33,7 +33,7 @@ import { painted } from '../scene/painted-geometry';
 import type { Quality } from '../scene/renderer';
 import { createShadowDiscs, type ShadowDiscs } from './shadow-discs';
 
-/** Where a ball lies in a hand; null: the hand is not seen. */
+/** Returns the position of a ball in a hand, or null if the hand is not tracked. */
 type InHand = (player: number, side: 'left' | 'right') => Vec3 | null;
 
 /** All balls of a match, wherever they are; arena frame. */
@@ -44,7 +44,7 @@ export interface Balls {
   dispose(): void;
 }
 
-/** Told apart by lightness and by the number of their bands: those of the first rack and of the second. */
+/** The looks of the balls of the first rack and of the second. They differ in brightness and in the number of bands. */
 const looks = [
   { skin: '#ffd24a', band: '#173a6b', bands: [0] },
   { skin: '#f4f6f8', band: '#7c2413', bands: [-0.36, 0.36] },
@@ -69,9 +69,9 @@ function placeInBasket(index: number): readonly [number, number, number] {
 
 /** How a ball in the air has come to the basket, as it was drawn. */
 interface Approach {
-  /** Of its flight [s of the match]. */
+  /** The start of its flight [s of the match]. */
   launchedAt: number;
-  /** Where it was last, from the middle of the opening, and how high over it [m]; NaN: not drawn in this flight yet. */
+  /** The last drawn position relative to the middle of the opening, with its height above it [m]; NaN: not drawn in this flight yet. */
   readonly from: MutableVec3;
   height: number;
   /** It has gone down through the opening. */
@@ -134,7 +134,7 @@ export const createBalls = (most: number, quality: Quality): Balls => new MatchB
 
 class MatchBalls implements Balls {
   readonly object = new Group();
-  /** Of the match that is shown. */
+  /** The balls per rack of the match that is shown. */
   #perRack = 0;
   /** The balls of the first rack and those of the second. */
   readonly #meshes: readonly [InstancedMesh, InstancedMesh];
@@ -173,7 +173,7 @@ class MatchBalls implements Balls {
         position = caught < mostInBasket ? this.#inBasket(caught, opening ?? state.basket) : null;
         caught += 1;
       } else position = ballPosition(state, ball, time);
-      // A catch is told a moment later: until then the ball lies where it fell.
+      // The catch arrives a moment later: until then the ball stays where it fell.
       if (place.on === 'air' && !place.missed && position && opening)
         position = stoppedBy(opening, position, place.launch.time, this.#approaches[ball]!);
       if (position) this.#put(ball, place, position, time);
@@ -189,7 +189,7 @@ class MatchBalls implements Balls {
     disposeTree(this.object);
   }
 
-  /** Where the ball lies that was caught after this many others. */
+  /** Returns the position in the basket of the ball that was caught after `index` others. */
   #inBasket(index: number, { position, normal }: Opening): Vec3 {
     const [x, y, z] = placeInBasket(index);
     const at = this.#at;

@@ -5,7 +5,7 @@ import type { BallCue } from 'threepoint-games/ball/gestures';
 import { directionOf } from '../scene/directions';
 import { nameOf, type Person } from './board-drawing';
 
-/** Who hears, and where the others are. */
+/** The listener, and the positions of the other players. */
 export interface Hearing {
   /** Arena frame. */
   readonly head: Pose<'arena'>;

@@ -26,7 +26,7 @@ export class CatchPops {
     }
   }
 
-  /** A catch at a place, at a time of the page [s]: that of a match begins anew with the next. */
+  /** Shows a catch at a position, at a time on the page's clock [s]: the clock of a match restarts with the next one. */
   add(at: Vec3, time: number): void {
     const caught = this.#catches[this.#next % this.#catches.length]!;
     this.#next += 1;

@@ -1,6 +1,6 @@
 import { ballsPerRack, holderStation, rackPosition, stations, throwingDistance } from 'threepoint-games/ball/stations';
 
-/** Where things of the court are, arena frame [m]: the throwers stand about the origin and throw along −Z. */
+/** Positions on the court, arena frame [m]. The throwers stand around the origin and throw along −Z. */
 export const court = {
   /** The painted ground, and the lane between throwers and holder. */
   halfWidth: 3.4,
@@ -9,7 +9,7 @@ export const court = {
   laneHalfWidth: 1.75,
   laneNear: 0.95,
   laneFar: -6.1,
-  /** Of each player's mark. */
+  /** The radius of each player's mark. */
   padRadius: 0.46,
   holderZ: stations[holderStation]?.position.z ?? -throwingDistance,
   /**
@@ -22,7 +22,7 @@ export const court = {
   ],
 } as const;
 
-/** A seat in paint and words: two throwers and the holder are told apart by hue, lightness and mark. */
+/** The look of a seat in paint and words. Two throwers and the holder differ in hue, brightness and mark. */
 export interface SeatLook {
   readonly color: string;
   readonly ink: string;

@@ -18,10 +18,10 @@ export interface NameLabels {
 export interface Label {
   readonly person: Person;
   readonly station: number;
-  /** Of the eyes. */
+  /** The position of the eyes. */
   readonly head: Vec3;
   readonly opacity: number;
-  /** Whether the player takes part in the voices, and could be heard. */
+  /** Whether the player takes part in the voices, and is audible. */
   readonly voice: 'none' | 'muted' | 'open';
   /** How loud they speak: 0 to 1. */
   readonly level: number;
@@ -80,7 +80,7 @@ function paintRing(context: CanvasRenderingContext2D): void {
   context.stroke();
 }
 
-/** Of the ring's picture; its radius is that of the mark and a little more [pixels]. */
+/** The size of the ring's texture [pixels]. The ring is slightly larger than the mark. */
 const ringSize = 128;
 const ringScale = 0.86;
 
@@ -146,7 +146,7 @@ function createLabel(quality: Quality, ringTexture: CanvasTexture) {
   const head = new Vector3();
   const there = new Vector3();
   const eye = new Vector3();
-  /** For each camera anew: a window's is not where the player's eyes are. */
+  /** Places the label for one camera: a window's camera is not at the player's eyes. */
   const place = (one: Sprite, matrixWorld: Matrix4, across: number, down: number) => {
     sprite.parent?.localToWorld(there.copy(head));
     const grown = labelScale(there.distanceTo(eye.setFromMatrixPosition(matrixWorld)));

@@ -17,7 +17,7 @@ export interface OtherPlayer {
   readonly said: string;
   readonly silenced: boolean;
   readonly hidden: boolean;
-  /** none: there is no voice of theirs to mute. off: hidden, they are not heard anyway. */
+  /** none: the player has no voice to mute. off: the player is hidden, which mutes the voice too. */
   readonly muting: 'offered' | 'off' | 'none';
 }
 
@@ -30,7 +30,7 @@ function voiceText({ voice, link, silenced }: PersonVoice): string {
   return linkTexts[link] || (voice === 'muted' ? 'muted' : 'can be heard');
 }
 
-/** Who else is in the room; `seat`: the own one, null: a spectator; `inVoices`: this page hears the others. */
+/** Lists the other people in the room. `seat`: the user's, null for a spectator; `inVoices`: the user takes part in the voices. */
 export const otherPlayers = (
   { seat: own, people }: { readonly seat: number | null; readonly people: readonly Seated[] },
   inVoices: boolean,

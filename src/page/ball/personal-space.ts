@@ -6,7 +6,7 @@ import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
 /** Nearer to the own eyes than the first [m] another body begins to fade; at the second it is gone. */
 const fadesFrom = 0.5;
 const goneAt = 0.2;
-/** Of a body whose trunk was not sent: its hips lie about so far below the head [m]. */
+/** The distance of the hips below the head [m], for a body whose trunk was not sent. */
 const hipsBelow = 0.62;
 
 const head = vec3(0, 0, 0);

@@ -1,21 +1,8 @@
 import type { RemoteAvatars } from 'threepoint/avatar/remote-avatars';
-import { type AvatarRef, plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import type { Vec3 } from 'threepoint/core/math/vec3';
+import type { PlayerProbe } from '../activity/activity';
 import type { BallPlay } from './ball-play';
-
-/** A player whom the tools may know of. */
-export interface PlayerProbe {
-  readonly seat: number;
-  readonly name: string;
-  readonly bot: boolean;
-  readonly presence: string;
-  readonly opacity: number;
-  /** What the player has on, and as what they are drawn. */
-  readonly avatar: AvatarRef;
-  readonly drawnAs: AvatarRef | null;
-  /** Joints as drawn, own floor frame [m]. */
-  readonly joints: Readonly<Record<string, readonly [number, number, number]>>;
-}
 
 const triple = ({ x, y, z }: Vec3): readonly [number, number, number] => [x, y, z];
 

@@ -22,10 +22,7 @@ interface SeenAvatarsOptions {
   readonly patienceMs?: number;
 }
 
-/**
- * Loads what other people have on. A file comes from the store of the room or from the server that it names, and from nowhere else; is refused where it is not
- * the one that was told of; and is looked at in a worker before anything of it is read here.
- */
+/** Loads the avatars of other players. A file comes only from the store of the room or from the server that the store names. It is refused if its hash differs, and is checked in a worker before it is parsed here. */
 export class SeenAvatars {
   /** The files of our own bodies that were needed. */
   readonly #own = new Map<OwnBody, Promise<ArrayBuffer>>();
@@ -34,7 +31,7 @@ export class SeenAvatars {
   readonly #patienceMs: number;
   readonly #leaving = new AbortController();
 
-  /** `mannequin`: the plain one's file; `fetchOwn` brings that of another of ours. `exchange`: null where there is no server, or its rooms are a study's. */
+  /** `mannequin`: the file of the plain avatar; `fetchOwn`: downloads another of the page's own. `exchange`: null without a server, and in rooms of a study. */
   constructor(
     mannequin: ArrayBuffer,
     fetchOwn: (name: OwnBody) => Promise<ArrayBuffer>,

@@ -1,23 +1,8 @@
-import {
-  type AvatarHash,
-  type AvatarRef,
-  mostAvatarBytes,
-  type OwnAvatar,
-  plainAvatar,
-} from 'threepoint/core/body/avatar-ref';
+import { type AvatarHash, type AvatarRef, mostAvatarBytes, plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import type { BallRoomView } from 'threepoint-games/ball/ball-client';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
-
-/** What the wearer has on: one of ours by name, or a file. */
-export type OwnWear =
-  | OwnAvatar
-  | {
-      readonly name: string;
-      readonly file: Blob;
-      /** null: this page cannot tell, as its connection is not secure. */
-      readonly hash: AvatarHash | null;
-    };
+import type { OwnWear } from '../activity/activity-context';
 
 export interface SharedAvatarOptions {
   /** null: there is no server, or its rooms are a study's, where all look alike. */
@@ -41,10 +26,10 @@ async function bring(exchange: AvatarExchange, hash: AvatarHash, file: Blob): Pr
   await exchange.store(hash, file);
 }
 
-/** Shows the others what the wearer has on: brings a file to the room's store, then tells the room of it. */
+/** Shows the user's avatar to other players: uploads a file to the room's store, then sends its reference to the room. */
 export class SharedAvatar {
   readonly #options: SharedAvatarOptions;
-  /** What was told last, and in which stay in the room. */
+  /** The avatar that was sent last, and the stay in the room in which it was sent. */
   #wear: OwnWear | null = null;
   #welcomes = 0;
   #turn = 0;

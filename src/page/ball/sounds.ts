@@ -19,12 +19,12 @@ import type { Person } from './board-drawing';
 import { cueCaption, eventCaption, type Hearing } from './captions';
 import { bounce, caughtInWicker, knock, tick, whistle } from './synthesis';
 
-/** What is heard of the ball game: from where it happens, and in words. */
+/** Plays the sounds of the ball game from where they happen, with captions. */
 export interface BallSounds {
-  /** Where it plays: to be unlocked, captions come without it. */
+  /** The stage that plays the sounds. It must be unlocked; captions work without it. */
   readonly stage: AudibleStage;
   hear(heard: Heard): void;
-  /** Where the ears are, floor frame. */
+  /** Sets the pose of the listener's head, floor frame. */
   listen(head: Pose<'floor'>, floorFromArena: Transform<'floor', 'arena'>): void;
   dispose(): void;
 }
@@ -38,7 +38,7 @@ export interface Heard {
   readonly cues: readonly BallCue[];
   readonly me: number | null;
   readonly people: readonly (Person | null)[];
-  /** Where a ball lies in one's own hands, arena frame; null: not seen. */
+  /** The position of a ball in each of the user's hands, arena frame; null: the hand is not tracked. */
   readonly palms: Readonly<Record<'left' | 'right', Vec3 | null>>;
 }
 
@@ -59,7 +59,7 @@ const recipes: Recipes = new Map<string, Recipe>([
 const boardAt = vec3(0, 3, -6);
 const headOfStation = (station: number): Vec3 => add((stations[station] ?? stations[0]!).position, vec3(0, 1.4, 0));
 
-/** Where an event sounds from, arena frame; null: everywhere. */
+/** Returns the position of an event's sound, arena frame; null: it has no position. */
 export function placeOf(event: BallEvent, state: BallState): Vec3 | null {
   switch (event.type) {
     case 'thrown':

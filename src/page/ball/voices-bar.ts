@@ -17,9 +17,9 @@ export interface VoicesBarActions {
   leave(): void;
   mute(on: boolean): void;
   relayOnly(on: boolean): void;
-  /** Does not hear a player any more, or does again. */
+  /** Stops or resumes playing the voice of a player. */
   silence(seat: number, on: boolean): void;
-  /** Neither sees nor hears a player any more, or does again. */
+  /** Hides a player and their voice, or shows them again. */
   hide(seat: number, on: boolean): void;
 }
 

@@ -1,6 +1,6 @@
 /** How the own page takes part in the voices, as it is shown. */
 export interface VoicesState {
-  /** none: the room has no voices. asked: the user reads what they mean. in: hears the others. */
+  /** none: the room has no voices. asked: the user reads the consent text. in: the user takes part. */
   readonly phase: 'none' | 'off' | 'asked' | 'joining' | 'in';
   readonly muted: boolean;
   /** The server has a relay. */
@@ -16,9 +16,9 @@ export interface VoicesState {
 export interface PersonVoice {
   readonly voice: 'none' | 'muted' | 'open';
   readonly link: 'none' | 'connecting' | 'connected' | 'lost';
-  /** Not heard here. */
+  /** The user has muted the player. */
   readonly silenced: boolean;
-  /** Neither seen nor heard here. */
+  /** The user has hidden the player, which mutes the voice too. */
   readonly hidden: boolean;
 }
 
@@ -29,7 +29,7 @@ export interface VoicesProbe {
   readonly said: string | null;
   /** All voices at the own ears [dB of full scale]; −120: silence. */
   readonly loudness: number;
-  /** The same voices as they arrive, before distance and direction change them. */
+  /** The loudness of all voices before distance and direction change them [dB of full scale]. */
   readonly spokenLoudness: number;
   readonly ownLevel: number;
   readonly people: readonly (PersonVoice & { readonly seat: number; readonly level: number })[];

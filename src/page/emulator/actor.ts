@@ -4,9 +4,9 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
 /** Moves in place of a person while no one wears a headset. */
 export interface Actor {
-  /** Where head and hands of this performance are at a time [s] on any clock that runs on. */
+  /** Returns head and hands of the performance at a time [s] on any monotonic clock. */
   frameAt(time: number): TrackingFrame;
-  /** The same where it stands and waits. */
+  /** Returns head and hands of the actor standing still at a time [s]. */
   standAt(time: number): TrackingFrame;
   /** The body that performs. */
   calibrate(calibration: Calibration): void;

@@ -20,7 +20,7 @@ export interface Emulator {
   setPanelVisible(visible: boolean): Promise<void>;
 }
 
-/** Where a person of 1.70 m holds head and hands before anything moves them. */
+/** The initial head and hands of a person of 1.70 m [m]. */
 const rest = { head: vec3(0, 1.59, 0), left: vec3(-0.22, 1.1, -0.32), right: vec3(0.22, 1.1, -0.32) };
 
 /**
@@ -120,7 +120,7 @@ function place(target: { readonly position: Setter3; readonly quaternion: Setter
   target.quaternion.set(o.x, o.y, o.z, o.w);
 }
 
-/** iwer calls every position a guess (`emulatedPosition`) unless told otherwise, under a symbol; its controllers are seen. */
+/** Marks the controllers as tracked. By default iwer reports every position as emulated (`emulatedPosition`), behind a symbol. */
 function markAsTracked(device: XRDevice): void {
   const inputs = [...Object.values(device.controllers), ...Object.values(device.hands)];
   const spaces: (object | undefined)[] = [device.viewerSpace, ...Object.values(device.viewSpaces)];
@@ -137,7 +137,7 @@ function markAsTracked(device: XRDevice): void {
   }
 }
 
-/** Of controllers, as iwer describes a headset; undefined: it has none. */
+/** The controllers of a headset in iwer's configuration; undefined: it has none. */
 type ControllerConfig = XRDeviceConfig['controllerConfig'];
 
 /** What iwer places in the room. */

@@ -36,7 +36,7 @@ const bones: readonly (readonly [TruthJoint, TruthJoint])[] = [
 const joints: readonly TruthJoint[] = [...new Set(bones.flat())];
 const boneRadius = 0.014;
 const jointRadius = 0.024;
-/** Of the head: its radius, and from its joint to its middle in the head's frame [m]. */
+/** The radius of the head, and its centre relative to the head joint, head frame [m]. */
 const skull = { radius: 0.075, middle: new Vector3(0, 0.07, -0.015) };
 
 const colour = new Color('#7ff0d2');

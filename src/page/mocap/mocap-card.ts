@@ -11,9 +11,9 @@ import './mocap.css';
 /** What one method does with the clip. */
 export interface MethodErrors {
   readonly estimator: EstimatorName;
-  /** Of the picture; null: nothing is drawn. */
+  /** The errors of the current frame; null: nothing is drawn. */
   readonly now: JointErrors | null;
-  /** Of the whole clip. */
+  /** The mean errors of the whole clip. */
   readonly mean: ClipMean;
 }
 
@@ -27,7 +27,7 @@ export interface CardState {
   readonly truth: TruthPlace;
   /** Whether others can open what the file came from. */
   readonly shareable: boolean;
-  /** Of the body, and of the one beside it where there is one. */
+  /** The errors of the body, and of the second body if there is one. */
   readonly methods: readonly MethodErrors[];
 }
 
@@ -128,7 +128,7 @@ function createErrorTable(labels: Labels) {
   };
 }
 
-/** Where the clip is, and the way through it. */
+/** Shows the position in the clip, and lets the user seek. */
 function createTimeline(actions: CardActions) {
   const play = button('Pause', () => actions.setPaused(play.getAttribute('aria-pressed') !== 'true'), {
     'aria-pressed': 'false',
@@ -165,7 +165,7 @@ export interface MocapCard {
   show(state: CardState | null): void;
 }
 
-/** Puts a file's clips into their choice, where it has not got them yet: a choice that is built anew closes under the hand. */
+/** Lists the clips of a file unless they are listed already: rebuilding an open select element closes it. */
 function listClips(select: HTMLSelectElement, names: readonly string[]): void {
   const listed = Array.from(select.options, ({ text }) => text);
   if (listed.join('\n') === names.join('\n')) return;

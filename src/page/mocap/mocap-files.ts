@@ -6,7 +6,7 @@ export type MocapFile = File | string;
 /** Files that make one motion: a BVH, a VRM Animation, or an AMC with its skeleton; with a map of the skeleton where that is needed. */
 export interface MocapFiles {
   readonly motion: MocapFile;
-  /** Of an AMC. */
+  /** The skeleton of an AMC file; null: not an AMC file. */
   readonly skeleton: MocapFile | null;
   /** Which joint of a skeleton that is not known here is which (JSON). */
   readonly map: MocapFile | null;
@@ -32,7 +32,7 @@ export function pairFiles(files: readonly MocapFile[]): MocapFiles & { readonly 
   if (endingOf(motion) !== 'amc') return { motion, skeleton: null, map, others: without([motion, ...given]) };
   const name = nameOf(motion);
   const stemOf = (file: MocapFile): string => nameOf(file).replace(/\.asf$/i, '');
-  // Of 10.asf and 105.asf, whose names both begin 105_01.amc, the longer is its own.
+  // Both 10.asf and 105.asf match the start of 105_01.amc: the longer name is right.
   const likely = skeletons.filter((file) => name.startsWith(stemOf(file)));
   const [own = skeletons[0]] = likely.sort((a, b) => stemOf(b).length - stemOf(a).length);
   if (!own) throw new Error(`${name}: a motion without its skeleton; open its .asf together with it`);

@@ -32,7 +32,7 @@ export interface Replay extends MovingReplay {
 
 /** How a clip is to be looked at; what is absent stays as it is. */
 export interface Outlook {
-  /** Of several pieces, from 0. */
+  /** The index of the clip, from 0. */
   readonly clip?: number | undefined;
   /** Stands still at this second. */
   readonly at?: number | undefined;
@@ -59,7 +59,7 @@ export interface MocapViewOptions {
 /** A clip on the stage. */
 interface Opened {
   readonly name: string;
-  /** Where others can have it; null: it is of this device. */
+  /** The public addresses of the files; null: they are files of this device. */
   readonly addresses: readonly string[] | null;
   readonly clips: readonly MocapClip[];
   readonly index: number;
@@ -100,7 +100,7 @@ export class MocapView {
     this.#hide();
   }
 
-  /** Reads files of this device or addresses, and shows their motion; a map of a skeleton alone is taken for the files before. Never rejects: faults are told, and what is shown stays. */
+  /** Reads files of this device or addresses, and shows their motion. A skeleton map alone applies to the previous files. Never rejects: faults become notices, and the shown motion stays. */
   async open(given: readonly MocapFile[], outlook: Outlook = {}, asked?: number): Promise<void> {
     const { tell } = this.#options;
     // A map that comes alone is of the motion that came before it.

@@ -5,7 +5,7 @@ import { nameOf } from 'threepoint-ui/limited-files';
 import type { MocapFile, MocapFiles } from './mocap-files';
 import type { MocapAnswer } from './mocap-worker';
 
-/** The same to a worker, whose own address is another than the page's. */
+/** Makes an address absolute for a worker, whose base address differs from the page's. */
 const forWorker = (file: MocapFile): MocapFile => (typeof file === 'string' ? new URL(file, location.href).href : file);
 
 /**

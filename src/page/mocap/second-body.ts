@@ -14,7 +14,7 @@ export interface SecondBodyOptions {
   readonly networks: BodySolverOptions['networks'];
   /** Moves it. */
   readonly replay: MovingReplay;
-  /** Where it stands beside the first [m], to the right. */
+  /** The distance of the second body to the right of the first [m]. */
   readonly aside: number;
   loadAvatar(): Promise<Avatar>;
   onFallback(estimator: EstimatorName, reason: string): void;

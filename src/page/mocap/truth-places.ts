@@ -1,4 +1,4 @@
-/** Where the truth stands: in the body, beside it, or nowhere. */
+/** The places of the ground truth: inside the body, beside it, or hidden. */
 export const truthPlaces = ['inside', 'beside', 'off'] as const;
 /** See truthPlaces. */
 export type TruthPlace = (typeof truthPlaces)[number];

@@ -4,9 +4,9 @@ import { type TruthJoint, truthJoints } from 'threepoint/core/mocap/skeleton-map
 
 const width = 3 * truthJoints.length;
 
-/** Where a person's joints truly were, floor frame [m]. */
+/** The true positions of a person's joints, floor frame [m]. */
 export class Truth {
-  /** Those that the file has. */
+  /** The joints that the file has. */
   readonly joints: readonly TruthJoint[];
   readonly frameCount: number;
   readonly #numbers: Float32Array;

@@ -83,7 +83,7 @@ async function pageFor({ request, resultingClientId }: FetchEvent): Promise<Resp
     // reason: a host that is away is what the copy is for
     return own;
   }
-  // A browser that does not say which window this will be cannot be told apart later.
+  // If a browser does not name the window of a navigation, its later requests cannot be assigned to it.
   if (!resultingClientId) return own;
   await noteStranger(resultingClientId);
   return answer;

@@ -1,7 +1,4 @@
 import { DoubleSide } from 'three';
 
-/**
- * For a transparent material that is seen from both sides. three.js draws one in two passes, back and front, unless told otherwise, and looks
- * its program up anew for each (28 kB of garbage a frame for three nets before a mirror). What does not lie before itself needs but one.
- */
+/** For a transparent material that is visible from both sides. By default three.js draws one in two passes, back and front, and looks its program up again for each (28 kB of garbage a frame for three nets before a mirror). A surface that never covers itself needs only one pass. */
 export const bothSides = { side: DoubleSide, forceSinglePass: true } as const;

@@ -7,19 +7,13 @@ export const viewNames = ['third-person', 'front', 'first-person'] as const;
 /** third-person: orbits the body from behind. front: from where the mirror hangs. first-person: through the eyes. */
 export type ViewName = (typeof viewNames)[number];
 
-/**
- * studio: mirror and body. range: past the archer to the targets. court: past a player to the others. stands: the whole court, from
- * aside; the camera may also be moved along.
- */
-export type SceneName = 'studio' | 'range' | 'court' | 'stands';
-
 interface Point {
   readonly x: number;
   readonly y: number;
   readonly z: number;
 }
 
-/** Where the eyes are and where they look; floor frame. */
+/** The pose of the eyes, floor frame. */
 interface Eyes {
   readonly position: Point;
   readonly orientation: Point & { readonly w: number };
@@ -39,8 +33,8 @@ export interface DesktopView {
   readonly pose: Pose<'floor'>;
   readonly view: ViewName;
   setView(view: ViewName): void;
-  /** Where the body stands: it decides from where it is seen best. */
-  setScene(scene: SceneName): void;
+  /** Moves the camera to the start of a scene. */
+  setScene(scene: CameraScene): void;
   /** Whether mouse and touch turn the camera; arrow keys always do. */
   setOrbit(on: boolean): void;
   setInsets(insets: Insets): void;
@@ -50,7 +44,7 @@ export interface DesktopView {
   recentre(): void;
   /** The ray through a point of the window (from −1 to 1, right and up); unit direction, floor frame. */
   rayThrough(x: number, y: number): Ray;
-  /** Where the body is now (its pelvis and eyes, floor frame); elapsed [s] since the last call. */
+  /** Follows a body: its pelvis and eyes, floor frame; elapsed [s] since the last call. */
   update(pelvis: Point, eyes: Eyes, elapsed: number): void;
   /** How high the body's head reaches [m]: what is taller than people are is seen whole too. */
   setHeight(height: number): void;
@@ -63,30 +57,23 @@ const tallest = 1.95;
 /** Radians a press of an arrow key turns the camera. */
 const keyStep = Math.PI / 36;
 
-/** Where the camera begins and what it looks at, both from the pelvis [m]. */
-interface Outlook {
-  readonly offset: Vector3;
-  readonly aim: Vector3;
-  readonly fov: number;
+/** A start of the camera and the point that it looks at, both from the pelvis [m]. */
+export interface CameraStart {
+  readonly offset: Point;
+  readonly aim: Point;
+  readonly fovDegrees: number;
 }
 
-const start: Record<SceneName, Record<Exclude<ViewName, 'first-person'>, Outlook>> = {
-  studio: {
-    'third-person': { offset: new Vector3(1.95, 0.5, 2.95), aim: new Vector3(), fov: 42 },
-    front: { offset: new Vector3(-0.55, 0.25, -3.2), aim: new Vector3(), fov: 42 },
-  },
-  range: {
-    'third-person': { offset: new Vector3(-1.35, 0.95, 3.3), aim: new Vector3(0.15, -0.2, -2), fov: 46 },
-    front: { offset: new Vector3(1.6, 0.35, -2.7), aim: new Vector3(), fov: 46 },
-  },
-  court: {
-    'third-person': { offset: new Vector3(-0.8, 1.05, 3.5), aim: new Vector3(0.3, 0.12, -2.4), fov: 50 },
-    front: { offset: new Vector3(-1.9, 0.6, -3.1), aim: new Vector3(), fov: 50 },
-  },
-  stands: {
-    'third-person': { offset: new Vector3(4.6, 2.1, 4.6), aim: new Vector3(0.4, 0.15, 0), fov: 54 },
-    front: { offset: new Vector3(-4.6, 1.7, -3.6), aim: new Vector3(0, -0.1, 0), fov: 50 },
-  },
+/** The starts of the camera in one place. */
+export interface CameraScene extends Readonly<Record<Exclude<ViewName, 'first-person'>, CameraStart>> {
+  /** The mouse may also pan the camera and move it far away. */
+  readonly free?: boolean;
+}
+
+/** The mirror and the body in front of it. */
+export const studioScene: CameraScene = {
+  'third-person': { offset: { x: 1.95, y: 0.5, z: 2.95 }, aim: { x: 0, y: 0, z: 0 }, fovDegrees: 42 },
+  front: { offset: { x: -0.55, y: 0.25, z: -3.2 }, aim: { x: 0, y: 0, z: 0 }, fovDegrees: 42 },
 };
 const firstPersonFov = 78;
 
@@ -127,12 +114,12 @@ class DesktopCamera implements DesktopView {
   readonly #raycaster = new Raycaster();
   /** The body's pelvis, as the camera follows it. */
   readonly #target = new Vector3(0, 1, 0);
-  /** Where the target was a frame ago. */
+  /** The target in the previous frame. */
   readonly #before = new Vector3();
   /** How far above the pelvis the camera aims [m], for a head that is larger than people's. */
   #rise = 0;
   #view: ViewName = 'third-person';
-  #scene: SceneName = 'studio';
+  #scene = studioScene;
   #orbit = true;
   #insets: Insets = { left: 0, right: 0, bottom: 0 };
 
@@ -163,10 +150,10 @@ class DesktopCamera implements DesktopView {
     this.#project();
   }
 
-  setScene(scene: SceneName): void {
+  setScene(scene: CameraScene): void {
     this.#scene = scene;
-    this.#controls.enablePan = scene === 'stands';
-    this.#controls.maxDistance = scene === 'stands' ? 14 : 7;
+    this.#controls.enablePan = scene.free ?? false;
+    this.#controls.maxDistance = scene.free ? 14 : 7;
     this.#place();
     this.#project();
   }
@@ -225,14 +212,14 @@ class DesktopCamera implements DesktopView {
     if (this.#view === 'first-person') return;
     const { camera } = this;
     const { left, right } = this.#insets;
-    const { offset: wide, aim, fov } = start[this.#scene][this.#view];
+    const { offset: wide, aim, fovDegrees } = this.#scene[this.#view];
     const free = Math.max(1, window.innerWidth - left - right) / window.innerHeight;
     // A narrow window shows the mirror only where it stands behind the body.
-    const offset = wide.clone();
+    const offset = new Vector3().copy(wide);
     if (free < 0.8) offset.x *= 0.6;
     // A narrow window sees less to the sides: step back until the body and the mirror fit.
     const distance = Math.max(1, Math.min(1.35, 1 / Math.max(free, 0.1)));
-    camera.fov = fov;
+    camera.fov = fovDegrees;
     camera.up.copy(up);
     this.#controls.target.copy(this.#target).add(aim);
     camera.position.copy(this.#target).addScaledVector(offset, distance);

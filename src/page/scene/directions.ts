@@ -2,7 +2,7 @@ import type { Pose } from 'threepoint/core/math/pose';
 import { conjugate, rotate } from 'threepoint/core/math/quat';
 import { subtract, type Vec3 } from 'threepoint/core/math/vec3';
 
-/** Where a point lies as seen from a head, in words; above and below do not matter. */
+/** Describes the direction from a head to a point in words; height is ignored. */
 export function directionOf(head: Pose<'arena'>, point: Vec3): string {
   const seen = rotate(conjugate(head.orientation), subtract(point, head.position));
   const degrees = (Math.atan2(seen.x, -seen.z) * 180) / Math.PI;

@@ -4,7 +4,7 @@ import { anisotropyOf, type Quality } from './renderer';
 /** A texture whose picture is a 2D canvas. */
 export interface DrawnTexture {
   readonly texture: CanvasTexture;
-  /** Draws anew on a cleared canvas; call it only when something changed. */
+  /** Clears the canvas and draws. Call it only when something changed. */
   draw(paint: (context: CanvasRenderingContext2D) => void): void;
 }
 

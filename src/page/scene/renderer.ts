@@ -36,7 +36,7 @@ export function affordableQuality(): Quality {
   return software ? 'low' : 'high';
 }
 
-/** The renderer of canvas and headset. Throws where WebGL 2 is not to be had. */
+/** Creates the renderer of canvas and headset. Throws if WebGL 2 is unavailable. */
 export function createRenderer(canvas: HTMLCanvasElement, quality: Quality): WebGLRenderer {
   const renderer = new WebGLRenderer({ canvas, antialias: quality === 'high', powerPreference: 'high-performance' });
   renderer.outputColorSpace = SRGBColorSpace;

@@ -12,7 +12,7 @@ export interface RisingWordOptions {
   readonly quality: Quality;
   /** How long it is seen [s]. */
   readonly seconds: number;
-  /** Where it begins, above its place [heights of its letters]. */
+  /** The initial height above its place [heights of its letters]. */
   readonly lift: number;
 }
 
@@ -34,7 +34,7 @@ export class RisingWord {
     this.object.visible = false;
   }
 
-  /** Drawn anew only where the text is another. */
+  /** Writes a text. Draws only if the text has changed. */
   write(text: string, colour: string): void {
     if (text === this.#text) return;
     this.#text = text;

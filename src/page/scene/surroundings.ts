@@ -6,7 +6,7 @@ type Triple = readonly [number, number, number];
 export interface DistantLight {
   readonly color: string;
   readonly intensity: number;
-  /** Where it comes from, seen from the floor under who is lit [m], floor frame. */
+  /** The direction of the light, as a point relative to the floor below the body [m], floor frame. */
   readonly from: Triple;
 }
 
@@ -28,7 +28,7 @@ export interface Lighting {
     readonly centre: { readonly x: number; readonly z: number } | null;
   };
   readonly fog: { readonly color: string; readonly near: number; readonly far: number };
-  /** What shining surfaces reflect, built anew at each call; never shown itself. */
+  /** The reflections on shiny surfaces, built by each call; never drawn itself. */
   readonly reflected: () => Scene;
   readonly reflectedIntensity: number;
   /** How dark the soft disc under a body is, 0 to 1. */
@@ -42,7 +42,7 @@ export interface Surroundings {
   readonly lighting: Lighting;
 }
 
-/** Where places are put, one at a time. */
+/** The place around the user; there is one at a time. */
 export interface SurroundingsHost {
   readonly scene: Scene;
   /** Puts another place, with its own light and fog, where the usual one is; null brings that back. */

@@ -6,7 +6,7 @@ import type { Pose } from 'threepoint/core/math/pose';
 /** Seconds until the picture is whole again after a turn. */
 const openingSeconds = 0.4;
 
-/** Dark edges of the picture for a moment: eyes that see the room jump only in their middle do not tell the stomach. */
+/** Darkens the edges of the picture for a moment. A turn that only the centre of the eye sees causes less motion sickness. */
 export interface Vignette {
   readonly object: Mesh;
   /** Dark at this time [s]. */

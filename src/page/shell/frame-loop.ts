@@ -3,11 +3,11 @@ import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { FrameTiming } from './frame-timing';
 
-/** What of a frame is the page's; the loop calls each once, in this order. All of them hear the same time, the body's clock. */
+/** The page's steps of a frame. The loop calls each once, in this order, all with the same time on the body's clock. */
 export interface FrameParts<DeviceFrame> {
   /** Head and hands at this time [s], floor frame; null: the head was not seen, the body keeps its last pose. */
   track(time: number, deviceFrame: DeviceFrame | undefined): TrackingFrame | null;
-  /** Hears every tracked frame: recorder, calibration, games. */
+  /** Passes a tracked frame to recorder, calibration and games. */
   observe(frame: TrackingFrame): void;
   /** The body of this frame; null: there was none yet. */
   estimate(frame: TrackingFrame | null): AvatarPose | null;

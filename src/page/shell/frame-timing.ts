@@ -17,7 +17,7 @@ function push(ring: Ring, value: number): void {
   ring.count += 1;
 }
 
-/** Where quantiles sort what a ring holds: a page that shows them does so several times a second. */
+/** Scratch memory in which quantiles sort a ring: a page that shows them does so several times a second. */
 const sorted = new Float32Array(length);
 
 /** The medians and 95th percentiles of what a ring holds; NaN while it holds nothing. */
@@ -43,9 +43,9 @@ export interface FrameSummary {
   readonly rateHz: number;
 }
 
-/** Where the time of the frame goes. Per frame it only writes numbers into rings; sorting is left to `summary`. */
+/** Measures the stages of a frame. A frame only writes numbers into rings; `summary` sorts them. */
 export interface FrameTiming {
-  /** The device began a frame now; its time stamp [ms] tells how long ago the last one was. */
+  /** The device starts a frame now. Its time stamp [ms] gives the time since the last one. */
   begin(timestampMs: number): void;
   /** Counts the time since the last mark of this frame towards this stage; a stage may be marked several times. */
   mark(stage: StageName): void;
@@ -57,7 +57,7 @@ export interface FrameTiming {
   /** Forgets what was: after a pause, a hidden page or another kind of frame nothing before is comparable. */
   reset(): void;
   summary(): FrameSummary;
-  /** Tells every frame from now on: what each stage and the whole ("frame") took [ms], and whether it came late; null: no one listens. */
+  /** Passes every frame to a listener: the duration of each stage and of the whole ("frame") [ms], and whether it was late; null: no listener. */
   listen(listener: FrameListener | null): void;
 }
 

@@ -1,13 +1,12 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
-import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
+import type { ActivityRunner } from '../activity/activity';
 import type { Activities } from './activities';
+import { home } from './activity-registry';
 import { type EmbodyingParts, embody } from './embody';
 import type { FrameTiming } from './frame-timing';
 import type { Headset } from './headset';
 import type { JoinedStudy } from './page-study';
-import type { Settings } from './settings';
-import { createArcheryRunner } from './study-archery';
-import { createBallRunner } from './study-ball';
+import type { Settings, SettingsWriter } from './settings';
 import type { Switches } from './switches';
 import type { Wearer } from './wearer';
 
@@ -18,6 +17,7 @@ export interface JoinStudyOptions extends EmbodyingParts {
   readonly asked: NonNullable<Switches['study']>;
   readonly switches: Pick<Switches, 'actor'>;
   readonly settings: Settings;
+  readonly writer: SettingsWriter;
   readonly headset: Headset;
   readonly activities: Activities;
   readonly timing: FrameTiming;
@@ -25,32 +25,34 @@ export interface JoinStudyOptions extends EmbodyingParts {
   readonly wearer: Pick<Wearer, 'calibrate' | 'forget'>;
 }
 
-/** Takes part in a study: from now on it decides what is played and with which body. */
+/** Makes the tasks that studies run, by the names of their activities. */
+export async function createRunners({
+  activities,
+  settings,
+  writer,
+}: Pick<JoinStudyOptions, 'activities' | 'settings' | 'writer'>): Promise<JoinedStudy['runners']> {
+  const runners: Record<string, ActivityRunner> = {};
+  for (const { name, createRunner } of activities.all) {
+    const runner = await createRunner?.({
+      settings,
+      writer,
+      opened: () => activities.openedOf(name),
+      open: (place) => activities.openAt(name, place),
+      leave: () => void activities.goTo(home),
+    });
+    if (runner) runners[name] = runner;
+  }
+  return runners;
+}
+
+/** Joins a study, which decides from then on what is played and with which body. */
 export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy> {
-  const { asked, switches, settings, writer, headset, activities, timing, body, wearer } = options;
+  const { asked, switches, settings, writer, headset, timing, body, wearer } = options;
   const { createStudyRun } = await import('threepoint-study/participant/study-run');
   writer.change({ startSignal: true });
-  const archery = createArcheryRunner({
-    async goToArchery(seconds) {
-      writer.change({ seconds });
-      await activities.goTo('archery');
-      if (!activities.archery) throw new PhrasedError('round.archery');
-      activities.resetRound();
-    },
-    startRound: (seed, seconds) => activities.startRound(seed, seconds),
-    resetRound: () => activities.resetRound(),
-    assists: () => (settings.oneHanded ? ['one hand'] : []),
-  });
-  const ball = createBallRunner({
-    async goToBall(place) {
-      await activities.goToMatch(place);
-      if (!activities.ball) throw new PhrasedError('round.ball');
-    },
-    ball: () => activities.ball?.play ?? null,
-    leaveBall: () => void activities.goTo('studio'),
-  });
+  const runners = await createRunners(options);
   const run = createStudyRun(asked, {
-    runners: { archery, ball },
+    runners,
     enterVr: () => headset.enter(),
     inSession: () => headset.worn,
     deviceFault: () => headset.fault,
@@ -65,7 +67,7 @@ export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy>
     setActor(on) {
       writer.change({ actor: on && switches.actor });
     },
-    setBowSide: (side) => activities.setBowSide(side),
+    setBowSide: (bowSide) => writer.change({ bowSide }),
     device: () => ({
       name: `${headset.emulator ? 'emulated headset in ' : ''}${navigator.userAgent}`.slice(0, longestDeviceName),
       refreshRateHz: headset.rateHz,
@@ -73,5 +75,5 @@ export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy>
     }),
     listenToFrames: timing.listen,
   });
-  return { run, archery, ball };
+  return { run, runners };
 }

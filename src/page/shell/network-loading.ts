@@ -5,9 +5,9 @@ import { pageFolder } from 'threepoint-ui/page-folder';
 import type { PageLoading } from './page-loading';
 import type { Switches } from './switches';
 
-/** Where our own networks lie: beside the page. */
+/** Returns the address of a network of this page. */
 const contractAt = (name: string): string => `${pageFolder()}/models/${name}.json`;
-/** Of the waiting for a network, what its download takes. */
+/** The share of the download in the time that a network takes to load. */
 const downloadShare = 0.9;
 
 export interface NetworkLoadingOptions {
@@ -28,7 +28,7 @@ export function createNetworkLoader(options: NetworkLoadingOptions): BodySolverO
       onProviderFallback: (reason) => notices.show('warning', reason),
     }),
   );
-  // Where it does not come, each network that is asked for says so.
+  // If the download fails, each request for a network reports it.
   networksArrive.catch(() => undefined);
   return async (name) => (await networksArrive)(name);
 }

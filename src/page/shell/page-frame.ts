@@ -95,9 +95,9 @@ export class PageFrame implements FrameParts<XRFrame> {
     difference.observe(frame, pose, body.calibration);
     this.#bendFingers('left', frame);
     this.#bendFingers('right', frame);
-    avatar.current?.setMouth(activities.ball?.voices.ownMouth ?? 0);
+    avatar.current?.setMouth(activities.current?.mouth ?? 0);
     avatar.current?.setPose(pose, frame.time);
-    activities.ball?.send(frame, pose, this.#fingers);
+    activities.current?.send?.(frame, pose, this.#fingers);
     mocap.frame(frame, pose);
   }
 
@@ -140,7 +140,7 @@ export class PageFrame implements FrameParts<XRFrame> {
 
   #turn(time: number): void {
     const { headset, stage, activities } = this.#options;
-    if (headset.takePress()) activities.ball?.voices.toggleMuted();
+    if (headset.takePress()) activities.current?.toggleMuted?.();
     if (headset.turnByStick()) stage.vignette.close(time);
   }
 
@@ -152,14 +152,13 @@ export class PageFrame implements FrameParts<XRFrame> {
       frame,
       avatar: avatar.current,
       inSession: headset.worn,
-      watched: activities.watched(),
+      watched: activities.current?.watched ?? null,
       mirror: this.#mirror(),
     };
   }
 
   #mirror(): Shot['mirror'] {
     const { settings, activities } = this.#options;
-    if (!settings.mirror || activities.name === 'ball') return 'never';
-    return activities.name === 'archery' ? 'always' : 'unless-behind';
+    return settings.mirror ? activities.mirror : 'never';
   }
 }

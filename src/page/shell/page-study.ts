@@ -1,17 +1,13 @@
 import type { StudyRun } from 'threepoint-study/participant/study-run';
-import type { ArcheryRunner } from './study-archery';
-import type { BallRunner } from './study-ball';
+import type { ActivityRunner } from '../activity/activity';
 
-/** A study on this page, and what it hears of the games it plays. */
+/** A study that this page has joined, and the activities that it runs as tasks, by name. */
 export interface JoinedStudy {
   readonly run: StudyRun;
-  /** Every frame of the round on the page. */
-  readonly archery: Pick<ArcheryRunner, 'played'>;
-  /** Every frame of the match on the page. */
-  readonly ball: Pick<BallRunner, 'played'>;
+  readonly runners: Readonly<Record<string, ActivityRunner>>;
 }
 
-/** The study that this page takes part in, once it has joined one; until then, and on most pages for good, there is none. */
+/** The study that the user of this page takes part in. */
 export class PageStudy {
   #joined: JoinedStudy | null = null;
 
@@ -20,22 +16,22 @@ export class PageStudy {
     this.#joined = joined;
   }
 
-  /** null: none. */
-  get joined(): JoinedStudy | null {
-    return this.#joined;
-  }
-
-  /** null: none. */
+  /** null: the user takes part in no study. */
   get run(): StudyRun | null {
     return this.#joined?.run ?? null;
   }
 
-  /** A study is there in which no one plays now. */
+  /** The task of this name; null: there is no study, or it has no such task. */
+  runnerOf(name: string): ActivityRunner | null {
+    return this.#joined?.runners[name] ?? null;
+  }
+
+  /** No trial is played now. */
   get idle(): boolean {
     return this.run?.idle ?? false;
   }
 
-  /** A study has the round on the page stand still. */
+  /** The study has paused the trial. */
   get paused(): boolean {
     return this.run?.paused ?? false;
   }

@@ -15,12 +15,12 @@ import { prepareFirstPicture } from '../scene/first-picture';
 import { affordableQuality } from '../scene/renderer';
 import { Recorder } from '../studio/recorder';
 import { Activities } from './activities';
+import { activities as registeredActivities } from './activity-registry';
 import { Controls } from './controls/controls';
 import { DeviceDifference } from './device-difference';
 import { Emitter } from './emitter';
 import { estimatorTexts } from './estimator-texts';
 import { createFrameTiming, type FrameTiming } from './frame-timing';
-import { PageGames } from './games';
 import { Headset } from './headset';
 import { KnownBones } from './known-bones';
 import { createNetworkLoader } from './network-loading';
@@ -44,7 +44,7 @@ export interface PageOptions {
   readonly loading: PageLoading;
 }
 
-/** The body that head and hands move, and what is told of it to parts of the page that are built later. */
+/** Creates the body that head and hands move, and the events that it emits to parts of the page that are built later. */
 function createBody({ visit, notices, loading }: PageOptions, timing: FrameTiming) {
   const { switches, store, changes } = visit;
   const clock = createPageClock(() => performance.now());
@@ -114,25 +114,35 @@ function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof c
   const mouse = createMouseAim(canvas);
   const captions = new Emitter<[text: string]>();
   const arrivals = new Emitter();
-  const onCaption = captions.emit;
-  const activities = new Activities({
+  const services = {
+    quality,
+    clock,
     settings,
     writer,
-    notices,
-    games: new PageGames({
-      ...{ quality, switches, settings, clock, stage, mouse, headset, body, avatar, server, notices, onCaption },
-    }),
-    seed: switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31),
+    switches,
     stage,
     mouse,
     headset,
+    body,
+    avatar,
+    fetchOwnAvatar,
+    server,
+    notices,
+    study,
+    onCaption: captions.emit,
+    onChange: changes.emit,
+  };
+  const activities = new Activities({
+    activities: registeredActivities,
+    services,
+    seed: switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31),
+    stage,
+    mouse,
     recorder,
     body,
     study,
     wear: (palette) => avatar.wear(palette),
-    onCaption,
     onArrival: arrivals.emit,
-    onChange: changes.emit,
   });
   const wearer = new Wearer({ body, headset, view: stage.view, writer, store, notices });
   const source = new TrackingSource({ settings, headset, recorder, body, actor, activities, study });
@@ -140,13 +150,13 @@ function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof c
   ground.calibrated.listen((calibration, source) => {
     wearer.measured(source);
     actor.calibrate(calibration);
-    activities.ball?.play.calibrate(calibration);
+    activities.current?.calibrate?.(calibration);
     avatar.current?.setCalibration(calibration);
   });
   ground.outgrown.listen((difference) => wearer.outgrown(difference));
   ground.jumps.listen(() => {
     impaired.reset();
-    activities.jumped();
+    activities.current?.jumped?.();
   });
   return { study, impaired, server, activities, captions, arrivals, wearer, source };
 }
@@ -209,7 +219,7 @@ export function createPage(options: PageOptions) {
   });
   play.arrivals.listen(() => {
     recorder.stop();
-    if (activities.name !== 'studio') controls.setPanelOpen(false);
+    if (activities.current) controls.setPanelOpen(false);
     body.discontinuity();
     timing.reset();
     controls.show();

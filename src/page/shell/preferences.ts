@@ -41,7 +41,7 @@ const schema = v.object({
   singleKeys: v.optional(v.boolean()),
   bots: v.optional(v.boolean()),
   name: v.optional(v.pipe(v.string(), v.maxLength(40))),
-  /** Of files whose bones' names tell no body, by SHA-256. */
+  /** The bone maps of files that could not be matched to a humanoid, by SHA-256. */
   bones: v.optional(v.record(v.pipe(v.string(), v.regex(avatarHash)), boneMap)),
   shareAvatar: v.optional(v.boolean()),
   plainOthers: v.optional(v.boolean()),
@@ -91,10 +91,7 @@ export function parsePreferences(text: string | null): { preferences: Preference
 
 const denied = 'This browser lets the page keep nothing: calibration and settings last for this visit only.';
 
-/**
- * Preferences in the storage given (localStorage); null where the browser grants none. `onDenied` hears of a storage that takes nothing,
- * once.
- */
+/** Keeps preferences in a storage (localStorage); null: the browser grants none. `onDenied` is called once if the storage refuses to store. */
 export function createPreferenceStore(
   storage: Pick<Storage, 'getItem' | 'setItem'> | null,
   onDenied: (sentence: string) => void = () => undefined,

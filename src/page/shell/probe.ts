@@ -7,12 +7,11 @@ import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { StudyProbe } from 'threepoint-study/participant/study-run';
 import type { Notices } from 'threepoint-ui/notices';
-import type { ArcheryProbe } from '../archery/archery-play';
-import type { CourtProbe } from '../ball/ball-activity';
-import type { PlayerProbe } from '../ball/player-probe';
+import type { PlayerProbe } from '../activity/activity';
 import type { KeptPage, KeptState } from '../offline/kept-page';
 import type { Recorder } from '../studio/recorder';
 import type { Activities } from './activities';
+import type { GameProbe } from './activity-registry';
 import type { FrameSummary, FrameTiming } from './frame-timing';
 import type { Headset } from './headset';
 import type { PageLoading } from './page-loading';
@@ -40,7 +39,7 @@ export interface Probe {
   readonly avatar: {
     readonly name: string;
     readonly joints: Readonly<Record<string, Triple>>;
-    /** Where its fingers end. */
+    /** The positions of the finger tips. */
     readonly fingertips: Readonly<Record<Side, Readonly<Partial<Record<FingerName, Triple>>>>>;
   };
   /** What was tracked in the newest frame, floor frame [m]; null: not seen. */
@@ -70,8 +69,8 @@ export interface Probe {
   /** The others as they are drawn here. */
   readonly players: readonly PlayerProbe[];
   /** The round being played; null in the studio. */
-  readonly game: ArcheryProbe | CourtProbe | null;
-  /** Where a study stands; null: there is none. */
+  readonly game: GameProbe | null;
+  /** The state of the study; null: there is none. */
   readonly study: StudyProbe | null;
 }
 
@@ -88,7 +87,7 @@ export interface ProbeParts {
   readonly avatar: Pick<ShownAvatar, 'current' | 'name'>;
   readonly headset: Pick<Headset, 'worn' | 'visibility' | 'emulator'>;
   readonly recorder: Pick<Recorder, 'mode' | 'frameCount' | 'seconds'>;
-  readonly activities: Pick<Activities, 'archery' | 'ball'>;
+  readonly activities: Pick<Activities, 'current'>;
   readonly study: Pick<PageStudy, 'run'>;
   readonly stage: Pick<Stage, 'renderer' | 'view' | 'vignette'>;
 }
@@ -130,7 +129,7 @@ function drawingOf({ renderer, vignette }: ProbeParts['stage']): Probe['drawing'
 /** What the page is doing now. */
 export function readProbe(parts: ProbeParts): Probe {
   const { loading, kept, settings, notices, timing, frame, source, body, headset, recorder, study, stage } = parts;
-  const { archery, ball } = parts.activities;
+  const { current } = parts.activities;
   return {
     ready: loading.ready,
     activity: headset.worn ? 'vr' : loading.ready ? 'desktop' : 'loading',
@@ -147,8 +146,8 @@ export function readProbe(parts: ProbeParts): Probe {
     loading: { ...loading.marks },
     kept: kept.state,
     drawing: drawingOf(stage),
-    players: ball?.players() ?? [],
-    game: archery?.probe() ?? ball?.probe() ?? null,
+    players: current?.players?.() ?? [],
+    game: (current?.probe?.() ?? null) as GameProbe | null,
     study: study.run?.probe() ?? null,
   };
 }

@@ -13,7 +13,7 @@ export interface SessionChangesOptions {
   readonly timing: FrameTiming;
   readonly view: DesktopView;
   readonly body: Pick<BodySolver, 'startSession' | 'discontinuity'>;
-  readonly activities: Pick<Activities, 'ball' | 'sessionChanged'>;
+  readonly activities: Pick<Activities, 'current' | 'sessionChanged'>;
   readonly controls: Pick<Controls, 'show' | 'setWorn' | 'layOut'>;
   readonly study: Pick<PageStudy, 'run'>;
 }
@@ -67,12 +67,12 @@ export class SessionChanges implements HeadsetListener {
     document.addEventListener('visibilitychange', () => this.#sightChanged());
   }
 
-  /** Frame times of before and after do not compare; others are told whether this player sees the match, in the session or else the window. */
+  /** Resets frame times, which do not compare across the change, and notifies other players whether the user can see the match. */
   #sightChanged(): void {
     const { headset, timing, activities } = this.#options;
     timing.reset();
     const hidden = headset.visibility === 'none' ? document.hidden : headset.visibility === 'hidden';
-    activities.ball?.play.away(hidden);
+    activities.current?.setAway?.(hidden);
   }
 
   #changed(): void {

@@ -1,10 +1,10 @@
 import { type OwnBody, plainAvatar, type SkinTone } from 'threepoint/core/body/avatar-ref';
-import type { Side } from 'threepoint/core/math/side';
+import type { ActivitySettings, StoredActivitySettings } from '../activity/activity-context';
 import type { PreferenceStore } from './preferences';
 import type { Switches } from './switches';
 
 /** What the user set, for this visit. The object is live; a SettingsWriter alone changes it. */
-export interface Settings {
+export interface Settings extends ActivitySettings {
   readonly mirror: boolean;
   readonly upperBodyOnly: boolean;
   readonly debugSkeleton: boolean;
@@ -19,37 +19,12 @@ export interface Settings {
   readonly palette: string;
   /** Which of our own bodies is worn where no other avatar is. */
   readonly ownBody: OwnBody;
-  /** Of people; undefined: the one that the body comes with. */
+  /** The skin tone of a human avatar; undefined: the avatar's own. */
   readonly skinTone: SkinTone | undefined;
-  /** Players of the same room see an avatar that is a file of this one's. */
-  readonly shareAvatar: boolean;
-  /** All other players are shown as mannequins. */
-  readonly plainOthers: boolean;
-  /** Voices go by a relay alone, so that others do not learn this page's address. */
-  readonly voicesByRelay: boolean;
-  /** The built-in actor moves the body where no person does. */
-  readonly actor: boolean;
-  /** In a game, without a headset: the mouse plays instead of the actor. */
-  readonly mouse: boolean;
   readonly emulatorPanel: boolean;
   /** The next session asks the headset for the body that it tracks itself; never remembered, because a browser has crashed when it was asked. */
   readonly deviceBody: boolean;
-  readonly bowSide: Side;
-  readonly oneHanded: boolean;
-  readonly everyHitCounts: boolean;
-  /** Rounds wait for their signal, as a study's do; absent: the first arrow starts them too. */
-  readonly startSignal?: boolean;
-  /** Of a round, until the bell [s]; absent: as the game has it. */
-  readonly seconds?: number;
-  readonly sound: boolean;
-  readonly bots: boolean;
-  /** As given by the player; empty: not given. */
-  readonly name: string;
-  /** What others call a player who has given no name. */
-  readonly guestName: string;
-  /** Whom a spectator's camera follows: a seat, or null: free. */
-  readonly following: number | null;
-  /** Where the user's measures come from, in words. */
+  /** The source of the user's measurements, in words. */
   readonly calibrationSource: string;
 }
 
@@ -89,30 +64,22 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
 
 /** The settings that a browser keeps for later visits. */
 export type LastingSettings = Partial<
-  Pick<
-    Settings,
-    | 'mirror'
-    | 'upperBodyOnly'
-    | 'overlay'
-    | 'largerText'
-    | 'singleKeys'
-    | 'panel'
-    | 'palette'
-    | 'ownBody'
-    | 'skinTone'
-    | 'shareAvatar'
-    | 'plainOthers'
-    | 'voicesByRelay'
-    | 'bowSide'
-    | 'oneHanded'
-    | 'everyHitCounts'
-    | 'sound'
-    | 'bots'
-    | 'name'
-  >
+  StoredActivitySettings &
+    Pick<
+      Settings,
+      | 'mirror'
+      | 'upperBodyOnly'
+      | 'overlay'
+      | 'largerText'
+      | 'singleKeys'
+      | 'panel'
+      | 'palette'
+      | 'ownBody'
+      | 'skinTone'
+    >
 >;
 
-/** The one writer of the settings: every change is told, so that it comes on the screen. */
+/** The only writer of the settings. Every change is reported, so that it appears on the screen. */
 export class SettingsWriter {
   readonly #settings: Settings;
   readonly #store: Pick<PreferenceStore, 'remember'>;

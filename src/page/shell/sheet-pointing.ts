@@ -7,17 +7,18 @@ export interface SheetPointingOptions {
   readonly canvas: HTMLCanvasElement;
   readonly view: Pick<DesktopView, 'rayThrough'>;
   readonly headset: Pick<Headset, 'worn'>;
-  readonly study: Pick<PageStudy, 'joined'>;
-  readonly activities: Pick<Activities, 'point'>;
+  readonly study: Pick<PageStudy, 'run'>;
+  readonly activities: Pick<Activities, 'current'>;
 }
 
 /** The mouse presses what the sheets of a game offer. A study's participant plays with the headset alone. */
 export function pressSheetsByMouse({ canvas, view, headset, study, activities }: SheetPointingOptions): void {
   /** The distance [m] to the sheet under the mouse; null: none. */
   function pointAt({ clientX, clientY }: MouseEvent, press: boolean): number | null {
-    if (headset.worn || study.joined) return null;
+    if (headset.worn || study.run) return null;
     const { width, height } = canvas.getBoundingClientRect();
-    return activities.point(view.rayThrough((2 * clientX) / width - 1, 1 - (2 * clientY) / height), press);
+    const ray = view.rayThrough((2 * clientX) / width - 1, 1 - (2 * clientY) / height);
+    return activities.current?.point?.(ray, press) ?? null;
   }
 
   /** Whether the mouse button went down on a sheet: a sheet that came under a throw is not meant. */

@@ -15,7 +15,7 @@ import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
 import type { Notices } from 'threepoint-ui/notices';
 import { pageFolder } from 'threepoint-ui/page-folder';
-import type { OwnWear } from '../ball/shared-avatar';
+import type { OwnWear } from '../activity/activity-context';
 import type { Studio } from '../studio/studio';
 import type { KnownBones } from './known-bones';
 import type { Settings } from './settings';

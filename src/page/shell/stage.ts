@@ -2,11 +2,10 @@ import type { Avatar } from 'threepoint/avatar/avatar';
 import { createDebugSkeleton } from 'threepoint/avatar/debug-skeleton';
 import { createMirror } from 'threepoint/avatar/mirror';
 import { createHeadLoss } from 'threepoint/avatar/rig/head-loss';
-import type { Pose } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
-import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { createVrCaptions } from 'threepoint-ui/vr-captions';
+import type { Watched } from '../activity/activity';
 import { createDesktopView, type DesktopView, type Insets } from '../scene/desktop-view';
 import { createHeadsetCamera, createRenderer, fitToWindow, type Quality } from '../scene/renderer';
 import { createVignette, type Vignette } from '../scene/vignette';
@@ -14,20 +13,14 @@ import { createStudio, type Studio } from '../studio/studio';
 
 /** The user stands at the origin and looks along −Z, at the mirror [m]. */
 const mirrorDistance = 1.5;
-/** Beside the range the mirror stands out of the arrows' way, on the side the archer's chest faces [m, rad]. */
-const mirrorByTheRange = { x: 1.95, z: -0.1, turned: -1.3 };
-/** Where shadow and light of a body go that is not there [m]. */
+/** A mirror at the user's right is out of the way of what flies ahead [m, rad]. */
+const mirrorAside = { x: 1.95, z: -0.1, turned: -1.3 };
+/** The position of the shadow and the light of an absent body [m]. */
 const outOfSight = 100;
 /** Longest step of a camera that follows [s]: a page that was asleep does not leap. */
 const longestStep = 0.1;
 /** A pelvis hangs at this share of the eyes' height, where no body says better. */
 const pelvisShare = 0.58;
-
-/** A person to look at, floor frame. */
-export interface Watched {
-  readonly pelvis: Vec3;
-  readonly eyes: Pose<'floor'>;
-}
 
 /** One picture: who is in it and who sees it. */
 export interface Shot {
@@ -39,7 +32,7 @@ export interface Shot {
   readonly inSession: boolean;
   /** How far right of the body the middle of what is looked at lies [m]. */
   readonly aside: number;
-  /** Whom a camera without a body of its own looks at; null: there is a body. */
+  /** The person that a camera without a body of its own looks at; null: there is a body. */
   readonly watched: Watched | null;
   /** never; always; or only for a camera that does not stand behind the mirror: from there one wants to see the body. */
   readonly mirror: 'never' | 'always' | 'unless-behind';
@@ -53,8 +46,8 @@ export interface Stage {
   readonly vignette: Vignette;
   /** A line low before the eyes of a session; empty: none. */
   caption(text: string): void;
-  /** Beside the range, for an archer whose bow is in this hand; null: ahead of the person in the studio. */
-  placeMirror(bowSide: Side | null): void;
+  /** Places the mirror at this side of the user; null: ahead of the user. */
+  placeMirror(side: Side | null): void;
   setSkeletonVisible(visible: boolean): void;
   /** Fits picture and camera to the window; insets: what the controls cover [CSS pixels]. */
   layOut(insets: Insets): void;
@@ -85,10 +78,10 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
     view,
     vignette,
     caption: captions.say,
-    placeMirror(bowSide) {
-      const { x, z, turned } = mirrorByTheRange;
-      const sign = bowSide === 'left' ? 1 : -1;
-      if (bowSide) mirror.place(sign * x, z, sign * turned);
+    placeMirror(side) {
+      const { x, z, turned } = mirrorAside;
+      const sign = side === 'right' ? 1 : -1;
+      if (side) mirror.place(sign * x, z, sign * turned);
       else mirror.place(0, -mirrorDistance, 0);
     },
     setSkeletonVisible: (visible) => skeleton.setVisible(visible),

@@ -4,7 +4,7 @@ import type { Outlook } from '../mocap/mocap-view';
 import { truthPlaces } from '../mocap/truth-places';
 import { type ViewName, viewNames } from '../scene/desktop-view';
 import type { Quality } from '../scene/renderer';
-import { type ActivityName, activityNames } from './play-bar';
+import { home, placeNames } from './activity-registry';
 
 /** What the address asks for; null: nothing asked, the page decides. Listed in src/page/README.md. */
 export interface Switches {
@@ -21,14 +21,14 @@ export interface Switches {
   /** Whether the controls are open; null: as they were left. */
   readonly panel: boolean | null;
   /** What the page opens with. */
-  readonly play: ActivityName;
-  /** Of the first round's layout; null: another one with each visit. */
+  readonly play: string;
+  /** The seed of the first round's layout; null: a random one. */
   readonly seed: number | null;
-  /** Of a round, until the bell [s]; null: as the game has it. */
+  /** The length of a round [s]; null: the default of the game. */
   readonly seconds: number | null;
   /** A study and who takes part in it (null: to be asked); null: no study. */
   readonly study: { readonly study: string; readonly participant: string | null } | null;
-  /** Where others play too; null: a room in this page. */
+  /** The room on the server; null: a room in this page. */
   readonly room: string | null;
   /** Watches, from a camera of its own. */
   readonly spectate: boolean;
@@ -36,7 +36,7 @@ export interface Switches {
   readonly bots: boolean | null;
   /** What the others call the player of this page; null: the page asks. */
   readonly name: string | null;
-  /** Of a ball game in this page; null: as the game has it. */
+  /** The number of balls in a game in this page; null: the default of the game. */
   readonly balls: number | null;
 }
 
@@ -58,7 +58,7 @@ const schema = v.object({
   beside: v.optional(v.picklist(threePointNames)),
   truth: v.optional(v.picklist(truthPlaces)),
   view: v.optional(v.picklist(viewNames)),
-  play: v.optional(v.picklist(activityNames), 'studio'),
+  play: v.optional(v.picklist(placeNames), home),
   seconds: v.optional(wholeNumber(1, 3600)),
   room: v.optional(v.pipe(v.string(), v.regex(/^[a-z0-9][a-z0-9-]{0,31}$/))),
   bots: v.optional(onOff),
@@ -84,7 +84,7 @@ const takes: Readonly<Record<keyof typeof schema.entries, string>> = {
   beside: oneOf(threePointNames),
   truth: oneOf(truthPlaces),
   view: oneOf(viewNames),
-  play: oneOf(activityNames),
+  play: oneOf(placeNames),
   seconds: 'a whole number from 1 to 3600',
   room: 'small letters, digits and hyphens, 32 at most, the first no hyphen',
   bots: 'on or off',

@@ -3,7 +3,7 @@ import type { Calibration } from 'threepoint/core/body/calibration';
 import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { TrackedSession } from 'threepoint/xr/tracked-session';
-import type { Performance } from '../archery/archery-play';
+import type { PlayerInput } from '../activity/activity';
 import type { Actor } from '../emulator/actor';
 import type { Recorder } from '../studio/recorder';
 import type { Activities } from './activities';
@@ -20,7 +20,7 @@ export interface TrackingSourceOptions {
   readonly recorder: Pick<Recorder, 'sample' | 'person' | 'giveWay'>;
   readonly body: Pick<BodySolver, 'wearerCalibration'>;
   readonly actor: Pick<Actor, 'frameAt' | 'standAt'>;
-  readonly activities: Pick<Activities, 'begin' | 'act' | 'watched'>;
+  readonly activities: Pick<Activities, 'current' | 'act'>;
   readonly study: Pick<PageStudy, 'idle'>;
 }
 
@@ -53,7 +53,7 @@ export class TrackingSource {
   /** Head and hands at this time [s], floor frame; null: the head is not seen. */
   read(time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
     this.#buttons = nothingPressed;
-    this.#options.activities.begin(time);
+    this.#options.activities.current?.begin?.(time);
     const { tracking } = this.#options.headset;
     const frame = tracking ? this.#readSession(tracking, time, deviceFrame) : this.#readDesktop(time);
     this.#newest = frame ?? this.#newest;
@@ -78,7 +78,7 @@ export class TrackingSource {
     const { recorder, activities, settings, headset, actor } = this.#options;
     const replayed = recorder.sample(time);
     if (replayed) return replayed;
-    if (activities.watched()) return null;
+    if (activities.current?.watched) return null;
     // Before a real headset is put on, and while the emulated one loads, no one moves: the body stands there.
     if (!settings.actor) return headset.emulator?.read(time) ?? actor.standAt(time);
     const performed = this.#perform(time);
@@ -87,7 +87,7 @@ export class TrackingSource {
   }
 
   /** Needs no person: the players built into the games, else the actor. */
-  #perform(time: number): Performance {
+  #perform(time: number): PlayerInput {
     const { activities, actor } = this.#options;
     return activities.act(time) ?? { frame: actor.frameAt(time), buttons: nothingPressed };
   }

@@ -1,28 +1,19 @@
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { Notices } from 'threepoint-ui/notices';
-
-/** The sound of a game. */
-export interface GameSound {
-  setMuted(muted: boolean): void;
-  /** Lets the browser play it; rejects where it cannot. */
-  unlock(): Promise<void>;
-}
+import type { ActivitySound } from '../activity/activity';
 
 /** By which a user may touch the page. */
 const touches = ['pointerdown', 'pointerup', 'keydown'];
 
-/**
- * Lets a game be heard as the user wants it. Browsers let a page sound only once its user has touched it: until then that is waited for, unless
- * what is returned is called, because the game is over.
- */
-export function wakeSound(sound: GameSound, wanted: boolean, notices: Pick<Notices, 'show'>): () => void {
+/** Plays or mutes the sound of an activity. Browsers let a page play sound only after a touch of its user. Until then this waits. Call the returned function to stop waiting. */
+export function wakeSound(sound: ActivitySound, wanted: boolean, notices: Pick<Notices, 'show'>): () => void {
   const waiting = new AbortController();
   const giveUp = () => waiting.abort();
   sound.setMuted(!wanted);
   if (!wanted) return giveUp;
   const silent = (error: unknown) => notices.show('info', `There is no sound: ${firstLine(reasonOf(error))}`);
   const wake = () => {
-    // Of a browser that says so: not every key counts, and a finger counts when it is lifted.
+    // The browser reports whether the touch counted: not every key does, and a finger counts when it is lifted.
     if (navigator.userActivation?.hasBeenActive === false) return;
     giveUp();
     sound.unlock().catch(silent);

@@ -6,7 +6,7 @@ import type { Headset } from './headset';
 import type { PreferenceStore } from './preferences';
 import type { SettingsWriter } from './settings';
 
-/** Where measures come from that the headset suggests. */
+/** The sources of measurements that the headset suggests, in words. */
 const sourceTexts: Partial<Readonly<Record<CalibrationSource, string>>> = {
   headset: 'from the headset’s height',
   'stood-taller': 'corrected, because you stood taller',
@@ -36,20 +36,20 @@ export class Wearer {
     writer.change({ calibrationSource: source });
   }
 
-  /** As `calibrate`, and remembered for later visits. */
+  /** Calls `calibrate` and stores the measurements for later visits. */
   calibrateForGood(calibration: Calibration, source: string): void {
     this.#options.store.remember({ calibration });
     this.calibrate(calibration, source);
   }
 
-  /** No measures for this visit, until the headset tells its height. */
+  /** Removes the measurements for this visit, until the headset reports its height. */
   forget(): void {
     const { body, writer } = this.#options;
     body.calibrate('auto');
     writer.change({ calibrationSource: 'not calibrated yet' });
   }
 
-  /** As `forget`, and nothing is remembered for later visits. */
+  /** Calls `forget` and removes the stored measurements. */
   resetCalibration(): void {
     this.#options.store.remember({ calibration: undefined });
     this.forget();
@@ -61,7 +61,7 @@ export class Wearer {
     if (text) this.#options.writer.change({ calibrationSource: text });
   }
 
-  /** The user stands this much taller [m] than they told. */
+  /** The user is this much taller [m] than their calibration. */
   outgrown(difference: number): void {
     const centimetres = Math.round(100 * difference);
     this.#options.notices.show(

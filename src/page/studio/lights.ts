@@ -24,7 +24,7 @@ function setLight(light: DirectionalLight, { color, intensity, from }: DistantLi
   light.position.set(...from);
 }
 
-/** The lights, the fog and the shadows of a scene: always the same ones, told anew for each place that people stand in. */
+/** The lights, the fog and the shadows of a scene. The objects stay the same; each place sets them again. */
 export class Lights {
   readonly #scene: Scene;
   readonly #renderer: WebGLRenderer;
@@ -36,7 +36,7 @@ export class Lights {
   readonly #fill = new HemisphereLight();
   readonly #fog = new Fog(new Color());
   readonly #blob = createBlobShadow();
-  /** Where the body stands, floor frame [m]. */
+  /** The position of the body, floor frame [m]. */
   readonly #stand = { x: 0, z: 0 };
   #lighting: Lighting | null = null;
   /** What surfaces reflect; null: nothing yet, or never in low quality. */

@@ -26,7 +26,7 @@ export class Recorder {
   /** The recording at hand. */
   #recording: Replayable | null = null;
   #name: string | null = null;
-  /** Of the recording that is being made. */
+  /** The frames of the recording in progress. */
   #frames: TrackingFrame[] = [];
   #about: Omit<Replayable, 'frames'> = { device: '', rateHz: 60, calibration: null };
   /** When the replay's newest frame was asked for; null: none was yet. */
@@ -40,7 +40,7 @@ export class Recorder {
   #newest = 0;
   readonly #onEnd: () => void;
 
-  /** `onEnd` hears of a recording that is full and of a replay that is over: no one has stopped them. */
+  /** `onEnd` is called when a recording is full or a replay has ended by itself. */
   constructor(onEnd: () => void = () => undefined) {
     this.#onEnd = onEnd;
   }
@@ -73,7 +73,7 @@ export class Recorder {
     return this.#seconds;
   }
 
-  /** Of the recording at hand [s]; 0 without one. */
+  /** The length of the current recording [s]; 0 without one. */
   get duration(): number {
     return this.#recording ? recordingDuration(this.#recording) : 0;
   }

@@ -1,4 +1,3 @@
-import { Scene } from 'three';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { nothingPressed } from 'threepoint/core/input/button-presses';
 import { normalise, vec3 } from 'threepoint/core/math/vec3';
@@ -6,18 +5,23 @@ import { createArcheryActivity } from 'threepoint-page/archery/archery-activity'
 import { settlingSeconds } from 'threepoint-page/scene/boards/sheet';
 import { expect, test } from 'vitest';
 import { posed } from '../../games/archery/bowman';
+import { activityServices } from '../activity-services';
 import { drawNowhere } from '../shell/drawing-in-node';
 
 drawNowhere();
 
 test('the button of a result takes a press as soon as the sheet has been there for a moment', () => {
+  const { services, writer } = activityServices();
+  writer.change({ startSignal: true, seconds: 1 });
   const archery = createArcheryActivity({
-    quality: 'low',
-    surroundings: { scene: new Scene(), setSurroundings: () => undefined },
-    calibration: defaultCalibration,
-    settings: () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false, startSignal: true, seconds: 1 }),
-    seed: () => 7,
-    onCaption: () => undefined,
+    ...services,
+    layout: { seed: 7 },
+    place: null,
+    inputSource: 'headset',
+    chooseInput: () => undefined,
+    setSound: () => undefined,
+    reopen: () => undefined,
+    placeCamera: () => undefined,
   });
   const eyes = vec3(0, defaultCalibration.eyeHeight, 0);
   // Straight ahead the button lies 0.36 m below the middle of the sheet, that 0.18 m below the eyes.
@@ -27,16 +31,16 @@ test('the button of a result takes a press as soon as the sheet has been there f
     for (let i = 0; i < Math.round(72 * seconds); i++) {
       time += 1 / 72;
       const frame = posed(time);
-      archery.follow(frame, nothingPressed);
-      archery.show(frame.head, true);
+      archery.update(frame, nothingPressed);
+      archery.show(time, frame);
     }
   };
   archery.play.signal();
   pass(0.9);
-  expect(archery.restartAt(ray)).toBeNull();
+  expect(archery.point(ray, false)).toBeNull();
   pass(0.2);
   expect(archery.round()?.over).toBe(true);
-  expect(archery.restartAt(ray), 'a press that was meant for the bow').toBeNull();
+  expect(archery.point(ray, false), 'a press that was meant for the bow').toBeNull();
   pass(settlingSeconds);
-  expect(archery.restartAt(ray)).toBeCloseTo(Math.hypot(0.54, 2.1), 1);
+  expect(archery.point(ray, false)).toBeCloseTo(Math.hypot(0.54, 2.1), 1);
 });

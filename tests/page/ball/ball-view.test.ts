@@ -25,7 +25,8 @@ test('a catch is told for a moment, and not once more at the same second of the 
     pageTime,
     inRoom: true,
     acting: false,
-    voices: { hidden: new Set(), markOf: () => 'none', levelOf: () => 0 },
+    voices: { markOf: () => 'none', levelOf: () => 0 },
+    hidden: new Set(),
     head: { position: vec3(0, 1.6, 0), orientation: identity },
   });
   /** Words over the basket at this second of a match and of the page. */

@@ -2,9 +2,9 @@ import { allReleased, type Buttons } from 'threepoint/core/input/button-presses'
 import type { Pose } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
 import { addScaled, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { ballClientPolicy, type BallConnectionUpdate } from 'threepoint-games/ball/ball-client';
-import type { BallGame } from 'threepoint-games/ball/ball-policy';
+import { type BallConnectionUpdate, ballClientPolicy } from 'threepoint-games/ball/ball-client';
 import type { BallRoomMessage } from 'threepoint-games/ball/ball-messages';
+import type { BallGame } from 'threepoint-games/ball/ball-policy';
 import { holdSeconds } from 'threepoint-games/ball/gestures';
 import { createBallPlay } from 'threepoint-page/ball/ball-play';
 import type { ConnectionStatus } from 'threepoint-rooms/client/connection';

@@ -1,4 +1,5 @@
 import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
+import { BlockList } from 'threepoint-page/ball/block-list';
 import { Voices } from 'threepoint-page/ball/voices';
 import type { VoiceTerms } from 'threepoint-rooms/voices/voice-terms';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
@@ -48,6 +49,7 @@ function seated() {
   const answers: (() => void)[] = [];
   const voices = new Voices({
     play: { room: play.room, status: play.status, voices: play.voices },
+    blocked: new BlockList(),
     terms: () => new Promise((resolve) => answers.push(() => resolve(told))),
     // Nothing is to be heard here: no one comes as far.
     openAudio: async () => ({}) as AudioContext,

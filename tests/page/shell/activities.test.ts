@@ -1,36 +1,35 @@
-import { Scene } from 'three';
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { Group } from 'three';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { allReleased, nothingPressed } from 'threepoint/core/input/button-presses';
 import type { Side } from 'threepoint/core/math/side';
 import { vec3 } from 'threepoint/core/math/vec3';
-import { createPageClock } from 'threepoint/core/tracking/page-clock';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { ServerPresence } from 'threepoint-http/server-presence';
+import type { Activity } from 'threepoint-page/activity/activity';
+import { type ArcheryActivity, rangeScene } from 'threepoint-page/archery/archery-activity';
+import { createArcheryRunner } from 'threepoint-page/archery/archery-runner';
 import { createActor } from 'threepoint-page/emulator/actor';
-import type { SceneName } from 'threepoint-page/scene/desktop-view';
-import type { Surroundings } from 'threepoint-page/scene/surroundings';
+import { type CameraScene, studioScene } from 'threepoint-page/scene/desktop-view';
 import { Activities } from 'threepoint-page/shell/activities';
+import { activities as registered } from 'threepoint-page/shell/activity-registry';
 import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
-import { PageGames } from 'threepoint-page/shell/games';
-import { PageStudy } from 'threepoint-page/shell/page-study';
+import { createRunners } from 'threepoint-page/shell/join-study';
 import { SessionChanges, type SessionChangesOptions } from 'threepoint-page/shell/session-changes';
-import { createSettings, type LastingSettings, SettingsWriter } from 'threepoint-page/shell/settings';
-import { createArcheryRunner } from 'threepoint-page/shell/study-archery';
-import { readSwitches } from 'threepoint-page/shell/switches';
 import { TrackingSource } from 'threepoint-page/shell/tracking-source';
+import { menuButtons, type VrMenuActions } from 'threepoint-page/shell/vr-menu/menu-buttons';
+import { menuStateOf } from 'threepoint-page/shell/vr-menu/menu-state';
 import { Recorder } from 'threepoint-page/studio/recorder';
 import type { StudyRun } from 'threepoint-study/participant/study-run';
-import type { Notice } from 'threepoint-ui/notices';
 import { describe, expect, test, vi } from 'vitest';
 import { posed } from '../../games/archery/bowman';
+import { activityServices } from '../activity-services';
 import { drawNowhere } from './drawing-in-node';
 
 drawNowhere();
 
 const ahead = { x: 0, y: 0, z: 0, w: 1 };
 
-/** A wearer whose eyes are this high [m]. */
+/** A user whose eyes are this high [m]. */
 const wearer = (time: number, eyeHeight: number): TrackingFrame => ({
   time,
   head: { position: vec3(0, eyeHeight, 0), orientation: ahead, tracking: 'tracked' },
@@ -38,87 +37,76 @@ const wearer = (time: number, eyeHeight: number): TrackingFrame => ({
   rightHand: null,
 });
 
-/** The rest of a page with this address, and what its activities do to it. */
-function page() {
-  const { switches } = readSwitches('?seed=5&quality=low');
-  const settings = createSettings({ ...switches, actor: false }, { preferences: { sound: false } });
-  const kept: LastingSettings[] = [];
-  const writer = new SettingsWriter(
-    settings,
-    { remember: (part) => void kept.push(part as LastingSettings) },
-    () => undefined,
-  );
-  const places: (Surroundings | null)[] = [];
-  const notices: Notice[] = [];
-  const seen = { mirror: null as Side | null, scene: 'studio' as SceneName, orbit: true, mark: true, aims: false };
-  const stage = {
-    studio: {
-      scene: new Scene(),
-      setSurroundings: (place: Surroundings | null) => void places.push(place),
-      setMarkVisible(visible: boolean) {
-        seen.mark = visible;
-      },
-    },
-    view: {
-      pose: { position: vec3(0, 1.6, 2), orientation: ahead },
-      rayThrough: () => ({ origin: vec3(0, 1.6, 0), direction: vec3(0, 0, -1) }),
-      setScene(scene: SceneName) {
-        seen.scene = scene;
-      },
-      setOrbit(on: boolean) {
-        seen.orbit = on;
-      },
-    },
-    placeMirror(side: Side | null) {
-      seen.mirror = side;
-    },
+/** A page with these activities, and what they do to it. */
+function page(listed: readonly Activity[] = registered) {
+  const opened = activityServices();
+  const { services, settings, headset, study } = opened;
+  const seen = {
+    mirror: null as Side | null,
+    scene: studioScene,
+    orbit: true,
+    mark: true,
+    palette: null as string | null,
   };
-  const mouse = {
-    ...{ x: 0, y: 0.1, pressed: false, cancelled: false },
-    setEnabled(on: boolean) {
-      seen.aims = on;
-    },
-  };
-  const headset = { worn: false, emulator: null, tracking: null };
   const recorder = new Recorder();
-  const study = new PageStudy();
-  const common = { settings, stage, mouse, headset, body: { calibration: defaultCalibration } };
   const activities = new Activities({
-    ...{ ...common, writer, recorder, study, seed: 5 },
-    games: new PageGames({
-      ...{ ...common, switches, quality: 'low', clock: createPageClock(() => 0), onCaption: () => undefined },
-      server: new ServerPresence('http://127.0.0.1:9', () => undefined),
-      avatar: { own: true, worn: plainAvatar },
-      notices: { show: (level, text) => void notices.push({ level, text }) },
-    }),
-    notices: { show: (level, text) => void notices.push({ level, text }) },
-    wear: () => undefined,
-    onCaption: () => undefined,
+    activities: listed,
+    services,
+    seed: 5,
+    stage: {
+      studio: {
+        setMarkVisible(visible) {
+          seen.mark = visible;
+        },
+      },
+      view: {
+        setScene(scene: CameraScene) {
+          seen.scene = scene;
+        },
+        setOrbit(on) {
+          seen.orbit = on;
+        },
+      },
+      placeMirror(side) {
+        seen.mirror = side;
+      },
+    },
+    mouse: services.mouse,
+    recorder,
+    body: services.body,
+    study,
+    wear(palette) {
+      seen.palette = palette;
+    },
     onArrival: () => undefined,
-    onChange: () => undefined,
   });
   const source = new TrackingSource({
-    ...{ settings, headset, recorder, activities, study },
+    settings,
+    headset: { ...headset, tracking: null },
+    recorder,
+    activities,
+    study,
     body: { wearerCalibration: defaultCalibration },
     actor: createActor(),
   });
   const tracked = (time: number) => source.read(time, undefined);
-  return { activities, settings, headset, study, seen, places, notices, kept, recorder, tracked };
+  return { ...opened, activities, seen, recorder, tracked };
 }
 
-/** The same, on the range. */
+/** A page whose user is on the range. */
 async function range() {
   const opened = page();
   await opened.activities.goTo('archery');
-  const layout = () => opened.activities.archery?.play.targets;
-  return { ...opened, layout };
+  const archery = () => opened.activities.openedOf('archery') as ArcheryActivity;
+  return { ...opened, archery, layout: () => archery().play.targets };
 }
 
 /** A study that this page has joined, in which a participant plays, or waits. */
 function joinedStudy({ idle = false } = {}) {
   const run: StudyRun = {
-    object: new Scene() as never,
-    ...{ idle, measured: true, paused: false },
+    object: new Group() as never,
+    idle,
+    paused: false,
     frame: () => undefined,
     point: () => undefined,
     sessionChanged: () => undefined,
@@ -126,7 +114,7 @@ function joinedStudy({ idle = false } = {}) {
       throw new Error('not asked for here');
     },
   };
-  return { run, archery: { played: () => undefined }, ball: { played: () => undefined } };
+  return { run, runners: {} };
 }
 
 describe('going to a game', () => {
@@ -145,27 +133,26 @@ describe('going to a game', () => {
     const { activities, places } = page();
     await Promise.all([activities.goTo('archery'), activities.goTo('ball')]);
     expect(activities.name).toBe('archery');
-    expect(activities.ball).toBeNull();
     expect(places).toHaveLength(1);
   });
 
   test('camera, mark and mirror go along to the range, and back', async () => {
     const { activities, seen, places } = page();
     await activities.goTo('archery');
-    expect(seen).toMatchObject({ scene: 'range', mark: false, mirror: 'left' });
+    expect(seen).toMatchObject({ scene: rangeScene, mark: false, mirror: 'right' });
     await activities.goTo('studio');
-    expect(seen).toMatchObject({ scene: 'studio', mark: true, mirror: null });
+    expect(seen).toMatchObject({ scene: studioScene, mark: true, mirror: null });
     expect(places.at(-1)).toBeNull();
   });
 
-  test('a court whose bodies cannot be fetched is told in a sentence, and the studio stays', async () => {
+  test('a court whose bodies cannot be downloaded yields a notice, and the user stays at the mirror', async () => {
     // Nothing is served there.
     vi.stubGlobal('location', { href: 'http://127.0.0.1:9/' });
     const { activities, notices, seen } = page();
     await activities.goTo('ball');
     expect(activities.name).toBe('studio');
     expect(activities.arriving).toBe(false);
-    expect(seen).toMatchObject({ scene: 'studio', mark: true });
+    expect(seen).toMatchObject({ scene: studioScene, mark: true });
     expect(notices).toEqual([
       { level: 'error', text: expect.stringMatching(/^The ball court could not be opened: mannequin\.vrm: /) },
     ]);
@@ -176,31 +163,33 @@ describe('a round', () => {
   const opened = range();
 
   test('starts anew with a rule that counts hits differently, and goes on with another hand or one hand alone', async () => {
-    const { activities, layout } = await opened;
+    const { archery, layout } = await opened;
     const begun = layout();
-    activities.rule({ bowSide: 'right' });
-    activities.rule({ oneHanded: true });
+    archery().setRules({ bowSide: 'right' });
+    archery().setRules({ oneHanded: true });
     expect(layout()).toBe(begun);
-    activities.rule({ everyHitCounts: true });
+    archery().setRules({ everyHitCounts: true });
     expect(layout()).not.toEqual(begun);
   });
 
   test('keeps what was chosen for the next visit, and the mirror changes sides with the bow', async () => {
-    const { activities, settings, seen, kept } = await opened;
-    activities.rule({ bowSide: 'left' });
+    const { activities, archery, settings, seen, kept } = await opened;
+    archery().setRules({ bowSide: 'left' });
+    activities.show(1, null);
     expect(settings.bowSide).toBe('left');
     expect(kept.at(-1)).toEqual({ bowSide: 'left' });
-    expect(seen.mirror).toBe('left');
-    activities.rule({ bowSide: 'right' });
     expect(seen.mirror).toBe('right');
+    archery().setRules({ bowSide: 'right' });
+    activities.show(2, null);
+    expect(seen.mirror).toBe('left');
   });
 
   test('of a seated player has targets as high for the eyes as those of one who stands', async () => {
-    const { activities, headset, layout } = await opened;
+    const { activities, archery, headset, layout } = await opened;
     const targetsFor = (eyeHeight: number) => {
       activities.play(wearer(eyeHeight, eyeHeight), nothingPressed);
-      activities.startRound(8, 70);
-      return layout()?.map(({ centre }) => centre.y) ?? [];
+      archery().startRound(8, 70);
+      return layout().map(({ centre }) => centre.y);
     };
     headset.worn = true;
     const seated = targetsFor(1.2);
@@ -211,22 +200,22 @@ describe('a round', () => {
   });
 
   test('starts anew with every change where the built-in archer shoots: its hands are the rules', async () => {
-    const { activities, layout } = await opened;
-    activities.chooseShooter('actor');
+    const { archery, layout } = await opened;
+    archery().chooseShooter('actor');
     const begun = layout();
-    activities.rule({ bowSide: 'left' });
+    archery().setRules({ bowSide: 'left' });
     expect(layout()).not.toEqual(begun);
   });
 
   test('is shot by whom the user chooses, where a recording replays there too', async () => {
-    const { activities, recorder, tracked } = await range();
+    const { archery, recorder, tracked } = await range();
     const ofRecording = wearer(1, 1.9);
     const recording = { device: 'a test', rateHz: 60, calibration: null, frames: [ofRecording, wearer(2, 1.9)] };
     for (const shooter of ['mouse', 'actor'] as const) {
       recorder.take('tall.json', recording);
       recorder.replay();
       expect(tracked(10)?.head).toEqual(ofRecording.head);
-      activities.chooseShooter(shooter);
+      archery().chooseShooter(shooter);
       expect(tracked(10.1)?.head.position.y).toBeLessThan(1.75);
       expect([recorder.mode, recorder.name]).toEqual(['idle', 'tall.json']);
     }
@@ -238,18 +227,18 @@ describe('a round', () => {
     expect(first).toEqual(stayed.layout());
     await left.activities.goTo('studio');
     await left.activities.goTo('archery');
-    stayed.activities.restartRound();
+    stayed.archery().restart();
     expect(left.layout()).not.toEqual(first);
     expect(left.layout()).toEqual(stayed.layout());
   });
 
   test('is aimed by the mouse where it was chosen; the camera turns with it everywhere else', async () => {
-    const { activities, seen } = await opened;
-    expect(seen).toMatchObject({ aims: false, orbit: true });
-    activities.chooseShooter('mouse');
-    expect(seen).toMatchObject({ aims: true, orbit: false });
+    const { activities, archery, seen, aims } = await opened;
+    expect([aims.enabled, seen.orbit]).toEqual([false, true]);
+    archery().chooseShooter('mouse');
+    expect([aims.enabled, seen.orbit]).toEqual([true, false]);
     await activities.goTo('studio');
-    expect(seen).toMatchObject({ aims: false, orbit: true });
+    expect([aims.enabled, seen.orbit]).toEqual([false, true]);
   });
 });
 
@@ -264,9 +253,10 @@ describe('a player who takes the headset off', () => {
       recorder: new Recorder(),
       timing: createFrameTiming(() => 0),
       view: { view: 'third-person', setView: nothing } as unknown as SessionChangesOptions['view'],
-      body: { startSession: nothing, discontinuity: () => activities.jumped() },
+      body: { startSession: nothing, discontinuity: () => activities.current?.jumped?.() },
       controls: { show: nothing, setWorn: nothing, layOut: nothing },
-      ...{ activities, study },
+      activities,
+      study,
     });
     return {
       ...opened,
@@ -282,7 +272,7 @@ describe('a player who takes the headset off', () => {
   }
 
   test('at full draw shoots no arrow: it is back in the quiver before other hands move the bow', async () => {
-    const { activities, enter, leave } = await worn();
+    const { activities, archery, enter, leave } = await worn();
     enter();
     const pressed = { left: allReleased, right: { ...allReleased, trigger: 1 } };
     let time = 10;
@@ -295,20 +285,20 @@ describe('a player who takes the headset off', () => {
     hold(0, nothingPressed);
     hold(0);
     hold(0.5);
-    expect(activities.archery?.probe()?.draw).toBeGreaterThan(0.3);
+    expect(archery().probe()?.draw).toBeGreaterThan(0.3);
     leave();
     hold(0, nothingPressed);
-    expect(activities.archery?.probe()).toMatchObject({ phase: 'ready', arrowsLeft: 5, stage: 'empty' });
+    expect(archery().probe()).toMatchObject({ phase: 'ready', arrowsLeft: 5, stage: 'empty' });
   });
 
   test('aims by the mouse again that was chosen at the desk, also on a range that was opened in the headset', async () => {
-    const { activities, seen, enter, leave } = await worn();
-    activities.chooseShooter('mouse');
+    const { activities, archery, seen, aims, enter, leave } = await worn();
+    archery().chooseShooter('mouse');
     enter();
     await activities.goTo('studio');
     await activities.goTo('archery');
     leave();
-    expect(seen).toMatchObject({ aims: true, orbit: false });
+    expect([aims.enabled, seen.orbit]).toEqual([true, false]);
   });
 });
 
@@ -316,29 +306,30 @@ describe('a round in a study', () => {
   const opened = range();
 
   test('is started by the study alone, with its layout, its time and its signal', async () => {
-    const { activities, settings, study, layout } = await opened;
+    const { activities, archery, settings, study, layout } = await opened;
     const begun = layout();
     study.join(joinedStudy());
-    activities.restartRound();
-    activities.rule({ everyHitCounts: true });
+    archery().restart();
+    archery().setRules({ everyHitCounts: true });
     expect(layout()).toBe(begun);
-    activities.startRound(42, 30);
+    archery().startRound(42, 30);
     expect(layout()).not.toEqual(begun);
     expect(settings).toMatchObject({ seconds: 30, everyHitCounts: false });
     activities.play(wearer(1, 1.6), nothingPressed);
-    expect(activities.archery?.probe()?.phase).toBe('running');
-    expect(activities.archery?.probe()?.secondsLeft).toBeCloseTo(30, 1);
+    expect(archery().probe()?.phase).toBe('running');
+    expect(archery().probe()?.secondsLeft).toBeCloseTo(30, 1);
   });
 
-  test('tells its trial of every frame', async () => {
-    const { activities, study } = await opened;
+  test('passes every frame to its trial', async () => {
+    const { activities, archery, settings, writer, study } = await opened;
     const runner = createArcheryRunner({
-      goToArchery: async () => undefined,
-      startRound: (seed, seconds) => activities.startRound(seed, seconds),
-      resetRound: () => activities.resetRound(),
-      assists: () => [],
+      settings,
+      writer,
+      opened: archery,
+      open: async () => archery(),
+      leave: () => undefined,
     });
-    study.join({ ...joinedStudy(), archery: runner });
+    study.join({ ...joinedStudy(), runners: { archery: runner } });
     runner.start({ seed: 3, seconds: 1 });
     for (let time = 2; time < 4; time += 1 / 30) activities.play(wearer(time, 1.6), nothingPressed);
     expect(runner.end).toMatchObject({ ended: 'time', score: 0 });
@@ -350,5 +341,136 @@ describe('a round in a study', () => {
     expect(activities.act(5)).not.toBeNull();
     study.join(joinedStudy({ idle: true }));
     expect(activities.act(5.1)).toBeNull();
+  });
+});
+
+/** A small third activity that writes down what the shell asks of it. */
+function darts(done: string[]) {
+  const activity: Activity = {
+    name: 'darts',
+    title: 'Darts',
+    place: 'The dartboard',
+    load: async ({ layout, place, setSound }) => ({
+      scene: dartScene,
+      mirrorSide: 'right',
+      palette: 'red',
+      act: (time) => ({ frame: wearer(time, 1.5), buttons: nothingPressed }),
+      update(frame) {
+        done.push(`update at ${frame.time} s`);
+        return [{ side: 'left', strength: 1, seconds: 0.02 }];
+      },
+      send: () => void done.push('send'),
+      grasp: () => true,
+      show: (_, frame) => void done.push(frame ? 'show' : 'show without a head'),
+      point: (_, press) => (press ? 1 : null),
+      setAway: (away) => void done.push(`away ${away}`),
+      banner: () => 'The dartboard is wet.',
+      menu: () => ({
+        entries: [{ id: 'quiet', label: 'No sound', act: () => setSound(false) }],
+        sheet: null,
+        notice: null,
+        hint: 'Throw!',
+      }),
+      probe: () => ({ name: 'darts', seed: layout.seed, participant: place?.participant ?? null }),
+      dispose: () => void done.push('dispose'),
+    }),
+    createRunner: async (host) => ({
+      prepare: async (place) => void (await host.open(place)),
+      start: ({ seed }) => void done.push(`start ${seed}`),
+      played: () => void done.push('played'),
+      take: () => [],
+      waitingFor: null,
+      standing: false,
+      end: null,
+      interrupted: false,
+      pause: () => undefined,
+      abort: () => host.leave(),
+      assists: () => [],
+    }),
+  };
+  return activity;
+}
+
+const dartScene: CameraScene = { ...rangeScene, free: true };
+
+describe('a third activity', () => {
+  /** A page whose registry lists a third activity. */
+  function dartsPage() {
+    const done: string[] = [];
+    return { ...page([...registered, darts(done)]), done };
+  }
+
+  test('is entered by its name and gets the camera, the mirror and the colours that it wants', async () => {
+    const { activities, seen, done } = dartsPage();
+    await activities.goTo('darts');
+    expect(activities.name).toBe('darts');
+    expect(seen).toEqual({ mirror: 'right', scene: dartScene, orbit: true, mark: false, palette: 'red' });
+    await activities.goTo('archery');
+    expect(done).toEqual(['dispose']);
+    expect(seen).toMatchObject({ scene: rangeScene, palette: null });
+  });
+
+  test('is driven frame by frame', async () => {
+    const { activities, tracked, settings, done } = dartsPage();
+    await activities.goTo('darts');
+    Object.assign(settings, { actor: true });
+    const frame = tracked(7);
+    if (!frame) throw new Error('its own player moves nobody');
+    expect(frame.head.position.y).toBe(1.5);
+    expect(activities.play(frame, nothingPressed)).toEqual([{ side: 'left', strength: 1, seconds: 0.02 }]);
+    activities.current?.send?.(
+      frame,
+      { head: frame.head, leftHand: null, rightHand: null, body: null },
+      unknownFingers,
+    );
+    activities.show(7, frame);
+    activities.show(7.1, null);
+    activities.current?.setAway?.(true);
+    expect(done).toEqual(['update at 7 s', 'send', 'show', 'show without a head', 'away true']);
+    const ray = { origin: vec3(0, 1.6, 0), direction: vec3(0, 0, -1) };
+    expect([activities.current?.point?.(ray, false), activities.current?.point?.(ray, true)]).toEqual([null, 1]);
+  });
+
+  test('has its button and its part in the menu of the headset', async () => {
+    const { activities, settings, writer } = dartsPage();
+    const actions = {} as VrMenuActions;
+    const state = () =>
+      menuStateOf({
+        activities,
+        settings,
+        body: { estimator: 'ik', unavailable: {} },
+        measuring: { step: null },
+        notices: { current: () => [] },
+      });
+    const labels = () => menuButtons(state(), actions).map(({ label }) => label);
+    expect(labels()).toContain('Darts');
+    await activities.goTo('darts');
+    expect(labels()).toEqual(expect.arrayContaining(['To the mirror', 'No sound']));
+    expect(state().notice).toBe('Throw!');
+    writer.change({ sound: true });
+    menuButtons(state(), actions)
+      .find(({ label }) => label === 'No sound')
+      ?.act();
+    expect(settings.sound).toBe(false);
+  });
+
+  test('is played as a task of a study, at the place that the study gives', async () => {
+    const { activities, settings, writer, study, done } = dartsPage();
+    const runners = await createRunners({ activities, settings, writer });
+    expect(Object.keys(runners)).toEqual(['archery', 'ball', 'darts']);
+    study.join({ ...joinedStudy(), runners });
+    const { darts } = runners;
+    await darts?.prepare({
+      participant: 'P02',
+      members: ['P02'],
+      seconds: 9,
+      seat: async () => ({ room: 'here', token: '' }),
+    });
+    expect(activities.current?.probe?.()).toEqual({ name: 'darts', seed: 5, participant: 'P02' });
+    darts?.start({ seed: 3, seconds: 9 });
+    activities.play(wearer(1, 1.6), nothingPressed);
+    darts?.abort();
+    await vi.waitFor(() => expect(activities.name).toBe('studio'));
+    expect(done).toEqual(['start 3', 'update at 1 s', 'played', 'dispose']);
   });
 });

@@ -1,12 +1,16 @@
 import { Group, Vector3 } from 'three';
+import type { Ray } from 'threepoint/core/math/ray';
+import type { OpenActivity } from 'threepoint-page/activity/activity';
+import { menuHeight } from 'threepoint-page/activity/activity-menu';
+import { type BallMenuActions, type BallMenuState, ballEntries } from 'threepoint-page/ball/ball-menu';
 import type { OtherPlayer } from 'threepoint-page/ball/other-players';
+import { activities as registered } from 'threepoint-page/shell/activity-registry';
 import { HeadsetControls } from 'threepoint-page/shell/controls/headset-controls';
 import { PageStudy } from 'threepoint-page/shell/page-study';
 import { createSettings, SettingsWriter } from 'threepoint-page/shell/settings';
 import { readSwitches } from 'threepoint-page/shell/switches';
 import {
   menuButtons,
-  menuHeight,
   noticesTop,
   type VrMenuActions,
   type VrMenuState,
@@ -43,19 +47,22 @@ function headset() {
   let step: CalibrationStep | null = null;
   const pointers = { objects: new Group(), take: () => hands };
   const controls = new HeadsetControls({
-    ...{ settings, writer, study, pointers, switches: { room: null, panel: null }, server: { state: 'here' } },
+    settings,
+    writer,
+    study,
+    pointers,
     notices: { show: () => undefined, current: () => [] },
     body: { estimator: 'ik', unavailable: {} },
     activities: {
-      ...{ name: 'studio', archery: null, ball: null },
+      all: registered,
+      current: {
+        point({ direction }: Ray, press: boolean) {
+          done.push(press ? 'a sheet of the game is pressed' : 'a sheet of the game is pointed at');
+          // The game's sheet hangs overhead.
+          return direction.y > 0.9 ? 2 : null;
+        },
+      } as OpenActivity,
       goTo: async (name) => void done.push(`go to ${name}`),
-      rule: () => void done.push('rule'),
-      restartRound: () => void done.push('restart'),
-      point({ direction }, press) {
-        done.push(press ? 'a sheet of the game is pressed' : 'a sheet of the game is pointed at');
-        // The game's sheet hangs overhead.
-        return direction.y > 0.9 ? 2 : null;
-      },
     },
     measuring: {
       get step() {
@@ -68,7 +75,6 @@ function headset() {
       chooseEstimator: (name) => void done.push(`estimate by ${name}`),
       chooseOwnBody: (name) => void done.push(`wear ${name}`),
       chooseSkinTone: (tone) => void done.push(`in ${tone}`),
-      setPlainOthers: (on) => void done.push(`plain others ${on}`),
       recentre: () => void done.push('recentre'),
       exitVr: () => void done.push('exit'),
     },
@@ -94,7 +100,8 @@ function headset() {
 function studyOf(pointed: (readonly Pointer[])[]) {
   const run = {
     object: new Group() as never,
-    ...{ idle: true, measured: false, paused: false },
+    idle: true,
+    paused: false,
     frame: () => undefined,
     point: (pointers: readonly Pointer[]) => void pointed.push(pointers),
     sessionChanged: () => undefined,
@@ -102,7 +109,7 @@ function studyOf(pointed: (readonly Pointer[])[]) {
       throw new Error('not asked for here');
     },
   };
-  return { run, archery: { played: () => undefined }, ball: { played: () => undefined } };
+  return { run, runners: {} };
 }
 
 describe('in the headset', () => {
@@ -191,26 +198,33 @@ describe('in the headset', () => {
 });
 
 describe('the buttons of the menu', () => {
-  const studio: VrMenuState = {
-    ...{ estimator: 'ik', unavailable: {}, calibration: null, overlay: false, deviceBody: false, activity: 'studio' },
-    ...{
-      ownBody: 'mannequin',
-      skinTone: undefined,
-      plainOthers: false,
-      bowSide: 'left',
-      roundOver: false,
-      ready: null,
-      voices: { phase: 'none', muted: true, deaf: false },
-      others: [],
-      listed: false,
-      canInvite: false,
-      invitation: null,
-      notice: null,
-    },
+  const mirror: VrMenuState = {
+    estimator: 'ik',
+    unavailable: {},
+    calibration: null,
+    overlay: false,
+    deviceBody: false,
+    ownBody: 'mannequin',
+    skinTone: undefined,
+    places: registered,
+    activity: null,
+    notice: null,
+  };
+  const match: BallMenuState = {
+    ready: null,
+    plainOthers: false,
+    others: [],
+    canInvite: false,
+    voices: { phase: 'none', muted: true, deaf: false },
   };
   const ben: OtherPlayer = {
-    ...{ seat: 1, name: 'Ben', role: 'Right thrower', said: 'muted' },
-    ...{ silenced: false, hidden: false, muting: 'offered' },
+    seat: 1,
+    name: 'Ben',
+    role: 'Right thrower',
+    said: 'muted',
+    silenced: false,
+    hidden: false,
+    muting: 'offered',
   };
   const done: string[] = [];
   const actions: VrMenuActions = {
@@ -219,42 +233,35 @@ describe('the buttons of the menu', () => {
     cancelCalibration: () => undefined,
     recentre: () => undefined,
     setOverlay: (on) => void done.push(`overlay ${on}`),
-    goTo: () => undefined,
+    goTo: (place) => void done.push(`go to ${place}`),
     chooseOwnBody: (name) => void done.push(`wear ${name}`),
     chooseSkinTone: (tone) => void done.push(`in ${tone}`),
+    exit: () => undefined,
+  };
+  const ballActions: BallMenuActions = {
     setPlainOthers: (on) => void done.push(`plain others ${on}`),
-    setBowSide: (side) => void done.push(`bow ${side}`),
-    restart: () => undefined,
     ready: (on) => void done.push(`ready ${on}`),
     askVoices: (on) => void done.push(`ask ${on}`),
     joinVoices: () => void done.push('join voices'),
     mute: (on) => void done.push(`mute ${on}`),
-    listOthers: (on) => void done.push(`list others ${on}`),
-    silence: () => undefined,
-    hide: () => undefined,
-    invite: (on) => void done.push(`invite ${on}`),
-    exit: () => undefined,
+    listOthers: () => void done.push('list others'),
+    invite: () => void done.push('invite'),
   };
-  const labels = (change: Partial<VrMenuState> = {}) =>
-    menuButtons({ ...studio, ...change }, actions).map(({ label }) => label);
+  /** The menu at the court. */
+  const atCourt = (change: Partial<BallMenuState> = {}): VrMenuState => ({
+    ...mirror,
+    activity: { entries: ballEntries({ ...match, ...change }, ballActions), sheet: null },
+  });
+  const labels = (state: VrMenuState) => menuButtons(state, actions).map(({ label }) => label);
 
   test.each([
     ['', false],
     [', where the device was asked for its body', true],
-  ])('lie apart and inside the sheet in every game%s', (_, deviceBody) => {
-    const phases = { studio: 'none', archery: 'none', ball: 'in' } as const;
-    for (const [activity, phase] of [...Object.entries(phases), ['ball', 'asked'], ['ball', 'off']] as const) {
-      const voices = { phase, muted: true, deaf: false };
-      const shown = {
-        ...studio,
-        activity: activity as keyof typeof phases,
-        ready: true,
-        voices,
-        deviceBody,
-        others: [ben],
-        canInvite: true,
-      };
-      const buttons = menuButtons({ ...shown, ownBody: 'woman' }, actions);
+  ])('lie apart and inside the menu at the mirror and at the court%s', (_, deviceBody) => {
+    const voices = (phase: BallMenuState['voices']['phase']) =>
+      atCourt({ ready: true, others: [ben], canInvite: true, voices: { phase, muted: true, deaf: false } });
+    for (const state of [mirror, voices('in'), voices('asked'), voices('off')]) {
+      const buttons = menuButtons({ ...state, deviceBody, ownBody: 'woman' }, actions);
       expect(buttons.some(({ id }) => id === 'device')).toBe(deviceBody);
       expect(buttons.length).toBeGreaterThan(8);
       for (const [index, { at }] of buttons.entries()) {
@@ -270,20 +277,19 @@ describe('the buttons of the menu', () => {
   });
 
   test('offer what can be done here', () => {
-    expect(labels()).toEqual(expect.arrayContaining(['Archery', 'Ball game', 'Body: Mannequin']));
-    expect(labels({ ownBody: 'child' })).toEqual(expect.arrayContaining(['Body: Child', 'Skin: own']));
-    expect(labels().join()).not.toContain('Skin');
-    expect(labels({ activity: 'archery' })).toEqual(expect.arrayContaining(['To the mirror', 'Bow: left hand']));
-    expect(labels({ activity: 'archery', roundOver: true })).toContain('New round');
-    expect(labels({ activity: 'ball', ready: false })).toContain('Ready');
-    expect(labels({ activity: 'ball', ready: true })).toContain('Wait for me');
-    expect(labels({ activity: 'ball' })).not.toContain('Ready');
-    expect(labels({ activity: 'ball', canInvite: true })).toContain('Invite');
-    expect(labels({ activity: 'ball', canInvite: false })).not.toContain('Invite');
-    expect(labels({ activity: 'ball', others: [ben] })).toContain('Players');
-    expect(labels({ activity: 'ball', others: [] })).not.toContain('Players');
-    const talking = (phase: VrMenuState['voices']['phase'], muted = true, deaf = false) =>
-      labels({ activity: 'ball', voices: { phase, muted, deaf } });
+    expect(labels(mirror)).toEqual(expect.arrayContaining(['Archery', 'Ball game', 'Body: Mannequin']));
+    expect(labels({ ...mirror, ownBody: 'child' })).toEqual(expect.arrayContaining(['Body: Child', 'Skin: own']));
+    expect(labels(mirror).join()).not.toContain('Skin');
+    expect(labels(atCourt())).toContain('To the mirror');
+    expect(labels(atCourt({ ready: false }))).toContain('Ready');
+    expect(labels(atCourt({ ready: true }))).toContain('Wait for me');
+    expect(labels(atCourt())).not.toContain('Ready');
+    expect(labels(atCourt({ canInvite: true }))).toContain('Invite');
+    expect(labels(atCourt())).not.toContain('Invite');
+    expect(labels(atCourt({ others: [ben] }))).toContain('Players');
+    expect(labels(atCourt())).not.toContain('Players');
+    const talking = (phase: BallMenuState['voices']['phase'], muted = true, deaf = false) =>
+      labels(atCourt({ voices: { phase, muted, deaf } }));
     expect(talking('none').join()).not.toMatch(/Talk|ute me/);
     expect(talking('off')).toContain('Talk');
     expect(talking('asked')).toEqual(expect.arrayContaining(['Join, muted', 'Not now']));
@@ -293,23 +299,24 @@ describe('the buttons of the menu', () => {
   });
 
   test('that change something ask for the other state', () => {
-    const press = (id: string, change: Partial<VrMenuState>) =>
-      menuButtons({ ...studio, ...change }, actions)
+    const press = (id: string, state: VrMenuState) =>
+      menuButtons(state, actions)
         .find((each) => each.id === id)
         ?.act();
-    press('overlay', { overlay: true });
-    press('bow', { activity: 'archery', bowSide: 'right' });
-    press('ready', { activity: 'ball', ready: true });
-    press('body', { ownBody: 'child' });
-    press('skin', { ownBody: 'child' });
-    press('skin', { ownBody: 'child', skinTone: 'dark' });
-    press('others', { activity: 'ball', plainOthers: true });
+    press('overlay', { ...mirror, overlay: true });
+    press('ball', mirror);
+    press('ready', atCourt({ ready: true }));
+    press('body', { ...mirror, ownBody: 'child' });
+    press('skin', { ...mirror, ownBody: 'child' });
+    press('skin', { ...mirror, ownBody: 'child', skinTone: 'dark' });
+    press('others', atCourt({ plainOthers: true }));
+    press('studio', atCourt());
     const bodies = ['wear mannequin', 'in fair', 'in fair', 'plain others false'];
-    expect(done).toEqual(['overlay false', 'bow left', 'ready false', ...bodies]);
+    expect(done).toEqual(['overlay false', 'go to ball', 'ready false', ...bodies, 'go to studio']);
   });
 
-  test('an estimator that is not to be had is shown and cannot be pressed', () => {
-    const looks = menuButtons({ ...studio, unavailable: { learned: 'no network' } }, actions).map(({ look }) => look);
+  test('an unavailable estimator is shown and cannot be pressed', () => {
+    const looks = menuButtons({ ...mirror, unavailable: { learned: 'no network' } }, actions).map(({ look }) => look);
     expect(looks.slice(0, 4)).toEqual(['off', 'chosen', 'plain', 'plain']);
   });
 });

@@ -61,7 +61,7 @@ function page({ actor = false, emulator = null as Emulator | null } = {}) {
   const source = new TrackingSource({
     ...{ settings, headset, body, recorder },
     actor: createActor(),
-    activities: { begin: () => undefined, act: () => null, watched: () => null },
+    activities: { current: null, act: () => null },
     study: { idle: false },
   });
   let now = 0;

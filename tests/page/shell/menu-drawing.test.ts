@@ -1,13 +1,6 @@
-import {
-  type MenuButton,
-  menuButtons,
-  menuHeight,
-  menuMargin,
-  menuWidth,
-  type ShownInvitation,
-  type VrMenuActions,
-  type VrMenuState,
-} from 'threepoint-page/shell/vr-menu/menu-buttons';
+import { menuHeight, menuMargin, menuWidth } from 'threepoint-page/activity/activity-menu';
+import { invitationSheet, type ShownInvitation } from 'threepoint-page/ball/invitation-sheet';
+import { menuButtons, type VrMenuActions, type VrMenuState } from 'threepoint-page/shell/vr-menu/menu-buttons';
 import { drawMenu } from 'threepoint-page/shell/vr-menu/menu-drawing';
 import { qrCode } from 'threepoint-ui/qr-code';
 import { encode } from 'uqr';
@@ -31,31 +24,24 @@ function paper() {
 
 const sizeOf = (font: string) => Number(/(\d+)px/.exec(font)?.[1]);
 
-const nothing = () => undefined;
-const actions: VrMenuActions = {
-  ...{ chooseEstimator: nothing, calibrate: nothing, cancelCalibration: nothing, recentre: nothing },
-  ...{ setOverlay: nothing, goTo: nothing, chooseOwnBody: nothing, chooseSkinTone: nothing, setPlainOthers: nothing },
-  ...{ setBowSide: nothing, restart: nothing, ready: nothing, askVoices: nothing, joinVoices: nothing, mute: nothing },
-  ...{ listOthers: nothing, silence: nothing, hide: nothing, invite: nothing, exit: nothing },
-};
+const actions = {} as VrMenuActions;
 
 function drawn(change: Partial<ShownInvitation>) {
   const invitation: ShownInvitation = { room: 'meadow', address, limit: null, code: 'loading', ...change };
   const state: VrMenuState = {
-    ...{ estimator: 'ik', unavailable: {}, calibration: null, overlay: false, deviceBody: false, activity: 'ball' },
-    ...{
-      ownBody: 'mannequin',
-      skinTone: undefined,
-      plainOthers: false,
-      bowSide: 'left',
-      roundOver: false,
-      ready: false,
-    },
-    ...{ others: [], listed: false },
-    ...{ voices: { phase: 'none', muted: true, deaf: false }, canInvite: true, invitation, notice: 'Waiting for you.' },
+    estimator: 'ik',
+    unavailable: {},
+    calibration: null,
+    overlay: false,
+    deviceBody: false,
+    ownBody: 'mannequin',
+    skinTone: undefined,
+    places: [],
+    activity: { entries: [], sheet: invitationSheet(invitation, () => undefined) },
+    notice: 'Waiting for you.',
   };
   const { context, texts, boxes } = paper();
-  const buttons: readonly MenuButton[] = menuButtons(state, actions);
+  const buttons = menuButtons(state, actions);
   drawMenu(context, state, buttons, null);
   return { texts, boxes, buttons };
 }
@@ -97,10 +83,10 @@ describe('the invitation in the headset', () => {
     expect(Math.max(...texts.filter(({ text }) => text !== 'Close').map(({ y }) => y))).toBeLessThan(menuHeight - 140);
   });
 
-  test('says that the code is on its way, or that it cannot be had', () => {
-    expect(drawn({ code: 'loading' }).texts.map(({ text }) => text)).toContain('The code comes in a moment.');
-    const failed = drawn({ code: 'not to be had' });
-    expect(failed.texts.map(({ text }) => text).join(' ')).toContain('The code could not be loaded: use the address.');
+  test('says that the code is loading, or that it could not be loaded', () => {
+    expect(drawn({ code: 'loading' }).texts.map(({ text }) => text)).toContain('The code is loading.');
+    const failed = drawn({ code: 'failed' });
+    expect(failed.texts.map(({ text }) => text).join(' ')).toContain('The code could not be loaded. Use the address.');
     expect(failed.boxes).toEqual([]);
   });
 });

@@ -6,7 +6,7 @@ function page(draw: () => void = () => undefined): PageFrame {
   const parts = {
     settings: { mirror: false },
     headset: { visibility: 'visible', worn: true, takePress: () => false, turnByStick: () => false },
-    activities: { name: 'studio', watched: () => null, show: () => undefined },
+    activities: { name: 'studio', current: null, show: () => undefined },
     controls: { point: () => undefined },
     study: { run: null },
     stage: { look: () => undefined, draw },

@@ -1,14 +1,9 @@
 import { Vector3 } from 'three';
 import { stations } from 'threepoint-games/ball/stations';
+import { menuHeight, menuMargin, menuWidth } from 'threepoint-page/activity/activity-menu';
 import type { OtherPlayer } from 'threepoint-page/ball/other-players';
-import {
-  menuButtons,
-  menuHeight,
-  menuMargin,
-  menuWidth,
-  type VrMenuActions,
-  type VrMenuState,
-} from 'threepoint-page/shell/vr-menu/menu-buttons';
+import { type PlayersSheetActions, playersSheet } from 'threepoint-page/ball/players-sheet';
+import { menuButtons, type VrMenuActions, type VrMenuState } from 'threepoint-page/shell/vr-menu/menu-buttons';
 import { drawMenu } from 'threepoint-page/shell/vr-menu/menu-drawing';
 import { VrMenu } from 'threepoint-page/shell/vr-menu/vr-menu';
 import { longestName } from 'threepoint-rooms/protocol/names';
@@ -19,39 +14,47 @@ import { drawNowhere } from './drawing-in-node';
 drawNowhere();
 
 const player = (seat: number, change: Partial<OtherPlayer> = {}): OtherPlayer => ({
-  ...{ seat, name: `Player ${seat}`, role: 'Right thrower', said: 'can be heard' },
-  ...{ silenced: false, hidden: false, muting: 'offered' },
+  seat,
+  name: `Player ${seat}`,
+  role: 'Right thrower',
+  said: 'can be heard',
+  silenced: false,
+  hidden: false,
+  muting: 'offered',
   ...change,
 });
 const ben = player(0, { name: 'Ben' });
 const bot = player(2, { name: 'Kim (bot)', said: '', muting: 'none' });
+const menuActions = {} as VrMenuActions;
 
-/** The menu's state while the other players are listed. */
-const listing = (...others: readonly OtherPlayer[]): VrMenuState => ({
-  ...{ estimator: 'ik', unavailable: {}, calibration: null, overlay: false, deviceBody: false, activity: 'ball' },
-  ...{ ownBody: 'mannequin', skinTone: undefined, plainOthers: false, bowSide: 'left', roundOver: false, ready: false },
-  ...{ voices: { phase: 'in', muted: true, deaf: false }, canInvite: true, invitation: null, notice: 'Waiting.' },
-  ...{ others, listed: true },
-});
-
-/** What is pressed is written down. */
+/** Records every press. */
 function recorded() {
   const done: string[] = [];
-  const nothing = () => undefined;
-  const actions: VrMenuActions = {
-    ...{ chooseEstimator: nothing, calibrate: nothing, cancelCalibration: nothing, recentre: nothing },
-    ...{ setOverlay: nothing, goTo: nothing, chooseOwnBody: nothing, chooseSkinTone: nothing, invite: nothing },
-    ...{ setPlainOthers: nothing, setBowSide: nothing, restart: nothing, ready: nothing, askVoices: nothing },
-    ...{ joinVoices: nothing, mute: nothing, exit: nothing },
-    listOthers: (on) => void done.push(`list ${on}`),
+  const actions: PlayersSheetActions = {
+    close: () => void done.push('close'),
     silence: (seat, on) => void done.push(`silence ${seat} ${on}`),
     hide: (seat, on) => void done.push(`hide ${seat} ${on}`),
   };
   return { done, actions };
 }
 
+/** The menu while it lists the other players. */
+const listing = (others: readonly OtherPlayer[], { actions } = recorded()): VrMenuState => ({
+  estimator: 'ik',
+  unavailable: {},
+  calibration: null,
+  overlay: false,
+  deviceBody: false,
+  ownBody: 'mannequin',
+  skinTone: undefined,
+  places: [],
+  activity: { entries: [], sheet: playersSheet(others, actions) },
+  notice: 'Waiting.',
+});
+
+const buttonsFor = (...others: readonly OtherPlayer[]) => menuButtons(listing(others), menuActions);
 const shown = (...others: readonly OtherPlayer[]) =>
-  menuButtons(listing(...others), recorded().actions).map(({ id, label, look }) => [id, label, look]);
+  buttonsFor(...others).map(({ id, label, look }) => [id, label, look]);
 
 describe('the other players in the headset', () => {
   test('have a button each to mute and to hide them; a bot, which has no voice, the second alone', () => {
@@ -73,16 +76,16 @@ describe('the other players in the headset', () => {
 
   test('a press asks for the other state of that player', () => {
     const { done, actions } = recorded();
-    const heard = [ben, player(1, { silenced: true }), player(2, { hidden: true, muting: 'off' })];
-    for (const { act, look } of menuButtons(listing(...heard), actions)) if (look !== 'off') act();
+    const others = [ben, player(1, { silenced: true }), player(2, { hidden: true, muting: 'off' })];
+    for (const { act, look } of playersSheet(others, actions).buttons) if (look !== 'off') act();
     expect(done).toEqual([
       ...['silence 0 true', 'hide 0 true', 'silence 1 false', 'hide 1 true', 'hide 2 false'],
-      'list false',
+      'close',
     ]);
   });
 
   test('the buttons of all that a spectator sees lie apart and inside the sheet, as big as a palm', () => {
-    const buttons = menuButtons(listing(...stations.map((_, seat) => player(seat))), recorded().actions);
+    const buttons = buttonsFor(...stations.map((_, seat) => player(seat)));
     expect(buttons).toHaveLength(2 * stations.length + 1);
     for (const [index, { at }] of buttons.entries()) {
       const [x, y, w, h] = at;
@@ -104,8 +107,8 @@ describe('the other players in the headset', () => {
       fillText: (text: string, _: number, y: number, most?: number) => void texts.push({ text, y, most }),
     } as unknown as CanvasRenderingContext2D;
     const long = player(1, { name: 'W'.repeat(longestName) });
-    const state = listing(ben, long);
-    const buttons = menuButtons(state, recorded().actions);
+    const state = listing([ben, long]);
+    const buttons = menuButtons(state, menuActions);
     drawMenu(context, state, buttons, null);
     const [{ text: heading } = { text: '' }] = texts;
     expect(heading).toBe('Other players');
@@ -117,17 +120,17 @@ describe('the other players in the headset', () => {
     // The menu's notices would lie below the buttons of a full list.
     expect(written('Waiting.')).toBeUndefined();
     texts.length = 0;
-    drawMenu(context, listing(), menuButtons(listing(), recorded().actions), null);
-    expect(texts.map(({ text }) => text)).toContain('No one else is here now.');
+    drawMenu(context, listing([]), buttonsFor(), null);
+    expect(texts.map(({ text }) => text)).toContain('You are alone here.');
   });
 
   test('a finger tip that is put through a button presses it', () => {
     const { done, actions } = recorded();
-    const menu = new VrMenu(actions);
+    const menu = new VrMenu(menuActions);
     menu.setVisible(true);
-    menu.show(listing(ben));
+    menu.show(listing([ben], { done, actions }));
     const sheet = menu.object.children[0];
-    const [x, y, w, h] = menuButtons(listing(ben), actions)[0]?.at ?? [0, 0, 0, 0];
+    const [x, y, w, h] = buttonsFor(ben)[0]?.at ?? [0, 0, 0, 0];
     /** Hands whose rays point away from the sheet. */
     const hand = (): Pointer & { tip: Vector3 } => {
       const tip = new Vector3();

@@ -1,5 +1,6 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import type { OpenActivity } from 'threepoint-page/activity/activity';
 import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
 import type { Headset } from 'threepoint-page/shell/headset';
 import { SessionChanges, type SessionChangesOptions } from 'threepoint-page/shell/session-changes';
@@ -15,18 +16,20 @@ function player(recorder = new Recorder()) {
   const headset = { pictureRateHz: 72, visibility: 'none' as Headset['visibility'] };
   let away = false;
   const nothing = () => undefined;
-  const play = {
-    away(on: boolean) {
-      away = on;
-    },
-  };
   const changes = new SessionChanges({
     headset,
     recorder,
     timing: createFrameTiming(() => 0),
     view: { view: 'third-person', setView: nothing } as unknown as SessionChangesOptions['view'],
     body: { startSession: nothing, discontinuity: nothing },
-    activities: { ball: { play }, sessionChanged: nothing } as unknown as SessionChangesOptions['activities'],
+    activities: {
+      sessionChanged: nothing,
+      current: {
+        setAway(on: boolean) {
+          away = on;
+        },
+      } as OpenActivity,
+    },
     controls: { show: nothing, setWorn: nothing, layOut: nothing },
     study: { run: null },
   });

@@ -30,7 +30,7 @@ function worn() {
     recorder,
     body,
     actor: createActor(),
-    activities: { begin: () => undefined, act: () => null, watched: () => null },
+    activities: { current: null, act: () => null },
     study: { idle: false },
   });
   const wristAt = (time: number) => {
@@ -49,8 +49,7 @@ test('with the actor off before a real headset is put on, the body stands still'
     body: { wearerCalibration: defaultCalibration },
     actor: createActor(),
     activities: {
-      begin: () => undefined,
-      watched: () => null,
+      current: null,
       act(time) {
         asked.push(time);
         return null;

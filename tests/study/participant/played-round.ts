@@ -1,7 +1,8 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createArcheryPlay } from 'threepoint-page/archery/archery-play';
-import { createArcheryRunner } from 'threepoint-page/shell/study-archery';
+import { createArcheryRunner } from 'threepoint-page/archery/archery-runner';
 import { type FinishedTrial, playTrial } from 'threepoint-study/participant/study-trial';
+import { activityServices } from '../../page/activity-services';
 
 export const frameSeconds = 1 / 72;
 export const epoch = 1_800_000_000;
@@ -22,14 +23,21 @@ export function studiedArcher(seed: number) {
     () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false, startSignal: true }),
     () => seed,
   );
-  const runner = createArcheryRunner({
-    goToArchery: async () => undefined,
+  const archery = {
+    play,
     startRound() {
       play.restart(defaultCalibration);
       play.signal();
     },
     resetRound: () => undefined,
-    assists: () => [],
+  };
+  const { settings, writer } = activityServices();
+  const runner = createArcheryRunner({
+    settings,
+    writer,
+    opened: () => archery,
+    open: async () => archery,
+    leave: () => undefined,
   });
   return { play, runner };
 }
@@ -64,7 +72,7 @@ export function playedRound({ paused = never, headless = never, handless = never
     if (seen && !stands) {
       const shown = play.follow(frame, buttons);
       for (const event of shown.events) if (event.type === 'landed') landed.push(time);
-      runner.played(shown);
+      runner.played();
     }
     finished = trial.follow(time, seen ? frame : null);
     time += frameSeconds;

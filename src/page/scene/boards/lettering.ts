@@ -24,7 +24,7 @@ export function paintGround(context: CanvasRenderingContext2D, width: number, he
   context.fillRect(0, 0, width, height);
 }
 
-/** The same with round corners and an edge: a sheet that hangs free. */
+/** Paints the ground with round corners and an edge, for a free-hanging sheet. */
 export function paintCard(context: CanvasRenderingContext2D, width: number, height: number): void {
   context.save();
   context.beginPath();

@@ -12,7 +12,7 @@ export interface ScoreHeading {
 /** The clock is lit for so long before the bell [s]. */
 const lastSeconds = 10;
 const width = 1024;
-/** Where the line below it is drawn [pixels]; what a game adds stands under it. */
+/** The height of the line below the heading [pixels]; the game's own content starts below it. */
 const ruleAt = 344;
 
 /** Score and clock over a line: the upper part of a board 1024 pixels wide. */

@@ -3,7 +3,7 @@ import { woodColor } from '../outdoors/wood';
 import { merged, painted } from '../painted-geometry';
 
 export interface WoodenBoardShape {
-  /** Of what is written on it [m]. */
+  /** The width of the lettering [m]. */
   readonly width: number;
   readonly height: number;
   /** Height of its middle above the ground [m]. */

@@ -148,7 +148,7 @@ function tree(
   return [trunk, ...lumps.map((geometry) => foliage(geometry, color, height * 0.3, height))];
 }
 
-/** Where trees stand: a wood behind the backstop, lines along both sides, a few behind the archer. */
+/** Builds the trees: a wood behind the backstop, lines along both sides, a few behind the archer. */
 function treeGeometry(quality: Quality): BufferGeometry {
   const random = createScatter(20231);
   const detail = quality === 'high' ? 2 : 1;

@@ -12,7 +12,7 @@ export type Recipes = ReadonlyMap<string, Recipe>;
 export interface SoundStage {
   /** Starts the audio; a browser allows it only within a user's gesture. Rejects where there is no audio. */
   unlock(): Promise<void>;
-  /** The same without the sounds of the game: its context, running, for what else is to be heard by the same ears. */
+  /** Returns the running audio context without the sounds of the game, for other sounds with the same listener. */
   open(): Promise<AudioContext>;
   /** null while the audio rests: it would keep everything and play it at once later. */
   readonly player: Player | null;

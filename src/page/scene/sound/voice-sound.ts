@@ -9,12 +9,12 @@ const quiet = -55;
 const loud = -15;
 /** Samples that a level is read from: 21 ms at 48 kHz. */
 const window = 1024;
-/** The same for tools: a third of a second, longer than a syllable. */
+/** The window for tools [samples]: a third of a second, longer than a syllable. */
 const longWindow = 16_384;
 /** A level falls by half in so long [s], so that a mark does not flicker between syllables. */
 const fallHalfLife = 0.06;
 
-/** Root mean square of what an analyser hears now [1: full scale]. */
+/** Returns the root mean square of an analyser's current signal [1: full scale]. */
 function rmsOf(analyser: AnalyserNode, samples: Float32Array<ArrayBuffer>): number {
   analyser.getFloatTimeDomainData(samples);
   let sum = 0;
@@ -103,12 +103,12 @@ export class VoiceSound {
     heard.element.srcObject = null;
   }
 
-  /** To be called often: elements fail where the device's audio ends and begins anew, and their voices would stay silent from then on. */
+  /** Restarts failed audio elements. Call it often: elements fail when the device's audio output restarts, which would silence their voices. */
   mend(): void {
     for (const { element, stream } of this.#heard.values()) if (element.error) pull(element, stream);
   }
 
-  /** Where a voice comes from, floor frame. */
+  /** Places a voice, floor frame. */
   place(id: string, { x, y, z }: Vec3): void {
     const panner = this.#heard.get(id)?.panner;
     if (!panner) return;
@@ -117,7 +117,7 @@ export class VoiceSound {
     panner.positionZ.value = z;
   }
 
-  /** Whether a voice is to be heard here. */
+  /** Silences a voice, or plays it again. */
   setSilent(id: string, silent: boolean): void {
     const heard = this.#heard.get(id);
     if (heard) heard.gain.gain.value = silent ? 0 : 1;
@@ -152,7 +152,7 @@ export class VoiceSound {
     return loudnessAt(this.#meter);
   }
 
-  /** The same before distance and direction change them; the difference is what these do, however loud a microphone makes its voice meanwhile. */
+  /** Returns the loudness before distance and direction change it [dB of full scale]. The difference from `loudness` is their effect, whatever the level of the microphone. */
   spokenLoudness(): number {
     return loudnessAt(this.#spokenMeter);
   }

@@ -60,7 +60,7 @@ export class Controls {
     const { settings, headset, activities, stage, avatar } = this.#parts;
     document.body.classList.toggle('larger-text', settings.largerText);
     document.body.classList.toggle('in-session', headset.worn);
-    document.body.classList.toggle('on-the-range', activities.name !== 'studio');
+    document.body.classList.toggle('in-activity', activities.current !== null);
     this.#overlay.setVisible(settings.overlay);
     stage.setSkeletonVisible(settings.debugSkeleton);
     avatar.current?.setUpperBodyOnly(settings.upperBodyOnly);
@@ -77,13 +77,13 @@ export class Controls {
     this.#desktop.setPanelOpen(!worn && this.#panelOpenBefore);
   }
 
-  /** Where there is no place beside the picture, the panel stays closed until its button is pressed, unless the address asks for it. */
+  /** Opens or closes the panel. If there is no place beside the picture it stays closed until its button is pressed, unless the address asks for it. */
   setPanelOpen(open: boolean): void {
     const asked = this.#parts.switches.panel === true;
     this.#desktop.setPanelOpen(open && (asked || !isNarrow()));
   }
 
-  /** What is heard, in words. */
+  /** Shows a caption of a sound. */
   caption(text: string): void {
     this.#play.caption(text);
   }
@@ -115,8 +115,8 @@ export class Controls {
     this.#inHeadset.showReport(report);
     mocap.show();
     if (recorder.mode !== 'idle') this.show();
-    else if (activities.name !== 'studio') this.#play.show();
-    if (activities.ball) this.#inHeadset.show();
+    else if (activities.current) this.#play.show();
+    if (activities.current) this.#inHeadset.show();
     this.#play.showBanner();
   }
 }

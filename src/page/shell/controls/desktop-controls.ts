@@ -70,7 +70,7 @@ export class DesktopControls {
       b: () => actions.setDebugSkeleton(!settings.debugSkeleton),
       u: () => actions.setUpperBodyOnly(!settings.upperBodyOnly),
       o: () => actions.setOverlay(!settings.overlay),
-      t: () => activities.ball?.voices.toggleMuted(),
+      t: () => activities.current?.toggleMuted?.(),
       p: () => this.#panel.toggle(),
     };
   }

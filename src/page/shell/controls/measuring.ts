@@ -23,7 +23,7 @@ export interface MeasuringOptions {
   readonly wearer: Pick<Wearer, 'calibrateForGood'>;
 }
 
-/** The guided calibration of this page: told by a dialog on the desktop, by the menu in the headset. */
+/** The guided calibration of this page: a dialog on the desktop, the menu in the headset. */
 export class Measuring {
   /** Each step of it; null: it is over. */
   readonly steps = new Emitter<[step: CalibrationStep | null]>();
@@ -41,7 +41,7 @@ export class Measuring {
     );
     this.#guide = createCalibrationGuide({
       onStep: (step) => this.#show(step),
-      // Three points do not tell how long a forearm is: the typed one stays.
+      // Three points do not determine the length of a forearm: a typed one stays.
       onMeasured: (calibration) =>
         wearer.calibrateForGood(withForearm(calibration, body.wearerCalibration.forearm), 'measured'),
       closesItself: () => headset.worn,

@@ -54,7 +54,7 @@ export class OpenedFiles {
     if (await avatar.open(source)) notices.show('info', `${avatar.name} is your avatar now.`);
   }
 
-  /** The bones of the file that waits for them. Never rejects: what is wrong stands where they are told. */
+  /** Sets the bones of the file that waits for them. Never rejects: the form shows what is wrong. */
   async giveBones(bones: BoneMap): Promise<void> {
     const { avatar, notices } = this.#options;
     if (await avatar.giveBones(bones)) notices.show('info', `${avatar.name} is your avatar now.`);

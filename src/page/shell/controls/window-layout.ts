@@ -1,11 +1,11 @@
 import { pageElement } from 'threepoint-ui/element';
 import type { Stage } from '../stage';
 
-/** Of a window [CSS pixels], up to which the controls lie below the picture instead of beside it. */
+/** The window width up to which the controls lie below the picture instead of beside it [CSS pixels]. */
 const narrowest = 760;
 /** What the panel covers, with the gaps beside it [CSS pixels]. */
 const panelWidth = 352;
-/** Of a narrow window's height, what the panel covers. */
+/** The share of a narrow window's height that the panel covers. */
 const panelShare = 0.48;
 /** Between the body and the button that enters VR [CSS pixels]. */
 const besideEnter = 8;
@@ -15,7 +15,7 @@ export const isNarrow = (): boolean => window.innerWidth <= narrowest;
 
 export interface WindowLayoutOptions {
   readonly stage: Pick<Stage, 'layOut'>;
-  /** Tells of the panel that opens or closes by an event, `toggle`. */
+  /** Emits the event `toggle` when the panel opens or closes. */
   readonly panelRegion: HTMLElement;
   panelOpen(): boolean;
   /** What a card covers of the window, on the left or, of a narrow one, below; null: there is none. */

@@ -15,7 +15,7 @@ export interface PaletteChoice {
   readonly color: string;
 }
 
-/** The avatar that is shown, and the colours of ours. */
+/** Shows the name of the avatar and, for the page's own avatars, their colours. */
 function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions) {
   const name = element('p', { class: 'avatar-name' });
   const pending = createRunningLine({ class: 'hint' });
@@ -80,7 +80,7 @@ function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions)
   };
 }
 
-/** Where another avatar comes from: a file of this device, or an address. */
+/** Lets the user open another avatar: a file of this device, or an address. */
 function otherAvatars(actions: AvatarActions): HTMLElement {
   const address = element('input', {
     type: 'url',

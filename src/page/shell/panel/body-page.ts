@@ -7,7 +7,7 @@ import type { BodyActions, PanelPage, PanelState } from './panel-state';
 /** What can be typed [cm]. */
 export type MeasureRanges = Readonly<Record<'height' | 'armSpan' | 'forearm', MeasureRange>>;
 
-/** The choice of the estimator; one that is not to be had says why. */
+/** Lets the user choose an estimator. An unavailable one gives the reason. */
 function createEstimators(actions: Pick<BodyActions, 'chooseEstimator'>) {
   const choices = estimatorOrder.map((name) => {
     const { label, text } = estimatorTexts[name];
@@ -68,7 +68,7 @@ function createMeasure(label: string, range: MeasureRange, onChange: () => void)
   return {
     input,
     node: element('label', { class: 'measure' }, element('span', {}, label), input, element('i', {}, 'cm')),
-    /** null: not told. */
+    /** null: not given. */
     show(centimetres: number | null) {
       // A number that is being typed must not change under the fingers.
       if (document.activeElement === input) return;

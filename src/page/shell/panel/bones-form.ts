@@ -24,7 +24,7 @@ const limbs = {
 } as const;
 const limbNames = Object.keys(limbs) as (keyof typeof limbs)[];
 
-/** The bones that have a list of their own; fingers, toes and eyes can be told as text. */
+/** The bones that have a list of their own. Fingers, toes and eyes can be given as text. */
 const listed: readonly { readonly bone: BoneName; readonly label: string }[] = [
   ...Object.entries(words).map(([bone, label]) => ({ bone: bone as BoneName, label })),
   ...(['left', 'right'] as const).flatMap((side) =>
@@ -36,7 +36,7 @@ const listed: readonly { readonly bone: BoneName; readonly label: string }[] = [
 ];
 const isNeeded = (bone: BoneName): boolean => (neededBones as readonly BoneName[]).includes(bone);
 
-/** The map that a text tells, or the sentence that says why it tells none. */
+/** Parses a map of bones. Returns a sentence about the first fault instead. */
 export function bonesIn(text: string, found: readonly string[]): BoneMap | { readonly complaint: string } {
   if (text.trim() === '') return {};
   let value: unknown;
@@ -75,7 +75,7 @@ export function boneComplaint(bones: BoneMap): string | null {
   return null;
 }
 
-/** Where a map can be written, folded away. */
+/** Lets the user write a map as text, in a section that can be folded. */
 const asText = (text: HTMLTextAreaElement): HTMLElement =>
   element(
     'details',
@@ -89,7 +89,7 @@ const asText = (text: HTMLTextAreaElement): HTMLElement =>
     text,
   );
 
-/** Asks which of a file's bones is which, where their names do not tell. */
+/** Lets the user map the bones of a file that could not be matched to a humanoid. */
 export function createBonesForm(give: (bones: BoneMap) => void) {
   const title = element('h2', {}, 'Bones of this file');
   const hint = element('p', { class: 'hint' });

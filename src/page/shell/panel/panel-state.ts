@@ -31,7 +31,7 @@ export interface ExportState {
 /** Everything the panel shows; it keeps no state of its own. */
 export interface PanelState {
   readonly estimator: EstimatorName;
-  /** Why an estimator is not to be had; absent: it is. */
+  /** The reason why an estimator is unavailable; absent: it is available. */
   readonly unavailable: Partial<Readonly<Record<EstimatorName, string>>>;
   readonly view: ViewName;
   readonly mirror: boolean;
@@ -41,25 +41,25 @@ export interface PanelState {
   readonly largerText: boolean;
   readonly singleKeys: boolean;
   readonly avatarName: string;
-  /** What became of an avatar that was asked for and is not shown; null: nothing to tell. */
+  /** The state of an avatar that was requested and is not shown; null: there is none. */
   readonly avatarPending: string | null;
   /** Another avatar than ours is shown, or was wanted. */
   readonly ownAvatarOffered: boolean;
   /** Whether an avatar is on its way that can be given up. */
   readonly avatarOnItsWay: boolean;
-  /** A file whose bones are to be told; null: none. */
+  /** A file whose bones the user must map; null: none. */
   readonly waitingForBones: WaitingForBones | null;
   readonly shareAvatar: boolean;
   readonly plainOthers: boolean;
   /** Which body of our own is shown; null: another avatar is. */
   readonly ownBody: OwnBody | null;
-  /** Of people among our bodies; undefined: the one that the body comes with. */
+  /** The skin tone of a human avatar; undefined: the avatar's own. */
   readonly skinTone: SkinTone | undefined;
   /** Colours of our own avatar; null: another avatar is shown, which keeps its own. */
   readonly palette: string | null;
   readonly heightCm: number;
   readonly armSpanCm: number;
-  /** null: not told. */
+  /** null: not given. */
   readonly forearmCm: number | null;
   readonly eyeHeightCm: number;
   readonly calibrationSource: string;

@@ -19,9 +19,9 @@ export interface PanelOptions extends MeasureRanges {
 
 export interface Panel {
   readonly open: boolean;
-  /** The region hears of it as an event, `toggle`. */
+  /** Opens or closes the panel. The region emits the event `toggle`. */
   setOpen(open: boolean): void;
-  /** As the user wants it: opens or closes it, and tells. */
+  /** Opens or closes the panel for the user, and reports it to `keepPanel`. */
   toggle(): void;
   show(state: PanelState): void;
 }

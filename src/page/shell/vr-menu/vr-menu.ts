@@ -3,15 +3,9 @@ import type { FrameReport } from 'threepoint-ui/overlay';
 import { createVrPanel } from 'threepoint-ui/vr-panel';
 import type { Pointer } from 'threepoint-ui/vr-pointers';
 import { createPanelTouch } from 'threepoint-ui/vr-touch';
+import { type MenuButton, menuHeight, menuWidth } from '../../activity/activity-menu';
 import { drawFrameTimes, frameTimesHeight, frameTimesWidth } from './frame-times-drawing';
-import {
-  type MenuButton,
-  menuButtons,
-  menuHeight,
-  menuWidth,
-  type VrMenuActions,
-  type VrMenuState,
-} from './menu-buttons';
+import { menuButtons, type VrMenuActions, type VrMenuState } from './menu-buttons';
 import { drawMenu } from './menu-drawing';
 
 const pixelsPerMetre = 1000;
@@ -25,7 +19,7 @@ export class VrMenu {
   readonly #actions: VrMenuActions;
   #state: VrMenuState | null = null;
   #buttons: readonly MenuButton[] = [];
-  /** Those of them that can be pressed. */
+  /** The buttons that can be pressed. */
   #usable: readonly MenuButton[] = [];
   /** The button that a hand points at. */
   #hovered: string | null = null;

@@ -1,22 +1,15 @@
-import type { TaskEnd, TaskEvent, TaskPlace, TaskRunner } from 'threepoint-study/participant/task-runner';
-import type { BallFrame } from '../ball/ball-frame';
-import type { BallPlay } from '../ball/ball-play';
+import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
+import type { TaskEnd, TaskEvent, TaskPlace } from 'threepoint-study/participant/task-runner';
+import type { ActivityRunner, StudyHost } from '../activity/activity';
+import type { BallFrame } from './ball-frame';
+import type { BallPlay } from './ball-play';
 
-/** What the study needs of the ball game on the page. */
-export interface BallHost {
-  /** The court in this room of the relay, on this seat. */
-  goToBall(place: TaskPlace): Promise<void>;
-  /** The match on the page; null: this page is not at the court. */
-  ball(): BallPlay | null;
-  leaveBall(): void;
+/** The part of the ball game that a study uses. */
+export interface StudiedBall {
+  readonly play: Pick<BallPlay, 'newest' | 'room' | 'ready' | 'pause'>;
 }
 
-/** The ball game as a task of a study; `played` hears every frame of the match on the page. */
-export interface BallRunner extends TaskRunner {
-  played(frame: BallFrame): void;
-}
-
-/** How much later than here the room's bell may be heard [s]: the room counts from the moment it started the match. */
+/** The longest delay of the room's bell after this page's [s]: the room counts from the moment it started the match. */
 const bellDelay = 4;
 
 /** What an event of the match is for the participant on this seat, at this second of their trial. */
@@ -59,7 +52,7 @@ class BallTrial {
     if (this.end || this.interrupted) return;
     const { state, connection } = frame;
     const over = state.phase === 'over';
-    // A match that the room has forgotten, or that is told of no more, has no result.
+    // A match that the room has forgotten or disconnected has no result.
     const began = this.#from !== null;
     this.interrupted = (began && frame.epoch !== this.#epoch) || (connection === 'ended' && !(began && over));
     if (this.interrupted) return;
@@ -85,10 +78,10 @@ class BallTrial {
   #follow({ state, connection, me, events }: BallFrame, since: number): void {
     const at = Math.max(0, since);
     this.#happened.push(...events.flatMap((event) => taskEvents(event, me, at)));
-    // Where the room's own bell rings no later, its word is the last one: a ball may still be in the air.
+    // If the room's own bell rings no later, it decides: a ball may still be in the air.
     const limit = state.options.seconds <= this.seconds ? this.seconds + bellDelay : this.seconds;
     const over = state.phase === 'over';
-    // A page that does not hear the room does not know the score: it waits for its return.
+    // Without a connection this page does not know the score: it waits for the connection.
     if (!over && (at < limit || connection !== 'joined')) return;
     this.end = {
       seconds: Math.min(at, limit),
@@ -113,24 +106,29 @@ class BallTrial {
   }
 }
 
-export function createBallRunner(host: BallHost): BallRunner {
+/** The ball game as a task of a study. */
+export function createBallRunner(host: StudyHost<StudiedBall>): ActivityRunner {
   let place: TaskPlace | null = null;
   let trial: BallTrial | null = null;
-  const getReady = () => host.ball()?.ready(true);
+  const play = () => host.opened()?.play;
+  const getReady = () => play()?.ready(true);
 
   return {
     async prepare(next) {
       place = next;
-      await host.goToBall(next);
+      if (!(await host.open(next))) throw new PhrasedError('round.ball');
     },
     start({ seconds }) {
-      const ball = host.ball();
-      trial = new BallTrial(seconds, place?.members ?? [], ball?.room?.match?.phase === 'running');
-      // The seat still wants what this page wanted before it was loaded again, which may have been a pause.
-      ball?.pause(false);
-      ball?.ready(true);
+      const match = play();
+      trial = new BallTrial(seconds, place?.members ?? [], match?.room?.match?.phase === 'running');
+      // The room still applies the pause that this page requested before it was reloaded.
+      match?.pause(false);
+      match?.ready(true);
     },
-    played: (frame) => trial?.played(frame, getReady),
+    played() {
+      const newest = play()?.newest;
+      if (newest) trial?.played(newest, getReady);
+    },
     take: () => trial?.take() ?? [],
     get end() {
       return trial?.end ?? null;
@@ -144,10 +142,10 @@ export function createBallRunner(host: BallHost): BallRunner {
     get interrupted() {
       return trial?.interrupted ?? false;
     },
-    pause: (on) => host.ball()?.pause(on),
+    pause: (on) => play()?.pause(on),
     abort() {
       trial = null;
-      host.leaveBall();
+      host.leave();
     },
     assists: () => [],
   };

@@ -4,7 +4,7 @@ import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { allReleased, type Buttons } from 'threepoint/core/input/button-presses';
 import { type BallConnection, createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import { createBallPlay } from 'threepoint-page/ball/ball-play';
-import { createBallRunner } from 'threepoint-page/shell/study-ball';
+import { createBallRunner } from 'threepoint-page/ball/ball-runner';
 import type { ConnectionStatus, Visitor } from 'threepoint-rooms/client/connection';
 import {
   type FinishedTrial,
@@ -14,6 +14,7 @@ import {
 } from 'threepoint-study/participant/study-trial';
 import { expect, test } from 'vitest';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
+import { activityServices } from '../activity-services';
 
 const released: Buttons = { left: allReleased, right: allReleased };
 const people = ['P01', 'P02', 'P03'];
@@ -91,10 +92,14 @@ async function group({ stopped = false } = {}) {
         acting: () => false,
         seed: 7,
       });
+      const { settings, writer } = activityServices();
+      const court = { play };
       const runner = createBallRunner({
-        goToBall: async () => undefined,
-        ball: () => play,
-        leaveBall: () => play.leave(),
+        settings,
+        writer,
+        opened: () => court,
+        open: async () => court,
+        leave: () => play.leave(),
       });
       const place = { participant, members: people, seconds, seat: async () => ({ room: 'here', token: '' }) };
       await runner.prepare(place);
@@ -125,7 +130,7 @@ async function group({ stopped = false } = {}) {
           const performed = play.act(time);
           play.follow(time, performed?.frame ?? null, performed?.buttons ?? released);
           if (performed) play.send(performed.frame, poseOf(estimator, performed.frame), unknownFingers);
-          if (play.newest) runner.played(play.newest);
+          runner.played();
           timeFrame?.();
           if (!finished) finished = trial?.follow(time, performed?.frame ?? null) ?? null;
         },

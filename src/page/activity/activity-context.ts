@@ -1,0 +1,125 @@
+import type { AvatarHash, OwnAvatar, OwnBody } from 'threepoint/core/body/avatar-ref';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import type { Pose } from 'threepoint/core/math/pose';
+import type { Ray } from 'threepoint/core/math/ray';
+import type { Side } from 'threepoint/core/math/side';
+import type { PageClock } from 'threepoint/core/tracking/page-clock';
+import type { ServerPresence } from 'threepoint-http/server-presence';
+import type { TaskPlace } from 'threepoint-study/participant/task-runner';
+import type { MouseAim } from 'threepoint-ui/mouse-aim';
+import type { Notices } from 'threepoint-ui/notices';
+import type { Quality } from '../scene/renderer';
+import type { SurroundingsHost } from '../scene/surroundings';
+
+/** The settings that activities read. The object is live. */
+export interface ActivitySettings {
+  /** A simulated player moves the body while no person does. */
+  readonly actor: boolean;
+  /** The mouse plays instead of the simulated player while no headset is worn. */
+  readonly mouse: boolean;
+  readonly sound: boolean;
+  readonly bowSide: Side;
+  readonly oneHanded: boolean;
+  readonly everyHitCounts: boolean;
+  /** Rounds wait for a start signal, as in a study; absent: the first arrow starts them too. */
+  readonly startSignal?: boolean;
+  /** Length of a round [s]; absent: the default of the game. */
+  readonly seconds?: number;
+  /** Bots take free seats. */
+  readonly bots: boolean;
+  /** The player's name; empty: not given. */
+  readonly name: string;
+  /** The name that others see if the player gave none. */
+  readonly guestName: string;
+  /** The seat that a spectator's camera follows; null: the camera is free. */
+  readonly following: number | null;
+  /** Players of the same room see an avatar file of this player. */
+  readonly shareAvatar: boolean;
+  /** All other players are shown as mannequins. */
+  readonly plainOthers: boolean;
+  /** Voices are sent through the TURN relay only, which hides the user's address from other players. */
+  readonly voicesByRelay: boolean;
+}
+
+/** The settings that the browser stores for later visits. */
+export type StoredActivitySettings = Pick<
+  ActivitySettings,
+  | 'bowSide'
+  | 'oneHanded'
+  | 'everyHitCounts'
+  | 'sound'
+  | 'bots'
+  | 'name'
+  | 'shareAvatar'
+  | 'plainOthers'
+  | 'voicesByRelay'
+>;
+
+export interface ActivitySettingsWriter {
+  /** Changes settings for this visit. */
+  change(part: Partial<ActivitySettings>): void;
+  /** Changes settings for this visit and stores them for later ones. */
+  keep(part: Partial<StoredActivitySettings>): void;
+}
+
+/** The avatar that the user shows to others: one of the page's own, or a file. */
+export type OwnWear =
+  | OwnAvatar
+  | {
+      readonly name: string;
+      readonly file: Blob;
+      /** null: unknown, because the connection is not secure. */
+      readonly hash: AvatarHash | null;
+    };
+
+/** The parts of the page that every activity can use. */
+export interface ActivityServices {
+  readonly quality: Quality;
+  readonly clock: PageClock;
+  readonly settings: ActivitySettings;
+  readonly writer: ActivitySettingsWriter;
+  readonly switches: {
+    readonly room: string | null;
+    readonly spectate: boolean;
+    readonly seconds: number | null;
+    readonly balls: number | null;
+  };
+  readonly stage: {
+    readonly studio: SurroundingsHost;
+    readonly view: { readonly pose: Pose<'floor'>; rayThrough(x: number, y: number): Ray };
+  };
+  readonly mouse: MouseAim;
+  readonly headset: { readonly worn: boolean; readonly emulator: object | null };
+  readonly body: { readonly calibration: Calibration };
+  /** The user's avatar; `own`: it is one of the page's own, not a file. */
+  readonly avatar: { readonly own: boolean; readonly worn: OwnWear };
+  /** Downloads one of the page's own avatars. */
+  fetchOwnAvatar(name: OwnBody): Promise<ArrayBuffer>;
+  readonly server: Pick<ServerPresence, 'state' | 'known' | 'ask'>;
+  readonly notices: Pick<Notices, 'show'>;
+  /** The study that the user takes part in. `run`: null without a study; `idle`: no trial is played now; `paused`: a trial is paused. */
+  readonly study: { readonly run: object | null; readonly idle: boolean; readonly paused: boolean };
+  /** Shows a caption of a sound. */
+  onCaption(text: string): void;
+  /** Call after a change that a panel or a menu shows. */
+  onChange(): void;
+}
+
+/** The input source that moves the player. */
+export type InputSource = 'recording' | 'headset' | 'mouse' | 'actor';
+
+/** Everything an activity gets when it is entered. */
+export interface ActivityContext extends ActivityServices {
+  /** The seed of the next layout. Increment it to get another layout. */
+  readonly layout: { seed: number };
+  /** The seat that a study assigned; null: none. */
+  readonly place: TaskPlace | null;
+  readonly inputSource: InputSource;
+  /** Lets the mouse or the simulated player play while no headset is worn. */
+  chooseInput(source: 'mouse' | 'actor'): void;
+  setSound(on: boolean): void;
+  /** Leaves the activity and enters it again. */
+  reopen(): void;
+  /** Moves the desktop camera to the activity's scene. */
+  placeCamera(): void;
+}

@@ -1,0 +1,73 @@
+import { fullScore, matchTime } from 'threepoint-games/archery/rules';
+import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
+import type { TaskEnd, TaskEvent } from 'threepoint-study/participant/task-runner';
+import type { ActivityRunner, StudyHost } from '../activity/activity';
+import type { ArcheryFrame } from './archery-play';
+
+/** The parts of archery that a study uses. */
+export interface StudiedArchery {
+  readonly play: { readonly newest: ArcheryFrame | null };
+  /** Starts a round by its signal, with this layout and length [s]. */
+  startRound(layout: number, seconds: number): void;
+  /** Replaces the round by one that waits for its start. */
+  resetRound(): void;
+}
+
+/** Archery as a task of a study. */
+export function createArcheryRunner(host: StudyHost<StudiedArchery>): ActivityRunner {
+  let running = false;
+  let end: TaskEnd | null = null;
+  let happened: TaskEvent[] = [];
+
+  function observe({ state, events }: ArcheryFrame): void {
+    for (const event of events) {
+      if (event.type === 'released') happened.push({ type: 'shot' });
+      if (event.type === 'landed') {
+        const { time, points, target } = event.landing;
+        happened.push({ type: target === null ? 'miss' : 'hit', time: Math.max(0, time), points });
+      }
+      if (event.type === 'ended') {
+        running = false;
+        end = { seconds: matchTime(state), ended: event.end, score: event.score, maximum: fullScore(state) };
+      }
+    }
+  }
+
+  return {
+    async prepare(place) {
+      host.writer.change({ seconds: place.seconds });
+      const archery = host.opened() ?? (await host.open(place));
+      if (!archery) throw new PhrasedError('round.archery');
+      archery.resetRound();
+    },
+    start({ seed, seconds }) {
+      happened = [];
+      end = null;
+      running = true;
+      host.opened()?.startRound(seed, seconds);
+    },
+    played() {
+      const newest = host.opened()?.play.newest;
+      if (running && newest) observe(newest);
+    },
+    take() {
+      const taken = happened;
+      happened = [];
+      return taken;
+    },
+    waitingFor: null,
+    standing: false,
+    interrupted: false,
+    pause: () => undefined,
+    get end() {
+      return end;
+    },
+    abort() {
+      running = false;
+      end = null;
+      happened = [];
+      host.opened()?.resetRound();
+    },
+    assists: () => (host.settings.oneHanded ? ['one hand'] : []),
+  };
+}

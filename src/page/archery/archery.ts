@@ -1,0 +1,16 @@
+import type { Activity } from '../activity/activity';
+import type { ArcheryActivity } from './archery-activity';
+
+export const archery = {
+  name: 'archery',
+  title: 'Archery',
+  place: 'The archery range',
+  async load(context) {
+    const { createArcheryActivity } = await import('./archery-activity');
+    return createArcheryActivity(context);
+  },
+  async createRunner(host) {
+    const { createArcheryRunner } = await import('./archery-runner');
+    return createArcheryRunner(host);
+  },
+} as const satisfies Activity<ArcheryActivity>;

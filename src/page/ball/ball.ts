@@ -1,0 +1,16 @@
+import type { Activity } from '../activity/activity';
+import type { CourtActivity } from './court-activity';
+
+export const ball = {
+  name: 'ball',
+  title: 'Ball game',
+  place: 'The ball court',
+  async load(context) {
+    const { openCourt } = await import('./open-court');
+    return openCourt(context);
+  },
+  async createRunner(host) {
+    const { createBallRunner } = await import('./ball-runner');
+    return createBallRunner(host);
+  },
+} as const satisfies Activity<CourtActivity>;

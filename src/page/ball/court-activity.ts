@@ -1,0 +1,361 @@
+import type { Holding } from 'threepoint/avatar/hands/holding';
+import { createRemoteAvatars, type RemoteAvatars } from 'threepoint/avatar/remote-avatars';
+import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import type { Fingers, MutableHandShape } from 'threepoint/core/body/hand-shape';
+import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
+import { type Pose, type Transform, transformPose } from 'threepoint/core/math/pose';
+import type { Ray } from 'threepoint/core/math/ray';
+import type { Side } from 'threepoint/core/math/side';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { BallPulse } from 'threepoint-games/ball/gestures';
+import { defaultBallOptions } from 'threepoint-games/ball/rules';
+import type { BallSteering } from 'threepoint-games/ball/steered-players';
+import { bannerText } from 'threepoint-rooms/client/banner';
+import type { ActivityPanel, OpenActivity, PlayerInput, PlayerProbe, Watched } from '../activity/activity';
+import type { ActivityContext } from '../activity/activity-context';
+import type { ActivityMenu } from '../activity/activity-menu';
+import type { CameraScene } from '../scene/desktop-view';
+import type { BallPlace } from './ball-connections';
+import type { BallFrame, BallProbe } from './ball-frame';
+import { BallMenu } from './ball-menu';
+import { createBallPanel } from './ball-panel';
+import { type BallPlay, createBallPlay } from './ball-play';
+import { type BallRound, ballRound } from './ball-round';
+import { type BallView, createBallView } from './ball-view';
+import { BlockList } from './block-list';
+import { type LobbyButton, ownName, seatOfButton } from './board-drawing';
+import { graspAtCourt } from './court-grasp';
+import { seatLooks } from './court-plan';
+import { courtMiddle, courtScene, standsScene } from './court-scenes';
+import { eventHaptics } from './haptics';
+import { createMatchClock } from './match-clock';
+import { playersOf } from './player-probe';
+import { SeenAvatars } from './seen-avatars';
+import { SharedAvatar } from './shared-avatar';
+import { Voices } from './voices';
+import type { VoicesProbe } from './voices-state';
+
+/** The state of a match and of its voices, for tests and tools. */
+export type CourtProbe = BallProbe & { readonly voices: VoicesProbe };
+
+type Players = BallFrame['players'];
+
+const noBodies: BallFrame['bodies'] = [];
+const noSeats: readonly never[] = [];
+/** How long the notice of a voided match is shown [s]. */
+const noticeSeconds = 8;
+const voidedNotice = 'The server was restarted, so this round does not count. You can start a new one.';
+
+/** The ball game in the page: the court, the other players' bodies, and the user's part in the match. */
+export class CourtActivity implements OpenActivity {
+  readonly play: BallPlay;
+  readonly sound: BallView['sound'];
+  readonly voices: Voices;
+  readonly blocked = new BlockList(() => this.voices.seats.applyBlocks());
+  readonly mirrorSide = null;
+  readonly #context: ActivityContext;
+  readonly #view: BallView;
+  readonly #others: RemoteAvatars;
+  readonly #seen: SeenAvatars;
+  readonly #shared: SharedAvatar;
+  readonly #menu: BallMenu;
+  readonly #clock = createMatchClock();
+  /** The user joined without a name, and reads “You” instead of the one that others see. */
+  readonly #unnamed: boolean;
+  /** The result of `#named`; the next call overwrites it. */
+  readonly #written: Players[number][] = [];
+  #placedAt: Transform<'floor', 'arena'> | null = null;
+  #newestFrame: TrackingFrame | null = null;
+  /** The number of voided matches that the user was notified of. */
+  #voided = 0;
+  #notice: { readonly text: string; readonly until: number } | null = null;
+  #now = 0;
+
+  /** `mannequin`: the file of the body that other players have. */
+  constructor(context: ActivityContext, room: BallPlace, mannequin: ArrayBuffer) {
+    const { quality, place, settings, switches, avatar, body, layout, stage, notices, onCaption } = context;
+    this.#context = context;
+    this.#unnamed = place === null && settings.name === '';
+    this.play = createBallPlay({
+      connect: room.connect,
+      visitor: {
+        name: place?.participant || settings.name || settings.guestName,
+        calibration: body.calibration,
+        ...(place && { seat: place.members.indexOf(place.participant) }),
+        ...(switches.spectate && { spectate: true }),
+      },
+      bots: () => settings.bots && place === null,
+      acting: () => this.#simulated,
+      steering: () => this.#steering(),
+      seed: layout.seed,
+    });
+    this.#view = createBallView({ quality, balls: defaultBallOptions.balls, onCaption });
+    this.sound = this.#view.sound;
+    this.voices = new Voices({
+      play: this.play,
+      blocked: this.blocked,
+      terms: room.voiceTerms,
+      openAudio: () => this.sound.open(),
+      relayOnly: () => settings.voicesByRelay,
+    });
+    this.#seen = new SeenAvatars(mannequin, (name) => context.fetchOwnAvatar(name), room.avatars);
+    this.#others = createRemoteAvatars({
+      load: (worn) => this.#seen.load(worn),
+      plain: () => settings.plainOthers,
+      mouthOf: (seat) => this.voices.seats.mouthOf(seat),
+      onRefused: (worn, reason) => this.#notifyRefused(worn, reason),
+    });
+    this.#shared = new SharedAvatar({
+      exchange: room.avatars,
+      wear: () => (settings.shareAvatar || avatar.own ? avatar.worn : null),
+      tell: (worn) => this.play.wear(worn),
+      notify: (level, text) => notices.show(level, text),
+    });
+    this.#menu = new BallMenu(this, context);
+    stage.studio.scene.add(this.#view.own, this.#others.object);
+    this.#place();
+  }
+
+  get scene(): CameraScene {
+    return this.#spectating && this.#context.settings.following === null ? standsScene : courtScene;
+  }
+
+  /** The colours of the user's seat; null: a spectator. */
+  get palette(): string | null {
+    const newest = this.play.newest;
+    const station = newest && newest.me !== null ? newest.state.players[newest.me]?.station : undefined;
+    return station === undefined ? null : (seatLooks[station]?.palette ?? null);
+  }
+
+  get watched(): Watched | null {
+    if (!this.#spectating) return null;
+    const { settings, stage } = this.#context;
+    const followed = settings.following === null ? null : this.#bodyOf(settings.following);
+    return followed ?? { pelvis: courtMiddle, eyes: stage.view.pose };
+  }
+
+  get mouth(): number {
+    return this.voices.seats.ownMouth;
+  }
+
+  begin(time: number): void {
+    this.#now = time;
+    this.play.begin(time);
+    this.blocked.update(this.play.room?.seats ?? noSeats);
+    this.voices.begin();
+    this.#shared.follow(this.play.room);
+    this.#place();
+    const voided = this.play.room?.voided ?? 0;
+    if (voided > this.#voided) this.#notice = { text: voidedNotice, until: time + noticeSeconds };
+    this.#voided = voided;
+  }
+
+  act(time: number): PlayerInput | null {
+    return this.play.act(time, !this.#context.headset.worn);
+  }
+
+  update(frame: TrackingFrame, buttons: Buttons): readonly BallPulse[] {
+    this.#newestFrame = frame;
+    return this.#follow(frame.time, frame, this.#context.study.idle ? nothingPressed : buttons);
+  }
+
+  send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void {
+    this.play.send(frame, pose, fingers);
+  }
+
+  grasp(side: Side, wrist: Pose<'floor'>, holding: Holding, target: MutableHandShape): boolean {
+    return graspAtCourt(this.play, side, wrist, holding, target);
+  }
+
+  show(time: number, frame: TrackingFrame | null): void {
+    if (!frame) this.#follow(time, null, nothingPressed);
+    const newest = this.play.newest;
+    const bodies = newest?.bodies ?? noBodies;
+    this.voices.seats.locate(bodies);
+    this.#others.show(this.blocked.visible(bodies), time);
+    if (!newest) return;
+    const { pose } = this.#context.stage.view;
+    this.#view.show({
+      state: newest.state,
+      time: newest.time,
+      attendants: this.#named(newest.players),
+      me: newest.me,
+      rotate: newest.rotate,
+      opening: newest.opening,
+      aim: newest.aim,
+      paused: newest.paused,
+      secondsLeft: this.#clock.secondsLeft,
+      head: (this.#spectating ? null : (frame ?? this.#newestFrame)?.head) ?? pose,
+      pageTime: time,
+      inRoom: !this.#ended,
+      acting: this.acting,
+      voices: this.voices.seats,
+      hidden: this.blocked.hidden,
+    });
+    this.#view.hear(newest.events, newest.cues);
+  }
+
+  point({ origin, direction }: Ray, press: boolean): number | null {
+    const { lobby } = this.#view;
+    const hit = this.#ended ? null : lobby.buttonAt(origin, direction);
+    lobby.setHovered(hit?.id ?? null);
+    if (!hit) return null;
+    if (press) this.#press(hit.id);
+    return hit.distance;
+  }
+
+  jumped(): void {
+    this.play.jumped();
+  }
+
+  sessionChanged(): void {
+    this.#menu.close();
+  }
+
+  calibrate(calibration: Calibration): void {
+    this.play.calibrate(calibration);
+  }
+
+  setAway(away: boolean): void {
+    this.play.away(away);
+  }
+
+  toggleMuted(): void {
+    this.voices.toggleMuted();
+  }
+
+  banner(): string | null {
+    const notice = this.#notice;
+    return bannerText(this.play.status) ?? (notice && this.#now < notice.until ? notice.text : null);
+  }
+
+  createPanel(): ActivityPanel {
+    return createBallPanel(this, this.#context);
+  }
+
+  menu(): ActivityMenu {
+    return this.#menu.state();
+  }
+
+  round(): BallRound | null {
+    const frame = this.play.newest;
+    if (!frame) return null;
+    const { play, voices, acting } = this;
+    const players = this.#named(frame.players);
+    return ballRound({ play, frame, players, secondsLeft: this.#clock.secondsLeft, acting, voices });
+  }
+
+  probe(): CourtProbe | null {
+    const probe = this.play.probe();
+    return probe && { ...probe, secondsLeft: this.#clock.secondsLeft, voices: this.voices.probe() };
+  }
+
+  players(): readonly PlayerProbe[] {
+    return playersOf(this.play, this.#others);
+  }
+
+  /** Lets a spectator's camera follow the player on this seat; null: the camera is free. */
+  followSeat(seat: number | null): void {
+    this.#context.writer.change({ following: seat });
+    this.#context.placeCamera();
+  }
+
+  dispose(): void {
+    this.voices.dispose();
+    this.play.leave();
+    this.#view.own.removeFromParent();
+    this.#context.stage.studio.setSurroundings(null);
+    this.#seen.leave();
+    this.#others.dispose();
+    this.#view.dispose();
+  }
+
+  /** A simulated player moves the user's body: no person can be asked. */
+  get acting(): boolean {
+    return this.#simulated && this.#steering() === null;
+  }
+
+  /** No person wears the headset that moves the user's body. */
+  get #simulated(): boolean {
+    const { place, settings, headset } = this.#context;
+    return place === null && settings.actor && (!headset.worn || headset.emulator !== null);
+  }
+
+  get #spectating(): boolean {
+    const newest = this.play.newest;
+    return newest !== null && newest.me === null && !this.#context.headset.worn;
+  }
+
+  /** This page is no longer in the room. */
+  get #ended(): boolean {
+    return this.play.status.phase === 'ended';
+  }
+
+  #steering(): BallSteering | null {
+    const { settings, headset, stage, mouse } = this.#context;
+    if (!settings.mouse || headset.worn) return null;
+    return { ray: stage.view.rayThrough(mouse.x, mouse.y), pressed: mouse.pressed, cancelled: mouse.cancelled };
+  }
+
+  /** Pelvis and eyes of the player on this seat, floor frame of the user; null: nobody is drawn there. */
+  #bodyOf(seat: number): Watched | null {
+    const body = this.play.newest?.bodies.find(({ id }) => id === seat);
+    const pelvis = this.#others.jointsOf(seat)?.hips;
+    if (!body || !pelvis) return null;
+    const { position, orientation } = body.pose.head;
+    return { pelvis, eyes: transformPose(body.placement, { position, orientation }) };
+  }
+
+  #notifyRefused(worn: AvatarRef, reason: unknown): void {
+    const seats = this.play.room?.seats ?? [];
+    const names = seats.flatMap((seat, index) =>
+      seat?.avatar === worn && index !== this.play.room?.mySeat ? [seat.name] : [],
+    );
+    // The player may have changed avatars in the meantime.
+    if (names.length === 0) return;
+    const why = firstLine(reasonOf(reason)).replace(/^the avatar: /, '');
+    this.#context.notices.show(
+      'info',
+      `The avatar of ${names.join(' and ')} could not be shown, so you see a mannequin: ${why}`,
+    );
+  }
+
+  /** Turns the court around the user, after every change of seat. */
+  #place(): void {
+    const at = this.play.floorFromArena;
+    if (at === this.#placedAt) return;
+    this.#placedAt = at;
+    this.#context.stage.studio.setSurroundings(this.#view.placed(at));
+  }
+
+  /** The players with the names that this page shows; the list is valid until the next call. */
+  #named(players: Players): Players {
+    if (!this.#unnamed) return players;
+    const written = this.#written;
+    written.length = players.length;
+    players.forEach((player, i) => {
+      written[i] = player?.me ? { ...player, name: ownName } : player;
+    });
+    return written;
+  }
+
+  #follow(time: number, frame: TrackingFrame | null, buttons: Buttons): readonly BallPulse[] {
+    const newest = this.play.follow(time, frame, buttons);
+    if (!newest) return [];
+    this.#clock.follow(newest.state);
+    const { me, role, events, haptics } = newest;
+    if (me === null || role === null || events.length === 0) return haptics;
+    return [...haptics, ...eventHaptics(events, me, role)];
+  }
+
+  #press(id: LobbyButton): void {
+    const seat = seatOfButton(id);
+    const newest = this.play.newest;
+    if (seat !== null) this.play.sit(seat);
+    else if (id === 'rotate') this.play.rotate(!(newest?.rotate ?? false));
+    else this.play.ready(!(newest && newest.me !== null && newest.state.players[newest.me]?.ready));
+  }
+}

@@ -1,0 +1,18 @@
+import type { Vec3 } from 'threepoint/core/math/vec3';
+import type { CameraScene } from '../scene/desktop-view';
+
+/** The middle of the court, which a spectator's camera looks at first, floor frame [m]. */
+export const courtMiddle: Vec3 = { x: 0, y: 1, z: -2.4 };
+
+/** Past a player to the others. */
+export const courtScene: CameraScene = {
+  'third-person': { offset: { x: -0.8, y: 1.05, z: 3.5 }, aim: { x: 0.3, y: 0.12, z: -2.4 }, fovDegrees: 50 },
+  front: { offset: { x: -1.9, y: 0.6, z: -3.1 }, aim: { x: 0, y: 0, z: 0 }, fovDegrees: 50 },
+};
+
+/** The whole court from the side, for a spectator. */
+export const standsScene: CameraScene = {
+  'third-person': { offset: { x: 4.6, y: 2.1, z: 4.6 }, aim: { x: 0.4, y: 0.15, z: 0 }, fovDegrees: 54 },
+  front: { offset: { x: -4.6, y: 1.7, z: -3.6 }, aim: { x: 0, y: -0.1, z: 0 }, fovDegrees: 50 },
+  free: true,
+};

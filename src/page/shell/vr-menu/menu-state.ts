@@ -1,0 +1,36 @@
+import type { BodySolver } from 'threepoint/api/body-solver';
+import type { Notices } from 'threepoint-ui/notices';
+import type { ActivityMenu } from '../../activity/activity-menu';
+import type { Activities } from '../activities';
+import type { Measuring } from '../controls/measuring';
+import type { Settings } from '../settings';
+import type { VrMenuState } from './menu-buttons';
+
+/** The parts of the page that the menu in the headset shows. */
+export interface MenuParts {
+  readonly body: Pick<BodySolver, 'estimator' | 'unavailable'>;
+  readonly settings: Settings;
+  readonly activities: Pick<Activities, 'all' | 'current'>;
+  readonly measuring: Pick<Measuring, 'step'>;
+  readonly notices: Pick<Notices, 'current'>;
+}
+
+/** The menu of an activity that has none. */
+const noMenu: ActivityMenu = { entries: [], sheet: null, notice: null, hint: null };
+
+/** Returns the current state of the menu in the headset. */
+export function menuStateOf({ body, settings, activities, measuring, notices }: MenuParts): VrMenuState {
+  const activity = activities.current && (activities.current.menu?.() ?? noMenu);
+  return {
+    estimator: body.estimator,
+    unavailable: body.unavailable,
+    calibration: measuring.step,
+    overlay: settings.vrOverlay,
+    deviceBody: settings.deviceBody,
+    ownBody: settings.ownBody,
+    skinTone: settings.skinTone,
+    places: activities.all.map(({ name, title }) => ({ name, title })),
+    activity,
+    notice: activity?.notice ?? notices.current().at(-1)?.text ?? activity?.hint ?? null,
+  };
+}

@@ -1,0 +1,66 @@
+import { Scene } from 'three';
+import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { vec3 } from 'threepoint/core/math/vec3';
+import { createPageClock } from 'threepoint/core/tracking/page-clock';
+import { ServerPresence } from 'threepoint-http/server-presence';
+import type { ActivityServices } from 'threepoint-page/activity/activity-context';
+import type { Surroundings } from 'threepoint-page/scene/surroundings';
+import { PageStudy } from 'threepoint-page/shell/page-study';
+import { createSettings, type LastingSettings, SettingsWriter } from 'threepoint-page/shell/settings';
+import { fetchOwnAvatar } from 'threepoint-page/shell/shown-avatar';
+import { readSwitches } from 'threepoint-page/shell/switches';
+import type { Notice } from 'threepoint-ui/notices';
+
+const ahead = { x: 0, y: 0, z: 0, w: 1 };
+
+/** The services of a page with this address, which draws nothing, and what activities did with them. */
+export function activityServices(address = '?seed=5&quality=low') {
+  const { switches } = readSwitches(address);
+  const settings = createSettings({ ...switches, actor: false }, { preferences: { sound: false } });
+  const kept: LastingSettings[] = [];
+  const writer = new SettingsWriter(
+    settings,
+    { remember: (part) => void kept.push(part as LastingSettings) },
+    () => undefined,
+  );
+  const places: (Surroundings | null)[] = [];
+  const notices: Notice[] = [];
+  const captions: string[] = [];
+  const headset = { worn: false, emulator: null };
+  const aims = { enabled: false };
+  const study = new PageStudy();
+  const services = {
+    quality: 'low',
+    clock: createPageClock(() => 0),
+    settings,
+    writer,
+    switches,
+    stage: {
+      studio: { scene: new Scene(), setSurroundings: (place: Surroundings | null) => void places.push(place) },
+      view: {
+        pose: { position: vec3(0, 1.6, 2), orientation: ahead },
+        rayThrough: () => ({ origin: vec3(0, 1.6, 0), direction: vec3(0, 0, -1) }),
+      },
+    },
+    mouse: {
+      x: 0,
+      y: 0.1,
+      pressed: false,
+      cancelled: false,
+      setEnabled(on: boolean) {
+        aims.enabled = on;
+      },
+    },
+    headset,
+    body: { calibration: defaultCalibration },
+    avatar: { own: true, worn: plainAvatar },
+    fetchOwnAvatar,
+    server: new ServerPresence('http://127.0.0.1:9', () => undefined),
+    notices: { show: (level, text) => void notices.push({ level, text }) },
+    study,
+    onCaption: (text) => void captions.push(text),
+    onChange: () => undefined,
+  } satisfies ActivityServices;
+  return { services, settings, writer, headset, study, kept, places, notices, captions, aims };
+}
