@@ -8,7 +8,7 @@ import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { fromAxisAngle, multiply, quat, rotate } from 'threepoint/core/math/quat';
 import { add, vec3 } from 'threepoint/core/math/vec3';
-import 'threepoint-study/model/study-api';
+import 'threepoint-study/model/progress/study-api';
 import { ImpairedTracking } from 'threepoint/core/tracking/impaired-tracking';
 import 'threepoint-rooms/client/loopback-connection';
 

@@ -3,7 +3,7 @@ import type { Connection, LocalClock, Visitor } from 'threepoint-rooms/client/co
 import { createLoopbackHost } from 'threepoint-rooms/client/loopback-connection';
 import type { RoomTerms } from 'threepoint-rooms/protocol/messages';
 import type { VoiceTerms } from 'threepoint-rooms/voices/voice-terms';
-import type { SignedSeat } from 'threepoint-study/model/study-api';
+import type { SignedSeat } from 'threepoint-study/model/progress/study-api';
 import { pageFolder } from 'threepoint-ui/page-folder';
 
 /** Makes one visitor's place in a room; `time`: the page's clock [s]. */

@@ -1,6 +1,6 @@
 import type { BareBody } from 'threepoint/api/bare-body';
 import type { ImpairedTracking } from 'threepoint/core/tracking/impaired-tracking';
-import type { Embodiment } from 'threepoint-study/model/embodiment';
+import type { Embodiment } from 'threepoint-study/model/plan/embodiment';
 import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
 import type { SettingsWriter } from './settings';
 import type { ShownAvatar } from './shown-avatar';

@@ -1,10 +1,10 @@
-import type { CohortComparison } from '../model/compare-cohorts';
-import type { Comparison } from '../model/compare-conditions';
-import type { Measured } from '../model/measures';
-import { languagesOf } from '../model/plan';
-import type { AnswerForm } from '../model/questionnaire-schema';
-import { scaleRange } from '../model/questionnaire-scores';
-import { inLanguage } from '../model/words';
+import { inLanguage } from '../model/phrases/words';
+import { languagesOf } from '../model/plan/plan';
+import type { AnswerForm } from '../model/questionnaires/questionnaire-schema';
+import { scaleRange } from '../model/questionnaires/questionnaire-scores';
+import type { CohortComparison } from '../model/results/compare-cohorts';
+import type { Comparison } from '../model/results/compare-conditions';
+import type { Measured } from '../model/results/measures';
 import { barChart, pairedChart, stripChart, type TwoSided } from './charts';
 import { figure } from './figure';
 import type { Compared } from './shown-results';

@@ -5,8 +5,8 @@ import { element, pageElement } from 'threepoint-ui/element';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { sentence } from 'threepoint-ui/phrases';
 import { type ExperimenterClient, ServerRefusal } from '../client/study-client';
-import type { StudyPlan } from '../model/plan';
-import type { StudyCommand, StudyInfo } from '../model/study-api';
+import type { StudyPlan } from '../model/plan/plan';
+import type { StudyCommand, StudyInfo } from '../model/progress/study-api';
 import { statedInWords } from '../simulation/simulate-study';
 import {
   type NewStudy,

@@ -1,9 +1,9 @@
 import { button, element } from 'threepoint-ui/element';
 import { leavePlan } from 'threepoint-ui/left-plan';
 import { pageFolder } from 'threepoint-ui/page-folder';
-import { type StudyPlan, studyTitle } from '../model/plan';
-import { remarksOn } from '../model/plan-remarks';
-import type { ParticipantState, Receipt, StudyInfo } from '../model/study-api';
+import { type StudyPlan, studyTitle } from '../model/plan/plan';
+import { remarksOn } from '../model/plan/plan-remarks';
+import type { ParticipantState, Receipt, StudyInfo } from '../model/progress/study-api';
 import { type ParticipantActions, participantHeads, participantRow } from './participant-row';
 import { tableNode } from './table';
 

@@ -1,5 +1,5 @@
 import type { ExperimenterClient } from '../client/study-client';
-import { checkedPlan, participantsOf, type StudyPlan } from '../model/plan';
+import { checkedPlan, participantsOf, type StudyPlan } from '../model/plan/plan';
 import { modelsWith, rehearsalPlan, type StatedEffects, simulatedParticipants } from '../simulation/simulate-study';
 
 /** How a study is rehearsed: the same seed and effects bring the same answers. */

@@ -1,5 +1,5 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import { studyTitle } from '../model/plan';
+import { studyTitle } from '../model/plan/plan';
 import 'threepoint-ui/styles/document.css';
 import { button, element, pageElement } from 'threepoint-ui/element';
 import { paperCheck } from './paper-check';

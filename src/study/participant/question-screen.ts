@@ -1,7 +1,7 @@
 import type { Phrases } from '../model/phrases/phrases';
-import type { AnswerForm, Question } from '../model/questionnaire-schema';
-import { type Answers, pointsOf, typedAnswer, unanswered } from '../model/questionnaires';
-import { inLanguage, type Words } from '../model/words';
+import { inLanguage, type Words } from '../model/phrases/words';
+import type { AnswerForm, Question } from '../model/questionnaires/questionnaire-schema';
+import { type Answers, pointsOf, typedAnswer, unanswered } from '../model/questionnaires/questionnaires';
 import type { ScreenEnds, ScreenField, ScreenQuestion } from './study-screen';
 import type { ScreenActions, StudySituation } from './study-situation';
 

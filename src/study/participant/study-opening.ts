@@ -1,8 +1,8 @@
 import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../client/study-client';
 import { PhrasedError } from '../model/phrases/phrases';
-import { isLater, type Progress } from '../model/progress';
-import { scheduleFor } from '../model/schedule';
-import type { PublicStudy } from '../model/study-api';
+import { scheduleFor } from '../model/plan/schedule';
+import { isLater, type Progress } from '../model/progress/progress';
+import type { PublicStudy } from '../model/progress/study-api';
 import {
   createParticipantSession,
   type ParticipantSession,

@@ -1,9 +1,9 @@
 import type { Phrases } from '../model/phrases/phrases';
-import { taskTitle } from '../model/plan';
-import { clockText, type Progress } from '../model/progress';
-import type { RemoteTerms } from '../model/remote-setup';
-import type { StudyStep } from '../model/schedule';
-import { inLanguage } from '../model/words';
+import { inLanguage } from '../model/phrases/words';
+import { taskTitle } from '../model/plan/plan';
+import type { RemoteTerms } from '../model/plan/remote-setup';
+import type { StudyStep } from '../model/plan/schedule';
+import { clockText, type Progress } from '../model/progress/progress';
 import { screenQuestions } from './answering';
 import { calibrationScreen } from './calibration-screens';
 import type { Safekeeping } from './participant-session';

@@ -1,5 +1,5 @@
-import type { Question } from '../model/questionnaire-schema';
-import { type Answer, type Answers, nearestOn, type Questionnaire } from '../model/questionnaires';
+import type { Question } from '../model/questionnaires/questionnaire-schema';
+import { type Answer, type Answers, nearestOn, type Questionnaire } from '../model/questionnaires/questionnaires';
 import type { RandomSource } from './random-source';
 
 /**

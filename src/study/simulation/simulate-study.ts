@@ -1,13 +1,13 @@
 import { ValidationError } from 'threepoint/core/validation/validation';
-import { advance, type ProgressEvent } from '../model/advance';
-import { cohortsByParticipant } from '../model/allocation';
-import type { Demographics } from '../model/demographics';
-import { participantsOf, type StudyPlan } from '../model/plan';
-import { begin, currentStep, type Progress, resumed } from '../model/progress';
-import { type Schedule, type StudyStep, scheduleFor } from '../model/schedule';
-import type { StudyRecord } from '../model/study-record';
-import type { TrialOutcome } from '../model/trial-log';
-import type { Words } from '../model/words';
+import type { Words } from '../model/phrases/words';
+import { cohortsByParticipant } from '../model/plan/allocation';
+import { participantsOf, type StudyPlan } from '../model/plan/plan';
+import { type Schedule, type StudyStep, scheduleFor } from '../model/plan/schedule';
+import { advance, type ProgressEvent } from '../model/progress/advance';
+import { begin, currentStep, type Progress, resumed } from '../model/progress/progress';
+import type { Demographics } from '../model/records/demographics';
+import type { StudyRecord } from '../model/records/study-record';
+import type { TrialOutcome } from '../model/records/trial-log';
 import { type AnswerModel, answerModelWith, drawAnswers, drawPerson } from './answer-model';
 import {
   drawArchery,

@@ -1,13 +1,13 @@
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { advance, type ProgressEvent } from 'threepoint-study/model/advance';
-import { parsePlan, type StudyPlan } from 'threepoint-study/model/plan';
-import { begin, currentStep, type Progress } from 'threepoint-study/model/progress';
-import type { AnswerForm } from 'threepoint-study/model/questionnaire-schema';
-import { type Answer, nearestOn } from 'threepoint-study/model/questionnaires';
-import type { Schedule, StudyStep } from 'threepoint-study/model/schedule';
-import type { StudyRecord } from 'threepoint-study/model/study-record';
-import { createTrialLog, type TrialOutcome } from 'threepoint-study/model/trial-log';
+import { parsePlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
+import type { Schedule, StudyStep } from 'threepoint-study/model/plan/schedule';
+import { advance, type ProgressEvent } from 'threepoint-study/model/progress/advance';
+import { begin, currentStep, type Progress } from 'threepoint-study/model/progress/progress';
+import type { AnswerForm } from 'threepoint-study/model/questionnaires/questionnaire-schema';
+import { type Answer, nearestOn } from 'threepoint-study/model/questionnaires/questionnaires';
+import type { StudyRecord } from 'threepoint-study/model/records/study-record';
+import { createTrialLog, type TrialOutcome } from 'threepoint-study/model/records/trial-log';
 
 export const paperFile = readFileSync(
   fileURLToPath(new URL('../../../public/studies/paper.json', import.meta.url)),

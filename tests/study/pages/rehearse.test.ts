@@ -1,6 +1,6 @@
 import { createExperimenterClient } from 'threepoint-study/client/study-client';
-import { measuresIn, overallComparisons } from 'threepoint-study/model/exported-results';
-import { answersIn, trialsIn } from 'threepoint-study/model/study-tables';
+import { measuresIn, overallComparisons } from 'threepoint-study/model/results/exported-results';
+import { answersIn, trialsIn } from 'threepoint-study/model/tables/study-tables';
 import { rehearse } from 'threepoint-study/pages/rehearse';
 import { expect, test } from 'vitest';
 import { examplePlan, latencyPlan } from '../model/studies';

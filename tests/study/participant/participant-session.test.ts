@@ -1,5 +1,5 @@
 import { createParticipantClient } from 'threepoint-study/client/study-client';
-import { isLater } from 'threepoint-study/model/progress';
+import { isLater } from 'threepoint-study/model/progress/progress';
 import { createParticipantSession, startSession } from 'threepoint-study/participant/participant-session';
 import { afterEach, expect, test, vi } from 'vitest';
 import { calibration, device, toTheFirstQuestion, toTheFirstRest } from './participant-device';

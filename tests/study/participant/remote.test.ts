@@ -1,5 +1,5 @@
 import { Phrases } from 'threepoint-study/model/phrases/phrases';
-import { setupFaults } from 'threepoint-study/model/remote-setup';
+import { setupFaults } from 'threepoint-study/model/plan/remote-setup';
 import { safekeepingText } from 'threepoint-study/participant/study-screens';
 import { describe, expect, test } from 'vitest';
 import { aWomanOf26 } from '../model/studies';

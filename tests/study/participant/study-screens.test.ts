@@ -1,7 +1,7 @@
 import { createParticipantClient } from 'threepoint-study/client/study-client';
-import type { ProgressEvent } from 'threepoint-study/model/advance';
 import { Phrases } from 'threepoint-study/model/phrases/phrases';
-import { typedAnswer } from 'threepoint-study/model/questionnaires';
+import type { ProgressEvent } from 'threepoint-study/model/progress/advance';
+import { typedAnswer } from 'threepoint-study/model/questionnaires/questionnaires';
 import { createParticipantSession, startSession } from 'threepoint-study/participant/participant-session';
 import type { StudyScreen } from 'threepoint-study/participant/study-screen';
 import { safekeepingText, screenOf } from 'threepoint-study/participant/study-screens';

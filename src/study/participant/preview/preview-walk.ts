@@ -1,10 +1,10 @@
 import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
-import { advance, type ProgressEvent } from '../../model/advance';
-import { embodimentInWords } from '../../model/embodiment';
 import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
-import { languagesOf, type StudyPlan, taskTitle } from '../../model/plan';
-import { begin, currentStep, type Progress } from '../../model/progress';
-import { type Schedule, type StudyStep, scheduleFor } from '../../model/schedule';
+import { embodimentInWords } from '../../model/plan/embodiment';
+import { languagesOf, type StudyPlan, taskTitle } from '../../model/plan/plan';
+import { type Schedule, type StudyStep, scheduleFor } from '../../model/plan/schedule';
+import { advance, type ProgressEvent } from '../../model/progress/advance';
+import { begin, currentStep, type Progress } from '../../model/progress/progress';
 import { Answering } from '../answering';
 import type { Safekeeping } from '../participant-session';
 import { refusalFor } from '../reasons';

@@ -1,0 +1,286 @@
+import { ValidationError } from 'threepoint/core/validation/validation';
+import { togetherWith } from '../../model/plan/allocation';
+import { checkedPlan, participantsOf, type StudyPlan, storedPlan } from '../../model/plan/plan';
+import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
+import { StoreRefusal, type StudyDatabase } from './database';
+import { newCode } from './schema';
+
+interface StudyRow {
+  readonly id: string;
+  readonly simulated: number;
+  readonly created_at: number;
+  readonly retention_until: number;
+}
+
+interface VersionRow {
+  readonly version: number;
+  readonly plan: string;
+  readonly since: number;
+}
+
+export interface AddOptions {
+  readonly simulated: boolean;
+  /** Seconds since 1970. */
+  readonly at: number;
+  /** Where the study has begun with another plan: this one is for those who come later. */
+  readonly newVersion?: boolean;
+}
+
+const secondsPerDay = 86_400;
+
+/** "P01, P02 and 3 more". */
+const listed = (names: readonly string[]) =>
+  names.length > 4 ? `${names.slice(0, 3).join(', ')} and ${names.length - 3} more` : names.join(', ');
+
+/** The studies themselves: their plans, version by version, and the places that these have. */
+export class StudyPlans {
+  readonly #database: StudyDatabase;
+
+  constructor(database: StudyDatabase) {
+    this.#database = database;
+  }
+
+  /** The study of this id, its plan in this version or in the newest; throws a StoreRefusal where there is none. */
+  get(id: string, version?: number): StudyInfo {
+    const row = this.#row(id);
+    if (!row) throw new StoreRefusal('unknown', `there is no study "${id}"`);
+    return this.#infoOf(row, version);
+  }
+
+  /** The plan that a participant follows: the one that they began with, else the newest. */
+  planFor(id: string, participant: string): StudyPlan {
+    this.#refuseUnknown(id);
+    const { plan } = this.#database.getOne<VersionRow>(
+      `SELECT * FROM plan_versions WHERE study = ? AND version = coalesce(
+         (SELECT plan_version FROM participants WHERE study = ? AND participant = ?),
+         (SELECT max(version) FROM plan_versions WHERE study = ?))`,
+      ...[id, id, participant, id],
+    );
+    return storedPlan(JSON.parse(plan));
+  }
+
+  /** The one invitation to all places of an open study, which those who follow its newest plan have; null: none of them has one. */
+  commonInvitation(id: string): string | null {
+    const place = this.#database.get<{ invitation: string }>(
+      `SELECT invitation FROM participants WHERE study = ? AND invitation IS NOT NULL AND (plan_version IS NULL OR plan_version =
+         (SELECT max(version) FROM plan_versions WHERE plan_versions.study = participants.study)) LIMIT 1`,
+      id,
+    );
+    return place?.invitation ?? null;
+  }
+
+  /** Oldest first. */
+  all(): readonly StudyInfo[] {
+    return this.#database
+      .all<StudyRow>('SELECT * FROM studies ORDER BY created_at, id')
+      .map((row) => this.#infoOf(row));
+  }
+
+  /**
+   * Adds a study, or finds the same one there. Another plan under the id of a study that has begun is refused, unless it is asked for as a
+   * new version: those who began, and who play with them, stay with theirs.
+   */
+  add(plan: StudyPlan, { simulated, at, newVersion = false }: AddOptions): StudyInfo {
+    return this.#database.transaction(() => {
+      const checked = checkedPlan(plan);
+      const stored = this.#row(checked.id);
+      if (!stored) {
+        this.#insert(checked, simulated, at);
+        return this.get(checked.id);
+      }
+      if (stored.simulated !== Number(simulated)) {
+        throw new StoreRefusal(
+          'conflict',
+          `the study "${checked.id}" is ${stored.simulated ? 'simulated' : 'of people'}: give this one another id`,
+        );
+      }
+      const known = this.#infoOf(stored);
+      if (JSON.stringify(known.plan) === JSON.stringify(checked)) return known;
+      const begun = this.#begun(checked.id);
+      if (begun.length === 0) {
+        this.remove(checked.id);
+        this.#insert(checked, simulated, at);
+      } else if (newVersion) this.#addVersion(known, checked, at);
+      else {
+        const text =
+          `the study "${checked.id}" has begun: ${listed(begun.map(({ participant }) => participant))} keep its plan. ` +
+          `What has changed can be version ${known.version + 1}, for those who come later; or give it another id`;
+        throw new StoreRefusal('begun', text);
+      }
+      return this.get(checked.id);
+    });
+  }
+
+  /**
+   * Inside a transaction: a place that was cleared, and those that stay with an older version for its sake alone, follow the newest one or go
+   * where that has none. They stay where another who plays with them, by either version, has begun.
+   */
+  freePlaces(id: string, participant: string): void {
+    const { plan, version, versions } = this.get(id);
+    const own = versions.find(({ participants }) => participants.includes(participant));
+    if (!own || own.version === version) return;
+    const freed = togetherWith(own.plan, participant);
+    const keeps = new Set(
+      versions.flatMap((older) =>
+        older.version === version ? [] : older.participants.filter((one) => !freed.has(one)),
+      ),
+    );
+    const inPlan = participantsOf(plan).filter((one) => freed.has(one));
+    const mixed = inPlan.some((one) => [...togetherWith(plan, one)].some((other) => keeps.has(other)));
+    if (mixed || this.#begun(id).some((begun) => freed.has(begun.participant))) return;
+    for (const one of freed) {
+      const place = [id, one] as const;
+      if (inPlan.includes(one)) {
+        this.#database.run('UPDATE participants SET plan_version = NULL WHERE study = ? AND participant = ?', ...place);
+        continue;
+      }
+      for (const table of ['commands', 'participants']) {
+        this.#database.run(`DELETE FROM ${table} WHERE study = ? AND participant = ?`, ...place);
+      }
+    }
+  }
+
+  /** Inside a transaction, of a study in which nothing is recorded. */
+  remove(id: string): void {
+    for (const table of ['commands', 'participants', 'plan_versions']) {
+      this.#database.run(`DELETE FROM ${table} WHERE study = ?`, id);
+    }
+    this.#database.run('DELETE FROM studies WHERE id = ?', id);
+  }
+
+  #row(id: string): StudyRow | undefined {
+    return this.#database.get<StudyRow>('SELECT * FROM studies WHERE id = ?', id);
+  }
+
+  #refuseUnknown(id: string): void {
+    if (!this.#row(id)) throw new StoreRefusal('unknown', `there is no study "${id}"`);
+  }
+
+  #infoOf(row: StudyRow, asked?: number): StudyInfo {
+    const places = this.#database.all<{ participant: string; plan_version: number | null }>(
+      'SELECT participant, plan_version FROM participants WHERE study = ? ORDER BY participant',
+      row.id,
+    );
+    const versions = this.#database
+      .all<VersionRow>('SELECT * FROM plan_versions WHERE study = ? ORDER BY version', row.id)
+      .map(
+        ({ version, plan, since }): PlanVersion => ({
+          version,
+          plan: storedPlan(JSON.parse(plan)),
+          since,
+          participants: places.filter((place) => place.plan_version === version).map(({ participant }) => participant),
+        }),
+      );
+    const shown = asked === undefined ? versions.at(-1) : versions.find(({ version }) => version === asked);
+    if (!shown) throw new StoreRefusal('unknown', `the plan of "${row.id}" has no version ${asked}`);
+    return {
+      plan: shown.plan,
+      version: shown.version,
+      versions,
+      simulated: row.simulated === 1,
+      createdAt: row.created_at,
+      retentionUntil: row.retention_until,
+    };
+  }
+
+  /** Who has taken a place, or left something recorded. */
+  #begun(id: string): readonly { readonly participant: string; readonly plan_version: number }[] {
+    return this.#database.all(
+      `SELECT participant, coalesce(plan_version, 1) AS plan_version FROM participants AS place
+       WHERE study = ? AND (token_hash IS NOT NULL OR withdrawal_hash IS NOT NULL OR withdrawn = 1 OR EXISTS
+         (SELECT 1 FROM records WHERE records.study = place.study AND records.participant = place.participant))
+       ORDER BY participant`,
+      id,
+    );
+  }
+
+  #addVersion({ versions, version, plan: before, retentionUntil }: StudyInfo, plan: StudyPlan, at: number): void {
+    const { id } = plan;
+    const [text, textBefore] = [plan, before].map(({ consent }) => JSON.stringify({ ...consent, version: '' }));
+    if (text !== textBefore && plan.consent.version === before.consent.version) {
+      throw new ValidationError('consent.version', 'the text has changed, and its version has not');
+    }
+    const [code, codeBefore] = [plan, before].map((one) => participantsOf(one)[0]);
+    if (code !== codeBefore) {
+      throw new ValidationError(
+        'participants',
+        `the codes of participants would change from ${codeBefore} to ${code}, and links that were sent would open nothing: give the plan another id`,
+      );
+    }
+    const kept = new Map<string, number>();
+    for (const { participant, plan_version } of this.#begun(id)) {
+      const own = versions.find((one) => one.version === plan_version)?.plan ?? before;
+      for (const member of togetherWith(own, participant)) kept.set(member, plan_version);
+    }
+    for (const participant of participantsOf(plan)) {
+      const mixed = kept.has(participant)
+        ? undefined
+        : [...togetherWith(plan, participant)].find((one) => kept.has(one));
+      if (mixed === undefined) continue;
+      throw new StoreRefusal(
+        'conflict',
+        `${participant} would play with ${mixed}, who stays with version ${kept.get(mixed)}: leave seed, participants and ` +
+          'group sizes as they are, or give the plan another id',
+      );
+    }
+    const common = plan.entry === 'open' ? this.commonInvitation(id) : null;
+    this.#database.run(
+      'INSERT INTO plan_versions (study, version, plan, since) VALUES (?, ?, ?, ?)',
+      ...[id, version + 1, JSON.stringify(plan), at],
+    );
+    // What those who take part were promised holds for all.
+    const until = Math.min(retentionUntil, at + plan.retentionDays * secondsPerDay);
+    this.#database.run('UPDATE studies SET retention_until = ? WHERE id = ?', until, id);
+    this.#database.run('UPDATE participants SET plan_version = NULL WHERE study = ?', id);
+    for (const [participant, itsVersion] of kept) {
+      this.#database.run(
+        'UPDATE participants SET plan_version = ? WHERE study = ? AND participant = ?',
+        ...[itsVersion, id, participant],
+      );
+    }
+    this.#renewFreePlaces(plan, { linksHold: plan.entry === before.entry, common });
+  }
+
+  /**
+   * The places that no one has are those of the new plan; links that were sent already open them still, if one may: that of all (`common`; null:
+   * there is none) also those that the plan has more.
+   */
+  #renewFreePlaces(
+    plan: StudyPlan,
+    { linksHold, common }: { readonly linksHold: boolean; readonly common: string | null },
+  ): void {
+    const { id } = plan;
+    const free = this.#database.all<{ participant: string; invitation: string | null }>(
+      'SELECT participant, invitation FROM participants WHERE study = ? AND plan_version IS NULL',
+      id,
+    );
+    const links = new Map(free.map(({ participant, invitation }) => [participant, invitation]));
+    this.#database.run('DELETE FROM participants WHERE study = ? AND plan_version IS NULL', id);
+    this.#addPlaces(plan, (participant) => (linksHold ? (links.get(participant) ?? common) : null));
+  }
+
+  #insert(plan: StudyPlan, simulated: boolean, at: number): void {
+    const retentionUntil = at + plan.retentionDays * secondsPerDay;
+    this.#database.run(
+      'INSERT INTO studies (id, simulated, created_at, retention_until) VALUES (?, ?, ?, ?)',
+      ...[plan.id, Number(simulated), at, retentionUntil],
+    );
+    this.#database.run(
+      'INSERT INTO plan_versions (study, version, plan, since) VALUES (?, 1, ?, ?)',
+      ...[plan.id, JSON.stringify(plan), at],
+    );
+    this.#addPlaces(plan, () => null);
+  }
+
+  /** The places of a plan that are not there yet; `linkOf`: the invitation that a place had before, null: none. */
+  #addPlaces(plan: StudyPlan, linkOf: (participant: string) => string | null): void {
+    const common = plan.entry === 'open' ? newCode() : null;
+    for (const participant of participantsOf(plan)) {
+      this.#database.run(
+        `INSERT INTO participants (study, participant, invitation) VALUES (?, ?, ?)
+         ON CONFLICT (study, participant) DO NOTHING`,
+        ...[plan.id, participant, linkOf(participant) ?? common ?? newCode()],
+      );
+    }
+  }
+}
