@@ -7,7 +7,7 @@ import { clockText, type Progress } from '../model/progress/progress';
 import { screenQuestions } from './answering';
 import { calibrationScreen } from './calibration-screens';
 import type { Safekeeping } from './participant-session';
-import { questionPart } from './question-screen';
+import { questionPart } from './questions/question-screen';
 import { roundScreen } from './round-screens';
 import { askToStopButton, pauseButton, type ScreenParts } from './screen-parts';
 import { noStorage } from './session-store';

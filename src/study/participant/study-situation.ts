@@ -1,7 +1,7 @@
 import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
 import type { ProgressEvent } from '../model/progress/advance';
+import type { Answer } from '../model/questionnaires/question-kind';
 import type { Question } from '../model/questionnaires/questionnaire-schema';
-import type { Answer } from '../model/questionnaires/questionnaires';
 import type { ParticipantSession } from './participant-session';
 import type { Prepared } from './trial-preparation';
 

@@ -1,4 +1,5 @@
 import { inLanguage } from '../phrases/words';
+import { questionKind } from '../questionnaires/question-kinds';
 import type { Question } from '../questionnaires/questionnaire-schema';
 import { languagesOf, type StudyPlan, taskTitle } from './plan';
 import { blindLabel, type StudyStep, scheduleFor } from './schedule';
@@ -15,8 +16,8 @@ export interface OutlinedScreen {
 }
 
 const ofForm = ({ answer: form, optional }: Question): string => {
-  const ranged = form.kind === 'choice' || form.kind === 'text' ? '' : ` ${form.from} to ${form.to}`;
-  return `${form.kind}${ranged}${optional ? ', may stay open' : ''}`;
+  const range = questionKind(form).range(form);
+  return `${form.kind}${range ? ` ${range[0]} to ${range[1]}` : ''}${optional ? ', may stay open' : ''}`;
 };
 
 function screensOf(plan: StudyPlan, step: StudyStep): readonly OutlinedScreen[] {

@@ -1,7 +1,8 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { checked, text, ValidationError } from 'threepoint/core/validation/validation';
 import type { Schedule, StudyStep } from '../plan/schedule';
-import { type Answer, checkedAnswers, checkedDraft } from '../questionnaires/questionnaires';
+import type { Answer } from '../questionnaires/question-kind';
+import { checkedAnswers, checkedDraft } from '../questionnaires/questionnaires';
 import { unwellBy } from '../questionnaires/stopping-rule';
 import { checkedConsent } from '../records/consent';
 import { checkedDemographics } from '../records/demographics';

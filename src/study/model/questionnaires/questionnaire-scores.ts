@@ -1,3 +1,4 @@
+import { questionKind } from './question-kinds';
 import type { Question, Scale } from './questionnaire-schema';
 import type { Answers, Questionnaire } from './questionnaires';
 
@@ -5,7 +6,8 @@ import type { Answers, Questionnaire } from './questionnaires';
 function counted({ id, answer, reversed }: Question, answers: Answers): number | null {
   const given = answers[id];
   if (typeof given !== 'number') return null;
-  return reversed && answer.kind !== 'choice' && answer.kind !== 'text' ? answer.from + answer.to - given : given;
+  const range = questionKind(answer).range(answer);
+  return reversed && range ? range[0] + range[1] - given : given;
 }
 
 const sum = (values: readonly number[]) => values.reduce((total, value) => total + value, 0);
@@ -43,9 +45,10 @@ export function scaleScore(questionnaire: Questionnaire, scale: Scale, answers: 
 
 /** The least and the greatest value that a scale can have. */
 export function scaleRange(questionnaire: Questionnaire, scale: Scale): readonly [number, number] {
-  const ranges = questionsOf(questionnaire, scale).flatMap(({ answer }) =>
-    answer.kind === 'choice' || answer.kind === 'text' ? [] : [[answer.from, answer.to] as const],
-  );
+  const ranges = questionsOf(questionnaire, scale).flatMap(({ answer }) => {
+    const range = questionKind(answer).range(answer);
+    return range ? [range] : [];
+  });
   const { method, factor = 1, offset = 0 } = scale;
   const lows = ranges.map(([low]) => low);
   const highs = ranges.map(([, high]) => high);

@@ -1,7 +1,9 @@
 import { checked, ValidationError } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
 import { missingLanguage, type Words } from '../phrases/words';
-import type { AnswerForm, Question, QuestionnaireFile, Scale } from './questionnaire-schema';
+import type { Answer, AnswerForm } from './question-kind';
+import { questionKind } from './question-kinds';
+import type { Question, QuestionnaireFile, Scale } from './questionnaire-schema';
 import { questionnaireSchema } from './questionnaire-schema';
 import archery from './shipped/archery.json' with { type: 'json' };
 import ball from './shipped/ball.json' with { type: 'json' };
@@ -19,60 +21,8 @@ export interface Questionnaire {
   readonly scales: readonly Scale[];
 }
 
-/** An answer as it is recorded: a number, or a text (what was typed, or the value of the option chosen). */
-export type Answer = number | string;
-
 /** Question id to answer, as given: reversed questions are not turned round. */
 export type Answers = Readonly<Record<string, Answer>>;
-
-const mostPoints = 101;
-const mostSliderSteps = 200;
-
-/** The distance of two answers that a scale tells apart; a slider that says nothing has a hundred. */
-export const stepOf = (form: Extract<AnswerForm, { kind: 'likert' | 'slider' }>): number =>
-  form.step ?? (form.kind === 'likert' ? 1 : (form.to - form.from) / 100);
-
-/** The number on a scale nearest to a value; ends included. */
-export function nearestOn(form: Extract<AnswerForm, { kind: 'likert' | 'slider' }>, value: number): number {
-  const step = stepOf(form);
-  const steps = Math.min(Math.round((form.to - form.from) / step), Math.max(0, Math.round((value - form.from) / step)));
-  return Number((form.from + steps * step).toFixed(6));
-}
-
-/** The points of a Likert scale, first to last; everything between the ends of a slider in its steps. */
-export function pointsOf(form: Extract<AnswerForm, { kind: 'likert' | 'slider' }>): readonly number[] {
-  const steps = Math.round((form.to - form.from) / stepOf(form));
-  return Array.from({ length: steps + 1 }, (_, index) => nearestOn(form, form.from + index * stepOf(form)));
-}
-
-function refuseForm(form: AnswerForm, field: string): void {
-  if (form.kind === 'text') return;
-  if (form.kind === 'choice') {
-    form.options.forEach(({ value }, index) => {
-      const first = form.options.findIndex((option) => option.value === value);
-      if (first !== index) {
-        throw new ValidationError(`${field}.options[${index}].value`, `"${value}" is the value of option ${first} too`);
-      }
-    });
-    return;
-  }
-  if (form.to <= form.from)
-    throw new ValidationError(`${field}.to`, `expected more than ${form.from}, where it begins`);
-  if (form.kind === 'number') return;
-  const steps = (form.to - form.from) / stepOf(form);
-  if (Math.abs(steps - Math.round(steps)) > 1e-6) {
-    throw new ValidationError(
-      `${field}.step`,
-      `${form.from} to ${form.to} is no whole number of steps of ${form.step}`,
-    );
-  }
-  const most = form.kind === 'likert' ? mostPoints - 1 : mostSliderSteps;
-  if (steps > most + 1e-6) throw new ValidationError(`${field}.step`, `expected at most ${most} steps from end to end`);
-  if (form.kind === 'likert' && form.labels && form.labels.length !== Math.round(steps) + 1) {
-    const points = Math.round(steps) + 1;
-    throw new ValidationError(`${field}.labels`, `expected ${points}, one for each point, found ${form.labels.length}`);
-  }
-}
 
 function refuseScale(scale: Scale, questions: readonly Question[], field: string): void {
   const named = (list: 'questions' | 'choices') =>
@@ -80,9 +30,11 @@ function refuseScale(scale: Scale, questions: readonly Question[], field: string
       const found = questions.find((question) => question.id === id);
       const at = `${field}.${list}[${index}]`;
       if (!found) throw new ValidationError(at, `there is no question "${id}"`);
-      const chosen = found.answer.kind === 'choice';
-      if (list === 'choices' && !chosen) throw new ValidationError(at, `"${id}" is no choice`);
-      if (list === 'questions' && (chosen || found.answer.kind === 'text')) {
+      const kind = questionKind(found.answer);
+      if (list === 'choices' && kind.options(found.answer) === null) {
+        throw new ValidationError(at, `"${id}" is no choice`);
+      }
+      if (list === 'questions' && kind.range(found.answer) === null) {
         throw new ValidationError(at, `"${id}" is not answered with a number`);
       }
     });
@@ -96,7 +48,7 @@ function refuseScale(scale: Scale, questions: readonly Question[], field: string
 /** A questionnaire with how each question is answered; throws a ValidationError with the field below `field`. */
 export function resolvedQuestionnaire(file: QuestionnaireFile, field = ''): Questionnaire {
   const at = (way: string) => (field ? `${field}.${way}` : way);
-  if (file.answer) refuseForm(file.answer, at('answer'));
+  if (file.answer) questionKind(file.answer).check?.(file.answer, at('answer'));
   const questions = file.questions.map((question, index): Question => {
     const way = at(`questions[${index}]`);
     const first = file.questions.findIndex(({ id }) => id === question.id);
@@ -107,8 +59,8 @@ export function resolvedQuestionnaire(file: QuestionnaireFile, field = ''): Ques
       throw new ValidationError(`${way}.id`, `"${question.id}" is a name that the program keeps for itself`);
     const answer = question.answer ?? file.answer;
     if (!answer) throw new ValidationError(`${way}.answer`, 'is missing, and the questionnaire says none for all');
-    if (question.answer) refuseForm(question.answer, `${way}.answer`);
-    if (question.reversed && (answer.kind === 'choice' || answer.kind === 'text')) {
+    if (question.answer) questionKind(question.answer).check?.(question.answer, `${way}.answer`);
+    if (question.reversed && questionKind(answer).range(answer) === null) {
       throw new ValidationError(`${way}.reversed`, `a ${answer.kind} has no other way round`);
     }
     return { ...question, answer };
@@ -128,17 +80,12 @@ function textsOf(
   { title, answer, questions }: QuestionnaireFile,
   field: string,
 ): readonly (readonly [string, Words])[] {
-  const ofForm = (form: AnswerForm | undefined, at: string): readonly (readonly [string, Words])[] => {
-    if (!form || form.kind === 'text') return [];
-    if (form.kind === 'choice')
-      return form.options.map(({ label }, i) => [`${at}.options[${i}].label`, label] as const);
-    if (form.kind === 'number') return form.unit === undefined ? [] : [[`${at}.unit`, form.unit]];
-    const labels = form.kind === 'likert' ? (form.labels ?? []) : [];
-    return [
-      ...(form.ends ? [[`${at}.ends.low`, form.ends.low] as const, [`${at}.ends.high`, form.ends.high] as const] : []),
-      ...labels.map((label, i) => [`${at}.labels[${i}]`, label] as const),
-    ];
-  };
+  const ofForm = (form: AnswerForm | undefined, at: string) =>
+    form === undefined
+      ? []
+      : questionKind(form)
+          .texts(form)
+          .map(([path, text]) => [`${at}.${path}`, text] as const);
   return [
     [`${field}.title`, title],
     ...ofForm(answer, `${field}.answer`),
@@ -181,52 +128,15 @@ export function questionnaireNamed(
 /** Whether this is one of its scales, or a question that is answered with a number. */
 export const isNumeric = ({ questions, scales }: Questionnaire, id: string): boolean =>
   scales.some((scale) => scale.id === id) ||
-  questions.some(({ id: own, answer }) => own === id && answer.kind !== 'text' && answer.kind !== 'choice');
+  questions.some(({ id: own, answer }) => own === id && questionKind(answer).range(answer) !== null);
 
-/** What an answer to a form must be, in words: "expected a whole number from 1 to 5". */
-export function expectedAnswer(form: AnswerForm): string {
-  switch (form.kind) {
-    case 'likert':
-    case 'slider': {
-      const step = stepOf(form);
-      if (step === 1) return `expected a whole number from ${form.from} to ${form.to}`;
-      return `expected a number from ${form.from} to ${form.to} in steps of ${Number(step.toFixed(6))}`;
-    }
-    case 'number':
-      return `expected a ${form.whole ? 'whole ' : ''}number from ${form.from} to ${form.to}`;
-    case 'choice':
-      return `expected one of ${form.options.map(({ value }) => value).join(', ')}`;
-    case 'text':
-      return `expected text of at most ${form.maxLength} characters`;
-  }
-}
-
-/** Whether this may be the answer to a question of this form. */
-export function isAnswer(form: AnswerForm, value: unknown): value is Answer {
-  switch (form.kind) {
-    case 'likert':
-    case 'slider':
-      return typeof value === 'number' && Number.isFinite(value) && Math.abs(nearestOn(form, value) - value) < 1e-6;
-    case 'number':
-      return (
-        typeof value === 'number' &&
-        value >= form.from &&
-        value <= form.to &&
-        (form.whole !== true || Number.isInteger(value))
-      );
-    case 'choice':
-      return form.options.some((option) => option.value === value);
-    case 'text':
-      return typeof value === 'string' && value.trim() !== '' && value.length <= form.maxLength;
-  }
-}
-
-/** What was typed as an answer; null: it is none, or not yet. */
+/** Returns the answer that a participant typed, or null if it is not an answer (yet). */
 export function typedAnswer(form: AnswerForm, typed: string): Answer | null {
   const text = typed.trim();
-  if (text === '') return null;
-  const value = form.kind === 'number' ? Number(text.replace('−', '-').replace(',', '.')) : text;
-  return isAnswer(form, value) ? value : null;
+  const kind = questionKind(form);
+  if (text === '' || !kind.parse) return null;
+  const parsed = v.safeParse(kind.answer(form), kind.parse(text));
+  return parsed.success ? parsed.output : null;
 }
 
 const loose = v.record(v.string(), v.union([v.number(), v.string()], 'expected a number or a text'));
@@ -237,7 +147,8 @@ export function checkedDraft(questionnaire: Questionnaire, value: unknown): Answ
   for (const [id, answer] of Object.entries(answers)) {
     const asked = questionnaire.questions.find((question) => question.id === id);
     if (!asked) throw new ValidationError(id, `the questionnaire "${questionnaire.id}" does not ask this`);
-    if (!isAnswer(asked.answer, answer)) throw new ValidationError(id, expectedAnswer(asked.answer));
+    const given = v.safeParse(questionKind(asked.answer).answer(asked.answer), answer);
+    if (!given.success) throw new ValidationError(id, given.issues[0].message);
   }
   return answers;
 }

@@ -1,8 +1,9 @@
 import { inLanguage } from '../phrases/words';
 import { languagesOf, questionnairesOf, type StudyPlan } from '../plan/plan';
-import type { AnswerForm } from '../questionnaires/questionnaire-schema';
+import type { Answer } from '../questionnaires/question-kind';
+import { questionKind, questionKindNames } from '../questionnaires/question-kinds';
 import { scaleRange, scaleScore } from '../questionnaires/questionnaire-scores';
-import { type Answer, type Questionnaire, questionnaireNamed, stepOf } from '../questionnaires/questionnaires';
+import { type Questionnaire, questionnaireNamed } from '../questionnaires/questionnaires';
 import type { Place, StudyRecord } from '../records/study-record';
 import { boolean, number, type Table, text } from './tidy-csv';
 
@@ -63,28 +64,6 @@ export const scaleRows = (records: readonly StudyRecord[], plan: StudyPlan, excl
     asked.scales.map((scale) => [scale.id, scaleScore(asked, scale, answers)]),
   );
 
-function formText(form: AnswerForm, language: string): string {
-  const said = (text: Parameters<typeof inLanguage>[0]) => inLanguage(text, language);
-  switch (form.kind) {
-    case 'likert':
-    case 'slider': {
-      const labels = form.kind === 'likert' ? form.labels : undefined;
-      const { from, to } = form;
-      const low = labels?.[0] ?? form.ends?.low;
-      const high = labels?.at(-1) ?? form.ends?.high;
-      const end = (value: number, label: typeof low) => (label === undefined ? `${value}` : `${value} ${said(label)}`);
-      const step = stepOf(form);
-      return `${end(from, low)} to ${end(to, high)}${step === 1 ? '' : `, in steps of ${step}`}`;
-    }
-    case 'choice':
-      return form.options.map(({ value, label }) => `${value}: ${said(label)}`).join('; ');
-    case 'number':
-      return `${form.from} to ${form.to}${form.unit === undefined ? '' : ` ${said(form.unit)}`}`;
-    case 'text':
-      return `at most ${form.maxLength} characters`;
-  }
-}
-
 const ids = 'small letters, digits, hyphens';
 const codes = 'letters, digits, - and _';
 const asked = (path: string) => `questionnaire: ${path}`;
@@ -98,7 +77,7 @@ export const questionTable = (plan: StudyPlan): Table => ({
     text('language', 'a language tag', 'plan.json: languages', 'Of the words in this row.'),
     text('about', 'any text', asked('questions[].about'), 'What it asks about.'),
     text('text', 'any text', asked('questions[].text'), 'The words.'),
-    text('kind', 'likert, slider, choice, number, text', asked('questions[].answer.kind'), 'How it is answered.'),
+    text('kind', questionKindNames().join(', '), asked('questions[].answer.kind'), 'How it is answered.'),
     text('answers', 'any text', asked('questions[].answer'), 'What can be answered: ends of the scale, or options.'),
     boolean('reversed', asked('questions[].reversed'), 'Whether scales count from + to − answer.'),
     text('source', 'any text', asked('source'), 'Where the questionnaire was published.'),
@@ -112,7 +91,7 @@ export const questionTable = (plan: StudyPlan): Table => ({
         about: question.about ?? '',
         text: inLanguage(question.text, language),
         kind: question.answer.kind,
-        answers: formText(question.answer, language),
+        ...questionKind(question.answer).columns(question.answer, (words) => inLanguage(words, language)),
         reversed: question.reversed ?? false,
         source: source ?? '',
       })),

@@ -1,7 +1,21 @@
-import { inner, margin, type Target, width } from './sheet-target';
-import type { ScreenField } from './study-screen';
+import { inner, margin, type Target, width } from '../sheet-target';
 
-type TypedField = Extract<ScreenField, { kind: 'number' | 'text' }>;
+/** Letters and words on the keys of the sheet. */
+export interface KeyLabels {
+  /** Letters, row by row. */
+  readonly rows: readonly string[];
+  readonly space: string;
+  readonly delete: string;
+}
+
+/** A field that is filled by keys. */
+interface KeyedField {
+  readonly kind: 'number' | 'text';
+  readonly typed: string;
+  readonly maxLength: number;
+  readonly keys: KeyLabels;
+  type(typed: string): void;
+}
 
 const numberRows = ['789', '456', '123', '-0.'] as const;
 const gap = 8;
@@ -13,14 +27,14 @@ interface Keyboard {
   readonly top: number;
 }
 
-function keyboardOf({ kind, keys }: TypedField): Keyboard {
+function keyboardOf({ kind, keys }: KeyedField): Keyboard {
   if (kind === 'number') return { rows: numberRows, wide: 128, high: 58, top: 366 };
   const most = Math.max(...keys.rows.map((row) => [...row].length));
   return { rows: keys.rows, wide: (inner - (most - 1) * gap) / most, high: 52, top: 330 };
 }
 
-/** The keys of a keyboard or number pad on the sheet; each writes at the end of what is typed. */
-export function keyTargets(field: TypedField): readonly Target[] {
+/** Returns the keys of a keyboard or number pad on the sheet; each writes at the end of the typed text. */
+export function keyTargets(field: KeyedField): readonly Target[] {
   const { kind, typed, maxLength, keys: labels, type } = field;
   const { rows, wide, high, top } = keyboardOf(field);
   const key = (id: string, label: string, at: Target['at'], text: string): Target => ({
