@@ -17,7 +17,7 @@ export interface OpenStudy extends StudyInfo {
 
 export interface StudyActions extends ParticipantActions {
   /** Sends simulated participants through the plan. */
-  rehearse(): void;
+  simulate(): void;
   /** Of a simulated study alone: deletes it whole. */
   deleteSimulated(): void;
   /** Of this version of the plan. */
@@ -90,7 +90,7 @@ function studyHead(study: OpenStudy, actions: StudyActions): readonly Node[] {
       previewLink(plan),
       simulated
         ? button('Delete this simulated study …', actions.deleteSimulated, { class: 'danger' })
-        : button('Rehearse …', actions.rehearse),
+        : button('Simulate …', actions.simulate),
     ),
   ];
 }

@@ -69,17 +69,12 @@ const markedInAll = (title: Words): Words =>
     ? marked(title)
     : Object.fromEntries(Object.entries(title).map(([language, text]) => [language, marked(text)]));
 
-const renamed = (plan: StudyPlan, ending: string): StudyPlan => ({
+/** Returns the plan under an id and a title that mark it as simulated. */
+export const simulatedPlan = (plan: StudyPlan): StudyPlan => ({
   ...plan,
-  id: `${plan.id.slice(0, 37)}-${ending}`,
+  id: `${plan.id.slice(0, 37)}-simulated`,
   title: markedInAll(plan.title),
 });
-
-/** The plan under a name that cannot be taken for a study of people. */
-export const simulatedPlan = (plan: StudyPlan): StudyPlan => renamed(plan, 'simulated');
-
-/** The plan of a study's rehearsal. */
-export const rehearsalPlan = (plan: StudyPlan): StudyPlan => renamed(plan, 'rehearsal');
 
 const oneOf = <T>(random: RandomSource, options: readonly T[]): T =>
   options[Math.floor(random.uniform() * options.length)] as T;

@@ -120,7 +120,7 @@ describe('npm run study:simulate', () => {
     expect(simulateInto(out).stderr).toContain('is not empty');
   });
 
-  test('rehearses any plan with the effects that are stated: between cohorts, three conditions, several questionnaires', {
+  test('simulates any plan with the effects that are stated: between cohorts, three conditions, several questionnaires', {
     tags: ['full'],
   }, () => {
     const mixed = latencyPlan({

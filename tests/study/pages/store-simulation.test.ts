@@ -1,7 +1,7 @@
 import { createExperimenterClient } from 'threepoint-study/client/study-client';
 import { measuresIn, overallComparisons } from 'threepoint-study/model/results/exported-results';
 import { answersIn, trialsIn } from 'threepoint-study/model/tables/study-tables';
-import { rehearse } from 'threepoint-study/pages/rehearse';
+import { storeSimulation } from 'threepoint-study/pages/store-simulation';
 import { expect, test } from 'vitest';
 import { examplePlan, latencyPlan } from '../model/studies';
 import { experimenter, now, servedStudies } from '../server/running-studies';
@@ -17,29 +17,29 @@ async function server() {
   return { ...served, plan, client: createExperimenterClient(experimenter, served.origin) };
 }
 
-test('a rehearsal goes through the plan to the end, into a study of its own, with what was put in', async () => {
+test('a simulation goes through the plan to the end, into a study of its own, with what was put in', async () => {
   const { client, plan } = await server();
   const told: string[] = [];
   const onProgress = (done: number, all: number) => told.push(`${done}/${all}`);
-  expect(await rehearse(client, plan, { seed: 3, effects, at: now, onProgress })).toBe('latency-rehearsal');
+  expect(await storeSimulation(client, plan, { seed: 3, effects, at: now, onProgress })).toBe('latency-simulated');
   expect(told.at(-1)).toBe('6/6');
-  const { records, simulated, plan: rehearsed } = await client.records('latency-rehearsal');
+  const { records, simulated, plan: simulatedPlan } = await client.records('latency-simulated');
   expect(simulated).toBe(true);
-  expect(rehearsed.title).toBe(`SIMULATED: ${plan.title}`);
+  expect(simulatedPlan.title).toBe(`SIMULATED: ${plan.title}`);
   expect(records.every((record) => record.simulated)).toBe(true);
-  expect((await client.participants('latency-rehearsal')).map(({ session }) => session?.kind)).toEqual(
+  expect((await client.participants('latency-simulated')).map(({ session }) => session?.kind)).toEqual(
     Array(6).fill('end'),
   );
   expect(trialsIn(records).filter(({ excluded }) => !excluded)).toHaveLength(6 * 3);
-  const compared = overallComparisons(measuresIn(records, rehearsed).answers, rehearsed);
+  const compared = overallComparisons(measuresIn(records, simulatedPlan).answers, simulatedPlan);
   expect(compared.filter(({ variance }) => (variance?.within?.p ?? 1) < 0.05).length).toBeGreaterThan(4);
   expect((await client.records('latency')).records).toEqual([]);
 });
 
-test('a rehearsal of a study in two languages is called SIMULATED in both', async () => {
+test('a simulation of a study in two languages is called SIMULATED in both', async () => {
   const { client } = await server();
   const { title, ...plan } = examplePlan();
-  const id = await rehearse(
+  const id = await storeSimulation(
     client,
     { ...plan, title, participants: 2 },
     { seed: 3, effects: { answers: {}, scores: {} }, at: now },
@@ -49,25 +49,25 @@ test('a rehearsal of a study in two languages is called SIMULATED in both', asyn
   expect((await client.studies()).map((listed) => listed.title)).toContain(`SIMULATED: ${en}`);
 });
 
-test('another rehearsal takes the place of the first, and is the same for the same seed', async () => {
+test('another simulation takes the place of the first, and is the same for the same seed', async () => {
   const { client, plan } = await server();
   const answersOf = async () =>
-    answersIn((await client.records('latency-rehearsal')).records, plan).map(({ answer }) => answer);
-  await rehearse(client, plan, { seed: 3, effects, at: now });
+    answersIn((await client.records('latency-simulated')).records, plan).map(({ answer }) => answer);
+  await storeSimulation(client, plan, { seed: 3, effects, at: now });
   const first = await answersOf();
-  await rehearse(client, plan, { seed: 3, effects, at: now });
+  await storeSimulation(client, plan, { seed: 3, effects, at: now });
   expect(await answersOf()).toEqual(first);
-  await rehearse(client, plan, { seed: 4, effects, at: now });
+  await storeSimulation(client, plan, { seed: 4, effects, at: now });
   expect(await answersOf()).not.toEqual(first);
 });
 
 test('a simulated study goes at once and whole; one of people does not', async () => {
   const { client, plan, store } = await server();
-  await rehearse(client, plan, { seed: 3, effects, at: now });
-  await client.delete('latency-rehearsal', 'P02');
-  await client.deleteSimulated('latency-rehearsal');
+  await storeSimulation(client, plan, { seed: 3, effects, at: now });
+  await client.delete('latency-simulated', 'P02');
+  await client.deleteSimulated('latency-simulated');
   expect((await client.studies()).map(({ id }) => id)).toEqual(['latency']);
-  await expect(client.records('latency-rehearsal')).rejects.toThrow('there is no study');
+  await expect(client.records('latency-simulated')).rejects.toThrow('there is no study');
   await expect(client.deleteSimulated('latency')).rejects.toThrow('is of people');
   expect(store.overview('latency', now)[0]?.claimed).toBe(true);
 });
@@ -75,7 +75,7 @@ test('a simulated study goes at once and whole; one of people does not', async (
 test('an effect on what the plan does not have is named, and nothing is begun', async () => {
   const { client, plan } = await server();
   const wrong = { answers: { sideways: 1 }, scores: {} };
-  await expect(rehearse(client, plan, { seed: 1, effects: wrong, at: now })).rejects.toThrow(
+  await expect(storeSimulation(client, plan, { seed: 1, effects: wrong, at: now })).rejects.toThrow(
     'no condition or cohort "sideways"',
   );
   expect((await client.studies()).map(({ id }) => id)).toEqual(['latency']);
