@@ -3,7 +3,7 @@ import { togetherWith } from '../../model/plan/allocation';
 import { checkedPlan, participantsOf, type StudyPlan, storedPlan } from '../../model/plan/plan';
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
 import { StoreRefusal, type StudyDatabase } from './database';
-import { newCode } from './schema';
+import { PlanPlaces } from './plan-places';
 
 interface StudyRow {
   readonly id: string;
@@ -35,9 +35,11 @@ const listed = (names: readonly string[]) =>
 /** The studies themselves: their plans, version by version, and the places that these have. */
 export class StudyPlans {
   readonly #database: StudyDatabase;
+  readonly #places: PlanPlaces;
 
   constructor(database: StudyDatabase) {
     this.#database = database;
+    this.#places = new PlanPlaces(database);
   }
 
   /** The study of this id, its plan in this version or in the newest; throws a StoreRefusal where there is none. */
@@ -57,16 +59,6 @@ export class StudyPlans {
       ...[id, id, participant, id],
     );
     return storedPlan(JSON.parse(plan));
-  }
-
-  /** The one invitation to all places of an open study, which those who follow its newest plan have; null: none of them has one. */
-  commonInvitation(id: string): string | null {
-    const place = this.#database.get<{ invitation: string }>(
-      `SELECT invitation FROM participants WHERE study = ? AND invitation IS NOT NULL AND (plan_version IS NULL OR plan_version =
-         (SELECT max(version) FROM plan_versions WHERE plan_versions.study = participants.study)) LIMIT 1`,
-      id,
-    );
-    return place?.invitation ?? null;
   }
 
   /** Oldest first. */
@@ -96,7 +88,7 @@ export class StudyPlans {
       }
       const known = this.#infoOf(stored);
       if (JSON.stringify(known.plan) === JSON.stringify(checked)) return known;
-      const begun = this.#begun(checked.id);
+      const begun = this.#places.begun(checked.id);
       if (begun.length === 0) {
         this.remove(checked.id);
         this.#insert(checked, simulated, at);
@@ -111,33 +103,14 @@ export class StudyPlans {
     });
   }
 
-  /**
-   * Inside a transaction: a place that was cleared, and those that stay with an older version for its sake alone, follow the newest one or go
-   * where that has none. They stay where another who plays with them, by either version, has begun.
-   */
+  /** Returns the invitation that all places of an open study share in its newest plan, or null if there is none. */
+  commonInvitation(id: string): string | null {
+    return this.#places.commonInvitation(id);
+  }
+
+  /** Moves a cleared place, and those that depend on it, to the newest plan, in a transaction. */
   freePlaces(id: string, participant: string): void {
-    const { plan, version, versions } = this.get(id);
-    const own = versions.find(({ participants }) => participants.includes(participant));
-    if (!own || own.version === version) return;
-    const freed = togetherWith(own.plan, participant);
-    const keeps = new Set(
-      versions.flatMap((older) =>
-        older.version === version ? [] : older.participants.filter((one) => !freed.has(one)),
-      ),
-    );
-    const inPlan = participantsOf(plan).filter((one) => freed.has(one));
-    const mixed = inPlan.some((one) => [...togetherWith(plan, one)].some((other) => keeps.has(other)));
-    if (mixed || this.#begun(id).some((begun) => freed.has(begun.participant))) return;
-    for (const one of freed) {
-      const place = [id, one] as const;
-      if (inPlan.includes(one)) {
-        this.#database.run('UPDATE participants SET plan_version = NULL WHERE study = ? AND participant = ?', ...place);
-        continue;
-      }
-      for (const table of ['commands', 'participants']) {
-        this.#database.run(`DELETE FROM ${table} WHERE study = ? AND participant = ?`, ...place);
-      }
-    }
+    this.#places.free(this.get(id), participant);
   }
 
   /** Inside a transaction, of a study in which nothing is recorded. */
@@ -183,17 +156,6 @@ export class StudyPlans {
     };
   }
 
-  /** Who has taken a place, or left something recorded. */
-  #begun(id: string): readonly { readonly participant: string; readonly plan_version: number }[] {
-    return this.#database.all(
-      `SELECT participant, coalesce(plan_version, 1) AS plan_version FROM participants AS place
-       WHERE study = ? AND (token_hash IS NOT NULL OR withdrawal_hash IS NOT NULL OR withdrawn = 1 OR EXISTS
-         (SELECT 1 FROM records WHERE records.study = place.study AND records.participant = place.participant))
-       ORDER BY participant`,
-      id,
-    );
-  }
-
   #addVersion({ versions, version, plan: before, retentionUntil }: StudyInfo, plan: StudyPlan, at: number): void {
     const { id } = plan;
     const [text, textBefore] = [plan, before].map(({ consent }) => JSON.stringify({ ...consent, version: '' }));
@@ -208,7 +170,7 @@ export class StudyPlans {
       );
     }
     const kept = new Map<string, number>();
-    for (const { participant, plan_version } of this.#begun(id)) {
+    for (const { participant, plan_version } of this.#places.begun(id)) {
       const own = versions.find((one) => one.version === plan_version)?.plan ?? before;
       for (const member of togetherWith(own, participant)) kept.set(member, plan_version);
     }
@@ -223,7 +185,7 @@ export class StudyPlans {
           'group sizes as they are, or give the plan another id',
       );
     }
-    const common = plan.entry === 'open' ? this.commonInvitation(id) : null;
+    const common = plan.entry === 'open' ? this.#places.commonInvitation(id) : null;
     this.#database.run(
       'INSERT INTO plan_versions (study, version, plan, since) VALUES (?, ?, ?, ?)',
       ...[id, version + 1, JSON.stringify(plan), at],
@@ -231,32 +193,8 @@ export class StudyPlans {
     // What those who take part were promised holds for all.
     const until = Math.min(retentionUntil, at + plan.retentionDays * secondsPerDay);
     this.#database.run('UPDATE studies SET retention_until = ? WHERE id = ?', until, id);
-    this.#database.run('UPDATE participants SET plan_version = NULL WHERE study = ?', id);
-    for (const [participant, itsVersion] of kept) {
-      this.#database.run(
-        'UPDATE participants SET plan_version = ? WHERE study = ? AND participant = ?',
-        ...[itsVersion, id, participant],
-      );
-    }
-    this.#renewFreePlaces(plan, { linksHold: plan.entry === before.entry, common });
-  }
-
-  /**
-   * The places that no one has are those of the new plan; links that were sent already open them still, if one may: that of all (`common`; null:
-   * there is none) also those that the plan has more.
-   */
-  #renewFreePlaces(
-    plan: StudyPlan,
-    { linksHold, common }: { readonly linksHold: boolean; readonly common: string | null },
-  ): void {
-    const { id } = plan;
-    const free = this.#database.all<{ participant: string; invitation: string | null }>(
-      'SELECT participant, invitation FROM participants WHERE study = ? AND plan_version IS NULL',
-      id,
-    );
-    const links = new Map(free.map(({ participant, invitation }) => [participant, invitation]));
-    this.#database.run('DELETE FROM participants WHERE study = ? AND plan_version IS NULL', id);
-    this.#addPlaces(plan, (participant) => (linksHold ? (links.get(participant) ?? common) : null));
+    this.#places.follow(id, kept);
+    this.#places.renewFree(plan, { linksHold: plan.entry === before.entry, common });
   }
 
   #insert(plan: StudyPlan, simulated: boolean, at: number): void {
@@ -269,18 +207,6 @@ export class StudyPlans {
       'INSERT INTO plan_versions (study, version, plan, since) VALUES (?, 1, ?, ?)',
       ...[plan.id, JSON.stringify(plan), at],
     );
-    this.#addPlaces(plan, () => null);
-  }
-
-  /** The places of a plan that are not there yet; `linkOf`: the invitation that a place had before, null: none. */
-  #addPlaces(plan: StudyPlan, linkOf: (participant: string) => string | null): void {
-    const common = plan.entry === 'open' ? newCode() : null;
-    for (const participant of participantsOf(plan)) {
-      this.#database.run(
-        `INSERT INTO participants (study, participant, invitation) VALUES (?, ?, ?)
-         ON CONFLICT (study, participant) DO NOTHING`,
-        ...[plan.id, participant, linkOf(participant) ?? common ?? newCode()],
-      );
-    }
+    this.#places.add(plan, () => null);
   }
 }
