@@ -69,7 +69,7 @@ class ExperimenterPage {
     try {
       const { records: _, ...info } = await this.#access.open(client, id);
       const receipts = await client.receipts(id);
-      this.#study = { ...info, receipts, states: await client.participants(id), toldAt: Date.now() / 1000 };
+      this.#study = { ...info, receipts, states: await client.participants(id), receivedAt: Date.now() / 1000 };
       this.#complaint = '';
     } catch (error) {
       this.#complaint = reasonOf(error);
@@ -83,10 +83,10 @@ class ExperimenterPage {
     if (client && study) {
       try {
         const states = await client.participants(study.plan.id);
-        const toldAt = Date.now() / 1000;
+        const receivedAt = Date.now() / 1000;
         const receipts = await client.receipts(study.plan.id);
         // Another study may have been opened meanwhile.
-        if (this.#study?.plan.id === study.plan.id) this.#study = { ...this.#study, states, toldAt, receipts };
+        if (this.#study?.plan.id === study.plan.id) this.#study = { ...this.#study, states, receivedAt, receipts };
         this.#online = true;
       } catch (error) {
         this.#online = false;

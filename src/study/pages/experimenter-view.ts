@@ -11,7 +11,7 @@ import { tableNode } from './table';
 export interface OpenStudy extends StudyInfo {
   readonly states: readonly ParticipantState[];
   /** When the server told them, by the clock of this page [s since 1970]. */
-  readonly toldAt: number;
+  readonly receivedAt: number;
   readonly receipts: readonly Receipt[];
 }
 
@@ -56,7 +56,7 @@ export const openStudy = (study: OpenStudy, now: number, actions: StudyActions):
       return participantRow(
         state,
         { plan: planOf(study, state.version), several },
-        Math.max(0, now - study.toldAt),
+        Math.max(0, now - study.receivedAt),
         actions,
       );
     }),

@@ -110,7 +110,7 @@ export class RunningStudy {
   show(): void {
     const { session } = this;
     const { display } = this.#page;
-    if (session.safekeeping.lockedOut) {
+    if (session.uploadStatus.lockedOut) {
       this.#trials.abort();
       display.ask(this.#lockedOutForm(), this.#host.inSession() ? lockedOutScreen(session) : null);
       return;
@@ -190,9 +190,9 @@ export class RunningStudy {
   }
 
   #lockedOutForm(): StudyForm {
-    const { progress, plan, phrases, safekeeping } = this.session;
+    const { progress, plan, phrases, uploadStatus } = this.session;
     return {
-      ...{ kind: 'locked-out', phrases, participant: progress.participant, unsent: safekeeping.unsent },
+      ...{ kind: 'locked-out', phrases, participant: progress.participant, unsent: uploadStatus.unsent },
       contact: plan.remote?.contact ?? null,
       anew: () => void this.#forget().then(() => this.#page.address.reload()),
     };

@@ -52,7 +52,7 @@ async function openVault(): Promise<StudyVault | null> {
   try {
     return await openStudyVault();
   } catch {
-    // reason: a browser without storage is a state of the session (safekeeping.storageFault), shown on every screen
+    // reason: a browser without storage is a state of the session (uploadStatus.storageFault), shown on every screen
     return null;
   }
 }

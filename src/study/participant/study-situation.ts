@@ -8,7 +8,7 @@ import type { Prepared } from './trial-preparation';
 /** What screens show of a session. */
 export type ShownSession = Pick<
   ParticipantSession,
-  'plan' | 'phrases' | 'step' | 'progress' | 'simulated' | 'safekeeping' | 'remaining'
+  'plan' | 'phrases' | 'step' | 'progress' | 'simulated' | 'uploadStatus' | 'remaining'
 >;
 
 /** Everything that decides what a participant sees. */

@@ -3,7 +3,7 @@ import * as v from 'valibot';
 import { phrasesSchema } from '../phrases/phrase-schema';
 import { languageTag, words } from '../phrases/words';
 import { questionnaireSchema } from '../questionnaires/questionnaire-schema';
-import { askToStopSchema } from '../questionnaires/stopping-rule';
+import { stoppingRuleSchema } from '../questionnaires/stopping-rule';
 import { embodimentFields, estimatorSchema } from './embodiment';
 import { remoteSchema } from './remote-setup';
 
@@ -98,7 +98,7 @@ export const planSchema = v.strictObject({
   remote: v.exactOptional(remoteSchema),
   /** Who reaches one of these values is asked whether to stop. */
   askToStop: v.exactOptional(
-    v.pipe(v.array(askToStopSchema, 'expected a list'), v.maxLength(8, 'expected at most eight')),
+    v.pipe(v.array(stoppingRuleSchema, 'expected a list'), v.maxLength(8, 'expected at most eight')),
   ),
   /** Measures that are tested as planned, a family for Holm's correction; all else is exploratory. "archery/nasa-tlx/raw", "archery/score". */
   planned: v.exactOptional(

@@ -9,7 +9,7 @@ import {
   resolvedQuestionnaire,
   shippedQuestionnaires,
 } from '../questionnaires/questionnaires';
-import { refuseUnaskedLimits } from '../questionnaires/stopping-rule';
+import { checkStoppingRules } from '../questionnaires/stopping-rule';
 import { embodimentFieldsOf } from './embodiment';
 import { planSchema } from './plan-schema';
 
@@ -203,7 +203,7 @@ export function checkedPlan(value: unknown): StudyPlan {
   }
   refuseUnclearBodies(plan);
   refuseQuestionnaires(plan);
-  refuseUnaskedLimits(plan.askToStop ?? [], questionnairesOf(plan));
+  checkStoppingRules(plan.askToStop ?? [], questionnairesOf(plan));
   refuseUntranslated(plan);
   refusePhrases(plan.phrases ?? {}, languagesOf(plan));
   refuseUnknownMeasures(plan);

@@ -1,6 +1,6 @@
 import { ValidationError } from 'threepoint/core/validation/validation';
 import { type Questionnaire, questionnaireNamed } from '../questionnaires/questionnaires';
-import type { StopLimit } from '../questionnaires/stopping-rule';
+import type { StoppingRule } from '../questionnaires/stopping-rule';
 import { cohortsByParticipant, groupsOf, ordersByGroup } from './allocation';
 import { type Embodiment, embodimentOf, type PartialEmbodiment } from './embodiment';
 import { participantsOf, questionnairesAfter, type StudyCondition, type StudyPlan, type StudyTask } from './plan';
@@ -45,7 +45,7 @@ export interface Schedule {
   readonly cohort: string | null;
   readonly consentVersion: string;
   /** From which answers on a participant is asked whether to stop. */
-  readonly askToStop: readonly StopLimit[];
+  readonly askToStop: readonly StoppingRule[];
   /** Per task: with whom, and the group's number from 1 (for tasks alone: the participant's). */
   readonly groups: Readonly<Record<string, { readonly number: number; readonly members: readonly string[] }>>;
   readonly steps: readonly StudyStep[];

@@ -3,7 +3,7 @@ import { checked, text, ValidationError } from 'threepoint/core/validation/valid
 import type { Schedule, StudyStep } from '../plan/schedule';
 import type { Answer } from '../questionnaires/question-kind';
 import { checkedAnswers, checkedDraft } from '../questionnaires/questionnaires';
-import { unwellBy } from '../questionnaires/stopping-rule';
+import { reachedRule } from '../questionnaires/stopping-rule';
 import { checkedConsent } from '../records/consent';
 import { checkedDemographics } from '../records/demographics';
 import { type Place, recordVersion, type StudyEvent, type StudyRecord } from '../records/study-record';
@@ -263,7 +263,7 @@ function submit(at: Moment): Advance | null {
     overtime: seconds > step.seconds,
   };
   const handedIn = [{ ...at.envelope, kind: 'answers', id: at.recordId('answers'), body } as const];
-  const unwell = unwellBy(at.schedule.askToStop, step.questionnaire, body.answers);
+  const unwell = reachedRule(at.schedule.askToStop, step.questionnaire, body.answers);
   if (!unwell) return at.moveOn(progress, handedIn);
   const { questionnaire, measure, value } = unwell;
   const told = at.withEvent({ ...progress, unwell: true }, { type: 'unwell', place, questionnaire, measure, value });

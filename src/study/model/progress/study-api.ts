@@ -1,5 +1,5 @@
 import type { StudyPlan } from '../plan/plan';
-import type { KnownWearer } from '../records/participant-profile';
+import type { ParticipantProfile } from '../records/participant-profile';
 import type { StudyRecord } from '../records/study-record';
 import type { Progress } from './progress';
 
@@ -105,7 +105,7 @@ export interface SignedSeat {
 }
 
 /** What a device is given that takes a participant's place; of the wearer what an earlier device sent. */
-export interface Claim extends KnownWearer {
+export interface Claim extends ParticipantProfile {
   readonly token: string;
   /** With the first claim, and again while nothing was recorded; null later. */
   readonly withdrawalCode: string | null;

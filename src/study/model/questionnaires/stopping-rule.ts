@@ -10,22 +10,22 @@ const measure = v.pipe(
 );
 
 /** From which value of which scale or question on a participant is asked whether to stop. */
-export const askToStopSchema = v.strictObject({
+export const stoppingRuleSchema = v.strictObject({
   questionnaire: identifier,
   /** Id of one of its scales, or of a question that is answered with a number. */
   measure,
   atLeast: numberBetween(-limit, limit),
 });
 
-export type StopLimit = v.InferOutput<typeof askToStopSchema>;
+export type StoppingRule = v.InferOutput<typeof stoppingRuleSchema>;
 
 /** A measure that says that a participant may be unwell. */
-export interface UnwellMeasure extends StopLimit {
+export interface ReachedRule extends StoppingRule {
   readonly value: number;
 }
 
 /** Throws a ValidationError where a limit is of something that the study does not ask. */
-export function refuseUnaskedLimits(limits: readonly StopLimit[], asked: readonly Questionnaire[]): void {
+export function checkStoppingRules(limits: readonly StoppingRule[], asked: readonly Questionnaire[]): void {
   limits.forEach((one, index) => {
     const field = `askToStop[${index}]`;
     const questionnaire = asked.find(({ id }) => id === one.questionnaire);
@@ -40,7 +40,11 @@ export function refuseUnaskedLimits(limits: readonly StopLimit[], asked: readonl
 }
 
 /** The first of the limits that these answers reach; null: none. */
-export function unwellBy(limits: readonly StopLimit[], asked: Questionnaire, answers: Answers): UnwellMeasure | null {
+export function reachedRule(
+  limits: readonly StoppingRule[],
+  asked: Questionnaire,
+  answers: Answers,
+): ReachedRule | null {
   for (const one of limits.filter(({ questionnaire }) => questionnaire === asked.id)) {
     const scale = asked.scales.find(({ id }) => id === one.measure);
     const value = scale ? scaleScore(asked, scale, answers) : answers[one.measure];

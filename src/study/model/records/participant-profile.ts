@@ -4,7 +4,7 @@ import type { Demographics } from './demographics';
 import type { StudyRecord } from './study-record';
 
 /** What the page goes by of a participant who was asked and measured. */
-export interface KnownWearer {
+export interface ParticipantProfile {
   /** The hand they prefer: the bow goes into the other one; null: not told yet. */
   readonly preferredHand: Side | null;
   /** The newest measures of the body; null: not measured yet. */
@@ -16,8 +16,8 @@ export const preferredHandOf = ({ handedness }: Pick<Demographics, 'handedness'>
   handedness === 'left' ? 'left' : 'right';
 
 /** By what was recorded, the oldest first. How headset and hands are worn is another matter on every device, and left out. */
-export function wearerIn(records: readonly StudyRecord[]): KnownWearer {
-  let known: KnownWearer = { preferredHand: null, calibration: null };
+export function profileFrom(records: readonly StudyRecord[]): ParticipantProfile {
+  let known: ParticipantProfile = { preferredHand: null, calibration: null };
   for (const record of records) {
     if (record.kind === 'demographics') known = { ...known, preferredHand: preferredHandOf(record.body) };
     if (record.kind !== 'calibration') continue;

@@ -6,7 +6,7 @@ import { type Schedule, type StudyStep, scheduleFor } from '../../model/plan/sch
 import { advance, type ProgressEvent } from '../../model/progress/advance';
 import { begin, currentStep, type Progress } from '../../model/progress/progress';
 import { Answering } from '../answering';
-import type { Safekeeping } from '../participant-session';
+import type { UploadStatus } from '../participant-session';
 import { refusalFor } from '../reasons';
 import type { StudyForm } from '../study-form';
 import type { StudyScreen } from '../study-screen';
@@ -20,7 +20,7 @@ export type PreviewShown =
   | { readonly kind: 'form'; readonly form: StudyForm }
   | { readonly kind: 'playing'; readonly text: string };
 
-const allSaved: Safekeeping = {
+const allSaved: UploadStatus = {
   unsent: 0,
   unsaved: 0,
   storageFault: null,
@@ -36,7 +36,7 @@ const exampleCode = '0000-0000-0000-0000';
 class PreviewSession implements ShownSession {
   readonly plan: StudyPlan;
   readonly simulated = false;
-  readonly safekeeping = allSaved;
+  readonly uploadStatus = allSaved;
   readonly #schedule: Schedule;
   readonly #drafts = new Map<string, Progress['draft']>();
   #progress: Progress;

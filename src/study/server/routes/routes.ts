@@ -14,7 +14,7 @@ import type { Software } from 'threepoint-http/software';
 import * as v from 'valibot';
 import { checkedPlan, languagesOf, type StudyPlan, studyTitle } from '../../model/plan/plan';
 import { mostMotionBytes, type PlanVersion, type StudyInfo } from '../../model/progress/study-api';
-import { wearerIn } from '../../model/records/participant-profile';
+import { profileFrom } from '../../model/records/participant-profile';
 import { checkedRecord } from '../../model/records/study-record';
 import { exportName } from '../export/export-zip';
 import type { Exporter } from '../export/exporter';
@@ -257,7 +257,7 @@ const sessionOf = ({ store }: Pick<TableOptions, 'store'>, { study, participant,
   plan: store.plans.planFor(study, participant),
   simulated: store.plans.get(study).simulated,
   progress: store.places.progress(study, participant, at),
-  ...wearerIn(store.records.all(study, participant)),
+  ...profileFrom(store.records.all(study, participant)),
 });
 
 /** Throws where a plan that was stored could not be a new study's any more: nothing can be recorded by its rules. */
