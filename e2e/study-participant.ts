@@ -1,5 +1,5 @@
 import type { Page } from '@playwright/test';
-import type { StudyRecord } from 'threepoint-study/model/study-record';
+import type { StudyRecord } from 'threepoint-study/model/records/study-record';
 import type { StudyProbe } from 'threepoint-study/participant/study-run';
 import { type EmulatedHeadset, emulatedHeadset } from './emulated-headset';
 import { expect, freshTest as pageTest } from './page-fixture';

@@ -5,9 +5,9 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { studyLink } from 'threepoint-study/client/study-link';
-import { parsePlan, type StudyPlan } from 'threepoint-study/model/plan';
-import type { ParticipantState } from 'threepoint-study/model/study-api';
-import { recordVersion } from 'threepoint-study/model/study-record';
+import { parsePlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
+import type { ParticipantState } from 'threepoint-study/model/progress/study-api';
+import { recordVersion } from 'threepoint-study/model/records/study-record';
 
 export const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 

@@ -17,7 +17,7 @@ const worker = '-worker.mjs';
  * loads NAME-work.ts through a loader for TypeScript; in the build NAME-worker.mjs is NAME-work.ts itself.
  */
 function entries() {
-  const workers = ['server', 'src/study/server'].flatMap((folder) =>
+  const workers = ['server', 'src/study/server/export'].flatMap((folder) =>
     readdirSync(join(root, folder)).flatMap((file) => (file.endsWith(worker) ? [`${folder}/${file}`] : [])),
   );
   return Object.fromEntries([
@@ -71,7 +71,7 @@ export async function buildServer(out) {
   const own = Object.fromEntries(Object.entries(dependencies).filter(([known]) => imported.has(known)));
   const manifest = { name: 'threepoint-server', version, type, private: true, dependencies: own };
   writeFileSync(join(out, 'package.json'), `${JSON.stringify(manifest, null, 2)}\n`);
-  cpSync(join(root, 'src/study/server/analysis'), join(out, 'analysis'), { recursive: true });
+  cpSync(join(root, 'src/study/server/export/analysis'), join(out, 'analysis'), { recursive: true });
 }
 
 if (import.meta.url === pathToFileURL(process.argv[1]).href)

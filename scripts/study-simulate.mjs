@@ -1,5 +1,5 @@
 // npm run study:simulate -- STUDY.json [--out DIR] [--participants 15] [--seed 7] [--effect late-200=-0.8 …] [--score-effect late-200=-0.1 …]:
-// a rehearsal, a whole study of simulated participants through the sessions, the store and the exports; docs/study.md says how they are modelled.
+// a simulation, a whole study of simulated participants through the sessions, the store and the exports; docs/study.md says how they are modelled.
 import { basename, join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';

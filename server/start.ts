@@ -5,7 +5,7 @@ import { softwareIn } from 'threepoint-http/software';
 import { type Credentials, serve } from 'threepoint-http/web-server';
 import { createRelay } from 'threepoint-rooms/server/relay';
 import type { RelayConfiguration } from 'threepoint-rooms/server/relay-configuration';
-import { openStudyService } from 'threepoint-study/server/study-service';
+import { openStudyService } from 'threepoint-study/server/service';
 import { createPageHandler } from './page';
 import { shippedRoomKinds } from './room-kinds';
 

@@ -1,6 +1,6 @@
 import { parentPort } from 'node:worker_threads';
 import { createRoomTokens } from 'threepoint-rooms/server/room-tokens';
-import { serveStudies } from 'threepoint-study/server/study-thread';
+import { serveStudies } from 'threepoint-study/server/thread';
 
 // The thread of the studies: its seats are signed by the tokens that the rooms of this server accept.
 

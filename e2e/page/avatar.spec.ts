@@ -1,4 +1,4 @@
-import { readFileSync, readdirSync } from 'node:fs';
+import { readdirSync, readFileSync } from 'node:fs';
 import { expect, joint, keepPicture, open, openWithHeadset, probe, settledJoint, test } from '../page-fixture';
 
 const avatarFile = readdirSync('public/avatars').find((name) => name.endsWith('.vrm'));

@@ -3,7 +3,7 @@ import { once } from 'node:events';
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import type { Page } from '@playwright/test';
-import { checkedPlan, type StudyPlan } from 'threepoint-study/model/plan';
+import { checkedPlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
 import { answerModelWith } from 'threepoint-study/simulation/answer-model';
 import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
 import { simulatedPlan, simulateStudy } from 'threepoint-study/simulation/simulate-study';

@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
-import { parsePlan } from 'threepoint-study/model/plan';
-import { begin } from 'threepoint-study/model/progress';
-import { scheduleFor } from 'threepoint-study/model/schedule';
+import { parsePlan } from 'threepoint-study/model/plan/plan';
+import { scheduleFor } from 'threepoint-study/model/plan/schedule';
+import { begin } from 'threepoint-study/model/progress/progress';
 import { expect } from '../page-fixture';
 import { signIn, test } from '../study-participant';
 import { experimenter } from '../study-server';

@@ -1,6 +1,6 @@
 import type { Page } from '@playwright/test';
-import { parsePlan, type StudyPlan } from 'threepoint-study/model/plan';
-import { scheduleFor } from 'threepoint-study/model/schedule';
+import { parsePlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
+import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import type { Point } from '../emulated-headset';
 import { distance, enterVr, expect, keepPicture, probe } from '../page-fixture';
 import { agreeAndTell, calibrate, press, reaches, stretched, takePart, tenHertz, test } from '../study-participant';

@@ -16,7 +16,7 @@ const choose = (page: Page, study: object) =>
 
 test.use({ viewport: { width: 1280, height: 860 } });
 
-test('a plan is remarked upon, rehearsed to its results, and the rehearsal deleted @realtime', async ({
+test('a plan is remarked upon, simulated to its results, and the simulation deleted @realtime', async ({
   page,
   origin,
 }) => {
@@ -31,27 +31,27 @@ test('a plan is remarked upon, rehearsed to its results, and the rehearsal delet
   await page.goto(`${origin}/experimenter`);
   await choose(page, plan());
   await expect(page.getByText('mine.json is on this server.')).toBeVisible();
-  await page.getByRole('button', { name: 'Rehearse …' }).click();
+  await page.getByRole('button', { name: 'Simulate …' }).click();
   await page.getByLabel('200 ms (late-200)').fill('-1.2');
-  await keepPicture(page, 'study-rehearsal-dialog');
-  await page.getByRole('button', { name: 'Rehearse', exact: true }).click();
-  await expect(page.getByText('Put in: answers −1.2 points under "late-200"')).toBeVisible({ timeout: 90_000 });
+  await keepPicture(page, 'study-simulation-dialog');
+  await page.getByRole('button', { name: 'Simulate', exact: true }).click();
+  await expect(page.getByText('Effects: answers −1.2 points under "late-200"')).toBeVisible({ timeout: 90_000 });
   await expect(page.getByText('SIMULATED: in this study a program takes part')).toBeVisible();
   await expect(page.locator('.badge', { hasText: 'finished' })).toHaveCount(18);
   await page.getByRole('link', { name: 'Results' }).last().click();
   await expect(page.getByText('SIMULATED: a program made these data')).toBeVisible();
   await expect(page.getByRole('row', { name: /ownership/i }).first()).toBeVisible();
-  await page.screenshot({ path: 'artifacts/screenshots/study-rehearsed.png', fullPage: true });
+  await page.screenshot({ path: 'artifacts/screenshots/study-simulated.png', fullPage: true });
 
-  await page.goto(`${origin}/experimenter?study=latency-rehearsal`);
+  await page.goto(`${origin}/experimenter?study=latency-simulated`);
   page.once('dialog', (dialog) => void dialog.accept());
   await page.getByRole('button', { name: 'Delete this simulated study' }).click();
-  await expect(page.getByText('“latency-rehearsal” is deleted.')).toBeVisible();
+  await expect(page.getByText('“latency-simulated” is deleted.')).toBeVisible();
   const { studies } = (await (await experimenter(origin).ask('')).json()) as { studies: { id: string }[] };
   // Other specs have studies of their own on this server.
   const names = studies.map(({ id }) => id);
   expect(names).toEqual(expect.arrayContaining(['uneven', 'latency']));
-  expect(names).not.toContain('latency-rehearsal');
+  expect(names).not.toContain('latency-simulated');
 });
 
 test('a plan with participants changes as a new version, which the experimenter is told and results keep apart @realtime', async ({

@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { strFromU8, unzipSync } from 'fflate';
-import { cohortsByParticipant } from 'threepoint-study/model/allocation';
-import { checkedPlan } from 'threepoint-study/model/plan';
+import { cohortsByParticipant } from 'threepoint-study/model/plan/allocation';
+import { checkedPlan } from 'threepoint-study/model/plan/plan';
 import { answerModelWith } from 'threepoint-study/simulation/answer-model';
 import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
 import { simulatedPlan, simulateStudy } from 'threepoint-study/simulation/simulate-study';

@@ -1,4 +1,4 @@
-import { checkedPlan } from 'threepoint-study/model/plan';
+import { checkedPlan } from 'threepoint-study/model/plan/plan';
 import type { PlacedPose } from '../emulated-headset';
 import { enterVr, expect, keepPicture } from '../page-fixture';
 import { agreeAndTell, press, reaches, signIn, stretched, study, takePart, tenHertz, test } from '../study-participant';

@@ -1,7 +1,7 @@
-import { enterVr, expect, keepPicture } from '../page-fixture';
 import { execFile } from 'node:child_process';
 import { writeFile } from 'node:fs/promises';
 import { promisify } from 'node:util';
+import { enterVr, expect, keepPicture } from '../page-fixture';
 import {
   calibrate,
   headsetOf,

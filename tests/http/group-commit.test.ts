@@ -1,5 +1,5 @@
 import { GroupCommit } from 'threepoint-http/group-commit';
-import { recordVersion, type StudyRecord } from 'threepoint-study/model/study-record';
+import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/study-record';
 import { describe, expect, test } from 'vitest';
 import { paperPlan } from '../study/model/studies';
 import { now, servedPaperStudy } from '../study/server/running-studies';

@@ -8,8 +8,8 @@ import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { fromAxisAngle, multiply, quat, rotate } from 'threepoint/core/math/quat';
 import { add, vec3 } from 'threepoint/core/math/vec3';
-import 'threepoint-study/model/study-api';
 import { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
+import 'threepoint-study/model/progress/study-api';
 import 'threepoint-rooms/client/loopback-connection';
 
 const calls = 20_000;

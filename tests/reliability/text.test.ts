@@ -1,6 +1,6 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { cleanName } from 'threepoint-rooms/protocol/names';
-import { tidyCsv } from 'threepoint-study/model/tidy-csv';
+import { tidyCsv } from 'threepoint-study/model/tables/tidy-csv';
 import { expect, test } from 'vitest';
 import { measured } from './measured';
 

@@ -1,8 +1,8 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
-import { scheduleFor } from 'threepoint-study/model/schedule';
-import { openStudyStore } from 'threepoint-study/server/study-store';
+import { scheduleFor } from 'threepoint-study/model/plan/schedule';
+import { openStudyStore } from 'threepoint-study/server/storage/store';
 import { expect, onTestFinished, test } from 'vitest';
 import { measured } from '../reliability/measured';
 import { fists, releaseOf } from '../rooms/client/people';

@@ -3,7 +3,7 @@ import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
 import type { LocalClock, Visitor } from 'threepoint-rooms/client/connection';
 import type { RoomTerms } from 'threepoint-rooms/protocol/messages';
 import type { VoiceTerms } from 'threepoint-rooms/voices/voice-terms';
-import type { SignedSeat } from 'threepoint-study/model/study-api';
+import type { SignedSeat } from 'threepoint-study/model/progress/study-api';
 import { pageFolder } from 'threepoint-ui/page-folder';
 
 /** Makes one visitor's place in a room; `time`: the page's clock [s]. */

@@ -1,7 +1,7 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
 import type { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
-import type { Embodiment } from 'threepoint-study/model/embodiment';
 import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
+import type { Embodiment } from 'threepoint-study/model/plan/embodiment';
 import type { SettingsWriter } from './settings';
 import type { ShownAvatar } from './shown-avatar';
 

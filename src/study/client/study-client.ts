@@ -1,5 +1,5 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import type { Progress } from '../model/progress';
+import type { Progress } from '../model/progress/progress';
 import type {
   Claim,
   NumberedCommand,
@@ -12,8 +12,8 @@ import type {
   StudyCommand,
   StudyInfo,
   StudyListing,
-} from '../model/study-api';
-import type { StudyRecord } from '../model/study-record';
+} from '../model/progress/study-api';
+import type { StudyRecord } from '../model/records/study-record';
 import type { SimulatedParticipant } from '../simulation/simulate-study';
 
 /** The server answered, and the answer is no. */

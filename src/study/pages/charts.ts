@@ -1,6 +1,6 @@
 import * as Plot from '@observablehq/plot';
-import type { CohortComparison } from '../model/compare-cohorts';
-import type { Comparison } from '../model/compare-conditions';
+import type { CohortComparison } from '../model/results/compare-cohorts';
+import type { Comparison } from '../model/results/compare-conditions';
 import { swarm } from './swarm';
 
 /** The two conditions or cohorts compared, as people read them. */

@@ -1,6 +1,6 @@
-import type { CohortComparison } from '../model/compare-cohorts';
-import type { Comparison } from '../model/compare-conditions';
-import type { Measured } from '../model/measures';
+import type { CohortComparison } from '../model/results/compare-cohorts';
+import type { Comparison } from '../model/results/compare-conditions';
+import type { Measured } from '../model/results/measures';
 import type { Interval } from '../statistics/summaries';
 import { fixed, meanCell, measureCell, none, pText } from './result-cells';
 import type { Compared, ShownResults } from './shown-results';

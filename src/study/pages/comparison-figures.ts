@@ -1,10 +1,11 @@
-import type { CohortComparison } from '../model/compare-cohorts';
-import type { Comparison } from '../model/compare-conditions';
-import type { Measured } from '../model/measures';
-import { languagesOf } from '../model/plan';
-import type { AnswerForm } from '../model/questionnaire-schema';
-import { scaleRange } from '../model/questionnaire-scores';
-import { inLanguage } from '../model/words';
+import { inLanguage } from '../model/phrases/words';
+import { languagesOf } from '../model/plan/plan';
+import type { AnswerForm } from '../model/questionnaires/question-kind';
+import { questionKind } from '../model/questionnaires/question-kinds';
+import { scaleRange } from '../model/questionnaires/questionnaire-scores';
+import type { CohortComparison } from '../model/results/compare-cohorts';
+import type { Comparison } from '../model/results/compare-conditions';
+import type { Measured } from '../model/results/measures';
 import { barChart, pairedChart, stripChart, type TwoSided } from './charts';
 import { figure } from './figure';
 import type { Compared } from './shown-results';
@@ -52,16 +53,11 @@ export function stripFigure(
   return figure(dots, `${title}, every ${each}`, results.fileOf(`${file}-strip`));
 }
 
-type Ranged = Extract<AnswerForm, { from: number }>;
-
-function axisOf(form: Ranged, language: string): string {
-  const labels = form.kind === 'likert' ? form.labels : undefined;
-  const ends = form.kind === 'number' ? undefined : form.ends;
-  const low = labels?.[0] ?? ends?.low;
-  const high = labels?.at(-1) ?? ends?.high;
-  if (low === undefined || high === undefined) return `answer, ${form.from} to ${form.to}`;
-  const said = (text: typeof low) => inLanguage(text, language).toLowerCase();
-  return `answer, ${form.from} ${said(low)} to ${form.to} ${said(high)}`;
+function axisOf(form: AnswerForm, [from, to]: readonly [number, number], language: string): string {
+  const { low, high } = questionKind(form).ends?.(form) ?? {};
+  if (low === undefined || high === undefined) return `answer, ${from} to ${to}`;
+  const label = (text: typeof low) => inLanguage(text, language).toLowerCase();
+  return `answer, ${from} ${label(low)} to ${to} ${label(high)}`;
 }
 
 /** The figure of the paper that shows these answers, in words. */
@@ -78,8 +74,9 @@ export function questionCharts<One extends Two>({ results, answers }: Compared<O
   for (const one of answers) {
     const questionnaire = asked.find(({ id }) => id === one.asked?.questionnaire);
     const form = questionnaire?.questions.find(({ id }) => id === one.asked?.question)?.answer;
-    if (!questionnaire || !one.asked || !form || form.kind === 'choice' || form.kind === 'text') continue;
-    const axis = axisOf(form, language);
+    const range = form && questionKind(form).range(form);
+    if (!questionnaire || !one.asked || !range) continue;
+    const axis = axisOf(form, range, language);
     const key = `${one.asked.task} ${questionnaire.id} ${axis}`;
     const before = charts.get(key);
     const name = inLanguage(questionnaire.title, language);
@@ -91,7 +88,7 @@ export function questionCharts<One extends Two>({ results, answers }: Compared<O
       title: `${task === name ? name : `${task}, ${name}`}: questionnaire`,
       file: `${one.asked.task === questionnaire.id ? '' : `${one.asked.task}-`}${questionnaire.id}-answers${number > 0 ? `-${number + 1}` : ''}`,
       axis,
-      domain: [form.from, form.to],
+      domain: range,
       nameOf: ({ asked: of }) => of?.question ?? '',
       note: paperFigures[questionnaire.id] ?? '',
       each: 'participant',

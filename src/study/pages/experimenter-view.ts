@@ -1,9 +1,9 @@
 import { button, element } from 'threepoint-ui/element';
 import { leavePlan } from 'threepoint-ui/left-plan';
 import { pageFolder } from 'threepoint-ui/page-folder';
-import { type StudyPlan, studyTitle } from '../model/plan';
-import { remarksOn } from '../model/plan-remarks';
-import type { ParticipantState, Receipt, StudyInfo } from '../model/study-api';
+import { type StudyPlan, studyTitle } from '../model/plan/plan';
+import { remarksOn } from '../model/plan/plan-remarks';
+import type { ParticipantState, Receipt, StudyInfo } from '../model/progress/study-api';
 import { type ParticipantActions, participantHeads, participantRow } from './participant-row';
 import { tableNode } from './table';
 
@@ -11,13 +11,13 @@ import { tableNode } from './table';
 export interface OpenStudy extends StudyInfo {
   readonly states: readonly ParticipantState[];
   /** When the server told them, by the clock of this page [s since 1970]. */
-  readonly toldAt: number;
+  readonly receivedAt: number;
   readonly receipts: readonly Receipt[];
 }
 
 export interface StudyActions extends ParticipantActions {
   /** Sends simulated participants through the plan. */
-  rehearse(): void;
+  simulate(): void;
   /** Of a simulated study alone: deletes it whole. */
   deleteSimulated(): void;
   /** Of this version of the plan. */
@@ -56,7 +56,7 @@ export const openStudy = (study: OpenStudy, now: number, actions: StudyActions):
       return participantRow(
         state,
         { plan: planOf(study, state.version), several },
-        Math.max(0, now - study.toldAt),
+        Math.max(0, now - study.receivedAt),
         actions,
       );
     }),
@@ -90,7 +90,7 @@ function studyHead(study: OpenStudy, actions: StudyActions): readonly Node[] {
       previewLink(plan),
       simulated
         ? button('Delete this simulated study …', actions.deleteSimulated, { class: 'danger' })
-        : button('Rehearse …', actions.rehearse),
+        : button('Simulate …', actions.simulate),
     ),
   ];
 }

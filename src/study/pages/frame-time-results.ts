@@ -1,7 +1,7 @@
 import { element } from 'threepoint-ui/element';
-import { cohortIn } from '../model/exported-results';
-import { frameTimes } from '../model/frame-times';
-import { frameTimeTable } from '../model/result-tables';
+import { cohortIn } from '../model/results/exported-results';
+import { frameTimes } from '../model/results/frame-times';
+import { frameTimeTable } from '../model/results/result-tables';
 import { bar, csvButton, fixed } from './result-cells';
 import type { ShownResults } from './shown-results';
 import { tableNode } from './table';

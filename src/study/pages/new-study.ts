@@ -1,4 +1,4 @@
-import { checkedPlan, type StudyPlan } from '../model/plan';
+import { checkedPlan, type StudyPlan } from '../model/plan/plan';
 import { simulatedPlan } from '../simulation/simulate-study';
 
 /** The plan in the text of a study's file, as it is begun; of a simulated one under a name that says so. Throws a sentence. */

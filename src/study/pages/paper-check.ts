@@ -1,6 +1,6 @@
 import { element } from 'threepoint-ui/element';
-import { checkedPaperRows, paperDf, paperFrameTimes, paperScores, savedShare } from '../model/paper-tables';
-import { paperTable } from '../model/result-tables';
+import { checkedPaperRows, paperDf, paperFrameTimes, paperScores, savedShare } from '../model/results/paper-tables';
+import { paperTable } from '../model/results/result-tables';
 import { csvButton, fixed, paperAboutOf, pText } from './result-cells';
 import { tableNode } from './table';
 

@@ -1,9 +1,9 @@
 import { button, element } from 'threepoint-ui/element';
 import { studyLink } from '../client/study-link';
-import type { StudyPlan } from '../model/plan';
-import { clockText } from '../model/progress';
-import { type Schedule, scheduleFor } from '../model/schedule';
-import type { ParticipantState, StudyCommand } from '../model/study-api';
+import type { StudyPlan } from '../model/plan/plan';
+import { type Schedule, scheduleFor } from '../model/plan/schedule';
+import { clockText } from '../model/progress/progress';
+import type { ParticipantState, StudyCommand } from '../model/progress/study-api';
 import type { TableRow } from './table';
 
 /** A page that has been silent for longer than this is lost [s]. */

@@ -1,8 +1,8 @@
 import { offerDownload } from 'threepoint-ui/downloads';
 import { button, element } from 'threepoint-ui/element';
-import type { Measured } from '../model/measures';
-import { shippedQuestionnaires } from '../model/questionnaires';
-import { type Table, tidyCsv } from '../model/tidy-csv';
+import { shippedQuestionnaires } from '../model/questionnaires/questionnaires';
+import type { Measured } from '../model/results/measures';
+import { type Table, tidyCsv } from '../model/tables/tidy-csv';
 import type { Interval } from '../statistics/summaries';
 import type { ShownResults } from './shown-results';
 

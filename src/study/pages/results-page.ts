@@ -1,5 +1,5 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import { studyTitle } from '../model/plan';
+import { studyTitle } from '../model/plan/plan';
 import 'threepoint-ui/styles/document.css';
 import { button, element, pageElement } from 'threepoint-ui/element';
 import { paperCheck } from './paper-check';
@@ -8,66 +8,116 @@ import type { ShownStudy } from './shown-results';
 import { StudyAccess } from './study-access';
 import { openStudyFile } from './study-file';
 
-const content = pageElement('content', HTMLElement);
-
-const access = new StudyAccess(
-  () => render(),
-  (study) => void load(study),
-);
-let shown: (ShownStudy & { readonly source: string }) | null = null;
-let selection: Selection | null = null;
-let complaint = '';
-
-function showStudy(study: ShownStudy, source: string): void {
-  shown = { ...study, source };
-  selection = firstSelection(study.plan);
-  complaint = '';
-  render();
-}
-
-async function load(id: string, version?: number): Promise<void> {
-  if (!access.client || !id) return;
-  try {
-    const { plan, simulated, records, version: shownVersion, versions } = await access.open(access.client, id, version);
-    const several = versions.length > 1 ? { planVersion: shownVersion, versions } : {};
-    showStudy({ plan, simulated, records, ...several }, 'this server');
-  } catch (error) {
-    complaint = reasonOf(error);
-    render();
-  }
-}
-
-async function openFile(file: File): Promise<void> {
-  try {
-    showStudy(openStudyFile(new Uint8Array(await file.arrayBuffer())), file.name);
-  } catch (error) {
-    complaint = `${file.name}: ${reasonOf(error)}`;
-    render();
-  }
-}
-
-function sourceBar(): HTMLElement {
-  const file = element('input', { type: 'file', accept: '.zip,application/zip', 'aria-label': 'Export of a study' });
-  file.addEventListener('change', () => {
-    const [chosen] = file.files ?? [];
-    if (chosen) void openFile(chosen);
-  });
-  const fileField = element('label', {}, element('span', {}, 'Or an export (zip), from this computer'), file);
-  if (!access.client)
-    return element('section', { class: 'card' }, access.form(), element('div', { class: 'bar' }, fileField));
-  return element(
-    'section',
-    { class: 'card bar' },
-    access.select(shown?.plan.id, 'This server has no studies yet', (id) => void load(id)),
-    ...(shown ? [button('Refresh', () => void load(shown?.plan.id ?? '', shown?.planVersion))] : []),
-    fileField,
-    access.forgetButton(),
+/** The page of results: a study of this server or of an export, and what it shows about it. */
+class ResultsPage {
+  readonly #content: HTMLElement;
+  readonly #access = new StudyAccess(
+    () => this.#render(),
+    (study) => void this.#load(study),
   );
+  #shown: (ShownStudy & { readonly source: string }) | null = null;
+  #selection: Selection | null = null;
+  #complaint = '';
+
+  constructor(content: HTMLElement) {
+    this.#content = content;
+  }
+
+  start(): void {
+    this.#render();
+    void this.#access.resume();
+  }
+
+  #show(study: ShownStudy, source: string): void {
+    this.#shown = { ...study, source };
+    this.#selection = firstSelection(study.plan);
+    this.#complaint = '';
+    this.#render();
+  }
+
+  #complain(complaint: string): void {
+    this.#complaint = complaint;
+    this.#render();
+  }
+
+  async #load(id: string, planVersion?: number): Promise<void> {
+    const { client } = this.#access;
+    if (!client || !id) return;
+    try {
+      const { plan, simulated, records, version, versions } = await this.#access.open(client, id, planVersion);
+      const several = versions.length > 1 ? { planVersion: version, versions } : {};
+      this.#show({ plan, simulated, records, ...several }, 'this server');
+    } catch (error) {
+      this.#complain(reasonOf(error));
+    }
+  }
+
+  async #openFile(file: File): Promise<void> {
+    try {
+      this.#show(openStudyFile(new Uint8Array(await file.arrayBuffer())), file.name);
+    } catch (error) {
+      this.#complain(`${file.name}: ${reasonOf(error)}`);
+    }
+  }
+
+  #sourceBar(): HTMLElement {
+    const access = this.#access;
+    const shown = this.#shown;
+    const file = element('input', { type: 'file', accept: '.zip,application/zip', 'aria-label': 'Export of a study' });
+    file.addEventListener('change', () => {
+      const [chosen] = file.files ?? [];
+      if (chosen) void this.#openFile(chosen);
+    });
+    const fileField = element('label', {}, element('span', {}, 'Or an export (zip), from this computer'), file);
+    if (!access.client) {
+      return element('section', { class: 'card' }, access.form(), element('div', { class: 'bar' }, fileField));
+    }
+    return element(
+      'section',
+      { class: 'card bar' },
+      access.select(shown?.plan.id, 'This server has no studies yet', (id) => void this.#load(id)),
+      ...(shown ? [button('Refresh', () => void this.#load(shown.plan.id, shown.planVersion))] : []),
+      fileField,
+      access.forgetButton(),
+    );
+  }
+
+  #results(): readonly Node[] {
+    const shown = this.#shown;
+    if (!shown || !this.#selection) return [];
+    const { plan, planVersion, source } = shown;
+    const heading = element('h2', {}, studyTitle(plan));
+    const where = element(
+      'p',
+      { class: 'soft' },
+      `${plan.id}${planVersion === undefined ? '' : `, version ${planVersion} of its plan`}, from ${source}.`,
+    );
+    const choose = (chosen: Selection) => {
+      this.#selection = chosen;
+      this.#render();
+    };
+    try {
+      const computed = studyResults(shown, this.#selection, choose);
+      const versions = versionBar(shown, (version) => void this.#load(plan.id, version));
+      return [heading, where, ...versions, ...simulatedNotice(shown), ...computed];
+    } catch (error) {
+      return [heading, where, element('p', { class: 'complaint', role: 'alert' }, reasonOf(error))];
+    }
+  }
+
+  #render(): void {
+    this.#content.replaceChildren(
+      this.#sourceBar(),
+      ...(this.#complaint ? [element('p', { class: 'complaint', role: 'alert' }, this.#complaint)] : []),
+      ...this.#results(),
+      ...paperCheck(),
+    );
+  }
 }
 
-/** Of a plan that was changed: which version is shown, and who is in the others. */
-function versionBar({ plan, planVersion, versions = [] }: ShownStudy): readonly Node[] {
-  // An export holds one version, and nothing of the others.
+/** Returns the choice of a version for a plan that was changed; nothing for others. */
+function versionBar({ planVersion, versions = [] }: ShownStudy, choose: (version: number) => void): readonly Node[] {
+  // An export holds one version only.
   if (planVersion === undefined || versions.length === 0) return [];
   const select = element(
     'select',
@@ -80,7 +130,7 @@ function versionBar({ plan, planVersion, versions = [] }: ShownStudy): readonly 
       ),
     ),
   );
-  select.addEventListener('change', () => void load(plan.id, Number(select.value)));
+  select.addEventListener('change', () => choose(Number(select.value)));
   return [
     element(
       'div',
@@ -89,41 +139,10 @@ function versionBar({ plan, planVersion, versions = [] }: ShownStudy): readonly 
       element(
         'p',
         { class: 'soft' },
-        'The plan was changed while the study ran. What is below is of one version alone.',
+        'The plan was changed while the study ran. The results below are of one version only.',
       ),
     ),
   ];
 }
 
-function results(): readonly Node[] {
-  if (!shown || !selection) return [];
-  const { plan, planVersion, source } = shown;
-  const heading = element('h2', {}, studyTitle(plan));
-  const where = element(
-    'p',
-    { class: 'soft' },
-    `${plan.id}${planVersion === undefined ? '' : `, version ${planVersion} of its plan`}, from ${source}.`,
-  );
-  const choose = (chosen: Selection) => {
-    selection = chosen;
-    render();
-  };
-  try {
-    const computed = studyResults(shown, selection, choose);
-    return [heading, where, ...versionBar(shown), ...simulatedNotice(shown), ...computed];
-  } catch (error) {
-    return [heading, where, element('p', { class: 'complaint', role: 'alert' }, reasonOf(error))];
-  }
-}
-
-function render(): void {
-  content.replaceChildren(
-    sourceBar(),
-    ...(complaint ? [element('p', { class: 'complaint', role: 'alert' }, complaint)] : []),
-    ...results(),
-    ...paperCheck(),
-  );
-}
-
-render();
-void access.resume();
+new ResultsPage(pageElement('content', HTMLElement)).start();

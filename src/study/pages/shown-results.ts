@@ -1,12 +1,12 @@
-import type { Comparison } from '../model/compare-conditions';
-import { aboutIn, measuresIn, type StudyMeasures } from '../model/exported-results';
-import type { Measured } from '../model/measures';
-import { questionnairesOf, type StudyPlan, taskTitle } from '../model/plan';
-import { isPlanned } from '../model/planned';
-import type { Questionnaire } from '../model/questionnaires';
-import type { TableFacts } from '../model/result-tables';
-import type { PlanVersion } from '../model/study-api';
-import type { StudyRecord } from '../model/study-record';
+import { questionnairesOf, type StudyPlan, taskTitle } from '../model/plan/plan';
+import type { PlanVersion } from '../model/progress/study-api';
+import type { Questionnaire } from '../model/questionnaires/questionnaires';
+import type { StudyRecord } from '../model/records/study-record';
+import type { Comparison } from '../model/results/compare-conditions';
+import { aboutIn, measuresIn, type StudyMeasures } from '../model/results/exported-results';
+import type { Measured } from '../model/results/measures';
+import { isPlanned } from '../model/results/planned';
+import type { TableFacts } from '../model/results/result-tables';
 
 /** What the results are computed from. */
 export interface ShownStudy {

@@ -3,7 +3,7 @@ import { ServerPresence } from 'threepoint-http/server-presence';
 import { button, element } from 'threepoint-ui/element';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { createExperimenterClient, type ExperimenterClient, noStudiesHere } from '../client/study-client';
-import type { RecordedStudy, StudyListing } from '../model/study-api';
+import type { RecordedStudy, StudyListing } from '../model/progress/study-api';
 import { forgetToken, keptToken, signInForm } from './sign-in';
 import { studySelect } from './study-select';
 

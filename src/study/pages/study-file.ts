@@ -1,7 +1,7 @@
 import { strFromU8, unzipSync } from 'fflate';
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import { type StudyPlan, storedPlan } from '../model/plan';
-import { checkedRecord, type StudyRecord } from '../model/study-record';
+import { type StudyPlan, storedPlan } from '../model/plan/plan';
+import { checkedRecord, type StudyRecord } from '../model/records/study-record';
 
 /** A study as an export holds it. */
 export interface OpenedStudy {

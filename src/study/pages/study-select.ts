@@ -1,5 +1,5 @@
 import { element } from 'threepoint-ui/element';
-import type { StudyListing } from '../model/study-api';
+import type { StudyListing } from '../model/progress/study-api';
 
 /** The studies of a server, to choose one from; `choose` gets its id, or an empty text. `none`: what the list says without any. */
 export function studySelect(

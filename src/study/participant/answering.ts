@@ -1,5 +1,6 @@
-import type { Question } from '../model/questionnaire-schema';
-import { type Answer, typedAnswer, unanswered } from '../model/questionnaires';
+import type { Answer } from '../model/questionnaires/question-kind';
+import type { Question } from '../model/questionnaires/questionnaire-schema';
+import { typedAnswer, unanswered } from '../model/questionnaires/questionnaires';
 import type { ParticipantSession } from './participant-session';
 
 type Answered = Pick<ParticipantSession, 'step' | 'progress' | 'apply'>;

@@ -7,7 +7,7 @@ const slowestExchangeMs = 15_000;
 /** How much longer the device waits after every silence of the server. */
 const patience = 1.5;
 
-type TimedSession = Pick<ParticipantSession, 'exchange' | 'motionSent' | 'safekeeping'>;
+type TimedSession = Pick<ParticipantSession, 'exchange' | 'motionSent' | 'uploadStatus'>;
 
 /** Exchanges with the server at once when told, and by itself as long as the page is open: more seldom while there is no answer. */
 export class ExchangeTimer {
@@ -28,7 +28,7 @@ export class ExchangeTimer {
   async exchange(): Promise<void> {
     this.#callOff();
     await this.#session.exchange();
-    const { online } = this.#session.safekeeping;
+    const { online } = this.#session.uploadStatus;
     this.#delayMs = online ? exchangeEveryMs : Math.min(slowestExchangeMs, this.#delayMs * patience);
     // Another exchange may have ended meanwhile and have set its own time.
     this.#callOff();

@@ -1,20 +1,20 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { Side } from 'threepoint/core/math/side';
 import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../client/study-client';
-import { advance, type ProgressEvent } from '../model/advance';
-import { preferredHandOf } from '../model/known-wearer';
 import { type Phrases, phrasesOf } from '../model/phrases/phrases';
-import { languagesOf } from '../model/plan';
-import { begin, currentStep, type Progress, remainingSeconds, reported } from '../model/progress';
-import { type Schedule, type StudyStep, scheduleFor } from '../model/schedule';
-import type { Claim, NumberedCommand, PlayedTogether, SignedSeat } from '../model/study-api';
+import { languagesOf } from '../model/plan/plan';
+import { type Schedule, type StudyStep, scheduleFor } from '../model/plan/schedule';
+import { advance, type ProgressEvent } from '../model/progress/advance';
+import { begin, currentStep, type Progress, remainingSeconds, reported } from '../model/progress/progress';
+import type { Claim, NumberedCommand, PlayedTogether, SignedSeat } from '../model/progress/study-api';
+import { preferredHandOf } from '../model/records/participant-profile';
 import { MotionSender } from './motion-sender';
 import { sendRecords } from './send-records';
 import { SessionStore, type Unsent } from './session-store';
 import type { KeptSession, StudyVault } from './study-vault';
 
 /** Where what was recorded is now. */
-export interface Safekeeping {
+export interface UploadStatus {
   /** Records and recordings that the server has not acknowledged. */
   readonly unsent: number;
   /** Of these, how many are in the memory of the page alone, because the device has no room. */
@@ -43,7 +43,7 @@ export interface ParticipantSession {
   readonly preferredHand: Side | null;
   /** The newest measures of the body; null: not measured yet. */
   readonly calibration: Calibration | null;
-  readonly safekeeping: Safekeeping;
+  readonly uploadStatus: UploadStatus;
   /** Seconds left of this step; null: it has no limit. */
   remaining(): number | null;
   /** Takes an event at once and stores what follows; returns why not, null: taken. */
@@ -168,7 +168,7 @@ class DeviceSession implements ParticipantSession {
     return this.#session.calibration;
   }
 
-  get safekeeping(): Safekeeping {
+  get uploadStatus(): UploadStatus {
     const { unsent, unsaved, fault } = this.#store;
     return {
       unsent,
@@ -237,12 +237,12 @@ class DeviceSession implements ParticipantSession {
     // The server must not be ahead of the device: after a crash the device would tell it all again, and differently.
     await this.#store.save();
     try {
-      await this.#tellServer();
+      await this.#report();
       const { study, participant, token } = this.#session;
       const { commandsSeen = 0 } = this.progress;
       for (const command of await this.#client.commands(study, participant, token, commandsSeen)) this.#follow(command);
       // What a command changed is reported at once: the experimenter waits for it.
-      if (this.progress !== this.#reported) await this.#tellServer();
+      if (this.progress !== this.#reported) await this.#report();
       this.#online = true;
       this.#motion.send();
     } catch (error) {
@@ -252,7 +252,7 @@ class DeviceSession implements ParticipantSession {
   }
 
   /** Sends the records that are unsent, then where the participant is; before consent not even that. */
-  async #tellServer(): Promise<void> {
+  async #report(): Promise<void> {
     const { study, participant, token } = this.#session;
     this.#refusal = await sendRecords(this.#store, (records) => this.#client.send(study, participant, token, records));
     const { progress } = this;

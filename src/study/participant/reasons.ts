@@ -1,6 +1,6 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import { refusals } from '../model/advance';
 import { PhrasedError, type Phrases } from '../model/phrases/phrases';
+import { refusals } from '../model/progress/advance';
 
 /** What was thrown, for a participant to read; what has no words of its own is technical, and stays in English. */
 export const reasonFor = (error: unknown, phrases: Phrases): string =>

@@ -1,4 +1,4 @@
-import { setupFaults } from '../model/remote-setup';
+import { setupFaults } from '../model/plan/remote-setup';
 import type { ParticipantSession } from './participant-session';
 import type { StudyHost } from './study-host';
 

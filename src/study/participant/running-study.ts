@@ -1,33 +1,21 @@
 import { otherSide } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
-import { type CalibrationGuide, createCalibrationGuide } from 'threepoint-ui/calibration-guide';
-import type { ProgressEvent } from '../model/advance';
-import { PhrasedError } from '../model/phrases/phrases';
-import { placeOf } from '../model/progress';
-import { randomFor } from '../model/shuffle';
+import type { ProgressEvent } from '../model/progress/advance';
 import { Answering } from './answering';
+import { BodyMeasurement } from './body-measurement';
 import { ExchangeTimer } from './exchange-timer';
 import type { ParticipantSession } from './participant-session';
 import { RaisedHands } from './raised-hands';
 import { reasonFor, refusalFor } from './reasons';
-import { remoteFaults } from './remote-faults';
+import { SessionTrials } from './session-trials';
+import type { StudyForm } from './study-form';
 import type { StudyHost } from './study-host';
 import type { StudyPage } from './study-page';
 import { lockedOutScreen, screenOf } from './study-screens';
 import type { ScreenActions } from './study-situation';
-import {
-  type FinishedTrial,
-  isPlayed,
-  lastPlayedBefore,
-  type PlayedStep,
-  type PlayedTrial,
-  playTrial,
-} from './study-trial';
-import type { TaskPlace, TaskRunner } from './task-runner';
-import { TrialPreparation } from './trial-preparation';
+import type { FinishedTrial } from './study-trial';
 
-/** How often what is shown follows the clock [ms]. */
+/** The interval at which the screen follows the clock [ms]. */
 const tickEveryMs = 250;
 
 export interface RunningStudyOptions {
@@ -37,180 +25,130 @@ export interface RunningStudyOptions {
   readonly forget: () => Promise<void>;
 }
 
-/** A participant's session under way: shows what it is at, plays its trials and keeps the server informed. */
+/** The flow of a participant's session: shows the present step, passes on the participant's actions and exchanges with the server. */
 export class RunningStudy {
   readonly session: ParticipantSession;
   readonly #host: StudyHost;
   readonly #page: StudyPage;
   readonly #forget: () => Promise<void>;
   readonly #exchanges: ExchangeTimer;
-  readonly #preparation: TrialPreparation;
-  readonly #guide: CalibrationGuide;
-  readonly #actions: ScreenActions;
-  #trial: PlayedTrial | null = null;
+  readonly #measurement: BodyMeasurement;
+  readonly #trials: SessionTrials;
   readonly #answering: Answering;
-  /** Why the last wish changed nothing; null: it did. */
-  #refusal: string | null = null;
-  /** What the last measuring found wrong. */
-  #measuredFaults: readonly string[] = [];
-  /** How high the eyes were last seen [m]; null: not yet. */
-  #eyes: number | null = null;
-  /** The participant wants to stop and has not confirmed it yet. */
-  #stopping = false;
+  readonly #actions: ScreenActions;
   readonly #raised = new RaisedHands();
+  /** Why the last action changed nothing; null: it did. */
+  #refusal: string | null = null;
+  /** Whether the participant wants to stop and has not confirmed it yet. */
+  #stopping = false;
   #shownStep = '';
-  /** Whether this visit of the page has put a body on yet. */
-  #embodied = false;
-  /** null: no one is being measured. */
-  #calibration: CalibrationStep | null = null;
 
   constructor(session: ParticipantSession, { host, page, forget }: RunningStudyOptions) {
     this.session = session;
     this.#host = host;
     this.#page = page;
     this.#forget = forget;
+    const onChange = () => this.show();
     this.#answering = new Answering(session);
     this.#exchanges = new ExchangeTimer(session, page.after);
-    this.#preparation = new TrialPreparation(
-      (step) => this.#load(step),
-      () => this.show(),
-    );
-    this.#guide = createCalibrationGuide({
-      onStep: (step) => {
-        this.#calibration = step;
-        this.show();
-      },
-      onMeasured: (calibration) => {
-        // Calibration makes a standing person of one who sits: how high the eyes are now is what tells.
-        const faults = remoteFaults(session, host, this.#eyes);
-        this.#guide.cancel();
-        this.#measuredFaults = faults;
-        if (faults.length > 0) return;
-        host.setCalibration(calibration);
-        session.apply({ type: 'calibrated', calibration });
-      },
-      // What went wrong stays to be read until the participant measures again.
-      closesItself: () => false,
-    });
-    this.#actions = {
-      apply: (event) => this.#apply(event),
-      goTo: (index) => {
-        this.#answering.goTo(index);
-        this.#said(null);
-      },
-      choose: (question, value) => this.#said(this.#answering.choose(question, value)),
-      type: (question, typed) => this.#said(this.#answering.type(question, typed)),
-      submit: () => {
-        if (this.#answering.readyToSubmit()) this.#apply({ type: 'submit' });
-        else this.#said(null);
-      },
-      calibrate: () => {
-        this.#measuredFaults = [];
-        this.#guide.start();
-      },
-      enterVr: () => void host.enterVr(),
-      askToStop: (on) => {
-        this.#stopping = on;
-        this.show();
-      },
-      prepareAgain: () => {
-        this.#preparation.forget();
-        this.show();
-      },
-    };
+    this.#measurement = new BodyMeasurement(session, host, onChange);
+    this.#trials = new SessionTrials({ session, host, now: page.now, onChange });
+    this.#actions = this.#screenActions();
   }
 
   /** Whether a trial is being played; one that still waits for others is not. */
   get playing(): boolean {
-    return this.#trial !== null && this.#trial.waitingFor === null;
+    const { current } = this.#trials;
+    return current !== null && current.waitingFor === null;
   }
 
-  /** Whether the round on the page stands still. */
+  /** Whether the round on the page is paused. */
   get paused(): boolean {
-    return this.session.progress.paused || (this.#trial !== null && !this.#host.inSession());
+    return this.session.progress.paused || (this.#trials.current !== null && !this.#host.inSession());
   }
 
-  /** Shows the step at hand, now and as time passes, and begins to talk to the server. */
+  /** Shows the present step from now on and starts to exchange with the server. */
   begin(): void {
-    const { calibration, preferredHand } = this.session;
-    this.#host.setCalibration(calibration);
-    // The bow goes into the hand that does not draw it.
-    if (preferredHand) this.#host.setBowSide(otherSide(preferredHand));
+    this.#host.setCalibration(this.session.calibration);
+    this.#setBowSide();
     this.show();
     this.#tickLater();
     void this.exchange();
   }
 
-  /** Tells the server what is new and follows what the experimenter wants; resolves when that is over. */
+  /** Sends what is new to the server and follows the experimenter's commands; resolves when that is over. */
   exchange(): Promise<void> {
     return this.#exchanges.exchange();
   }
 
-  /** Every frame drawn; null: the head was not seen. */
+  /** Takes a drawn frame into account; null: the head was not seen. */
   frame(time: number, frame: TrackingFrame | null): void {
-    if (frame) {
-      this.#eyes = frame.head.position.y;
-      this.#guide.observe(frame);
-    }
-    // No sheet hangs there while a round is played: this is how it is stopped.
+    if (frame) this.#measurement.observe(frame);
+    // No sheet is shown while a round is played, so raised hands pause it.
     if (this.#raised.follow(this.playing ? frame : null)) this.#apply({ type: 'pause' });
-    if (this.#trial?.interrupted) this.#apply({ type: 'reload' });
-    const finished = this.#trial?.follow(time, frame);
-    if (finished) this.#finishTrial(finished);
+    if (this.#trials.current?.interrupted) this.#apply({ type: 'reload' });
+    this.#finish(this.#trials.follow(time, frame));
   }
 
-  /** Records a round that is over, though its end is still being looked at: what comes now would make it void. */
+  /** Records a round that is over while its end is still on display, before something else makes it void. */
   conclude(): void {
-    const finished = this.#trial?.conclude();
-    if (finished) this.#finishTrial(finished);
+    this.#finish(this.#trials.conclude());
   }
 
-  /** The headset was put on or taken off. */
+  /** Called when the headset was put on or taken off. */
   sessionChanged(): void {
     const worn = this.#host.inSession();
     if (!worn) this.conclude();
     const { running, paused } = this.session.progress;
-    // A round is void when the headset comes off in the middle of it.
-    if (!worn && running && !paused && this.#trial) this.#apply({ type: 'reload' });
-    if (!worn) this.#guide.cancel();
+    // A round is void if the headset comes off in the middle of it.
+    if (!worn && running && !paused && this.#trials.current) this.#apply({ type: 'reload' });
+    if (!worn) this.#measurement.cancel();
     this.show();
   }
 
-  /** Shows what the session is at now, however it came there. */
+  /** Shows the present state of the session. */
   show(): void {
     const { session } = this;
-    const { phrases } = session;
     const { display } = this.#page;
-    if (session.safekeeping.lockedOut) {
-      this.#showLockedOut();
+    if (session.uploadStatus.lockedOut) {
+      this.#trials.abort();
+      display.ask(this.#lockedOutForm(), this.#host.inSession() ? lockedOutScreen(session) : null);
       return;
     }
     this.#settle();
-    if (session.withdrawalCode !== null) {
-      display.ask({
-        kind: 'code',
-        phrases,
-        code: session.withdrawalCode,
-        withdrawalPage: this.#page.address.withdrawalPage(),
-        noted: () => session.codeNoted(),
-        stop: () => {
-          session.codeNoted();
-          this.#apply({ type: 'stop', by: 'participant' });
-        },
-      });
-    } else if (session.step.kind === 'demographics') {
-      display.ask({
-        kind: 'demographics',
-        phrases,
-        stop: () => this.#apply({ type: 'stop', by: 'participant' }),
-        done: (answers) => this.#takeDemographics(answers),
-      });
-    } else {
-      display.show(this.#screen(), this.#host.inSession());
-    }
+    const form = this.#form();
+    if (form) display.ask(form);
+    else display.show(this.#screen(), this.#host.inSession());
+  }
+
+  #screenActions(): ScreenActions {
+    return {
+      apply: (event) => this.#apply(event),
+      goTo: (index) => {
+        this.#answering.goTo(index);
+        this.#showRefusal(null);
+      },
+      choose: (question, value) => this.#showRefusal(this.#answering.choose(question, value)),
+      type: (question, typed) => this.#showRefusal(this.#answering.type(question, typed)),
+      submit: () => {
+        if (this.#answering.readyToSubmit()) this.#apply({ type: 'submit' });
+        else this.#showRefusal(null);
+      },
+      calibrate: () => this.#measurement.start(),
+      enterVr: () => void this.#host.enterVr(),
+      askToStop: (on) => {
+        this.#stopping = on;
+        this.show();
+      },
+      prepareAgain: () => {
+        this.#trials.prepareAgain();
+        this.show();
+      },
+    };
   }
 
   #screen() {
+    const { current, prepared } = this.#trials;
     return screenOf(
       {
         session: this.session,
@@ -218,31 +156,46 @@ export class RunningStudy {
         question: this.#answering.question,
         typed: this.#answering.typed,
         triedToSubmit: this.#answering.triedToSubmit,
-        calibration: this.#calibration,
+        calibration: this.#measurement.step,
         withdrawalPage: this.#page.address.withdrawalPage(),
-        setupFaults:
-          this.#measuredFaults.length > 0 ? this.#measuredFaults : remoteFaults(this.session, this.#host, null),
-        prepared: this.#preparation.of(this.#attempt()),
+        setupFaults: this.#measurement.faults,
+        prepared,
         refusal: this.#refusal,
         stopping: this.#stopping,
-        playing: this.#trial !== null,
-        waitingFor: this.#trial?.waitingFor ?? null,
-        standing: this.#trial?.standing ?? false,
+        playing: current !== null,
+        waitingFor: current?.waitingFor ?? null,
+        standing: current?.standing ?? false,
       },
       this.#actions,
     );
   }
 
-  #showLockedOut(): void {
-    this.#dropTrial();
-    const { progress, plan, phrases, safekeeping } = this.session;
-    const { participant } = progress;
-    const contact = plan.remote?.contact ?? null;
-    const anew = () => void this.#forget().then(() => this.#page.address.reload());
-    this.#page.display.ask(
-      { kind: 'locked-out', phrases, participant, unsent: safekeeping.unsent, contact, anew },
-      this.#host.inSession() ? lockedOutScreen(this.session) : null,
-    );
+  /** Returns the form that takes the place of a screen at the desk; null: none does. */
+  #form(): StudyForm | null {
+    const { session } = this;
+    const { phrases, withdrawalCode } = session;
+    const stop = () => this.#apply({ type: 'stop', by: 'participant' });
+    if (withdrawalCode !== null) {
+      return {
+        ...{ kind: 'code', phrases, code: withdrawalCode, withdrawalPage: this.#page.address.withdrawalPage() },
+        noted: () => session.codeNoted(),
+        stop: () => {
+          session.codeNoted();
+          stop();
+        },
+      };
+    }
+    if (session.step.kind !== 'demographics') return null;
+    return { kind: 'demographics', phrases, stop, done: (answers) => this.#takeDemographics(answers) };
+  }
+
+  #lockedOutForm(): StudyForm {
+    const { progress, plan, phrases, uploadStatus } = this.session;
+    return {
+      ...{ kind: 'locked-out', phrases, participant: progress.participant, unsent: uploadStatus.unsent },
+      contact: plan.remote?.contact ?? null,
+      anew: () => void this.#forget().then(() => this.#page.address.reload()),
+    };
   }
 
   #tickLater(): void {
@@ -253,14 +206,11 @@ export class RunningStudy {
     });
   }
 
-  /** What follows from where the session is now. */
+  /** Brings trials, body and questions up to the present step. */
   #settle(): void {
-    const { step, progress, simulated } = this.session;
+    const { step, simulated } = this.session;
     if (step.id !== this.#shownStep) this.#enterStep();
-    if (this.#trial && this.#trial.key !== this.#attempt()) this.#dropTrial();
-    // With the headset off, a pause goes on until it is worn again.
-    this.#trial?.pause(progress.paused || !this.#host.inSession());
-    if (isPlayed(step)) this.#settleTrial(step);
+    this.#trials.settle();
     if (step.kind !== 'consent') this.#host.setActor(simulated);
   }
 
@@ -268,21 +218,15 @@ export class RunningStudy {
     this.#shownStep = this.session.step.id;
     this.#refusal = null;
     this.#stopping = false;
-    this.#measuredFaults = [];
-    this.#guide.cancel();
-    // The guide's last word on an earlier measuring may have come when its step was over.
-    this.#calibration = null;
+    this.#measurement.reset();
     this.#answering.enterStep();
-    if (!this.#embodied) void this.#wearAgain();
+    void this.#restoreBody();
   }
 
-  /** Before a reload the participant wore the body of what was played last, and still does in the rest and the questions that follow. */
-  async #wearAgain(): Promise<void> {
+  async #restoreBody(): Promise<void> {
     const { step } = this.session;
-    const played = isPlayed(step) ? undefined : lastPlayedBefore(this.session.schedule, step);
-    if (!played) return;
     try {
-      await this.#embody(played);
+      await this.#trials.restoreBody();
     } catch (error) {
       if (this.session.step !== step) return;
       this.#refusal = reasonFor(error, this.session.phrases);
@@ -290,80 +234,11 @@ export class RunningStudy {
     }
   }
 
-  #embody(step: PlayedStep): Promise<void> {
-    this.#embodied = true;
-    return this.#host.embody(step.embodiment, this.#seedOf(step));
-  }
-
-  #settleTrial(step: PlayedStep): void {
-    const attempt = this.#attempt();
-    // Every attempt anew: a game that was put away when a trial became void is no longer there.
-    if (!this.#preparation.of(attempt)) void this.#preparation.begin(attempt, step);
-    const { running, paused } = this.session.progress;
-    const ready = this.#preparation.of(attempt)?.state === 'ready';
-    if (running && !paused && !this.#trial && ready && this.#host.inSession()) this.#startTrial(step);
-  }
-
-  /** Loads the game and the body of a step, before it can be started; rejects with a sentence for the participant. */
-  async #load(step: PlayedStep): Promise<void> {
-    try {
-      const runner = this.#runnerOf(step);
-      if (!runner) throw new PhrasedError('round.game');
-      await Promise.all([runner.prepare(this.#placeFor(step)), this.#embody(step)]);
-    } catch (error) {
-      throw new Error(reasonFor(error, this.session.phrases));
-    }
-  }
-
-  #runnerOf(step: PlayedStep): TaskRunner | null {
-    const game = this.session.plan.tasks.find(({ id }) => id === step.task)?.game;
-    return (game && this.#host.runners[game]) ?? null;
-  }
-
-  /** Where a group meets: a room of its own for every trial of every run, on a seat that the server signs. */
-  #placeFor(step: PlayedStep): TaskPlace {
+  #finish(finished: FinishedTrial | null): void {
+    if (!finished) return;
+    const { outcome, recording } = finished;
     const { session } = this;
-    const run = session.progress.runs[`${step.task}/${step.block}`] ?? 1;
-    return {
-      seat: () => session.seat({ step: step.id, run }),
-      participant: session.progress.participant,
-      members: session.schedule.groups[step.task]?.members ?? [],
-      seconds: step.seconds,
-    };
-  }
-
-  /** Step, run and attempt at hand: when it changes under a trial, that trial is void. */
-  #attempt(): string {
-    const { schedule, progress, step } = this.session;
-    const place = placeOf(schedule, progress);
-    return `${step.id}@${place?.run}.${place?.attempt}`;
-  }
-
-  #startTrial(step: PlayedStep): void {
-    const runner = this.#runnerOf(step);
-    if (!runner) return;
-    const { plan, progress } = this.session;
-    const motion = progress.motion === true && plan.consent.motion !== null && step.kind === 'trial';
-    const options = { key: this.#attempt(), motion, seed: this.#seedOf(step), now: this.#page.now };
-    this.#trial = playTrial(step, runner, this.#host, options);
-    this.show();
-  }
-
-  /** The same round for each participant's first, second … trial: what differs between conditions is not the layout. */
-  #seedOf(step: PlayedStep): number {
-    const repetition = step.kind === 'trial' ? step.repetition : 0;
-    return randomFor(this.session.plan.seed, `layout of ${step.task} ${repetition}`).seed >>> 1;
-  }
-
-  #dropTrial(): void {
-    this.#trial?.abort();
-    this.#trial = null;
-  }
-
-  #finishTrial({ outcome, recording }: FinishedTrial): void {
-    const { session } = this;
-    const attempt = this.#attempt();
-    this.#trial = null;
+    const { attempt } = this.#trials;
     const refusal = session.apply({ type: 'trial-finished', outcome });
     this.#refusal = refusalFor(refusal, session.phrases);
     if (recording !== null && refusal === null) session.keepMotion(`${attempt}:trial`, recording);
@@ -377,21 +252,26 @@ export class RunningStudy {
     this.show();
   }
 
-  /** Shows what came of a wish; null: all went well. */
-  #said(refusal: string | null): void {
+  /** Shows why an action changed nothing; null: it did. */
+  #showRefusal(refusal: string | null): void {
     this.#refusal = refusalFor(refusal, this.session.phrases);
     this.show();
   }
 
-  /** Why the answers cannot be taken; null: they are. */
+  /** Returns why the answers are refused, or null if they are stored. */
   #takeDemographics(answers: Record<string, unknown>): string | null {
     const complaint = this.session.apply({ type: 'demographics', demographics: answers });
     if (complaint === null) {
       void this.exchange();
-      const { preferredHand } = this.session;
-      if (preferredHand) this.#host.setBowSide(otherSide(preferredHand));
+      this.#setBowSide();
     }
     this.show();
     return refusalFor(complaint, this.session.phrases);
+  }
+
+  /** Puts the bow into the hand that does not draw it. */
+  #setBowSide(): void {
+    const { preferredHand } = this.session;
+    if (preferredHand) this.#host.setBowSide(otherSide(preferredHand));
   }
 }

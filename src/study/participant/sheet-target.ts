@@ -1,20 +1,19 @@
 import type { PanelTarget } from 'threepoint-ui/vr-touch';
-import type { ScreenButton } from './study-screen';
 
-/** The sheet [pixels], and how many of them are a metre. */
+/** The size of the sheet [pixels], and how many pixels are a metre. */
 export const width = 1200;
 export const height = 880;
 export const pixelsPerMetre = 1000;
 export const margin = 60;
 export const inner = width - 2 * margin;
 
-/** What can be pressed on the sheet, and how it looks. */
+/** A part of the sheet that can be pressed. */
 export interface Target extends PanelTarget {
-  /** tick: a place on a line, which draws itself. */
+  /** tick: a place on a line that the line draws. */
   readonly kind: 'button' | 'scale' | 'dot' | 'option' | 'key' | 'tick';
   readonly label: string;
-  /** Of a point of a scale: its number, large; absent: none. */
+  /** The number of a point of a scale, drawn large; absent: none. */
   readonly figure?: string;
-  readonly look: ScreenButton['look'] | 'chosen' | 'answered' | 'open' | 'missing' | 'here';
+  readonly look: 'primary' | 'plain' | 'off' | 'chosen' | 'answered' | 'open' | 'missing' | 'here';
   act(): void;
 }

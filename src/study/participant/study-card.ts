@@ -2,7 +2,7 @@ import { button, element } from 'threepoint-ui/element';
 import type { Phrases } from '../model/phrases/phrases';
 import { formNodes, formNote } from './form-nodes';
 import { paragraphs } from './form-parts';
-import { dotNodes, questionNodes } from './question-card';
+import { dotNodes, questionNodes } from './questions/question-card';
 import type { StudyForm } from './study-form';
 import type { StudyScreen } from './study-screen';
 

@@ -1,8 +1,8 @@
 import { sentence } from 'threepoint-ui/phrases';
 import { NoStudyServer, ServerRefusal } from '../client/study-client';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../model/phrases/phrases';
-import type { PublicStudy } from '../model/study-api';
-import { inLanguage } from '../model/words';
+import { inLanguage } from '../model/phrases/words';
+import type { PublicStudy } from '../model/progress/study-api';
 import type { ParticipantSession } from './participant-session';
 import { reasonFor } from './reasons';
 import type { Opened } from './study-opening';

@@ -1,5 +1,5 @@
 import type { Phrases } from '../model/phrases/phrases';
-import type { PublicStudy } from '../model/study-api';
+import type { PublicStudy } from '../model/progress/study-api';
 
 /** Who takes part, and what shows that they were invited. */
 export interface Invited {

@@ -1,7 +1,7 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { Side } from 'threepoint/core/math/side';
-import type { Embodiment } from '../model/embodiment';
-import type { DeviceFault } from '../model/remote-setup';
+import type { Embodiment } from '../model/plan/embodiment';
+import type { DeviceFault } from '../model/plan/remote-setup';
 import type { TrialHost } from './study-trial';
 import type { TaskRunner } from './task-runner';
 

@@ -1,8 +1,8 @@
 import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../client/study-client';
 import { PhrasedError } from '../model/phrases/phrases';
-import { isLater, type Progress } from '../model/progress';
-import { scheduleFor } from '../model/schedule';
-import type { PublicStudy } from '../model/study-api';
+import { scheduleFor } from '../model/plan/schedule';
+import { isLater, type Progress } from '../model/progress/progress';
+import type { PublicStudy } from '../model/progress/study-api';
 import {
   createParticipantSession,
   type ParticipantSession,
@@ -52,7 +52,7 @@ async function openVault(): Promise<StudyVault | null> {
   try {
     return await openStudyVault();
   } catch {
-    // reason: a browser without storage is a state of the session (safekeeping.storageFault), shown on every screen
+    // reason: a browser without storage is a state of the session (uploadStatus.storageFault), shown on every screen
     return null;
   }
 }

@@ -1,12 +1,5 @@
 import type { Phrases } from '../model/phrases/phrases';
-
-/** Letters and words on the keys of the sheet. */
-export interface KeyLabels {
-  /** Letters, row by row. */
-  readonly rows: readonly string[];
-  readonly space: string;
-  readonly delete: string;
-}
+import type { ScreenField } from './questions/question-view';
 
 /** Something that a participant can press. */
 export interface ScreenButton {
@@ -15,55 +8,6 @@ export interface ScreenButton {
   readonly look: 'primary' | 'plain' | 'off';
   act(): void;
 }
-
-/** A point that can be chosen. */
-export interface ScreenPoint<Value> {
-  readonly value: Value;
-  /** Empty: the number alone. */
-  readonly label: string;
-}
-
-/** Below the ends of a scale. */
-export interface ScreenEnds {
-  readonly low: string;
-  readonly high: string;
-}
-
-/** How a question is answered, in the participant's language; `answer` null: not yet. */
-export type ScreenField =
-  | {
-      readonly kind: 'likert';
-      readonly points: readonly ScreenPoint<number>[];
-      /** null: the points say it themselves. */
-      readonly ends: ScreenEnds | null;
-      readonly answer: number | null;
-      choose(value: number): void;
-    }
-  | {
-      readonly kind: 'slider';
-      /** Every value that the line tells apart, in order. */
-      readonly values: readonly number[];
-      readonly ends: ScreenEnds;
-      readonly answer: number | null;
-      choose(value: number): void;
-    }
-  | {
-      readonly kind: 'choice';
-      readonly points: readonly ScreenPoint<string>[];
-      readonly answer: string | null;
-      choose(value: string): void;
-    }
-  | {
-      readonly kind: 'number' | 'text';
-      /** As typed so far, an answer or not. */
-      readonly typed: string;
-      /** Behind the number; empty: none. */
-      readonly unit: string;
-      readonly maxLength: number;
-      /** Of the keyboard in the headset. */
-      readonly keys: KeyLabels;
-      type(typed: string): void;
-    };
 
 /** One question of a questionnaire and where it stands among the others. */
 export interface ScreenQuestion {

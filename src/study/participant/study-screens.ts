@@ -1,13 +1,13 @@
 import type { Phrases } from '../model/phrases/phrases';
-import { taskTitle } from '../model/plan';
-import { clockText, type Progress } from '../model/progress';
-import type { RemoteTerms } from '../model/remote-setup';
-import type { StudyStep } from '../model/schedule';
-import { inLanguage } from '../model/words';
+import { inLanguage } from '../model/phrases/words';
+import { taskTitle } from '../model/plan/plan';
+import type { RemoteTerms } from '../model/plan/remote-setup';
+import type { StudyStep } from '../model/plan/schedule';
+import { clockText, type Progress } from '../model/progress/progress';
 import { screenQuestions } from './answering';
 import { calibrationScreen } from './calibration-screens';
-import type { Safekeeping } from './participant-session';
-import { questionPart } from './question-screen';
+import type { UploadStatus } from './participant-session';
+import { questionPart } from './questions/question-screen';
 import { roundScreen } from './round-screens';
 import { askToStopButton, pauseButton, type ScreenParts } from './screen-parts';
 import { noStorage } from './session-store';
@@ -15,8 +15,8 @@ import type { StudyScreen } from './study-screen';
 import type { ScreenActions, ShownSession, StudySituation } from './study-situation';
 
 /** Where answers are, in a sentence; the second part says whether they are in danger. `remote`: of a participant who is alone. */
-export function safekeepingText(
-  { unsent, unsaved, storageFault, online, refusal }: Safekeeping,
+export function uploadStatusText(
+  { unsent, unsaved, storageFault, online, refusal }: UploadStatus,
   { say }: Phrases,
   remote?: RemoteTerms,
 ): readonly [string, boolean] {
@@ -62,7 +62,7 @@ export function screenOf(situation: StudySituation, actions: ScreenActions): Stu
   const { session, refusal } = situation;
   const { step, progress, phrases } = session;
   const { remote } = session.plan;
-  const [kept, worrying] = safekeepingText(session.safekeeping, phrases, remote);
+  const [kept, worrying] = uploadStatusText(session.uploadStatus, phrases, remote);
   const base = {
     kicker: kickerOf(session, step),
     phrases,
@@ -160,7 +160,7 @@ function restScreen(
 }
 
 function endScreen({ base, phrases }: ScreenParts, { session, withdrawalPage }: StudySituation): StudyScreen {
-  const { plan, progress, safekeeping } = session;
+  const { plan, progress, uploadStatus } = session;
   const { say } = phrases;
   return {
     ...base,
@@ -169,7 +169,7 @@ function endScreen({ base, phrases }: ScreenParts, { session, withdrawalPage }: 
     title: say('end.title'),
     text: [
       progress.stopped ? say('end.stopped') : say('end.done'),
-      safekeeping.unsent === 0 ? say('end.arrived') : say('end.keepOpen'),
+      uploadStatus.unsent === 0 ? say('end.arrived') : say('end.keepOpen'),
       say('end.withdraw', { address: withdrawalPage.replace(/^https?:\/\//, '') }),
     ],
     buttons: [],

@@ -1,5 +1,5 @@
 import { fillRounded, vrColors, vrFont, wrap } from 'threepoint-ui/vr-panel';
-import { paintQuestion, questionTargets } from './question-sheet';
+import { paintQuestion, questionTargets } from './questions/question-sheet';
 import { height, inner, margin, type Target, width } from './sheet-target';
 import type { ScreenButton, StudyScreen } from './study-screen';
 

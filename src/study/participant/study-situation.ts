@@ -1,14 +1,14 @@
 import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
-import type { ProgressEvent } from '../model/advance';
-import type { Question } from '../model/questionnaire-schema';
-import type { Answer } from '../model/questionnaires';
+import type { ProgressEvent } from '../model/progress/advance';
+import type { Answer } from '../model/questionnaires/question-kind';
+import type { Question } from '../model/questionnaires/questionnaire-schema';
 import type { ParticipantSession } from './participant-session';
 import type { Prepared } from './trial-preparation';
 
 /** What screens show of a session. */
 export type ShownSession = Pick<
   ParticipantSession,
-  'plan' | 'phrases' | 'step' | 'progress' | 'simulated' | 'safekeeping' | 'remaining'
+  'plan' | 'phrases' | 'step' | 'progress' | 'simulated' | 'uploadStatus' | 'remaining'
 >;
 
 /** Everything that decides what a participant sees. */

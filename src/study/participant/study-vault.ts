@@ -1,11 +1,11 @@
 import { type DBSchema, type IDBPDatabase, openDB } from 'idb';
-import type { KnownWearer } from '../model/known-wearer';
-import type { StudyPlan } from '../model/plan';
-import type { Progress } from '../model/progress';
-import type { StudyRecord } from '../model/study-record';
+import type { StudyPlan } from '../model/plan/plan';
+import type { Progress } from '../model/progress/progress';
+import type { ParticipantProfile } from '../model/records/participant-profile';
+import type { StudyRecord } from '../model/records/study-record';
 
 /** A session as this device remembers it. */
-export interface KeptSession extends KnownWearer {
+export interface KeptSession extends ParticipantProfile {
   readonly study: string;
   readonly participant: string;
   readonly token: string;

@@ -87,7 +87,7 @@ export class StudyVisit {
 
   state(): VisitState {
     const running = this.#running;
-    const { unsent, unsaved, online } = running?.session.safekeeping ?? { unsent: 0, unsaved: 0, online: true };
+    const { unsent, unsaved, online } = running?.session.uploadStatus ?? { unsent: 0, unsaved: 0, online: true };
     return {
       screen: this.#page.display.shown,
       step: running?.session.step.id ?? null,

@@ -1,5 +1,5 @@
-import type { SignedSeat } from '../model/study-api';
-import type { TrialEvent, TrialOutcome } from '../model/trial-log';
+import type { SignedSeat } from '../model/progress/study-api';
+import type { TrialEvent, TrialOutcome } from '../model/records/trial-log';
 
 /** What happened in a task: something sent off, or what became of it. */
 export type TaskEvent = { readonly type: 'shot' } | TrialEvent;

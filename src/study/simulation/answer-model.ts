@@ -1,5 +1,7 @@
-import type { Question } from '../model/questionnaire-schema';
-import { type Answer, type Answers, nearestOn, type Questionnaire } from '../model/questionnaires';
+import type { Answer } from '../model/questionnaires/question-kind';
+import { questionKind } from '../model/questionnaires/question-kinds';
+import type { Question } from '../model/questionnaires/questionnaire-schema';
+import type { Answers, Questionnaire } from '../model/questionnaires/questionnaires';
 import type { RandomSource } from './random-source';
 
 /**
@@ -41,15 +43,8 @@ export const drawPerson = (model: AnswerModel, random: RandomSource): number => 
 
 /** What a leaning is as an answer to a question: on scales and numbers its place between the ends, turned round where these are. */
 function answerAt({ answer: form, reversed }: Question, leaning: number, random: RandomSource): Answer {
-  if (form.kind === 'text') return 'SIMULATED'.slice(0, form.maxLength);
-  if (form.kind === 'choice') {
-    const chosen = form.options[Math.floor(random.uniform() * form.options.length)] ?? form.options[0];
-    return chosen?.value ?? '';
-  }
   const part = Math.min(1, Math.max(0, (leaning - 1) / 4));
-  const value = form.from + (form.to - form.from) * (reversed ? 1 - part : part);
-  if (form.kind === 'number') return form.whole ? Math.round(value) : value;
-  return nearestOn(form, value);
+  return questionKind(form).simulate(form, reversed ? 1 - part : part, () => random.uniform());
 }
 
 /** Who answers, and in which circumstances; `cohort` null: the plan has none. */

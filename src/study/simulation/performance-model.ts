@@ -1,4 +1,4 @@
-import { createTrialLog, type TrialOutcome } from '../model/trial-log';
+import { createTrialLog, type TrialOutcome } from '../model/records/trial-log';
 import type { RandomSource } from './random-source';
 
 /**

@@ -1,5 +1,5 @@
 import { nextRandom, type RandomState } from 'threepoint/core/math/random';
-import { randomFor } from '../model/shuffle';
+import { randomFor } from '../model/plan/shuffle';
 
 /** A seeded source of numbers for the models: its state moves with every number taken. */
 export interface RandomSource {

@@ -1,13 +1,13 @@
 import { ValidationError } from 'threepoint/core/validation/validation';
-import { advance, type ProgressEvent } from '../model/advance';
-import { cohortsByParticipant } from '../model/allocation';
-import type { Demographics } from '../model/demographics';
-import { participantsOf, type StudyPlan } from '../model/plan';
-import { begin, currentStep, type Progress, resumed } from '../model/progress';
-import { type Schedule, type StudyStep, scheduleFor } from '../model/schedule';
-import type { StudyRecord } from '../model/study-record';
-import type { TrialOutcome } from '../model/trial-log';
-import type { Words } from '../model/words';
+import type { Words } from '../model/phrases/words';
+import { cohortsByParticipant } from '../model/plan/allocation';
+import { participantsOf, type StudyPlan } from '../model/plan/plan';
+import { type Schedule, type StudyStep, scheduleFor } from '../model/plan/schedule';
+import { advance, type ProgressEvent } from '../model/progress/advance';
+import { begin, currentStep, type Progress, resumed } from '../model/progress/progress';
+import type { Demographics } from '../model/records/demographics';
+import type { StudyRecord } from '../model/records/study-record';
+import type { TrialOutcome } from '../model/records/trial-log';
 import { type AnswerModel, answerModelWith, drawAnswers, drawPerson } from './answer-model';
 import {
   drawArchery,
@@ -69,17 +69,12 @@ const markedInAll = (title: Words): Words =>
     ? marked(title)
     : Object.fromEntries(Object.entries(title).map(([language, text]) => [language, marked(text)]));
 
-const renamed = (plan: StudyPlan, ending: string): StudyPlan => ({
+/** Returns the plan under an id and a title that mark it as simulated. */
+export const simulatedPlan = (plan: StudyPlan): StudyPlan => ({
   ...plan,
-  id: `${plan.id.slice(0, 37)}-${ending}`,
+  id: `${plan.id.slice(0, 37)}-simulated`,
   title: markedInAll(plan.title),
 });
-
-/** The plan under a name that cannot be taken for a study of people. */
-export const simulatedPlan = (plan: StudyPlan): StudyPlan => renamed(plan, 'simulated');
-
-/** The plan of a study's rehearsal. */
-export const rehearsalPlan = (plan: StudyPlan): StudyPlan => renamed(plan, 'rehearsal');
 
 const oneOf = <T>(random: RandomSource, options: readonly T[]): T =>
   options[Math.floor(random.uniform() * options.length)] as T;

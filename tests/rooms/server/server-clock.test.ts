@@ -1,4 +1,4 @@
-import { scheduleFor } from 'threepoint-study/model/schedule';
+import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { expect, onTestFinished, test } from 'vitest';
 import { measured } from '../../reliability/measured';
 import { experimenterToken, forkServer } from '../../server/server-child';

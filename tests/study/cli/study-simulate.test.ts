@@ -3,10 +3,10 @@ import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { strFromU8, unzipSync } from 'fflate';
-import { groupsOf } from 'threepoint-study/model/allocation';
-import { compareAnswers, compareScores } from 'threepoint-study/model/compare-conditions';
-import { checkedRecord } from 'threepoint-study/model/study-record';
-import { answersIn, trialsIn } from 'threepoint-study/model/study-tables';
+import { groupsOf } from 'threepoint-study/model/plan/allocation';
+import { checkedRecord } from 'threepoint-study/model/records/study-record';
+import { compareAnswers, compareScores } from 'threepoint-study/model/results/compare-conditions';
+import { answersIn, trialsIn } from 'threepoint-study/model/tables/study-tables';
 import { answerModelWith, nullAnswerModel } from 'threepoint-study/simulation/answer-model';
 import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
 import { randomSource } from 'threepoint-study/simulation/random-source';
@@ -120,7 +120,7 @@ describe('npm run study:simulate', () => {
     expect(simulateInto(out).stderr).toContain('is not empty');
   });
 
-  test('rehearses any plan with the effects that are stated: between cohorts, three conditions, several questionnaires', {
+  test('simulates any plan with the effects that are stated: between cohorts, three conditions, several questionnaires', {
     tags: ['full'],
   }, () => {
     const mixed = latencyPlan({

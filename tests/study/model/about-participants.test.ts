@@ -1,5 +1,5 @@
-import { checkedConsent } from 'threepoint-study/model/consent';
-import { checkedDemographics, demographicFields } from 'threepoint-study/model/demographics';
+import { checkedConsent } from 'threepoint-study/model/records/consent';
+import { checkedDemographics, demographicFields } from 'threepoint-study/model/records/demographics';
 import { describe, expect, test } from 'vitest';
 import { aWomanOf26 } from './studies';
 

@@ -1,4 +1,4 @@
-import type { AnswerRow } from 'threepoint-study/model/answer-tables';
+import type { AnswerRow } from 'threepoint-study/model/tables/answer-tables';
 
 /** One question answered under conditions c0, c1 … by P01, P02 …. */
 export const rowsOf = (participants: readonly (readonly number[])[]): readonly AnswerRow[] =>

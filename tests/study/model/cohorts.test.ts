@@ -1,8 +1,8 @@
 import fc from 'fast-check';
-import { cohortsByParticipant, groupsOf, ordersByGroup } from 'threepoint-study/model/allocation';
-import { checkedPlan, participantsOf, type StudyCohort, type StudyTask } from 'threepoint-study/model/plan';
-import { cohortCounts, orderCounts, remarksOn } from 'threepoint-study/model/plan-remarks';
-import { scheduleFor } from 'threepoint-study/model/schedule';
+import { cohortsByParticipant, groupsOf, ordersByGroup } from 'threepoint-study/model/plan/allocation';
+import { checkedPlan, participantsOf, type StudyCohort, type StudyTask } from 'threepoint-study/model/plan/plan';
+import { cohortCounts, orderCounts, remarksOn } from 'threepoint-study/model/plan/plan-remarks';
+import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { describe, expect, test } from 'vitest';
 import { seed } from '../../threepoint/core/arbitraries';
 import { paperPlan } from './studies';

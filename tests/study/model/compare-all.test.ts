@@ -1,5 +1,5 @@
-import { compareAll } from 'threepoint-study/model/compare-all';
-import { answerMeasures } from 'threepoint-study/model/measures';
+import { compareAll } from 'threepoint-study/model/results/compare-all';
+import { answerMeasures } from 'threepoint-study/model/results/measures';
 import { expect, test } from 'vitest';
 import { chicks, plantGrowth, roundingTimes } from '../statistics/data-sets';
 import { rowsOf } from './answered';

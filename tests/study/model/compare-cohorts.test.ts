@@ -1,8 +1,8 @@
-import { type CohortComparison, compareCohorts } from 'threepoint-study/model/compare-cohorts';
-import { measuresIn, resultTables } from 'threepoint-study/model/exported-results';
-import { frameTimes } from 'threepoint-study/model/frame-times';
-import { answerMeasures } from 'threepoint-study/model/measures';
-import { checkedPlan } from 'threepoint-study/model/plan';
+import { checkedPlan } from 'threepoint-study/model/plan/plan';
+import { type CohortComparison, compareCohorts } from 'threepoint-study/model/results/compare-cohorts';
+import { measuresIn, resultTables } from 'threepoint-study/model/results/exported-results';
+import { frameTimes } from 'threepoint-study/model/results/frame-times';
+import { answerMeasures } from 'threepoint-study/model/results/measures';
 import { modelsWith, simulateStudy } from 'threepoint-study/simulation/simulate-study';
 import { holm } from 'threepoint-study/statistics/holm';
 import { describe, expect, test } from 'vitest';

@@ -1,8 +1,8 @@
-import { ordersByGroup } from 'threepoint-study/model/allocation';
-import type { AnswerRow } from 'threepoint-study/model/answer-tables';
-import { compareAnswers, compareScores } from 'threepoint-study/model/compare-conditions';
-import { questionnairesOf, type StudyTask } from 'threepoint-study/model/plan';
-import type { TrialRow } from 'threepoint-study/model/study-tables';
+import { ordersByGroup } from 'threepoint-study/model/plan/allocation';
+import { questionnairesOf, type StudyTask } from 'threepoint-study/model/plan/plan';
+import { compareAnswers, compareScores } from 'threepoint-study/model/results/compare-conditions';
+import type { AnswerRow } from 'threepoint-study/model/tables/answer-tables';
+import type { TrialRow } from 'threepoint-study/model/tables/study-tables';
 import {
   type AnswerModel,
   answerModelWith,

@@ -1,9 +1,9 @@
-import { compareAnswers } from 'threepoint-study/model/compare-conditions';
-import { checkedPlan, languagesOf, participantsOf, type StudyPlan } from 'threepoint-study/model/plan';
-import { resumed } from 'threepoint-study/model/progress';
-import { scheduleFor } from 'threepoint-study/model/schedule';
-import { checkedRecord, type StudyRecord } from 'threepoint-study/model/study-record';
-import { answersIn, scalesIn, studyTables } from 'threepoint-study/model/study-tables';
+import { checkedPlan, languagesOf, participantsOf, type StudyPlan } from 'threepoint-study/model/plan/plan';
+import { scheduleFor } from 'threepoint-study/model/plan/schedule';
+import { resumed } from 'threepoint-study/model/progress/progress';
+import { checkedRecord, type StudyRecord } from 'threepoint-study/model/records/study-record';
+import { compareAnswers } from 'threepoint-study/model/results/compare-conditions';
+import { answersIn, scalesIn, studyTables } from 'threepoint-study/model/tables/study-tables';
 import { nullAnswerModel } from 'threepoint-study/simulation/answer-model';
 import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
 import { simulateStudy } from 'threepoint-study/simulation/simulate-study';

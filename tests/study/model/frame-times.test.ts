@@ -1,5 +1,5 @@
-import { frameTimes } from 'threepoint-study/model/frame-times';
-import type { StudyRecord, TrialRecord } from 'threepoint-study/model/study-record';
+import type { StudyRecord, TrialRecord } from 'threepoint-study/model/records/study-record';
+import { frameTimes } from 'threepoint-study/model/results/frame-times';
 import { expect, test } from 'vitest';
 import { outcomeOf } from './studies';
 

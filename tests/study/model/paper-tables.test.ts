@@ -4,7 +4,7 @@ import {
   paperRows,
   paperScores,
   savedShare,
-} from 'threepoint-study/model/paper-tables';
+} from 'threepoint-study/model/results/paper-tables';
 import { describe, expect, test } from 'vitest';
 
 describe("the paper's own numbers", () => {

@@ -10,8 +10,8 @@ import {
   phrasesOf,
   preferredLanguage,
 } from 'threepoint-study/model/phrases/phrases';
-import { checkedPlan, planComplaints } from 'threepoint-study/model/plan';
-import { remarksOn } from 'threepoint-study/model/plan-remarks';
+import { checkedPlan, planComplaints } from 'threepoint-study/model/plan/plan';
+import { remarksOn } from 'threepoint-study/model/plan/plan-remarks';
 import { describe, expect, test } from 'vitest';
 import { examplePlan } from './studies';
 

@@ -1,7 +1,13 @@
 import fc from 'fast-check';
-import { groupsOf, ordersByGroup, ordersOf } from 'threepoint-study/model/allocation';
-import { checkedPlan, parsePlan, participantsOf, type StudyPlan, type StudyTask } from 'threepoint-study/model/plan';
-import { blindLabel, scheduleFor } from 'threepoint-study/model/schedule';
+import { groupsOf, ordersByGroup, ordersOf } from 'threepoint-study/model/plan/allocation';
+import {
+  checkedPlan,
+  parsePlan,
+  participantsOf,
+  type StudyPlan,
+  type StudyTask,
+} from 'threepoint-study/model/plan/plan';
+import { blindLabel, scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { describe, expect, test } from 'vitest';
 import { seed } from '../../threepoint/core/arbitraries';
 import { paperFile, paperPlan } from './studies';

@@ -1,7 +1,7 @@
-import { compareConditions } from 'threepoint-study/model/compare-conditions';
-import { measuresIn, overallComparisons, resultTables } from 'threepoint-study/model/exported-results';
-import { checkedPlan } from 'threepoint-study/model/plan';
-import { remarksOn } from 'threepoint-study/model/plan-remarks';
+import { checkedPlan } from 'threepoint-study/model/plan/plan';
+import { remarksOn } from 'threepoint-study/model/plan/plan-remarks';
+import { compareConditions } from 'threepoint-study/model/results/compare-conditions';
+import { measuresIn, overallComparisons, resultTables } from 'threepoint-study/model/results/exported-results';
 import { modelsWith, simulateStudy } from 'threepoint-study/simulation/simulate-study';
 import { holm } from 'threepoint-study/statistics/holm';
 import { expect, test } from 'vitest';

@@ -1,5 +1,6 @@
 import fc from 'fast-check';
-import type { ProgressEvent } from 'threepoint-study/model/advance';
+import { scheduleFor } from 'threepoint-study/model/plan/schedule';
+import type { ProgressEvent } from 'threepoint-study/model/progress/advance';
 import {
   begin,
   clockText,
@@ -8,9 +9,8 @@ import {
   reported,
   resumed,
   sinceReport,
-} from 'threepoint-study/model/progress';
-import { scheduleFor } from 'threepoint-study/model/schedule';
-import { checkedRecord } from 'threepoint-study/model/study-record';
+} from 'threepoint-study/model/progress/progress';
+import { checkedRecord } from 'threepoint-study/model/records/study-record';
 import { describe, expect, test } from 'vitest';
 import { seed } from '../../threepoint/core/arbitraries';
 import { aWomanOf26, outcomeOf, paperPlan, session } from './studies';

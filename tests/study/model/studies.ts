@@ -1,13 +1,13 @@
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { advance, type ProgressEvent } from 'threepoint-study/model/advance';
-import { parsePlan, type StudyPlan } from 'threepoint-study/model/plan';
-import { begin, currentStep, type Progress } from 'threepoint-study/model/progress';
-import type { AnswerForm } from 'threepoint-study/model/questionnaire-schema';
-import { type Answer, nearestOn } from 'threepoint-study/model/questionnaires';
-import type { Schedule, StudyStep } from 'threepoint-study/model/schedule';
-import type { StudyRecord } from 'threepoint-study/model/study-record';
-import { createTrialLog, type TrialOutcome } from 'threepoint-study/model/trial-log';
+import { parsePlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
+import type { Schedule, StudyStep } from 'threepoint-study/model/plan/schedule';
+import { advance, type ProgressEvent } from 'threepoint-study/model/progress/advance';
+import { begin, currentStep, type Progress } from 'threepoint-study/model/progress/progress';
+import type { Answer, AnswerForm } from 'threepoint-study/model/questionnaires/question-kind';
+import { questionKind } from 'threepoint-study/model/questionnaires/question-kinds';
+import type { StudyRecord } from 'threepoint-study/model/records/study-record';
+import { createTrialLog, type TrialOutcome } from 'threepoint-study/model/records/trial-log';
 
 export const paperFile = readFileSync(
   fileURLToPath(new URL('../../../public/studies/paper.json', import.meta.url)),
@@ -54,11 +54,13 @@ export const latencyPlan = (changes: Partial<StudyPlan> = {}): StudyPlan => ({
   ...changes,
 });
 
-/** This number where a form takes it, or what is nearest to it; a text that says it. */
+/** Returns the answer that is nearest to this number, the first option, or the number as text. */
 function answerFor(form: AnswerForm, value: number): Answer {
-  if (form.kind === 'text') return `${value}`.slice(0, form.maxLength);
-  if (form.kind === 'choice') return form.options[0]?.value ?? '';
-  return form.kind === 'number' ? Math.min(form.to, Math.max(form.from, value)) : nearestOn(form, value);
+  const kind = questionKind(form);
+  const range = kind.range(form);
+  if (!range) return kind.options(form)?.[0] ?? `${value}`;
+  const [from, to] = range;
+  return kind.simulate(form, Math.min(1, Math.max(0, (value - from) / (to - from))), () => 0);
 }
 
 /** A session that is driven by events, with a clock that the test sets. */

@@ -1,7 +1,7 @@
-import { participantsOf } from 'threepoint-study/model/plan';
-import { scheduleFor } from 'threepoint-study/model/schedule';
-import { answersIn, studyTables, trialsIn } from 'threepoint-study/model/study-tables';
-import { tidyCsv } from 'threepoint-study/model/tidy-csv';
+import { participantsOf } from 'threepoint-study/model/plan/plan';
+import { scheduleFor } from 'threepoint-study/model/plan/schedule';
+import { answersIn, studyTables, trialsIn } from 'threepoint-study/model/tables/study-tables';
+import { tidyCsv } from 'threepoint-study/model/tables/tidy-csv';
 import { describe, expect, test } from 'vitest';
 import { paperPlan, session } from './studies';
 

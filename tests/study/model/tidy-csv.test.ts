@@ -1,6 +1,6 @@
 import fc from 'fast-check';
 import { csvRows } from 'threepoint-study/cli/verify/csv-rows';
-import { codebookOf, type Table, text, tidyCsv } from 'threepoint-study/model/tidy-csv';
+import { codebookOf, type Table, text, tidyCsv } from 'threepoint-study/model/tables/tidy-csv';
 import { describe, expect, test } from 'vitest';
 import { seed } from '../../threepoint/core/arbitraries';
 

@@ -1,12 +1,12 @@
 import fc from 'fast-check';
-import { scheduleFor } from 'threepoint-study/model/schedule';
-import { checkedRecord, longestRecord } from 'threepoint-study/model/study-record';
+import { scheduleFor } from 'threepoint-study/model/plan/schedule';
+import { checkedRecord, longestRecord } from 'threepoint-study/model/records/study-record';
 import {
   checkedOutcome,
   createDurationStatistics,
   createTrialLog,
   mostTrialEvents,
-} from 'threepoint-study/model/trial-log';
+} from 'threepoint-study/model/records/trial-log';
 import { describe, expect, test } from 'vitest';
 import { number, seed } from '../../threepoint/core/arbitraries';
 import { outcomeOf, paperPlan, session } from './studies';

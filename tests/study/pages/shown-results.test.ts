@@ -1,5 +1,5 @@
-import { compareConditions } from 'threepoint-study/model/compare-conditions';
-import { checkedPlan, type StudyTask } from 'threepoint-study/model/plan';
+import { checkedPlan, type StudyTask } from 'threepoint-study/model/plan/plan';
+import { compareConditions } from 'threepoint-study/model/results/compare-conditions';
 import { scaleCharts } from 'threepoint-study/pages/comparison-figures';
 import { shownResults } from 'threepoint-study/pages/shown-results';
 import { modelsWith, simulateStudy } from 'threepoint-study/simulation/simulate-study';

@@ -1,11 +1,11 @@
 import { strToU8, zipSync } from 'fflate';
-import { compareAnswers } from 'threepoint-study/model/compare-conditions';
-import { comparisonTable, paperTable } from 'threepoint-study/model/result-tables';
-import { answersIn } from 'threepoint-study/model/study-tables';
-import { tidyCsv } from 'threepoint-study/model/tidy-csv';
+import { compareAnswers } from 'threepoint-study/model/results/compare-conditions';
+import { comparisonTable, paperTable } from 'threepoint-study/model/results/result-tables';
+import { answersIn } from 'threepoint-study/model/tables/study-tables';
+import { tidyCsv } from 'threepoint-study/model/tables/tidy-csv';
 import { shownResults } from 'threepoint-study/pages/shown-results';
 import { openStudyFile } from 'threepoint-study/pages/study-file';
-import { exportZip } from 'threepoint-study/server/study-export';
+import { exportZip } from 'threepoint-study/server/export/export-zip';
 import { nullAnswerModel } from 'threepoint-study/simulation/answer-model';
 import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
 import { simulatedPlan, simulateStudy } from 'threepoint-study/simulation/simulate-study';

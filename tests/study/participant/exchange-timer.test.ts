@@ -13,7 +13,7 @@ function timed() {
         asked.count += 1;
       },
       motionSent: () => motion.sent,
-      get safekeeping() {
+      get uploadStatus() {
         const { online } = server;
         return { unsent: 0, unsaved: 0, storageFault: null, online, refusal: null, lockedOut: false };
       },

@@ -1,7 +1,7 @@
 import { request as httpRequest } from 'node:http';
 import { writeRecording } from 'threepoint/core/tracking/recording';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { unpacked } from 'threepoint-study/server/study-motion';
+import { unpacked } from 'threepoint-study/server/storage/motion';
 import { expect, test } from 'vitest';
 import { answeringHost } from '../../rooms/client/answering-host';
 import { calibration, device, toTheFirstQuestion } from './participant-device';
@@ -47,7 +47,7 @@ test('a recording that the server refuses is reported and kept, and holds up nei
   await experimenter.command('paper', 'P01', { type: 'pause' });
   await first.exchange();
   expect(first.progress.paused).toBe(true);
-  expect(first.safekeeping).toMatchObject({
+  expect(first.uploadStatus).toMatchObject({
     unsent: 1,
     online: true,
     refusal: expect.stringContaining('no JSON'),
@@ -86,5 +86,5 @@ test('while a recording is on its way, progress is reported and commands are fol
   await first.exchange();
   expect(first.progress.paused).toBe(true);
   expect(way.stopped.count).toBe(1);
-  expect(first.safekeeping).toMatchObject({ unsent: 1, online: true, refusal: null });
+  expect(first.uploadStatus).toMatchObject({ unsent: 1, online: true, refusal: null });
 });

@@ -1,5 +1,5 @@
 import { createParticipantClient } from 'threepoint-study/client/study-client';
-import { isLater } from 'threepoint-study/model/progress';
+import { isLater } from 'threepoint-study/model/progress/progress';
 import { createParticipantSession, startSession } from 'threepoint-study/participant/participant-session';
 import { afterEach, expect, test, vi } from 'vitest';
 import { calibration, device, toTheFirstQuestion, toTheFirstRest } from './participant-device';
@@ -30,7 +30,7 @@ test('what the server has acknowledged leaves the device, and nothing before', a
     'trial',
   ]);
   expect(await vault.records('paper', 'P01')).toEqual([]);
-  expect(first.safekeeping).toEqual({
+  expect(first.uploadStatus).toEqual({
     unsent: 0,
     unsaved: 0,
     storageFault: null,
@@ -49,8 +49,8 @@ test('a reload in a questionnaire without a network goes on at the same question
   first.apply({ type: 'answer', question: 'Q1', value: 4 });
   first.apply({ type: 'answer', question: 'Q2', value: 5 });
   await first.exchange();
-  expect(first.safekeeping.online).toBe(false);
-  expect(first.safekeeping.unsent).toBe(5);
+  expect(first.uploadStatus.online).toBe(false);
+  expect(first.uploadStatus.unsent).toBe(5);
 
   const second = await reload();
   expect(second.step.id).toBe(first.step.id);
@@ -59,12 +59,12 @@ test('a reload in a questionnaire without a network goes on at the same question
   for (const question of ['Q3', 'Q4', 'Q5', 'Q6', 'Q7']) second.apply({ type: 'answer', question, value: 3 });
   expect(second.apply({ type: 'submit' })).toBe(null);
   await second.exchange();
-  expect(second.safekeeping.online).toBe(false);
+  expect(second.uploadStatus.online).toBe(false);
 
   await server.restart();
   const third = await reload();
   await third.exchange();
-  expect(third.safekeeping).toMatchObject({ unsent: 0, online: true, refusal: null });
+  expect(third.uploadStatus).toMatchObject({ unsent: 0, online: true, refusal: null });
   const answers = server.store.records.all('paper').find(({ kind }) => kind === 'answers');
   expect(answers?.body).toMatchObject({ answers: { Q1: 4, Q2: 5, Q3: 3, Q4: 3, Q5: 3, Q6: 3, Q7: 3 } });
 });
@@ -79,7 +79,7 @@ test('a full device says so, keeps the answers in the page, and stores them when
   });
   toTheFirstQuestion(first);
   await first.exchange();
-  expect(first.safekeeping).toMatchObject({
+  expect(first.uploadStatus).toMatchObject({
     unsent: 5,
     unsaved: 5,
     storageFault: 'the quota is used up',
@@ -87,7 +87,7 @@ test('a full device says so, keeps the answers in the page, and stores them when
   });
   put.mockRestore();
   await first.exchange();
-  expect(first.safekeeping).toMatchObject({ unsent: 5, unsaved: 0, storageFault: null });
+  expect(first.uploadStatus).toMatchObject({ unsent: 5, unsaved: 0, storageFault: null });
   expect(await vault.records('paper', 'P01')).toHaveLength(5);
   await server.restart();
   await first.exchange();
@@ -103,7 +103,7 @@ test('a full device with a network loses nothing either', async () => {
   toTheFirstQuestion(first);
   await first.exchange();
   expect(server.store.records.all('paper')).toHaveLength(5);
-  expect(first.safekeeping).toMatchObject({ unsent: 0, unsaved: 0 });
+  expect(first.uploadStatus).toMatchObject({ unsent: 0, unsaved: 0 });
 });
 
 test('a browser without storage sends everything all the same', async () => {
@@ -116,7 +116,7 @@ test('a browser without storage sends everything all the same', async () => {
     options(null),
   );
   toTheFirstQuestion(session);
-  expect(session.safekeeping).toMatchObject({ unsaved: 5, storageFault: 'this browser offers no storage' });
+  expect(session.uploadStatus).toMatchObject({ unsaved: 5, storageFault: 'this browser offers no storage' });
   await session.exchange();
   expect(store.records.all('paper')).toHaveLength(5);
 });
@@ -207,10 +207,10 @@ test('a device whose place was released stops, and can forget', async () => {
   const { first, vault } = await device(server);
   toTheFirstQuestion(first);
   await first.exchange();
-  expect(first.safekeeping.lockedOut).toBe(false);
+  expect(first.uploadStatus.lockedOut).toBe(false);
   await server.experimenter.release('paper', 'P01');
   await first.exchange();
-  expect(first.safekeeping.lockedOut).toBe(true);
+  expect(first.uploadStatus.lockedOut).toBe(true);
   await vault.forget('paper', 'P01');
   expect(await vault.session('paper', 'P01')).toBe(null);
 });
@@ -252,7 +252,7 @@ test('a record that the server refuses is reported and kept, and does not hold u
   again.apply({ type: 'submit' });
   await again.exchange();
   expect(store.records.all('paper').some(({ kind }) => kind === 'answers')).toBe(true);
-  expect(again.safekeeping).toMatchObject({
+  expect(again.uploadStatus).toMatchObject({
     unsent: 1,
     online: true,
     refusal: expect.stringContaining('something else'),

@@ -1,5 +1,5 @@
-import { planComplaints } from 'threepoint-study/model/plan';
-import { outlineOf } from 'threepoint-study/model/plan-outline';
+import { planComplaints } from 'threepoint-study/model/plan/plan';
+import { outlineOf } from 'threepoint-study/model/plan/plan-outline';
 import { planFrom } from 'threepoint-study/participant/preview/plan-source';
 import { PreviewWalk } from 'threepoint-study/participant/preview/preview-walk';
 import { describe, expect, test } from 'vitest';

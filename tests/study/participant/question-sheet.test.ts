@@ -1,11 +1,12 @@
 import { phrasesOf } from 'threepoint-study/model/phrases/phrases';
-import { begin } from 'threepoint-study/model/progress';
-import type { Question } from 'threepoint-study/model/questionnaire-schema';
-import { type Answer, type Answers, shippedQuestionnaires, typedAnswer } from 'threepoint-study/model/questionnaires';
-import { scheduleFor } from 'threepoint-study/model/schedule';
+import { scheduleFor } from 'threepoint-study/model/plan/schedule';
+import { begin } from 'threepoint-study/model/progress/progress';
+import type { Answer } from 'threepoint-study/model/questionnaires/question-kind';
+import type { Question } from 'threepoint-study/model/questionnaires/questionnaire-schema';
+import { type Answers, shippedQuestionnaires, typedAnswer } from 'threepoint-study/model/questionnaires/questionnaires';
 import type { ParticipantSession } from 'threepoint-study/participant/participant-session';
-import { questionPart } from 'threepoint-study/participant/question-screen';
-import { questionTargets } from 'threepoint-study/participant/question-sheet';
+import { questionPart } from 'threepoint-study/participant/questions/question-screen';
+import { questionTargets } from 'threepoint-study/participant/questions/question-sheet';
 import { height, width } from 'threepoint-study/participant/sheet-target';
 import { describe, expect, test } from 'vitest';
 import { examplePlan } from '../model/studies';

@@ -1,6 +1,6 @@
 import { Phrases } from 'threepoint-study/model/phrases/phrases';
-import { setupFaults } from 'threepoint-study/model/remote-setup';
-import { safekeepingText } from 'threepoint-study/participant/study-screens';
+import { setupFaults } from 'threepoint-study/model/plan/remote-setup';
+import { uploadStatusText } from 'threepoint-study/participant/study-screens';
 import { describe, expect, test } from 'vitest';
 import { aWomanOf26 } from '../model/studies';
 import { agree, canStart } from './participant-steps';
@@ -76,11 +76,11 @@ describe('a study with no one beside its participants', () => {
 
   test('says what the server refuses, and that one can go on', () => {
     const refused = { unsent: 2, unsaved: 0, storageFault: null, online: true, refusal: 'no', lockedOut: false };
-    expect(safekeepingText(refused, english, remote)).toEqual([
+    expect(uploadStatusText(refused, english, remote)).toEqual([
       'They stay on this device: the server refuses 2 records (no). You can go on. Write to lab@example.org',
       true,
     ]);
-    expect(safekeepingText(refused, english)[0]).toContain('Call the experimenter');
+    expect(uploadStatusText(refused, english)[0]).toContain('Call the experimenter');
   });
 
   test('begins in a boundary that is large enough alone', async () => {

@@ -1,10 +1,10 @@
 import { createParticipantClient } from 'threepoint-study/client/study-client';
-import type { ProgressEvent } from 'threepoint-study/model/advance';
 import { Phrases } from 'threepoint-study/model/phrases/phrases';
-import { typedAnswer } from 'threepoint-study/model/questionnaires';
+import type { ProgressEvent } from 'threepoint-study/model/progress/advance';
+import { typedAnswer } from 'threepoint-study/model/questionnaires/questionnaires';
 import { createParticipantSession, startSession } from 'threepoint-study/participant/participant-session';
 import type { StudyScreen } from 'threepoint-study/participant/study-screen';
-import { safekeepingText, screenOf } from 'threepoint-study/participant/study-screens';
+import { screenOf, uploadStatusText } from 'threepoint-study/participant/study-screens';
 import type { ScreenActions, StudySituation } from 'threepoint-study/participant/study-situation';
 import { describe, expect, test } from 'vitest';
 import { aWomanOf26, outcomeOf, paperPlan } from '../model/studies';
@@ -239,6 +239,6 @@ describe('where answers are', () => {
       true,
     ],
   ])('%j is said, and whether to worry', (change, text, worrying) => {
-    expect(safekeepingText({ ...safe, ...change }, new Phrases('en'))).toEqual([text, worrying]);
+    expect(uploadStatusText({ ...safe, ...change }, new Phrases('en'))).toEqual([text, worrying]);
   });
 });

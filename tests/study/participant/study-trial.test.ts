@@ -1,7 +1,7 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { parseRecording } from 'threepoint/core/tracking/recording';
-import { mostMotionBytes } from 'threepoint-study/model/study-api';
-import { recordingTime } from 'threepoint-study/model/trial-clock';
+import { mostMotionBytes } from 'threepoint-study/model/progress/study-api';
+import { recordingTime } from 'threepoint-study/model/records/trial-clock';
 import { playTrial } from 'threepoint-study/participant/study-trial';
 import { describe, expect, test } from 'vitest';
 import { epoch, frameSeconds, playedRound } from './played-round';

@@ -1,5 +1,5 @@
-import { checkedPlan, type StudyPlan } from 'threepoint-study/model/plan';
-import type { ExportContent } from 'threepoint-study/server/study-export';
+import { checkedPlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
+import type { ExportContent } from 'threepoint-study/server/export/export-zip';
 import { answerModelWith } from 'threepoint-study/simulation/answer-model';
 import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
 import { simulatedPlan, simulateStudy } from 'threepoint-study/simulation/simulate-study';

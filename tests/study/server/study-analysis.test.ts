@@ -3,8 +3,8 @@ import { spawnSync } from 'node:child_process';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { csvRows } from 'threepoint-study/cli/verify/csv-rows';
-import type { StudyRecord } from 'threepoint-study/model/study-record';
-import { exportFiles } from 'threepoint-study/server/study-export';
+import type { StudyRecord } from 'threepoint-study/model/records/study-record';
+import { exportFiles } from 'threepoint-study/server/export/export-zip';
 import { describe, expect, test } from 'vitest';
 import { installed } from '../../server/installed';
 import { directoryWith } from '../../temporary-directory';
@@ -17,7 +17,7 @@ function pythonWithScipy(): string | null {
   if (spawnSync(python, ['-c', 'import numpy, scipy']).status === 0) return python;
   if (process.env.THREEPOINT_PROGRAMS === 'required')
     throw new Error(
-      'SciPy is not installed (src/study/server/analysis/requirements.txt), and THREEPOINT_PROGRAMS=required asks for every test',
+      'SciPy is not installed (src/study/server/export/analysis/requirements.txt), and THREEPOINT_PROGRAMS=required asks for every test',
     );
   return null;
 }

@@ -1,6 +1,6 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { normalisedCode } from 'threepoint-study/server/study-schema';
+import { normalisedCode } from 'threepoint-study/server/storage/schema';
 import { describe, expect, test } from 'vitest';
 import { now } from './running-studies';
 import { completed, withPaperStudy } from './stored-studies';

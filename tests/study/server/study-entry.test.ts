@@ -1,6 +1,6 @@
 import { connect } from 'node:net';
-import { participantsOf } from 'threepoint-study/model/plan';
-import { openPlacesPerHour } from 'threepoint-study/server/study-guard';
+import { participantsOf } from 'threepoint-study/model/plan/plan';
+import { openPlacesPerHour } from 'threepoint-study/server/routes/guard';
 import { describe, expect, test } from 'vitest';
 import { measured } from '../../reliability/measured';
 import { paperPlan } from '../model/studies';

@@ -1,7 +1,7 @@
 // The studies' part of the server in a process of its own, to be killed. Its argument is the folder of its files.
 import { createRouter, noPage } from 'threepoint-http/router';
 import { serve } from 'threepoint-http/web-server';
-import { openStudyService } from 'threepoint-study/server/study-service';
+import { openStudyService } from 'threepoint-study/server/service';
 
 const secret = 'a secret of the tests, long enough for them';
 const { service } = await openStudyService({

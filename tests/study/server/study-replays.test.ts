@@ -1,7 +1,7 @@
 import { writeRecording } from 'threepoint/core/tracking/recording';
-import { begin, type Progress } from 'threepoint-study/model/progress';
-import { scheduleFor } from 'threepoint-study/model/schedule';
-import type { StudyRecord } from 'threepoint-study/model/study-record';
+import { scheduleFor } from 'threepoint-study/model/plan/schedule';
+import { begin, type Progress } from 'threepoint-study/model/progress/progress';
+import type { StudyRecord } from 'threepoint-study/model/records/study-record';
 import { describe, expect, test } from 'vitest';
 import { measured } from '../../reliability/measured';
 import { paperPlan, session } from '../model/studies';

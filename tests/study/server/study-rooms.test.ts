@@ -2,8 +2,8 @@ import { io } from 'socket.io-client';
 import { createRoomPass } from 'threepoint-rooms/client/room-pass';
 import { pageParser } from 'threepoint-rooms/protocol/small-frames';
 import { createRoomTokens } from 'threepoint-rooms/server/room-tokens';
-import { scheduleFor } from 'threepoint-study/model/schedule';
-import { createStudySeats } from 'threepoint-study/server/study-seats';
+import { scheduleFor } from 'threepoint-study/model/plan/schedule';
+import { createStudySeats } from 'threepoint-study/server/routes/seats';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';
 import { measured } from '../../reliability/measured';
 import {

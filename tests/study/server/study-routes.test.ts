@@ -1,10 +1,10 @@
 import { strFromU8, unzipSync } from 'fflate';
 import { writeRecording } from 'threepoint/core/tracking/recording';
-import { begin } from 'threepoint-study/model/progress';
-import { scheduleFor } from 'threepoint-study/model/schedule';
-import type { StudyRecord } from 'threepoint-study/model/study-record';
-import { unpacked } from 'threepoint-study/server/study-motion';
-import { bodyLimits } from 'threepoint-study/server/study-routes';
+import { scheduleFor } from 'threepoint-study/model/plan/schedule';
+import { begin } from 'threepoint-study/model/progress/progress';
+import type { StudyRecord } from 'threepoint-study/model/records/study-record';
+import { bodyLimits } from 'threepoint-study/server/routes/routes';
+import { unpacked } from 'threepoint-study/server/storage/motion';
 import { describe, expect, test } from 'vitest';
 import { measured } from '../../reliability/measured';
 import { paperPlan, session } from '../model/studies';

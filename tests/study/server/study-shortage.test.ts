@@ -1,9 +1,9 @@
 import { once } from 'node:events';
-import { Agent, type IncomingMessage, request as httpRequest } from 'node:http';
+import { Agent, request as httpRequest, type IncomingMessage } from 'node:http';
 import { connect } from 'node:net';
 import { join } from 'node:path';
-import { type StudyRecord, recordVersion } from 'threepoint-study/model/study-record';
-import { openStudyStore } from 'threepoint-study/server/study-store';
+import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/study-record';
+import { openStudyStore } from 'threepoint-study/server/storage/store';
 import { expect, onTestFinished, test } from 'vitest';
 import { measured } from '../../reliability/measured';
 import { experimenterToken, forkServer } from '../../server/server-child';

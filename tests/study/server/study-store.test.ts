@@ -1,10 +1,10 @@
 import { copyFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
-import { begin, reported } from 'threepoint-study/model/progress';
-import { scheduleFor } from 'threepoint-study/model/schedule';
-import type { StudyRecord } from 'threepoint-study/model/study-record';
-import { openStudyStore } from 'threepoint-study/server/study-store';
+import { scheduleFor } from 'threepoint-study/model/plan/schedule';
+import { begin, reported } from 'threepoint-study/model/progress/progress';
+import type { StudyRecord } from 'threepoint-study/model/records/study-record';
+import { openStudyStore } from 'threepoint-study/server/storage/store';
 import { describe, expect, test } from 'vitest';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan, session } from '../model/studies';

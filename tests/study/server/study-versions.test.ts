@@ -1,7 +1,7 @@
 import { strFromU8, unzipSync } from 'fflate';
-import { togetherWith } from 'threepoint-study/model/allocation';
-import type { StudyPlan } from 'threepoint-study/model/plan';
-import { scheduleFor } from 'threepoint-study/model/schedule';
+import { togetherWith } from 'threepoint-study/model/plan/allocation';
+import type { StudyPlan } from 'threepoint-study/model/plan/plan';
+import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { describe, expect, test } from 'vitest';
 import { latencyPlan, paperPlan, session } from '../model/studies';
 import { experimenter, now, servedStudies } from './running-studies';

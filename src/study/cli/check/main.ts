@@ -1,6 +1,6 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { ValidationError } from 'threepoint/core/validation/validation';
-import { embodimentInWords } from '../../model/embodiment';
+import { embodimentInWords } from '../../model/plan/embodiment';
 import {
   languagesOf,
   parsePlan,
@@ -9,9 +9,9 @@ import {
   type StudyPlan,
   studyTitle,
   taskTitle,
-} from '../../model/plan';
-import { durationOf, outlineOf } from '../../model/plan-outline';
-import { cohortCounts, orderCounts, remarksOn } from '../../model/plan-remarks';
+} from '../../model/plan/plan';
+import { durationOf, outlineOf } from '../../model/plan/plan-outline';
+import { cohortCounts, orderCounts, remarksOn } from '../../model/plan/plan-remarks';
 
 const [file = '', participant] = process.argv.slice(2);
 

@@ -1,5 +1,5 @@
 import { toJsonSchema } from '@valibot/to-json-schema';
-import { planSchema } from '../../model/plan-schema';
+import { planSchema } from '../../model/plan/plan-schema';
 
 /**
  * The schema by which plans are read, as JSON Schema (draft 7), for completion in editors. What JSON Schema cannot say, such as that a

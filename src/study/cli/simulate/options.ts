@@ -1,6 +1,6 @@
 import { parseArgs } from 'node:util';
 import { ValidationError } from 'threepoint/core/validation/validation';
-import type { StudyPlan } from '../../model/plan';
+import type { StudyPlan } from '../../model/plan/plan';
 import type { StatedEffects } from '../../simulation/simulate-study';
 
 /** What the command line asks for, read but for what the plan must say. */

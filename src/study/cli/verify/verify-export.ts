@@ -3,7 +3,7 @@ import { strFromU8, unzipSync } from 'fflate';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import type { Software } from 'threepoint-http/software';
 import { openStudyFile } from '../../pages/study-file';
-import { checksumsFile, type ExportContent, exportFiles, motionPath } from '../../server/study-export';
+import { checksumsFile, type ExportContent, exportFiles, motionPath } from '../../server/export/export-zip';
 import { csvRows } from './csv-rows';
 
 export interface Verdict {

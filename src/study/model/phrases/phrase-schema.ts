@@ -1,9 +1,9 @@
 import { text, ValidationError } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { languageTag } from '../words';
 import type { GivenPhrases, Phrase, PhraseKey } from './catalogue';
 import { english } from './english';
 import { gapsIn, phraseKeys } from './phrases';
+import { languageTag } from './words';
 
 const longest = 600;
 const form = v.exactOptional(text(longest));

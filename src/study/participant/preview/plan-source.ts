@@ -1,5 +1,5 @@
 import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
-import { parsePlan, planComplaints, type StudyPlan } from '../../model/plan';
+import { parsePlan, planComplaints, type StudyPlan } from '../../model/plan/plan';
 
 /** A plan, or everything that is wrong with its file, each with file, field and reason. */
 export type ReadPlan =

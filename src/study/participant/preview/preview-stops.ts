@@ -1,7 +1,7 @@
-import { embodimentInWords } from '../../model/embodiment';
-import { languagesOf, type StudyPlan, taskTitle } from '../../model/plan';
-import { blindLabel, type StudyStep, scheduleFor } from '../../model/schedule';
-import { inLanguage } from '../../model/words';
+import { inLanguage } from '../../model/phrases/words';
+import { embodimentInWords } from '../../model/plan/embodiment';
+import { languagesOf, type StudyPlan, taskTitle } from '../../model/plan/plan';
+import { blindLabel, type StudyStep, scheduleFor } from '../../model/plan/schedule';
 
 /** Where a screen is met: a questionnaire can be answered at either. */
 export type PreviewPlace = 'desk' | 'headset' | 'either';

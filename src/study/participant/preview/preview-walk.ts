@@ -1,12 +1,12 @@
 import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
-import { advance, type ProgressEvent } from '../../model/advance';
-import { embodimentInWords } from '../../model/embodiment';
 import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
-import { languagesOf, type StudyPlan, taskTitle } from '../../model/plan';
-import { begin, currentStep, type Progress } from '../../model/progress';
-import { type Schedule, type StudyStep, scheduleFor } from '../../model/schedule';
+import { embodimentInWords } from '../../model/plan/embodiment';
+import { languagesOf, type StudyPlan, taskTitle } from '../../model/plan/plan';
+import { type Schedule, type StudyStep, scheduleFor } from '../../model/plan/schedule';
+import { advance, type ProgressEvent } from '../../model/progress/advance';
+import { begin, currentStep, type Progress } from '../../model/progress/progress';
 import { Answering } from '../answering';
-import type { Safekeeping } from '../participant-session';
+import type { UploadStatus } from '../participant-session';
 import { refusalFor } from '../reasons';
 import type { StudyForm } from '../study-form';
 import type { StudyScreen } from '../study-screen';
@@ -20,7 +20,7 @@ export type PreviewShown =
   | { readonly kind: 'form'; readonly form: StudyForm }
   | { readonly kind: 'playing'; readonly text: string };
 
-const allSaved: Safekeeping = {
+const allSaved: UploadStatus = {
   unsent: 0,
   unsaved: 0,
   storageFault: null,
@@ -36,7 +36,7 @@ const exampleCode = '0000-0000-0000-0000';
 class PreviewSession implements ShownSession {
   readonly plan: StudyPlan;
   readonly simulated = false;
-  readonly safekeeping = allSaved;
+  readonly uploadStatus = allSaved;
   readonly #schedule: Schedule;
   readonly #drafts = new Map<string, Progress['draft']>();
   #progress: Progress;

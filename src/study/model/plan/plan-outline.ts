@@ -1,0 +1,101 @@
+import { inLanguage } from '../phrases/words';
+import { questionKind } from '../questionnaires/question-kinds';
+import type { Question } from '../questionnaires/questionnaire-schema';
+import { languagesOf, type StudyPlan, taskTitle } from './plan';
+import { blindLabel, type StudyStep, scheduleFor } from './schedule';
+
+/** One screen that a participant meets. */
+export interface OutlinedScreen {
+  /** Step of the schedule: "archery/1/questionnaire". */
+  readonly step: string;
+  readonly shows: string;
+  /** Where it is: a questionnaire can be answered at either. */
+  readonly at: 'desk' | 'headset' | 'either';
+  /** The longest that it lasts by the plan; null: as long as the participant takes. */
+  readonly seconds: number | null;
+}
+
+const ofForm = ({ answer: form, optional }: Question): string => {
+  const range = questionKind(form).range(form);
+  return `${form.kind}${range ? ` ${range[0]} to ${range[1]}` : ''}${optional ? ', may stay open' : ''}`;
+};
+
+function screensOf(plan: StudyPlan, step: StudyStep): readonly OutlinedScreen[] {
+  const at = (shows: string, where: OutlinedScreen['at'], seconds: number | null = null): OutlinedScreen => ({
+    step: step.id,
+    shows,
+    at: where,
+    seconds,
+  });
+  const title = 'task' in step ? taskTitle(plan, step.task) : '';
+  switch (step.kind) {
+    case 'consent':
+      return [
+        at(`Consent: ${inLanguage(plan.consent.title, languagesOf(plan)[0])}`, 'desk'),
+        at('Withdrawal code', 'desk'),
+      ];
+    case 'demographics':
+      return [at('About you', 'desk')];
+    case 'calibration':
+      return [
+        ...(plan.remote
+          ? [
+              at(
+                `${title}: what is wrong with device, room (${plan.remote.freeSpace} m) or height, if anything`,
+                'either',
+              ),
+            ]
+          : []),
+        at(`${title}: measures of the body`, 'headset'),
+      ];
+    case 'tutorial':
+      return [at(`${title}: practice with ${step.embodiment.estimator}`, 'headset', step.seconds)];
+    case 'trial':
+      return [at(`${title}, ${blindLabel(step)}: played under "${step.condition}"`, 'headset', step.seconds)];
+    case 'rest':
+      return [at(`${title}: rest`, 'headset', step.seconds)];
+    case 'questionnaire': {
+      const [language] = languagesOf(plan);
+      const { questions } = step.questionnaire;
+      const each = questions.map((question, index) =>
+        at(
+          `${index + 1} of ${questions.length}, ${question.id} (${ofForm(question)}): ${inLanguage(question.text, language)}`,
+          'either',
+        ),
+      );
+      const heading = `${title}, ${blindLabel(step)}: questionnaire "${step.questionnaire.id}"`;
+      const limits = (plan.askToStop ?? []).filter(({ questionnaire }) => questionnaire === step.questionnaire.id);
+      const unwell = limits.map(({ measure, atLeast }) => `"${measure}" from ${atLeast} on`).join(' or ');
+      return [
+        at(heading, 'either', step.seconds),
+        ...each,
+        ...(unwell === '' ? [] : [at(`How are you? Go on, or stop: for ${unwell}`, 'either')]),
+      ];
+    }
+    case 'end':
+      return [at('Thank you', 'either')];
+  }
+}
+
+/** Every screen that a participant meets, in order; throws where the plan has no such participant. */
+export const outlineOf = (plan: StudyPlan, participant: string): readonly OutlinedScreen[] =>
+  scheduleFor(plan, participant).steps.flatMap((step) => screensOf(plan, step));
+
+/** How long a participant takes at most [s], apart from what has no limit: consent, measures, what is asked about them. */
+export interface PlanDuration {
+  readonly played: number;
+  readonly rests: number;
+  /** If every questionnaire takes the time that it is given. */
+  readonly questionnaires: number;
+}
+
+/** The same for every participant: they differ in the order alone. */
+export function durationOf(plan: StudyPlan): PlanDuration {
+  const total = { played: 0, rests: 0, questionnaires: 0 };
+  for (const step of scheduleFor(plan, plan.participants > 99 ? 'P001' : 'P01').steps) {
+    if (step.kind === 'trial' || step.kind === 'tutorial') total.played += step.seconds;
+    else if (step.kind === 'rest') total.rests += step.seconds;
+    else if (step.kind === 'questionnaire') total.questionnaires += step.seconds;
+  }
+  return total;
+}

@@ -1,0 +1,116 @@
+import { missingKeys, phraseKeys } from '../phrases/phrases';
+import { isNumeric, questionnaireNamed } from '../questionnaires/questionnaires';
+import { cohortsByParticipant, groupsOf, ordersByGroup, ordersOf } from './allocation';
+import { embodimentFieldsOf, embodimentInWords, type PartialEmbodiment } from './embodiment';
+import { languagesOf, type StudyCohort, type StudyPlan, type StudyTask, taskTitle } from './plan';
+
+/** How many participants each cohort has, by its id. */
+export function cohortCounts(plan: StudyPlan): ReadonlyMap<string, number> {
+  const counts = new Map((plan.cohorts ?? []).map(({ id }) => [id, 0]));
+  for (const { id } of cohortsByParticipant(plan).values()) counts.set(id, (counts.get(id) ?? 0) + 1);
+  return counts;
+}
+
+/**
+ * How often each order of conditions comes in a task, by the names of the conditions in order; those that never come too. `cohort`: in this
+ * one alone; null: in all.
+ */
+export function orderCounts(
+  plan: StudyPlan,
+  task: StudyTask,
+  cohort: StudyCohort | null = null,
+): ReadonlyMap<string, number> {
+  const nameOf = (order: readonly { readonly id: string }[]) => order.map(({ id }) => id).join(', ');
+  const counts = new Map(ordersOf(plan).map((order) => [nameOf(order), 0]));
+  const groups = groupsOf(plan, task.groupSize);
+  const cohorts = cohortsByParticipant(plan);
+  ordersByGroup(plan, task).forEach((order, index) => {
+    if (cohort && cohorts.get(groups[index]?.[0] ?? '') !== cohort) return;
+    const name = nameOf(order);
+    counts.set(name, (counts.get(name) ?? 0) + 1);
+  });
+  return counts;
+}
+
+const even = (counts: ReadonlyMap<string, number>) => new Set(counts.values()).size < 2;
+
+const greatestCommonDivisor = (a: number, b: number): number => (b === 0 ? a : greatestCommonDivisor(b, a % b));
+const leastCommonMultiple = (a: number, b: number) => (a / greatestCommonDivisor(a, b)) * b;
+
+/** The participants that a task needs, or a multiple of them, for its orders to come equally often in every cohort. */
+const evenParticipants = ({ tasks, cohorts, ...plan }: StudyPlan, { groupSize }: StudyTask): number =>
+  (cohorts?.length ?? 1) *
+  tasks.reduce((all, task) => leastCommonMultiple(all, task.groupSize), groupSize * ordersOf(plan).length);
+
+const timesText = (count: number) => (count === 0 ? 'never' : count === 1 ? 'once' : `${count} times`);
+
+/** The cohorts and orders that do not come out even, in sentences. */
+function unevenness(plan: StudyPlan): readonly string[] {
+  const remarks: string[] = [];
+  const sizes = cohortCounts(plan);
+  if (!even(sizes)) {
+    const listed = [...sizes].map(([id, count]) => `${id} ${count}`).join(', ');
+    remarks.push(`The cohorts do not come out even: ${listed} participants.`);
+  }
+  for (const task of plan.tasks) {
+    for (const cohort of plan.cohorts ?? [null]) {
+      const counts = orderCounts(plan, task, cohort);
+      if (even(counts)) continue;
+      const [least, most] = [Math.min(...counts.values()), Math.max(...counts.values())];
+      remarks.push(
+        `${taskTitle(plan, task.id)}${cohort ? `, cohort ${cohort.id}` : ''}: the ${counts.size} orders do not come out even, some come ${timesText(most)}, ` +
+          `others ${timesText(least)}; a multiple of ${evenParticipants(plan, task)} participants would make them even.`,
+      );
+    }
+  }
+  return remarks;
+}
+
+/** Of what cannot be told apart by what it says of the body. */
+function alikeRemarks(
+  list: string,
+  entries: readonly (PartialEmbodiment & { readonly id: string })[],
+): readonly string[] {
+  const said = entries.map((entry) => JSON.stringify(embodimentFieldsOf(entry).map((field) => [field, entry[field]])));
+  return entries.flatMap(({ id }, index) => {
+    const first = entries[said.indexOf(said[index] as string)];
+    return first && first.id !== id
+      ? [`${list} "${first.id}" and "${id}" are the same body: ${embodimentInWords(first)}.`]
+      : [];
+  });
+}
+
+/** Of the languages in which the page itself says some things in English. */
+const unspokenRemarks = (plan: StudyPlan): readonly string[] =>
+  languagesOf(plan).flatMap((language) => {
+    const missing = missingKeys(language, plan.phrases?.[language]);
+    if (missing.length === 0) return [];
+    const named = missing.length > 5 ? `${missing.slice(0, 5).join(', ')} …` : missing.join(', ');
+    return [
+      `Language ${language} lacks ${missing.length} of ${phraseKeys.length} phrases of the page (${named}): they are said in English.`,
+    ];
+  });
+
+/** Of what the plan names as planned though no table of results can hold it. */
+const untestedRemarks = (plan: StudyPlan): readonly string[] =>
+  (plan.planned ?? []).flatMap((measure) => {
+    const [, of = '', id] = measure.split('/');
+    const questionnaire = id === undefined ? null : questionnaireNamed(plan, of);
+    if (!questionnaire || isNumeric(questionnaire, id ?? '')) return [];
+    return [`Planned "${measure}" is not answered with a number: it is tested nowhere.`];
+  });
+
+/** What experimenters should know before the first participant comes, in sentences; empty: nothing. */
+export function remarksOn(plan: StudyPlan): readonly string[] {
+  const { conditions, cohorts = [], tasks } = plan;
+  const mirrored = [...conditions, ...cohorts].some(({ mirror }) => mirror);
+  const unmirrored = tasks.filter(({ game }) => mirrored && game === 'ball');
+  return [
+    ...unevenness(plan),
+    ...alikeRemarks('Conditions', conditions),
+    ...alikeRemarks('Cohorts', cohorts),
+    ...unspokenRemarks(plan),
+    ...untestedRemarks(plan),
+    ...unmirrored.map(({ id }) => `${taskTitle(plan, id)}: the ball game has no mirror.`),
+  ];
+}

@@ -1,0 +1,261 @@
+import { checked, complaintsAbout, ValidationError } from 'threepoint/core/validation/validation';
+import type * as v from 'valibot';
+import { refusePhrases } from '../phrases/phrase-schema';
+import { inLanguage, missingLanguage, type Words } from '../phrases/words';
+import {
+  type Questionnaire,
+  questionnaireNamed,
+  refuseMissingLanguages,
+  resolvedQuestionnaire,
+  shippedQuestionnaires,
+} from '../questionnaires/questionnaires';
+import { checkStoppingRules } from '../questionnaires/stopping-rule';
+import { embodimentFieldsOf } from './embodiment';
+import { planSchema } from './plan-schema';
+
+/** A study as its file says it. */
+export type StudyPlan = v.InferOutput<typeof planSchema>;
+export type StudyTask = StudyPlan['tasks'][number];
+export type StudyCondition = StudyPlan['conditions'][number];
+export type StudyCohort = NonNullable<StudyPlan['cohorts']>[number];
+
+const mostOrdersListed = 4;
+/** What one condition says, all must say: else what is seen would follow from what a headset remembers. */
+const saidByAllOrNone = ['estimator', 'avatar', 'mirror', 'upperBodyOnly'] as const;
+
+/** How many play a game together: a score of archery would count for all of a group, and a ball game of a study waits for every seat. */
+const groupsOfGame: Record<StudyTask['game'], { readonly size: number; readonly because: string }> = {
+  archery: { size: 1, because: 'archery is played alone' },
+  ball: { size: 3, because: 'the ball game is played by three' },
+};
+
+/** How many play together at most. */
+export const largestGroup = ({ tasks }: Pick<StudyPlan, 'tasks'>): number =>
+  Math.max(...tasks.map(({ groupSize }) => groupSize));
+
+function refuseRepeated(names: readonly string[], fieldOf: (index: number) => string): void {
+  names.forEach((name, index) => {
+    const first = names.indexOf(name);
+    if (first !== index) throw new ValidationError(fieldOf(index), `"${name}" is the name of ${fieldOf(first)} too`);
+  });
+}
+
+/** The languages that participants may choose from, the first of them chosen. */
+export const languagesOf = ({ languages }: Pick<StudyPlan, 'languages'>): readonly [string, ...string[]] => {
+  const [first = 'en', ...others] = languages ?? [];
+  return [first, ...others];
+};
+
+/** What a study is called by those who run it: its title in its first language. */
+export const studyTitle = (plan: Pick<StudyPlan, 'title' | 'languages'>): string =>
+  inLanguage(plan.title, languagesOf(plan)[0]);
+
+/** A task's title in a language, the study's first unless told; what the plan does not have goes by its id. */
+export function taskTitle(plan: StudyPlan, id: string, language: string = languagesOf(plan)[0]): string {
+  const task = plan.tasks.find((one) => one.id === id);
+  return task ? inLanguage(task.title, language) : id;
+}
+
+/** The ids of the questionnaires after each block of a task, in the order asked. */
+export const questionnairesAfter = ({ questionnaire }: Pick<StudyTask, 'questionnaire'>): readonly string[] =>
+  typeof questionnaire === 'string' ? [questionnaire] : questionnaire;
+
+/** Every questionnaire that the study asks, once, in the order first met. */
+export const questionnairesOf = (plan: StudyPlan): readonly Questionnaire[] =>
+  [...new Set(plan.tasks.flatMap(questionnairesAfter))].map((id) => questionnaireNamed(plan, id) as Questionnaire);
+
+function refuseQuestionnaires(plan: StudyPlan): void {
+  const own = plan.questionnaires ?? [];
+  const languages = languagesOf(plan);
+  refuseRepeated(languages, (index) => `languages[${index}]`);
+  refuseRepeated(
+    own.map(({ id }) => id),
+    (index) => `questionnaires[${index}].id`,
+  );
+  own.forEach((file, index) => {
+    const field = `questionnaires[${index}]`;
+    if (Object.hasOwn(shippedQuestionnaires, file.id)) {
+      throw new ValidationError(
+        `${field}.id`,
+        `"${file.id}" is the name of a questionnaire that comes with the program`,
+      );
+    }
+    resolvedQuestionnaire(file, field);
+    refuseMissingLanguages(file, languages, field);
+  });
+  plan.tasks.forEach((task, index) => {
+    const named = questionnairesAfter(task);
+    const fieldOf = (at: number) =>
+      `tasks[${index}].questionnaire${typeof task.questionnaire === 'string' ? '' : `[${at}]`}`;
+    refuseRepeated(named, fieldOf);
+    named.forEach((id, at) => {
+      if (questionnaireNamed(plan, id)) return;
+      const known = [...own.map((one) => one.id), ...Object.keys(shippedQuestionnaires)];
+      throw new ValidationError(fieldOf(at), `there is no questionnaire "${id}": expected one of ${known.join(', ')}`);
+    });
+  });
+}
+
+/** What is said of the body by some conditions only, by conditions and cohorts, or by none. */
+function refuseUnclearBodies({ conditions, cohorts = [] }: StudyPlan): void {
+  const lists = { conditions, cohorts };
+  for (const [list, entries] of Object.entries(lists)) {
+    for (const field of saidByAllOrNone) {
+      const missing = entries.findIndex((entry) => entry[field] === undefined);
+      const said = entries.findIndex((entry) => entry[field] !== undefined);
+      if (missing >= 0 && said >= 0) {
+        throw new ValidationError(`${list}[${missing}].${field}`, `is missing, and ${list}[${said}] has it`);
+      }
+    }
+  }
+  const ofCohorts = new Set(cohorts.flatMap(embodimentFieldsOf));
+  conditions.forEach((condition, index) => {
+    const twice = embodimentFieldsOf(condition).find((field) => ofCohorts.has(field));
+    if (twice) throw new ValidationError(`conditions[${index}].${twice}`, 'is said by cohorts already');
+    if (condition.estimator === undefined && !ofCohorts.has('estimator')) {
+      throw new ValidationError(`conditions[${index}].estimator`, 'is missing');
+    }
+  });
+}
+
+function refuseUnfilledCohorts(plan: StudyPlan): void {
+  const { cohorts, conditions, participants } = plan;
+  if (!cohorts) {
+    if (conditions.length < 2) {
+      throw new ValidationError('conditions', 'expected at least two conditions to compare, or cohorts');
+    }
+    return;
+  }
+  refuseRepeated(
+    cohorts.map(({ id }) => id),
+    (index) => `cohorts[${index}].id`,
+  );
+  const together = largestGroup(plan);
+  if (participants / together < cohorts.length) {
+    const whom = together === 1 ? 'participants' : `groups of ${together}`;
+    throw new ValidationError('cohorts', `${participants / together} ${whom} do not fill ${cohorts.length} cohorts`);
+  }
+}
+
+function refuseUntranslated(plan: StudyPlan): void {
+  const { title, paragraphs, motion } = plan.consent;
+  const texts: (readonly [string, Words])[] = [
+    ['title', plan.title],
+    ...plan.tasks.map((task, index) => [`tasks[${index}].title`, task.title] as const),
+    ['consent.title', title],
+    ...paragraphs.map((one, index) => [`consent.paragraphs[${index}]`, one] as const),
+  ];
+  if (motion !== null) texts.push(['consent.motion', motion]);
+  for (const [field, text] of texts) {
+    const missing = missingLanguage(text, languagesOf(plan));
+    if (missing !== null) {
+      throw new ValidationError(`${field}.${missing}`, 'is missing, and the study is in this language too');
+    }
+  }
+}
+
+/** What a plan may name as planned: "archery/embodiment/ownership", a question or a scale of a task; "archery/score". */
+export function measuresOf(plan: StudyPlan): readonly string[] {
+  return plan.tasks.flatMap(({ id, questionnaire }) => {
+    const asked = questionnairesAfter({ questionnaire }).flatMap((one) => questionnaireNamed(plan, one) ?? []);
+    const named = asked.flatMap(({ id: of, questions, scales }) =>
+      [...questions, ...scales].map((one) => `${id}/${of}/${one.id}`),
+    );
+    return [...named, `${id}/score`];
+  });
+}
+
+function refuseUnknownMeasures(plan: StudyPlan): void {
+  const { planned = [] } = plan;
+  const known = measuresOf(plan);
+  refuseRepeated(planned, (index) => `planned[${index}]`);
+  planned.forEach((measure, index) => {
+    if (known.includes(measure)) return;
+    throw new ValidationError(
+      `planned[${index}]`,
+      `"${measure}" is measured nowhere: expected task/questionnaire/question, task/questionnaire/scale or task/score, as "${known[0]}"`,
+    );
+  });
+}
+
+/**
+ * A plan that was checked before it was stored; throws a ValidationError where it has not the form of a plan. What its parts demand of each
+ * other is not checked again: a rule that came later must not lock people out of what they recorded.
+ */
+export const storedPlan = (value: unknown): StudyPlan => checked(planSchema, value);
+
+/** A new study from parsed JSON; throws a ValidationError that names the field. */
+export function checkedPlan(value: unknown): StudyPlan {
+  const plan = checked(planSchema, value);
+  refuseRepeated(
+    plan.conditions.map(({ id }) => id),
+    (index) => `conditions[${index}].id`,
+  );
+  refuseRepeated(
+    plan.tasks.map(({ id }) => id),
+    (index) => `tasks[${index}].id`,
+  );
+  if (plan.orders === 'all' && plan.conditions.length > mostOrdersListed) {
+    throw new ValidationError(
+      'orders',
+      `all orders of ${plan.conditions.length} conditions are more than a study can run: expected williams`,
+    );
+  }
+  refuseUnclearBodies(plan);
+  refuseQuestionnaires(plan);
+  checkStoppingRules(plan.askToStop ?? [], questionnairesOf(plan));
+  refuseUntranslated(plan);
+  refusePhrases(plan.phrases ?? {}, languagesOf(plan));
+  refuseUnknownMeasures(plan);
+  plan.tasks.forEach(({ game, groupSize }, index) => {
+    const { size, because } = groupsOfGame[game];
+    if (groupSize !== size) throw new ValidationError(`tasks[${index}].groupSize`, `${because}: expected ${size}`);
+    if (plan.participants % groupSize !== 0) {
+      throw new ValidationError(
+        `tasks[${index}].groupSize`,
+        `${plan.participants} participants cannot be divided into groups of ${groupSize}`,
+      );
+    }
+  });
+  refuseUnfilledCohorts(plan);
+  return plan;
+}
+
+/** A study from the text of its file; throws an Error that names the file and, where there is one, the field. */
+export function parsePlan(json: string, file: string): StudyPlan {
+  try {
+    return checkedPlan(JSON.parse(json));
+  } catch (error) {
+    if (error instanceof ValidationError) throw new ValidationError(error.field, error.complaint, file);
+    if (error instanceof SyntaxError) throw new ValidationError('', `this is no JSON: ${error.message}`, file);
+    throw error;
+  }
+}
+
+/** Everything that is wrong with the text of a study's file, each with file, field and reason; empty: it is sound. */
+export function planComplaints(json: string, file: string): readonly string[] {
+  let value: unknown;
+  try {
+    value = JSON.parse(json);
+  } catch (error) {
+    if (!(error instanceof SyntaxError)) throw error;
+    return [`${file}: this is no JSON: ${error.message}`];
+  }
+  const complaints = complaintsAbout(planSchema, value).map(({ field, complaint }) =>
+    [file, field, complaint].filter(Boolean).join(': '),
+  );
+  if (complaints.length > 0) return complaints;
+  try {
+    checkedPlan(value);
+    return [];
+  } catch (error) {
+    if (!(error instanceof ValidationError)) throw error;
+    return [[file, error.field, error.complaint].filter(Boolean).join(': ')];
+  }
+}
+
+/** P01, P02 … in the order of the plan. */
+export function participantsOf(plan: Pick<StudyPlan, 'participants'>): readonly string[] {
+  const digits = plan.participants > 99 ? 3 : 2;
+  return Array.from({ length: plan.participants }, (_, index) => `P${String(index + 1).padStart(digits, '0')}`);
+}

@@ -1,0 +1,57 @@
+import { ValidationError } from 'threepoint/core/validation/validation';
+import * as v from 'valibot';
+import { type Words, words } from '../../phrases/words';
+import { nearestOn, type SteppedScale, stepsOf } from '../scale-steps';
+
+/** The schema of the texts below the ends of a scale. */
+export const ends = v.strictObject({ low: words(60), high: words(60) });
+
+/** The texts below the ends of a scale. */
+export type Ends = v.InferOutput<typeof ends>;
+
+/** Throws a ValidationError if the ends of a range are in the wrong order. */
+export function checkRange({ from, to }: Pick<SteppedScale, 'from' | 'to'>, field: string): void {
+  if (to <= from) throw new ValidationError(`${field}.to`, `expected more than ${from}, where it begins`);
+}
+
+/** Throws a ValidationError unless a whole number of steps, `most` at most, leads from end to end. */
+export function checkSteps(scale: SteppedScale, most: number, field: string): void {
+  checkRange(scale, field);
+  const steps = stepsOf(scale);
+  if (Math.abs(steps - Math.round(steps)) > 1e-6) {
+    const { from, to, step } = scale;
+    throw new ValidationError(`${field}.step`, `${from} to ${to} is no whole number of steps of ${step}`);
+  }
+  if (steps > most + 1e-6) throw new ValidationError(`${field}.step`, `expected at most ${most} steps from end to end`);
+}
+
+/** Returns the schema of a number on a scale. */
+export const numberOn = (scale: SteppedScale) => {
+  const { from, to, step } = scale;
+  return v.custom<number>(
+    (value) => typeof value === 'number' && Number.isFinite(value) && Math.abs(nearestOn(scale, value) - value) < 1e-6,
+    step === 1
+      ? `expected a whole number from ${from} to ${to}`
+      : `expected a number from ${from} to ${to} in steps of ${Number(step.toFixed(6))}`,
+  );
+};
+
+/** Returns the texts below the ends with their paths. */
+export const endTexts = (texts: Ends | undefined): readonly (readonly [string, Words])[] =>
+  texts
+    ? [
+        ['ends.low', texts.low],
+        ['ends.high', texts.high],
+      ]
+    : [];
+
+/** Describes a scale in words: "1 Very poor to 5 Excellent". */
+export function scaleInWords(
+  { from, to, step }: SteppedScale,
+  { low, high }: { readonly low?: Words | undefined; readonly high?: Words | undefined },
+  inWords: (text: Words) => string,
+): string {
+  const end = (value: number, label: Words | undefined) =>
+    label === undefined ? `${value}` : `${value} ${inWords(label)}`;
+  return `${end(from, low)} to ${end(to, high)}${step === 1 ? '' : `, in steps of ${step}`}`;
+}

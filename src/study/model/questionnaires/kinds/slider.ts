@@ -1,0 +1,44 @@
+import { numberBetween } from 'threepoint/core/validation/validation';
+import * as v from 'valibot';
+import type { QuestionKind } from '../question-kind';
+import { nearestOn, pointsOn, type SteppedScale } from '../scale-steps';
+import { limit, limitedNumber } from './limits';
+import { checkSteps, ends, endTexts, numberOn, scaleInWords } from './scale-kind';
+
+const mostSteps = 200;
+
+const schema = v.strictObject({
+  kind: v.literal('slider'),
+  from: limitedNumber,
+  to: limitedNumber,
+  step: v.exactOptional(numberBetween(0.001, limit)),
+  ends,
+});
+
+/** A visual analogue scale: a line without points. */
+export type SliderForm = v.InferOutput<typeof schema>;
+
+declare module '../question-kind' {
+  interface AnswerForms {
+    slider: SliderForm;
+  }
+}
+
+const usualSteps = 100;
+const scaleOf = ({ from, to, step = (to - from) / usualSteps }: SliderForm): SteppedScale => ({ from, to, step });
+
+/** Returns every value that the line distinguishes in ascending order. */
+export const sliderValues = (form: SliderForm): readonly number[] => pointsOn(scaleOf(form));
+
+export const slider: QuestionKind<SliderForm> = {
+  kind: 'slider',
+  schema,
+  check: (form, field) => checkSteps(scaleOf(form), mostSteps, field),
+  answer: (form) => numberOn(scaleOf(form)),
+  range: ({ from, to }) => [from, to],
+  options: () => null,
+  texts: (form) => endTexts(form.ends),
+  ends: (form) => form.ends,
+  columns: (form, inWords) => ({ answers: scaleInWords(scaleOf(form), form.ends, inWords) }),
+  simulate: (form, part) => nearestOn(scaleOf(form), form.from + (form.to - form.from) * part),
+};

@@ -1,0 +1,166 @@
+import { checked, ValidationError } from 'threepoint/core/validation/validation';
+import * as v from 'valibot';
+import { missingLanguage, type Words } from '../phrases/words';
+import type { Answer, AnswerForm } from './question-kind';
+import { questionKind } from './question-kinds';
+import type { Question, QuestionnaireFile, Scale } from './questionnaire-schema';
+import { questionnaireSchema } from './questionnaire-schema';
+import archery from './shipped/archery.json' with { type: 'json' };
+import ball from './shipped/ball.json' with { type: 'json' };
+import nasaTlx from './shipped/nasa-tlx.json' with { type: 'json' };
+import nasaTlxRaw from './shipped/nasa-tlx-raw.json' with { type: 'json' };
+import ssq from './shipped/ssq.json' with { type: 'json' };
+import systemUsability from './shipped/system-usability.json' with { type: 'json' };
+
+/** A questionnaire whose questions all say how they are answered. */
+export interface Questionnaire {
+  readonly id: string;
+  readonly title: Words;
+  readonly source?: string;
+  readonly questions: readonly Question[];
+  readonly scales: readonly Scale[];
+}
+
+/** Question id to answer, as given: reversed questions are not turned round. */
+export type Answers = Readonly<Record<string, Answer>>;
+
+function refuseScale(scale: Scale, questions: readonly Question[], field: string): void {
+  const named = (list: 'questions' | 'choices') =>
+    (scale[list] ?? []).forEach((id, index) => {
+      const found = questions.find((question) => question.id === id);
+      const at = `${field}.${list}[${index}]`;
+      if (!found) throw new ValidationError(at, `there is no question "${id}"`);
+      const kind = questionKind(found.answer);
+      if (list === 'choices' && kind.options(found.answer) === null) {
+        throw new ValidationError(at, `"${id}" is no choice`);
+      }
+      if (list === 'questions' && kind.range(found.answer) === null) {
+        throw new ValidationError(at, `"${id}" is not answered with a number`);
+      }
+    });
+  named('questions');
+  named('choices');
+  if (scale.method === 'count' && scale.atLeast === undefined)
+    throw new ValidationError(`${field}.atLeast`, 'is missing');
+  if (scale.method === 'weighted-mean' && !scale.choices) throw new ValidationError(`${field}.choices`, 'is missing');
+}
+
+/** A questionnaire with how each question is answered; throws a ValidationError with the field below `field`. */
+export function resolvedQuestionnaire(file: QuestionnaireFile, field = ''): Questionnaire {
+  const at = (way: string) => (field ? `${field}.${way}` : way);
+  if (file.answer) questionKind(file.answer).check?.(file.answer, at('answer'));
+  const questions = file.questions.map((question, index): Question => {
+    const way = at(`questions[${index}]`);
+    const first = file.questions.findIndex(({ id }) => id === question.id);
+    if (first !== index)
+      throw new ValidationError(`${way}.id`, `"${question.id}" is the name of question ${first} too`);
+    // Answers are kept by name: such a one would be there before anything is answered.
+    if (question.id in {})
+      throw new ValidationError(`${way}.id`, `"${question.id}" is a name that the program keeps for itself`);
+    const answer = question.answer ?? file.answer;
+    if (!answer) throw new ValidationError(`${way}.answer`, 'is missing, and the questionnaire says none for all');
+    if (question.answer) questionKind(question.answer).check?.(question.answer, `${way}.answer`);
+    if (question.reversed && questionKind(answer).range(answer) === null) {
+      throw new ValidationError(`${way}.reversed`, `a ${answer.kind} has no other way round`);
+    }
+    return { ...question, answer };
+  });
+  const scales = file.scales ?? [];
+  scales.forEach((scale, index) => {
+    refuseScale(scale, questions, at(`scales[${index}]`));
+    if (scales.findIndex(({ id }) => id === scale.id) !== index || questions.some(({ id }) => id === scale.id)) {
+      throw new ValidationError(at(`scales[${index}].id`), `"${scale.id}" is the name of another scale or a question`);
+    }
+  });
+  return { id: file.id, title: file.title, ...(file.source && { source: file.source }), questions, scales };
+}
+
+/** Every text of a questionnaire that participants read, with its field below `field`. */
+function textsOf(
+  { title, answer, questions }: QuestionnaireFile,
+  field: string,
+): readonly (readonly [string, Words])[] {
+  const ofForm = (form: AnswerForm | undefined, at: string) =>
+    form === undefined
+      ? []
+      : questionKind(form)
+          .texts(form)
+          .map(([path, text]) => [`${at}.${path}`, text] as const);
+  return [
+    [`${field}.title`, title],
+    ...ofForm(answer, `${field}.answer`),
+    ...questions.flatMap((one, i) => [
+      [`${field}.questions[${i}].text`, one.text] as const,
+      ...ofForm(one.answer, `${field}.questions[${i}].answer`),
+    ]),
+  ];
+}
+
+/** Throws a ValidationError for the first text that one of the languages lacks. */
+export function refuseMissingLanguages(file: QuestionnaireFile, languages: readonly string[], field: string): void {
+  for (const [at, text] of textsOf(file, field)) {
+    const missing = missingLanguage(text, languages);
+    if (missing !== null)
+      throw new ValidationError(`${at}.${missing}`, 'is missing, and the study is in this language too');
+  }
+}
+
+const shipped = (file: unknown): readonly [string, Questionnaire] => {
+  const questionnaire = resolvedQuestionnaire(checked(questionnaireSchema, file));
+  return [questionnaire.id, questionnaire];
+};
+
+/** The questionnaires that come with the program, by id: a plan names them. */
+export const shippedQuestionnaires: Readonly<Record<string, Questionnaire>> = Object.fromEntries(
+  [archery, ball, nasaTlx, nasaTlxRaw, ssq, systemUsability].map(shipped),
+);
+
+/** The questionnaire of this id: the plan's own, or one of the shipped; null: there is none. */
+export function questionnaireNamed(
+  plan: { readonly questionnaires?: readonly QuestionnaireFile[] },
+  id: string,
+): Questionnaire | null {
+  const own = plan.questionnaires?.find((questionnaire) => questionnaire.id === id);
+  if (own) return resolvedQuestionnaire(own);
+  return Object.hasOwn(shippedQuestionnaires, id) ? (shippedQuestionnaires[id] as Questionnaire) : null;
+}
+
+/** Whether this is one of its scales, or a question that is answered with a number. */
+export const isNumeric = ({ questions, scales }: Questionnaire, id: string): boolean =>
+  scales.some((scale) => scale.id === id) ||
+  questions.some(({ id: own, answer }) => own === id && questionKind(answer).range(answer) !== null);
+
+/** Returns the answer that a participant typed, or null if it is not an answer (yet). */
+export function typedAnswer(form: AnswerForm, typed: string): Answer | null {
+  const text = typed.trim();
+  const kind = questionKind(form);
+  if (text === '' || !kind.parse) return null;
+  const parsed = v.safeParse(kind.answer(form), kind.parse(text));
+  return parsed.success ? parsed.output : null;
+}
+
+const loose = v.record(v.string(), v.union([v.number(), v.string()], 'expected a number or a text'));
+
+/** The answers as given so far, some perhaps missing; throws for a question that is not asked or a value off its scale. */
+export function checkedDraft(questionnaire: Questionnaire, value: unknown): Answers {
+  const answers = checked(loose, value);
+  for (const [id, answer] of Object.entries(answers)) {
+    const asked = questionnaire.questions.find((question) => question.id === id);
+    if (!asked) throw new ValidationError(id, `the questionnaire "${questionnaire.id}" does not ask this`);
+    const given = v.safeParse(questionKind(asked.answer).answer(asked.answer), answer);
+    if (!given.success) throw new ValidationError(id, given.issues[0].message);
+  }
+  return answers;
+}
+
+/** The ids of the questions that still need an answer, in the order asked. */
+export const unanswered = ({ questions }: Pick<Questionnaire, 'questions'>, answers: Answers): readonly string[] =>
+  questions.filter(({ id, optional }) => !optional && answers[id] === undefined).map(({ id }) => id);
+
+/** Complete answers; throws for what `checkedDraft` refuses and for the first question left out. */
+export function checkedAnswers(questionnaire: Questionnaire, value: unknown): Answers {
+  const answers = checkedDraft(questionnaire, value);
+  const [missing] = unanswered(questionnaire, answers);
+  if (missing) throw new ValidationError(missing, 'this question has no answer');
+  return answers;
+}

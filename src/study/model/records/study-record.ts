@@ -1,0 +1,208 @@
+import { threePointNames } from 'threepoint/core/estimation/pose-estimator';
+import {
+  checked,
+  handTiltsSchema,
+  identifier,
+  integerBetween,
+  numberBetween,
+  participantId,
+  text,
+  ValidationError,
+} from 'threepoint/core/validation/validation';
+import * as v from 'valibot';
+import { languageTag } from '../phrases/words';
+import type { StudyPlan } from '../plan/plan';
+import { checkedAnswers, questionnaireNamed } from '../questionnaires/questionnaires';
+import { checkedConsent } from './consent';
+import { checkedDemographics } from './demographics';
+import { checkedOutcome } from './trial-log';
+
+/** Of what is sent and stored; grows with every change of meaning. */
+export const recordVersion = 1;
+/** The longest record as JSON [characters]. */
+export const longestRecord = 65_536;
+
+const blockNumber = integerBetween(1, 1000);
+
+/** Where in the study something happened. */
+const placeSchema = v.object({
+  task: identifier,
+  /** Order of the condition: 1 is the first that the participant met. */
+  block: blockNumber,
+  /** From 1; a block that is voided and repeated runs again. */
+  run: blockNumber,
+  /** From 1; an interrupted trial is tried again. */
+  attempt: blockNumber,
+});
+
+const condition = v.object({ condition: identifier, estimator: v.picklist(threePointNames) });
+
+const eventSchema = v.variant('type', [
+  v.object({
+    type: v.literal('void-block'),
+    task: identifier,
+    block: blockNumber,
+    run: blockNumber,
+    reason: text(500),
+    repeat: v.boolean(),
+  }),
+  v.object({ type: v.literal('interrupted'), place: placeSchema, step: text(120) }),
+  /** Answers reached a value at which the plan asks whether to stop. */
+  v.object({
+    type: v.literal('unwell'),
+    place: placeSchema,
+    questionnaire: identifier,
+    measure: v.string(),
+    value: v.number(),
+  }),
+  /** Asked so, the participant wanted to go on. */
+  v.object({ type: v.literal('go-on') }),
+  /** The session is over before its end, at this step. */
+  v.object({
+    type: v.literal('stop'),
+    by: v.picklist(['participant', 'experimenter']),
+    reason: v.exactOptional(text(500)),
+    place: v.nullable(placeSchema),
+    step: text(120),
+  }),
+  v.object({ type: v.literal('pause') }),
+  v.object({ type: v.literal('resume') }),
+  v.object({ type: v.literal('remark'), text: text(2000) }),
+  v.object({ type: v.literal('reload') }),
+  v.object({ type: v.literal('finished') }),
+]);
+
+/** What can happen in a session beside what is asked and played. */
+export const eventTypes = eventSchema.options.map(({ entries }) => entries.type.literal);
+
+const bodies = {
+  consent: v.looseObject({ version: v.string() }),
+  demographics: v.looseObject({}),
+  calibration: v.object({
+    place: placeSchema,
+    eyeHeight: numberBetween(0.3, 2.5),
+    armSpan: numberBetween(0.3, 2.5),
+    /** Absent: not measured. */
+    gazePitch: v.optional(numberBetween(-0.5, 0.5)),
+    handTilts: v.optional(handTiltsSchema),
+  }),
+  trial: v.object({
+    place: placeSchema,
+    /** null: a tutorial, which is never evaluated. */
+    condition: v.nullable(identifier),
+    estimator: v.picklist(threePointNames),
+    repetition: blockNumber,
+    group: blockNumber,
+    outcome: v.looseObject({}),
+  }),
+  answers: v.object({
+    place: placeSchema,
+    ...condition.entries,
+    questionnaire: identifier,
+    /** In which it was read; absent: the study has only one. */
+    language: v.exactOptional(languageTag),
+    answers: v.record(v.string(), v.union([v.number(), v.string()], 'expected a number or a text')),
+    /** From the first question to handing in, pauses left out. */
+    seconds: numberBetween(0, 1e7),
+    overtime: v.boolean(),
+  }),
+  event: eventSchema,
+} as const;
+
+export type RecordKind = keyof typeof bodies;
+
+const envelope = {
+  version: v.literal(recordVersion, `expected ${recordVersion}, the version that this program reads`),
+  /** Unique for the participant: sending twice stores once. */
+  id: v.pipe(
+    v.string('expected text'),
+    v.regex(/^[a-z0-9][a-z0-9/.:@-]{0,119}$/, 'expected small letters, digits and / . : @ -'),
+  ),
+  study: identifier,
+  participant: participantId,
+  /** Made by a program, not by a person. */
+  simulated: v.boolean('expected true or false'),
+  /** Seconds since 1970, on the participant's device. */
+  at: numberBetween(0, 1e11),
+};
+
+const recordSchema = v.variant('kind', [
+  v.object({ ...envelope, kind: v.literal('consent'), body: bodies.consent }),
+  v.object({ ...envelope, kind: v.literal('demographics'), body: bodies.demographics }),
+  v.object({ ...envelope, kind: v.literal('calibration'), body: bodies.calibration }),
+  v.object({ ...envelope, kind: v.literal('trial'), body: bodies.trial }),
+  v.object({ ...envelope, kind: v.literal('answers'), body: bodies.answers }),
+  v.object({ ...envelope, kind: v.literal('event'), body: bodies.event }),
+]);
+
+type LooseRecord = v.InferOutput<typeof recordSchema>;
+type RecordOf<Kind extends RecordKind, Body> = Omit<Extract<LooseRecord, { kind: Kind }>, 'body'> & {
+  readonly body: Body;
+};
+
+export type Place = v.InferOutput<typeof placeSchema>;
+export type StudyEvent = v.InferOutput<typeof eventSchema>;
+export type ConsentRecord = RecordOf<'consent', ReturnType<typeof checkedConsent>>;
+export type DemographicsRecord = RecordOf<'demographics', ReturnType<typeof checkedDemographics>>;
+export type CalibrationRecord = Extract<LooseRecord, { kind: 'calibration' }>;
+export type TrialRecord = RecordOf<
+  'trial',
+  Omit<Extract<LooseRecord, { kind: 'trial' }>['body'], 'outcome'> & {
+    readonly outcome: ReturnType<typeof checkedOutcome>;
+  }
+>;
+export type AnswersRecord = Extract<LooseRecord, { kind: 'answers' }>;
+export type EventRecord = Extract<LooseRecord, { kind: 'event' }>;
+
+/** One thing that is stored about a participant, complete in itself. */
+export type StudyRecord =
+  | ConsentRecord
+  | DemographicsRecord
+  | CalibrationRecord
+  | TrialRecord
+  | AnswersRecord
+  | EventRecord;
+
+function within<T>(field: string, check: () => T): T {
+  try {
+    return check();
+  } catch (error) {
+    if (!(error instanceof ValidationError)) throw error;
+    throw new ValidationError(error.field ? `${field}.${error.field}` : field, error.complaint);
+  }
+}
+
+/** What of a plan decides whether a record fits it. */
+export type RecordedBy = Pick<StudyPlan, 'questionnaires'>;
+
+/** A record of this study that may be stored; throws a ValidationError that names the field, also where it is too long. */
+export function checkedRecord(value: unknown, plan: RecordedBy): StudyRecord {
+  const record = checked(recordSchema, value);
+  const length = JSON.stringify(record).length;
+  if (length > longestRecord)
+    throw new ValidationError('', `a record has at most ${longestRecord} characters, this one ${length}`);
+  switch (record.kind) {
+    case 'consent':
+      return { ...record, body: within('body', () => checkedConsent(record.body, record.body.version)) };
+    case 'demographics':
+      return { ...record, body: within('body', () => checkedDemographics(record.body)) };
+    case 'trial': {
+      const outcome = within('body.outcome', () => checkedOutcome(record.body.outcome));
+      return { ...record, body: { ...record.body, outcome } };
+    }
+    case 'answers': {
+      const { questionnaire, answers } = record.body;
+      const asked = questionnaireNamed(plan, questionnaire);
+      if (!asked) throw new ValidationError('body.questionnaire', `the study has no questionnaire "${questionnaire}"`);
+      return {
+        ...record,
+        body: {
+          ...record.body,
+          answers: within('body.answers', () => ({ ...checkedAnswers(asked, answers) })),
+        },
+      };
+    }
+    default:
+      return record;
+  }
+}

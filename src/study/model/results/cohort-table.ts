@@ -1,0 +1,93 @@
+import { type Column, number, type Table, text } from '../tables/tidy-csv';
+import type { CohortComparison, ComparedCohorts } from './compare-cohorts';
+import {
+  biserialColumns,
+  familyText,
+  meanCells,
+  meanColumns,
+  measureCells,
+  measureColumns,
+  noncentralColumns,
+  share,
+  type TableFacts,
+} from './result-tables';
+
+const ids = 'small letters, digits, hyphens';
+const cohorts = 'plan.json: cohorts';
+const welch = "computed: Welch's t-test";
+const rankSums =
+  "computed: Wilcoxon's rank-sum test (Mann and Whitney's), as R's wilcox.test up to 4.5, ties within rounding";
+const ofEach = (figure: string) => `computed: the ${figure} of what each of the cohort had`;
+
+function columnsOf(facts: TableFacts): readonly Column[] {
+  const family = familyText(facts, 'two cohorts, condition');
+  return [
+    ...measureColumns,
+    text('first', ids, cohorts, 'Cohort whose mean the difference begins with.'),
+    text('second', ids, cohorts, 'Cohort that is subtracted.'),
+    text('condition', ids, 'plan.json: conditions', 'Condition; empty: what each had under all of them, as a mean.'),
+    number('n_first', '', '0, 1, 2 …', 'computed', 'Participants of the first (groups, where a group has one score).'),
+    number('n_second', '', '0, 1, 2 …', 'computed', 'Of the second.'),
+    ...meanColumns('first', 'of the first cohort', ofEach),
+    ...meanColumns('second', 'of the second cohort', ofEach),
+    number('difference', '', 'any', welch, 'First − second.'),
+    number('low_difference', '', 'any', welch, 'Lower end of its 95 % confidence interval.'),
+    number('high_difference', '', 'any', welch, 'Upper end.'),
+    number('t', '', 'any', welch, 'Empty: there are too few, or nothing varies.'),
+    number('df', '', 'more than 0', welch, 'Its degrees of freedom by Welch and Satterthwaite.'),
+    number('p', '', share, welch, 'Its two-sided p.'),
+    number('p_holm', '', share, family, 'p adjusted.'),
+    number('ds', '', 'any', 'computed: difference / pooled standard deviation', "Cohen's d_s."),
+    ...noncentralColumns('ds'),
+    number('w', '', '0 and more', rankSums, 'Pairs of both cohorts in which the first is larger; ties count half.'),
+    number('p_rank_sum', '', share, rankSums, 'Its two-sided p.'),
+    number('p_rank_sum_holm', '', share, family, 'p_rank_sum adjusted.'),
+    text('method_rank_sum', 'exact, normal', rankSums, 'normal: approximation for ties and 50 in a cohort or more.'),
+    ...biserialColumns,
+  ];
+}
+
+const cells = ({ first, second, test, rankSum, holmP, ranksHolmP }: CohortComparison) => ({
+  n_first: first?.n ?? 0,
+  n_second: second?.n ?? 0,
+  ...meanCells('first', first),
+  ...meanCells('second', second),
+  difference: test?.meanDifference ?? null,
+  low_difference: test?.interval?.low ?? null,
+  high_difference: test?.interval?.high ?? null,
+  t: test?.t ?? null,
+  df: test?.df ?? null,
+  p: test?.p ?? null,
+  p_holm: holmP,
+  ds: test?.ds ?? null,
+  low_ds: test?.dsInterval?.low ?? null,
+  high_ds: test?.dsInterval?.high ?? null,
+  w: rankSum?.w ?? null,
+  p_rank_sum: rankSum?.p ?? null,
+  p_rank_sum_holm: ranksHolmP,
+  method_rank_sum: rankSum?.method ?? '',
+  rank_biserial: rankSum?.effect ?? null,
+  low_rank_biserial: rankSum?.effectInterval?.low ?? null,
+  high_rank_biserial: rankSum?.effectInterval?.high ?? null,
+});
+
+/** Comparisons that belong together. */
+export interface ComparedCohortPair {
+  readonly compared: ComparedCohorts;
+  readonly comparisons: readonly CohortComparison[];
+}
+
+/** Comparisons of cohorts as a tidy table, full precision. */
+export const cohortTable = (name: string, pairs: readonly ComparedCohortPair[], facts: TableFacts): Table => ({
+  name,
+  columns: columnsOf(facts),
+  rows: pairs.flatMap(({ compared: { cohorts: of, conditions }, comparisons }) =>
+    comparisons.map((one) => ({
+      ...measureCells(one, facts),
+      first: of[0],
+      second: of[1],
+      condition: conditions.length === 1 ? (conditions[0] ?? '') : '',
+      ...cells(one),
+    })),
+  ),
+});

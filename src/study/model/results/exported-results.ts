@@ -1,0 +1,109 @@
+import { cohortsByParticipant } from '../plan/allocation';
+import { questionnairesOf, type StudyPlan } from '../plan/plan';
+import type { Questionnaire } from '../questionnaires/questionnaires';
+import type { StudyRecord } from '../records/study-record';
+import { answersIn, scalesIn, trialsIn } from '../tables/study-tables';
+import type { Table } from '../tables/tidy-csv';
+import { type ComparedCohortPair, cohortTable } from './cohort-table';
+import { compareAll } from './compare-all';
+import { type ComparedCohorts, compareCohorts } from './compare-cohorts';
+import { compareConditions } from './compare-conditions';
+import { frameTimes } from './frame-times';
+import { answerMeasures, type CohortOf, type Measure, type Measured, scoreMeasures } from './measures';
+import { isPlanned, plannedMeasures } from './planned';
+import { comparisonTable, frameTimeTable, overallTable, type TableFacts } from './result-tables';
+
+/** What a question asks about, or the name of a scale; empty: nothing is said. */
+export function aboutIn(asked: readonly Questionnaire[], { asked: of }: Pick<Measured, 'asked'>): string {
+  const found = asked.find(({ id }) => id === of?.questionnaire);
+  const scale = found?.scales.find(({ id }) => id === of?.question);
+  return scale?.label ?? found?.questions.find(({ id }) => id === of?.question)?.about ?? '';
+}
+
+/** The cohort that the plan draws for a participant; empty: it has none. */
+export function cohortIn(plan: StudyPlan): CohortOf {
+  const cohorts = cohortsByParticipant(plan);
+  return (participant) => cohorts.get(participant)?.id ?? '';
+}
+
+/** All that a study measures, by what is a family for Holm's correction where it is explored. */
+export interface StudyMeasures {
+  readonly answers: readonly Measure[];
+  readonly scales: readonly Measure[];
+  readonly points: readonly Measure[];
+  readonly percent: readonly Measure[];
+  /** What the plan names: answers, scales and points, a family of its own. */
+  readonly planned: readonly Measure[];
+}
+
+/** Throws where simulated records and records of people are mixed. */
+export function measuresIn(records: readonly StudyRecord[], plan: StudyPlan): StudyMeasures {
+  const cohortOf = cohortIn(plan);
+  const answers = answerMeasures(answersIn(records, plan), cohortOf);
+  const scales = answerMeasures(scalesIn(records, plan), cohortOf);
+  const trials = trialsIn(records);
+  const points = scoreMeasures(trials, 'points', cohortOf);
+  const percent = scoreMeasures(trials, 'percent', cohortOf);
+  return { answers, scales, points, percent, planned: plannedMeasures([...answers, ...scales, ...points], plan) };
+}
+
+/** Whether a study is analysed as a whole; two conditions without cohorts are compared in pairs alone. */
+export const comparedAsAWhole = ({ conditions, cohorts }: Pick<StudyPlan, 'conditions' | 'cohorts'>): boolean =>
+  conditions.length > 2 || cohorts !== undefined;
+
+/** All conditions and cohorts of a study at once; none where it is not analysed as a whole. */
+export const overallComparisons = (measures: readonly Measure[], plan: Pick<StudyPlan, 'conditions' | 'cohorts'>) =>
+  comparedAsAWhole(plan)
+    ? compareAll(
+        measures,
+        plan.conditions.map(({ id }) => id),
+      )
+    : [];
+
+/** Every two, the later one of the plan first: what comes first in it is what others are compared with. */
+const pairsOf = (of: readonly { readonly id: string }[]): readonly (readonly [string, string])[] =>
+  of.flatMap((baseline, index) => of.slice(index + 1).map(({ id }) => [id, baseline.id] as const));
+
+/** What two cohorts are compared by: the mean of all conditions, and each of several alone. */
+export function cohortViews({ conditions }: Pick<StudyPlan, 'conditions'>): readonly (readonly string[])[] {
+  const all = conditions.map(({ id }) => id);
+  return all.length > 1 ? [all, ...all.map((id) => [id])] : [all];
+}
+
+/** Every two cohorts in every view. */
+const cohortComparisonsOf = (plan: StudyPlan): readonly ComparedCohorts[] =>
+  pairsOf(plan.cohorts ?? []).flatMap((cohorts) => cohortViews(plan).map((conditions) => ({ cohorts, conditions })));
+
+/** What the page of results computes, of every two conditions and cohorts. Throws where simulated records and records of people are mixed. */
+export function resultTables(records: readonly StudyRecord[], plan: StudyPlan): readonly Table[] {
+  const measures = measuresIn(records, plan);
+  const asked = questionnairesOf(plan);
+  const factsFor = (family: TableFacts['family']): TableFacts => ({
+    family,
+    simulated: records[0]?.simulated ?? false,
+    aboutOf: (one) => aboutIn(asked, one),
+    isPlanned: (one) => isPlanned(one, plan),
+  });
+  /** Three tables of the same measures; those of a family are adjusted together. */
+  const tablesOf = (name: string, families: readonly (readonly Measure[])[]): readonly Table[] => {
+    const facts = factsFor(name === 'planned' ? 'planned' : 'explored');
+    const pairs = pairsOf(plan.conditions).flatMap((conditions) =>
+      families.map((family) => ({ conditions, comparisons: compareConditions(family, conditions).comparisons })),
+    );
+    const cohorts: readonly ComparedCohortPair[] = cohortComparisonsOf(plan).flatMap((compared) =>
+      families.map((family) => ({ compared, comparisons: compareCohorts(family, compared) })),
+    );
+    return [
+      comparisonTable(`${name}-compared`, pairs, facts),
+      overallTable(`${name}-overall`, overallComparisons(families[0] ?? [], plan), facts),
+      cohortTable(`${name}-cohorts`, cohorts, facts),
+    ];
+  };
+  return [
+    ...tablesOf('planned', [measures.planned]),
+    ...tablesOf('answers', [measures.answers]),
+    ...tablesOf('scales', [measures.scales]),
+    ...tablesOf('scores', [measures.points, measures.percent]),
+    frameTimeTable(frameTimes(records, cohortIn(plan)), factsFor('explored')),
+  ];
+}

@@ -1,0 +1,63 @@
+import type { StudyRecord, TrialRecord } from '../records/study-record';
+import { refuseMixture, voidedBlocks } from '../tables/study-tables';
+import type { CohortOf } from './measures';
+
+/** Work per frame of one stage, over all trials of a task under a condition in a cohort: as tables 5 and 6 of the paper. */
+export interface FrameTimeRow {
+  readonly task: string;
+  readonly condition: string;
+  /** Empty: the plan has none. */
+  readonly cohort: string;
+  /** "frame" is the whole of a frame's work. */
+  readonly stage: string;
+  readonly trials: number;
+  readonly frames: number;
+  readonly minMs: number;
+  readonly maxMs: number;
+  /** Of all frames, so that a long trial weighs more than a short one. */
+  readonly meanMs: number;
+  /** The largest of the trials' 95th percentiles: percentiles of trials cannot be pooled. */
+  readonly worstP95Ms: number;
+  /** Frames shown late, of `frames`; the same for every stage. */
+  readonly missed: number;
+}
+
+/** Frame times of the trials that count, the whole frame first. Throws where simulated records and records of people are mixed. */
+export function frameTimes(records: readonly StudyRecord[], cohortOf: CohortOf = () => ''): readonly FrameTimeRow[] {
+  refuseMixture(records);
+  const excluded = voidedBlocks(records);
+  type Group = Pick<FrameTimeRow, 'task' | 'condition' | 'cohort' | 'stage'> & { readonly trials: TrialRecord[] };
+  const groups = new Map<string, Group>();
+  for (const record of records) {
+    if (record.kind !== 'trial') continue;
+    const { condition, place, outcome } = record.body;
+    if (condition === null || excluded(record.participant, place) !== '') continue;
+    const cohort = cohortOf(record.participant);
+    for (const stage of Object.keys(outcome.frames.stages)) {
+      const key = `${place.task} ${condition} ${cohort} ${stage}`;
+      const group = groups.get(key) ?? { task: place.task, condition, cohort, stage, trials: [] };
+      group.trials.push(record);
+      groups.set(key, group);
+    }
+  }
+  const rank = ({ stage }: { readonly stage: string }) => (stage === 'frame' ? 0 : 1);
+  return [...groups.values()]
+    .toSorted((a, b) => rank(a) - rank(b))
+    .map(({ task, condition, cohort, stage, trials }) => {
+      const parts = trials.flatMap(({ body }) => body.outcome.frames.stages[stage] ?? []);
+      const frames = parts.reduce((sum, { count }) => sum + count, 0);
+      return {
+        task,
+        condition,
+        cohort,
+        stage,
+        trials: parts.length,
+        frames,
+        minMs: Math.min(...parts.map(({ minMs }) => minMs)),
+        maxMs: Math.max(...parts.map(({ maxMs }) => maxMs)),
+        meanMs: parts.reduce((sum, { count, meanMs }) => sum + count * meanMs, 0) / frames,
+        worstP95Ms: Math.max(...parts.map(({ p95Ms }) => p95Ms)),
+        missed: trials.reduce((sum, { body }) => sum + body.outcome.frames.missed, 0),
+      };
+    });
+}

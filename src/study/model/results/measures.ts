@@ -1,0 +1,134 @@
+import { meanOf } from '../../statistics/summaries';
+import type { AnswerRow } from '../tables/answer-tables';
+import { refuseMixture, type TrialRow } from '../tables/study-tables';
+
+/** A participant or an answer left out, and why: results state it. */
+export interface Exclusion {
+  readonly participant: string;
+  /** What it concerns: a question or a task. */
+  readonly of: string;
+  readonly reason: string;
+}
+
+/** A question, or a scale, of a questionnaire after a task. */
+export type Asked = Pick<AnswerRow, 'task' | 'questionnaire' | 'question'>;
+
+/** What names a measure. */
+export interface Measured {
+  /** "Q1", or the id of a task; of a question that is asked in more than one place: "archery/nasa-tlx/mental". */
+  readonly of: string;
+  /** What was asked where; null: scores. */
+  readonly asked: Asked | null;
+  readonly unit: 'answer' | 'points' | 'percent';
+}
+
+/** What a study has of one measure. */
+export interface Measure extends Measured {
+  /** The mean of what counts, of each participant (or group) under each condition; in the order of their codes. */
+  readonly means: ReadonlyMap<string, ReadonlyMap<string, number>>;
+  /** All of whom something is recorded, counting or not, with their cohort; empty: the plan has none. */
+  readonly cohorts: ReadonlyMap<string, string>;
+  /** What counts for nothing. */
+  readonly voided: readonly (Exclusion & { readonly condition: string })[];
+}
+
+/** The cohort of a participant; all the same where a plan has none. */
+export type CohortOf = (participant: string) => string;
+
+const noCohorts: CohortOf = () => '';
+
+interface Observation {
+  readonly who: string;
+  readonly participant: string;
+  readonly condition: string;
+  /** null: it stayed open. */
+  readonly value: number | null;
+  /** Why it counts for nothing; empty: it counts. */
+  readonly excluded: string;
+}
+
+function measured(name: Measured, observations: readonly Observation[], cohortOf: CohortOf): Measure {
+  const values = new Map<string, Map<string, number[]>>();
+  const cohorts = new Map<string, string>();
+  const inOrder = observations.toSorted((a, b) => (a.who < b.who ? -1 : a.who > b.who ? 1 : 0));
+  for (const { who, participant, condition, value, excluded } of inOrder) {
+    cohorts.set(who, cohortOf(participant));
+    if (excluded || value === null) continue;
+    const own = values.get(who) ?? new Map<string, number[]>();
+    values.set(who, own.set(condition, [...(own.get(condition) ?? []), value]));
+  }
+  return {
+    ...name,
+    means: new Map([...values].map(([who, own]) => [who, new Map([...own].map(([id, of]) => [id, meanOf(of)]))])),
+    cohorts,
+    voided: observations.flatMap(({ participant, condition, excluded }) =>
+      excluded ? [{ participant, of: name.of, reason: excluded, condition }] : [],
+    ),
+  };
+}
+
+/** What is asked with a number, in the order first met, and what each is called: its id, where that is of one place alone. */
+function askedIn(rows: readonly AnswerRow[]): readonly { readonly of: string; readonly asked: Asked }[] {
+  const places = new Map<string, Asked>();
+  for (const { task, questionnaire, question, answer } of rows) {
+    const key = `${task}/${questionnaire}/${question}`;
+    if (typeof answer === 'number' && !places.has(key)) places.set(key, { task, questionnaire, question });
+  }
+  const times = new Map<string, number>();
+  for (const { question } of places.values()) times.set(question, (times.get(question) ?? 0) + 1);
+  return [...places].map(([key, asked]) => ({ of: times.get(asked.question) === 1 ? asked.question : key, asked }));
+}
+
+const isOf = (row: AnswerRow, { task, questionnaire, question }: Asked) =>
+  row.question === question && row.questionnaire === questionnaire && row.task === task;
+
+/**
+ * Every question (or scale) that is answered with a number; who answers, is measured. Throws where simulated rows and rows of people
+ * are mixed.
+ */
+export function answerMeasures(rows: readonly AnswerRow[], cohortOf: CohortOf = noCohorts): readonly Measure[] {
+  refuseMixture(rows);
+  return askedIn(rows).map(({ of, asked }) => {
+    const own = rows.filter((row) => isOf(row, asked));
+    const observations = own.map(({ participant, condition, answer, excluded }) => ({
+      who: participant,
+      participant,
+      condition,
+      value: typeof answer === 'number' ? answer : null,
+      excluded,
+    }));
+    return measured({ of, asked, unit: 'answer' }, observations, cohortOf);
+  });
+}
+
+/**
+ * The scores of every task, in points or in per cent of the maximum, the mean of a block's trials. A group's score is one value, not one
+ * for each member: "group 01" is measured. Throws where simulated rows and rows of people are mixed.
+ */
+export function scoreMeasures(
+  rows: readonly TrialRow[],
+  unit: 'points' | 'percent',
+  cohortOf: CohortOf = noCohorts,
+): readonly Measure[] {
+  refuseMixture(rows);
+  // Practice has no condition.
+  const played = rows.filter(({ condition }) => condition);
+  return [...new Set(played.map(({ task }) => task))].map((task) => {
+    const own = played.filter((row) => row.task === task);
+    const digits = String(Math.max(...own.map(({ group }) => group))).length;
+    const named = own.map(({ participant, group, condition, repetition, score, maximum, excluded }) => ({
+      who: `group ${String(group).padStart(digits, '0')}`,
+      participant,
+      condition: condition as string,
+      repetition,
+      value: unit === 'points' ? score : (100 * score) / maximum,
+      excluded,
+    }));
+    // The members of a group report one and the same score.
+    const counted = new Map(
+      named.filter(({ excluded }) => !excluded).map((row) => [`${row.who} ${row.condition} ${row.repetition}`, row]),
+    );
+    const observations = [...named.filter(({ excluded }) => excluded), ...counted.values()];
+    return measured({ of: task, asked: null, unit }, observations, cohortOf);
+  });
+}

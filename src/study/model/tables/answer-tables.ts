@@ -1,0 +1,149 @@
+import { inLanguage } from '../phrases/words';
+import { languagesOf, questionnairesOf, type StudyPlan } from '../plan/plan';
+import type { Answer } from '../questionnaires/question-kind';
+import { questionKind, questionKindNames } from '../questionnaires/question-kinds';
+import { scaleRange, scaleScore } from '../questionnaires/questionnaire-scores';
+import { type Questionnaire, questionnaireNamed } from '../questionnaires/questionnaires';
+import type { Place, StudyRecord } from '../records/study-record';
+import { boolean, number, type Table, text } from './tidy-csv';
+
+/** Answers to each question, one per row; of a scale that is computed from them: its value. */
+export interface AnswerRow {
+  readonly participant: string;
+  readonly simulated: boolean;
+  readonly task: string;
+  readonly block: number;
+  readonly run: number;
+  readonly condition: string;
+  readonly questionnaire: string;
+  /** Of the question, or of the scale. */
+  readonly question: string;
+  /** null: it stayed open, or it cannot be computed for want of an answer. */
+  readonly answer: Answer | null;
+  /** Empty: it counts. */
+  readonly excluded: string;
+}
+
+/** Why what was recorded in this block counts for nothing; empty: it counts. */
+export type BlockExclusion = (participant: string, place: Place) => string;
+
+type AnswersBody = Extract<StudyRecord, { kind: 'answers' }>['body'];
+
+function rowsOf(
+  records: readonly StudyRecord[],
+  plan: StudyPlan,
+  exclusion: BlockExclusion,
+  valuesOf: (asked: Questionnaire, answers: AnswersBody['answers']) => readonly (readonly [string, Answer | null])[],
+) {
+  return records.flatMap((record) => {
+    if (record.kind !== 'answers') return [];
+    const { study, participant, simulated, at } = record;
+    const { place, answers, ...body } = record.body;
+    const asked = questionnaireNamed(plan, body.questionnaire);
+    if (!asked)
+      throw new Error(`${participant} answered "${body.questionnaire}", which the plan "${plan.id}" does not hold`);
+    return valuesOf(asked, answers).map(([question, answer]) => ({
+      ...{ study, participant, simulated, task: place.task, block: place.block, run: place.run },
+      ...body,
+      language: body.language ?? languagesOf(plan)[0],
+      question,
+      answer,
+      at,
+      excluded: exclusion(participant, place),
+    }));
+  });
+}
+
+/** A row for every question of every questionnaire that was handed in, voided ones marked. */
+export const answerRows = (records: readonly StudyRecord[], plan: StudyPlan, exclusion: BlockExclusion) =>
+  rowsOf(records, plan, exclusion, ({ questions }, answers) => questions.map(({ id }) => [id, answers[id] ?? null]));
+
+/** A row for every scale of every questionnaire that was handed in, voided ones marked. */
+export const scaleRows = (records: readonly StudyRecord[], plan: StudyPlan, exclusion: BlockExclusion) =>
+  rowsOf(records, plan, exclusion, (asked, answers) =>
+    asked.scales.map((scale) => [scale.id, scaleScore(asked, scale, answers)]),
+  );
+
+const ids = 'small letters, digits, hyphens';
+const codes = 'letters, digits, - and _';
+const asked = (path: string) => `questionnaire: ${path}`;
+
+/** What was asked, a row for each question and language. */
+export const questionTable = (plan: StudyPlan): Table => ({
+  name: 'questions',
+  columns: [
+    text('questionnaire', ids, 'plan.json, or shipped with the program', 'Id.'),
+    text('question', codes, asked('questions[].id'), 'Id.'),
+    text('language', 'a language tag', 'plan.json: languages', 'Of the words in this row.'),
+    text('about', 'any text', asked('questions[].about'), 'What it asks about.'),
+    text('text', 'any text', asked('questions[].text'), 'The words.'),
+    text('kind', questionKindNames().join(', '), asked('questions[].answer.kind'), 'How it is answered.'),
+    text('answers', 'any text', asked('questions[].answer'), 'What can be answered: ends of the scale, or options.'),
+    boolean('reversed', asked('questions[].reversed'), 'Whether scales count from + to − answer.'),
+    text('source', 'any text', asked('source'), 'Where the questionnaire was published.'),
+  ],
+  rows: questionnairesOf(plan).flatMap(({ id, questions, source }) =>
+    questions.flatMap((question) =>
+      languagesOf(plan).map((language) => ({
+        questionnaire: id,
+        question: question.id,
+        language,
+        about: question.about ?? '',
+        text: inLanguage(question.text, language),
+        kind: question.answer.kind,
+        ...questionKind(question.answer).columns(question.answer, (words) => inLanguage(words, language)),
+        reversed: question.reversed ?? false,
+        source: source ?? '',
+      })),
+    ),
+  ),
+});
+
+/** How each scale is computed. */
+export const scaleTable = (plan: StudyPlan): Table => ({
+  name: 'scale-definitions',
+  columns: [
+    text('questionnaire', ids, 'plan.json, or shipped with the program', 'Id.'),
+    text('scale', codes, asked('scales[].id'), 'Id.'),
+    text('label', 'any text', asked('scales[].label'), 'Its name.'),
+    text(
+      'method',
+      'mean, sum, count, weighted-mean',
+      asked('scales[].method'),
+      'count: of answers of at_least or more; weighted-mean: by how often each was chosen.',
+    ),
+    text(
+      'questions',
+      'ids, divided by spaces',
+      asked('scales[].questions'),
+      'What it is computed from; one that is named twice counts twice.',
+    ),
+    text('choices', 'ids, divided by spaces', asked('scales[].choices'), 'Choices that weight; empty: none.'),
+    number(
+      'at_least',
+      '',
+      'any',
+      asked('scales[].atLeast'),
+      'Answers from here on are counted; empty: not of this scale.',
+    ),
+    number('factor', '', 'any', asked('scales[].factor'), 'The result is factor × (mean, sum or count) + offset.'),
+    number('offset', '', 'any', asked('scales[].offset'), 'See factor.'),
+    number('from', '', 'any', 'computed from the answers that can be given', 'Least value.'),
+    number('to', '', 'any', 'computed from the answers that can be given', 'Greatest value.'),
+  ],
+  rows: questionnairesOf(plan).flatMap((questionnaire) =>
+    questionnaire.scales.map((scale) => ({
+      questionnaire: questionnaire.id,
+      scale: scale.id,
+      label: scale.label,
+      method: scale.method,
+      questions: scale.questions.join(' '),
+      choices: (scale.choices ?? []).join(' '),
+      at_least: scale.atLeast ?? null,
+      factor: scale.factor ?? 1,
+      offset: scale.offset ?? 0,
+      from: scaleRange(questionnaire, scale)[0],
+      to: scaleRange(questionnaire, scale)[1],
+    })),
+  ),
+});

@@ -1,0 +1,273 @@
+import { threePointNames } from 'threepoint/core/estimation/pose-estimator';
+import { type Demographics, demographicFields } from '../records/demographics';
+import { eventTypes } from '../records/study-record';
+import { boolean, number, text } from './tidy-csv';
+
+/** Whole numbers from 1, and from 0. */
+const ordinals = '1, 2, 3 …';
+const counts = '0, 1, 2 …';
+const positive = '0 and more';
+const ids = 'small letters, digits, hyphens';
+const codes = 'letters, digits, - and _';
+const tag = 'a language tag';
+const moment = 'since 1970-01-01 UTC';
+const methods = threePointNames.join(', ');
+
+const who = [
+  text('study', ids, 'records: study', 'Id of the study.'),
+  text('participant', 'P01 to P999', 'records: participant', 'Code of the participant.'),
+  boolean('simulated', 'records: simulated', 'TRUE: made by a program. Never analyse together with people.'),
+];
+const blockMeaning = 'Place of the condition in the order of this participant, from 1.';
+const runMeaning = 'From 1; a block that was voided and repeated runs again.';
+const where = [
+  text('task', ids, 'body.place.task', 'Id of the task.'),
+  number('block', '', ordinals, 'body.place.block', blockMeaning),
+  number('run', '', ordinals, 'body.place.run', runMeaning),
+];
+const conditionColumns = [
+  text('condition', ids, 'body.condition', 'Id of the condition; empty: tutorial.'),
+  text('estimator', methods, 'body.estimator', 'Method that drew the body.'),
+];
+const excluded = text(
+  'excluded',
+  'voided: reason; tutorial',
+  'void-block events of the same task, block and run; tutorials have no condition',
+  'Why the row counts for nothing; empty: it counts.',
+);
+const time = number('at', 's', moment, 'records: at', 'When, by the clock of the device.');
+
+/** What can be chosen in answer to a question about the participant. */
+function optionsOf(id: keyof Demographics): string {
+  const field = demographicFields.find((one) => one.id === id);
+  return field?.kind === 'choice' ? field.options.map(({ value }) => value).join(', ') : 'any text';
+}
+
+export const participantColumns = [
+  ...who,
+  text('cohort', ids, 'drawn from the seed in plan.json', 'Id of the cohort; empty: the study has none.'),
+  text('consent_version', 'any text', 'consent: body.version', 'Version of the text consented to.'),
+  boolean('motion_consent', 'consent: body.motion', 'Whether tracked frames may be kept.'),
+  text('language', tag, 'consent: body.language', 'In which the text was read; empty: the study has only one.'),
+  text('gender', optionsOf('gender'), 'demographics: body.gender', 'As told.'),
+  number('age', 'years', '16 to 120', 'demographics: body.age', 'As told.'),
+  text('major', 'any text', 'demographics: body.major', 'Field of study or work, as typed.'),
+  text('vr_experience', optionsOf('vrExperience'), 'demographics: body.vrExperience', 'Use of virtual reality before.'),
+  text('vr_systems', 'any text', 'demographics: body.vrSystems', 'Systems used before, as typed.'),
+  text('handedness', optionsOf('handedness'), 'demographics: body.handedness', 'Hand preferred, as told.'),
+  text('vision', optionsOf('vision'), 'demographics: body.vision', 'As told.'),
+];
+
+const languageRead = 'In which it was read; where a record says none, the first of the plan.';
+
+export const answerColumns = [
+  ...who,
+  ...where,
+  ...conditionColumns,
+  text('questionnaire', ids, 'answers: body.questionnaire', 'Id.'),
+  text('question', codes, 'answers: body.answers', 'Id; its words and its scale are in questions.csv.'),
+  number(
+    'answer',
+    '',
+    'as questions.csv says',
+    'answers: body.answers',
+    'As given, reversed questions too; empty: text, a choice, or left open.',
+  ),
+  text(
+    'answer_text',
+    'an option of questions.csv, or any text',
+    'answers: body.answers',
+    'Text as typed, or the value of the option chosen; empty: a number, or left open.',
+  ),
+  text('language', tag, 'answers: body.language', languageRead),
+  number(
+    'seconds',
+    's',
+    positive,
+    'answers: body.seconds',
+    'From the first question shown to handing in the whole questionnaire, pauses left out.',
+  ),
+  boolean('overtime', 'answers: body.overtime', 'Whether that took longer than the plan gives.'),
+  time,
+  excluded,
+];
+
+export const scaleColumns = [
+  ...who,
+  ...where,
+  ...conditionColumns,
+  text('questionnaire', ids, 'answers: body.questionnaire', 'Id.'),
+  text('scale', codes, 'plan.json: scales of the questionnaire', 'Id; scale-definitions.csv says how it is computed.'),
+  number(
+    'value',
+    '',
+    'from and to in scale-definitions.csv',
+    'computed from answers: body.answers',
+    'Empty: a question that it needs has no answer.',
+  ),
+  time,
+  excluded,
+];
+
+/** Which trial a row belongs to. */
+const trialNames = [
+  ...who,
+  ...where,
+  number('attempt', '', ordinals, 'body.place.attempt', 'From 1; a trial lost by a crash or reload is tried again.'),
+  ...conditionColumns,
+  number('repetition', '', ordinals, 'trial: body.repetition', 'Trial of the block, from 1.'),
+];
+
+const outcome = (path: string) => `trial: body.outcome.${path}`;
+const measured = (path: string) => outcome(`calibration.${path}`);
+const lossNames = { head: 'head', leftHand: 'left hand', rightHand: 'right hand' } as const;
+
+const lossColumns = (part: keyof typeof lossNames) => {
+  const name = lossNames[part];
+  const column = name.replace(' ', '_');
+  return [
+    number(
+      `${column}_losses`,
+      '',
+      counts,
+      outcome(`tracking.${part}.losses`),
+      `How often the ${name} was not tracked.`,
+    ),
+    number(`${column}_lost`, 's', positive, outcome(`tracking.${part}.seconds`), `For how long the ${name} was not.`),
+  ];
+};
+
+const tiltColumns = (side: 'left' | 'right') => [
+  number(
+    `${side}_hand_pitch`,
+    'rad',
+    '-1 to 1',
+    measured(`handTilts.${side}.pitch`),
+    `How far up of its ${side} hand the forearm points; empty: not measured.`,
+  ),
+  number(
+    `${side}_hand_yaw`,
+    'rad',
+    '-1 to 1',
+    measured(`handTilts.${side}.yaw`),
+    `How far to the left of its ${side} hand; empty: not measured.`,
+  ),
+];
+
+export const trialColumns = [
+  ...trialNames,
+  number('group', '', ordinals, 'trial: body.group', 'Number of the group; tasks played alone: of the participant.'),
+  text('ended', 'arrows, targets, balls, time, stopped', outcome('ended'), 'Why it was over; stopped: ended early.'),
+  number('score', 'points', positive, outcome('score'), "In a group the group's."),
+  number('maximum', 'points', '1 and more', outcome('maximum'), 'The most that can be had.'),
+  number('percent', '%', positive, 'computed: 100 score / maximum', 'Share of the points that can be had.'),
+  number('shots', '', counts, outcome('shots'), 'Arrows or balls sent off by this participant.'),
+  number('hits', '', counts, outcome('hits'), 'How many of them counted.'),
+  number('seconds', 's', positive, outcome('seconds'), 'From the start signal to the end, pauses left out.'),
+  number('frames', '', counts, outcome('frames.count'), 'Frames drawn.'),
+  number('missed_frames', '', counts, outcome('frames.missed'), 'Frames shown later than the device wanted.'),
+  text('device', 'any text', outcome('device.name'), 'Name of the headset or browser.'),
+  number(
+    'refresh_rate',
+    'Hz',
+    '1 to 1000',
+    outcome('device.refreshRateHz'),
+    'Frames per second that the device wants; empty: unknown.',
+  ),
+  text(
+    'input',
+    'controllers, hands, mixed, emulated, simulated',
+    outcome('device.input'),
+    'What the hands held; emulated and simulated: no headset.',
+  ),
+  number('eye_height', 'm', '0.3 to 2.5', measured('eyeHeight'), 'Height of the eyes above the floor.'),
+  number('arm_span', 'm', '0.3 to 2.5', measured('armSpan'), 'From wrist to wrist, arms sideways.'),
+  number('forearm', 'm', '0.1 to 0.6', measured('forearm'), 'From elbow to wrist; empty: not told.'),
+  number(
+    'gaze_pitch',
+    'rad',
+    '-0.5 to 0.5',
+    measured('gazePitch'),
+    'How far up the headset points when its wearer looks ahead; empty: not measured.',
+  ),
+  ...tiltColumns('left'),
+  ...tiltColumns('right'),
+  ...lossColumns('head'),
+  ...lossColumns('leftHand'),
+  ...lossColumns('rightHand'),
+  text('assists', 'names, divided by semicolons', outcome('assists'), 'Aids that were on; empty: none.'),
+  number('motion_frames', '', counts, outcome('motionFrames'), 'Tracked frames recorded beside this.'),
+  number(
+    'started',
+    's',
+    moment,
+    outcome('clock.epoch'),
+    'Second 0 of the trial, by the clock of the device; empty: not known.',
+  ),
+  number(
+    'recording_start',
+    's',
+    positive,
+    outcome('clock.start'),
+    'Second 0 on the clock of the recorded frames, which runs on in pauses (pauses.csv); empty: not known.',
+  ),
+  time,
+  excluded,
+];
+
+const stage = (path: string) => outcome(`frames.stages.*.${path}`);
+
+export const frameTimeColumns = [
+  ...trialNames,
+  text('stage', 'small letters, hyphens', outcome('frames.stages'), 'Stage of the frame; "frame" is all of its work.'),
+  number('count', '', counts, stage('count'), 'Frames measured.'),
+  number('min', 'ms', positive, stage('minMs'), 'Shortest.'),
+  number('max', 'ms', positive, stage('maxMs'), 'Longest.'),
+  number('mean', 'ms', positive, stage('meanMs'), 'Mean.'),
+  number('p50', 'ms', positive, stage('p50Ms'), 'Median.'),
+  number('p95', 'ms', positive, stage('p95Ms'), '95th percentile.'),
+  excluded,
+];
+
+export const hitColumns = [
+  ...trialNames,
+  number(
+    'time',
+    's',
+    positive,
+    outcome('events[].time'),
+    "Second of the game's own clock, which also stands while the head is lost.",
+  ),
+  number(
+    'onset',
+    's',
+    positive,
+    outcome('events[].onset'),
+    'Second of the trial at the frame that showed it; with recording_start and the pauses before it, its place among recorded frames. Empty: not known.',
+  ),
+  text('type', 'hit, miss, catch', outcome('events[].type'), "What happened; catch: of another's ball."),
+  number('points', 'points', positive, outcome('events[].points'), 'What it scored.'),
+  excluded,
+];
+
+export const pauseColumns = [
+  ...trialNames,
+  number('time', 's', positive, outcome('clock.pauses[].time'), 'Second of the trial at which it stood.'),
+  number('seconds', 's', positive, outcome('clock.pauses[].seconds'), 'For how long.'),
+  excluded,
+];
+
+export const eventColumns = [
+  ...who,
+  text('event', eventTypes.join(', '), 'event: body.type', 'What happened.'),
+  text('task', ids, 'event: body.place.task or body.task', 'Where it concerns one; empty: no particular one.'),
+  number('block', '', ordinals, 'event: body.place.block or body.block', 'Where it concerns one.'),
+  number('run', '', ordinals, 'event: body.place.run or body.run', 'Where it concerns one.'),
+  text(
+    'text',
+    'any text',
+    'event: body.text, body.reason, or by, measure and value',
+    'Remark or reason, as typed; what was found.',
+  ),
+  time,
+];

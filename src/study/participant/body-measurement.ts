@@ -1,0 +1,73 @@
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
+import { type CalibrationGuide, createCalibrationGuide } from 'threepoint-ui/calibration-guide';
+import type { ParticipantSession } from './participant-session';
+import { remoteFaults } from './remote-faults';
+import type { StudyHost } from './study-host';
+
+/** Measures the body of a participant in the headset, and checks device, room and height of one who takes part alone. */
+export class BodyMeasurement {
+  readonly #session: ParticipantSession;
+  readonly #host: StudyHost;
+  readonly #guide: CalibrationGuide;
+  #step: CalibrationStep | null = null;
+  /** The faults that the last measurement found. */
+  #measuredFaults: readonly string[] = [];
+  /** The height of the eyes in the newest frame [m]; null: no frame came yet. */
+  #eyeHeight: number | null = null;
+
+  constructor(session: ParticipantSession, host: StudyHost, onChange: () => void) {
+    this.#session = session;
+    this.#host = host;
+    this.#guide = createCalibrationGuide({
+      onStep: (step) => {
+        this.#step = step;
+        onChange();
+      },
+      onMeasured: (calibration) => {
+        // The calibration of a seated person is that of a standing one, so the newest eye height is checked instead.
+        const faults = remoteFaults(session, host, this.#eyeHeight);
+        this.#guide.cancel();
+        this.#measuredFaults = faults;
+        if (faults.length > 0) return;
+        host.setCalibration(calibration);
+        session.apply({ type: 'calibrated', calibration });
+      },
+      // A failure is shown until the participant measures again.
+      closesItself: () => false,
+    });
+  }
+
+  /** The step of the measurement; null: nobody is being measured. */
+  get step(): CalibrationStep | null {
+    return this.#step;
+  }
+
+  /** What is wrong with device, room or height, in the participant's language; empty: nothing. */
+  get faults(): readonly string[] {
+    return this.#measuredFaults.length > 0 ? this.#measuredFaults : remoteFaults(this.#session, this.#host, null);
+  }
+
+  start(): void {
+    this.#measuredFaults = [];
+    this.#guide.start();
+  }
+
+  /** Takes a tracking frame into account. */
+  observe(frame: TrackingFrame): void {
+    this.#eyeHeight = frame.head.position.y;
+    this.#guide.observe(frame);
+  }
+
+  /** Cancels a measurement, whose result stays on the screen. */
+  cancel(): void {
+    this.#guide.cancel();
+  }
+
+  /** Cancels a measurement and clears its result. */
+  reset(): void {
+    this.#measuredFaults = [];
+    this.#guide.cancel();
+    this.#step = null;
+  }
+}

@@ -1,0 +1,74 @@
+import { element } from 'threepoint-ui/element';
+import { inLanguage } from '../../../model/phrases/words';
+import { type LikertForm, likertPoints } from '../../../model/questionnaires/kinds/likert';
+import { inner, margin } from '../../sheet-target';
+import type { QuestionView } from '../question-view';
+import { endNodes, mostNumbered, radios, type ScreenEnds, type ScreenPoint } from './card-parts';
+import { paintEnds } from './sheet-parts';
+
+/** A row of points. */
+export interface LikertField {
+  readonly kind: 'likert';
+  readonly points: readonly ScreenPoint<number>[];
+  /** Texts below the ends; null: none. */
+  readonly ends: ScreenEnds | null;
+  /** null: none yet. */
+  readonly answer: number | null;
+  choose(value: number): void;
+}
+
+declare module '../question-view' {
+  interface ScreenFields {
+    likert: LikertField;
+  }
+}
+
+export const likertView: QuestionView<LikertForm, LikertField> = {
+  kind: 'likert',
+  field: (form, { phrases: { language }, given, choose }) => ({
+    kind: 'likert',
+    points: likertPoints(form).map((value, index) => {
+      const label = form.labels?.[index];
+      return { value, label: label === undefined ? '' : inLanguage(label, language) };
+    }),
+    ends: form.ends ? { low: inLanguage(form.ends.low, language), high: inLanguage(form.ends.high, language) } : null,
+    answer: typeof given === 'number' ? given : null,
+    choose,
+  }),
+  card({ points, ends, answer, choose }, id) {
+    const many = points.length > mostNumbered;
+    const endOf = (index: number) => (index === 0 ? ends?.low : index === points.length - 1 ? ends?.high : undefined);
+    const choices = radios({
+      ...{ name: id, points, answer, choose },
+      inside: ({ value, label }, index) => {
+        const nodes = [
+          ...(many ? [] : [element('b', {}, String(value))]),
+          ...(label ? [element('span', {}, label)] : []),
+        ];
+        const end = endOf(index);
+        return { nodes, ...((many || end) && { name: end ? `${value} ${end}` : String(value) }) };
+      },
+    });
+    const grid = element('div', { class: many ? 'points many' : 'points' }, ...choices);
+    grid.style.setProperty('--points', String(points.length));
+    return [grid, ...(ends ? [endNodes(ends)] : [])];
+  },
+  sheet: {
+    targets({ points, ends, answer, choose }) {
+      const gap = points.length > mostNumbered ? 6 : 18;
+      const wide = (inner - gap * (points.length - 1)) / points.length;
+      return points.map(({ value, label }, index) => ({
+        kind: 'scale',
+        id: `answer-${value}`,
+        label,
+        figure: points.length > mostNumbered ? '' : String(value).replace('-', '−'),
+        look: answer === value ? 'chosen' : 'plain',
+        at: [margin + index * (wide + gap), 410, wide, ends ? 150 : 190],
+        act: () => choose(value),
+      }));
+    },
+    paint(context, { ends }) {
+      if (ends) paintEnds(context, ends, 594);
+    },
+  },
+};

@@ -1,0 +1,112 @@
+import { element } from 'threepoint-ui/element';
+import { fillRounded, vrColors } from 'threepoint-ui/vr-panel';
+import { inLanguage } from '../../../model/phrases/words';
+import { type SliderForm, sliderValues } from '../../../model/questionnaires/kinds/slider';
+import { inner, margin, type Target, width } from '../../sheet-target';
+import type { QuestionView } from '../question-view';
+import { endNodes, type ScreenEnds } from './card-parts';
+import { paintEnds } from './sheet-parts';
+
+/** A line without points. */
+export interface SliderField {
+  readonly kind: 'slider';
+  /** Every value that the line distinguishes, in ascending order. */
+  readonly values: readonly number[];
+  readonly ends: ScreenEnds;
+  /** null: none yet. */
+  readonly answer: number | null;
+  choose(value: number): void;
+}
+
+declare module '../question-view' {
+  interface ScreenFields {
+    slider: SliderField;
+  }
+}
+
+const track = { left: margin + 40, wide: inner - 80, y: 470 } as const;
+
+export const sliderView: QuestionView<SliderForm, SliderField> = {
+  kind: 'slider',
+  field: (form, { phrases: { language }, given, choose }) => ({
+    kind: 'slider',
+    values: sliderValues(form),
+    ends: { low: inLanguage(form.ends.low, language), high: inLanguage(form.ends.high, language) },
+    answer: typeof given === 'number' ? given : null,
+    choose,
+  }),
+  card({ values, ends, answer, choose }, name, { say }) {
+    const middle = Math.floor(values.length / 2);
+    const range = element('input', {
+      type: 'range',
+      name,
+      min: 0,
+      max: values.length - 1,
+      step: 1,
+      value: answer === null ? middle : values.indexOf(answer),
+      'data-id': 'answer',
+      'aria-label': say('question.range', ends),
+      // Without an answer the line is empty: a mark in the middle would suggest one.
+      class: answer === null ? 'open' : undefined,
+    });
+    const take = () => {
+      range.classList.remove('open');
+      choose(values[range.valueAsNumber] as number);
+    };
+    range.addEventListener('input', take);
+    // A click at the position of the hidden mark moves nothing, and is an answer.
+    range.addEventListener('click', take);
+    range.addEventListener('keydown', ({ key }) => {
+      if (key === 'Enter' || key === ' ') take();
+    });
+    return [range, endNodes(ends)];
+  },
+  sheet: {
+    /** Lays out a line of narrow targets, and two buttons for the last step. */
+    targets({ values, answer, choose }) {
+      const wide = track.wide / values.length;
+      const ticks = values.map(
+        (value, index): Target => ({
+          kind: 'tick',
+          id: `answer-${value}`,
+          label: '',
+          look: 'plain',
+          at: [track.left + index * wide, track.y - 60, wide, 120],
+          act: () => choose(value),
+        }),
+      );
+      const at = answer === null ? -1 : values.indexOf(answer);
+      const nudge = (id: string, label: string, to: number, left: number): Target => {
+        const value = at < 0 ? undefined : values[to];
+        return {
+          kind: 'button',
+          id,
+          label,
+          look: value === undefined ? 'off' : 'plain',
+          at: [left, 548, 110, 64],
+          act: () => value !== undefined && choose(value),
+        };
+      };
+      return [...ticks, nudge('less', '◀', at - 1, width / 2 - 120), nudge('more', '▶', at + 1, width / 2 + 10)];
+    },
+    paint(context, { values, answer, ends }, hovered) {
+      const { left, wide, y } = track;
+      fillRounded(context, [left, y - 5, wide, 10], 5, vrColors.liftMore);
+      for (const x of [left, left + wide]) fillRounded(context, [x - 3, y - 30, 6, 60], 3, vrColors.liftMore);
+      const mark = (index: number, fill: string, radius: number) => {
+        if (index < 0) return;
+        context.beginPath();
+        context.arc(left + ((index + 0.5) / values.length) * wide, y, radius, 0, 2 * Math.PI);
+        context.fillStyle = fill;
+        context.fill();
+      };
+      mark(
+        values.findIndex((value) => `answer-${value}` === hovered),
+        vrColors.liftMore,
+        24,
+      );
+      mark(answer === null ? -1 : values.indexOf(answer), vrColors.accent, 26);
+      paintEnds(context, ends, 580);
+    },
+  },
+};

@@ -1,0 +1,139 @@
+import { createHash } from 'node:crypto';
+import { readFileSync } from 'node:fs';
+import { strToU8, type Zippable, zipSync } from 'fflate';
+import type { Software } from 'threepoint-http/software';
+import { type StudyPlan, studyTitle } from '../../model/plan/plan';
+import type { StudyRecord } from '../../model/records/study-record';
+import { resultTables } from '../../model/results/exported-results';
+import { studyTables } from '../../model/tables/study-tables';
+import { codebookOf, type Table, tidyCsv } from '../../model/tables/tidy-csv';
+import type { MotionFile } from '../storage/motion';
+import type { ServedSoftware } from '../storage/software';
+import { bidsDataset } from './bids';
+
+/** What an export is made of. */
+export interface ExportContent {
+  readonly plan: StudyPlan;
+  readonly simulated: boolean;
+  readonly records: readonly StudyRecord[];
+  readonly motion: readonly MotionFile[];
+  /** Seconds since 1970: when it is made, and when the server will delete what it has; null: it has nothing. */
+  readonly at: number;
+  readonly retentionUntil: number | null;
+  /** Of the plan, where it has several; who follows another one is not in it. */
+  readonly planVersion?: number;
+  readonly software: {
+    readonly exportedBy: Software;
+    /** What has served the study since it began. */
+    readonly served: readonly ServedSoftware[];
+  };
+}
+
+/** The file that holds a hash of every other one, as `sha256sum --check` reads it. */
+export const checksumsFile = 'checksums.sha256';
+
+const day = (seconds: number) => new Date(seconds * 1000).toISOString().slice(0, 10);
+
+const simulatedNotice =
+  'SIMULATED: a program made this. It says nothing about people and must never be analysed with theirs.';
+
+/** The analysis in Python, as it lies next to this file. */
+const analysisFiles = () =>
+  ['analyse.py', 'requirements.txt'].map(
+    (name) => [`analysis/${name}`, readFileSync(new URL(`./analysis/${name}`, import.meta.url), 'utf8')] as const,
+  );
+
+function readme(content: ExportContent, leftOut: readonly string[], whole: boolean): string {
+  const { plan, simulated, records, at, retentionUntil } = content;
+  const participants = new Set(records.map(({ participant }) => participant));
+  return [
+    ...(simulated ? [simulatedNotice, ''] : []),
+    `Study "${studyTitle(plan)}" (${plan.id}), exported ${day(at)}.`,
+    `${participants.size} participants, ${records.length} records.`,
+    ...(retentionUntil === null
+      ? []
+      : [`The server deletes its copy after ${day(retentionUntil)}; delete yours then too.`]),
+    '',
+    'records.json  everything as it was recorded',
+    'plan.json     the study as it was run',
+    'software.json which version of the program served it, with the SHA-256 of its networks',
+    'codebook.csv  every column of the other tables: meaning, unit, values, source',
+    'The tables are tidy: UTF-8, a row per observation, an empty field where there is no value.',
+    'An apostrophe before what a spreadsheet would take for a formula was put there by us.',
+    ...(whole
+      ? [
+          'results/      what the page of results computes: planned, then explored',
+          'analysis/     the same from the tidy tables: "pip install -r analysis/requirements.txt"',
+          '              and "python analysis/analyse.py"',
+        ]
+      : []),
+    'motion/       where there is consent to it: tracked frames as they were recorded',
+    'bids/         the same as a BIDS data set (motion)',
+    ...leftOut.map((reason) => `  left out: ${reason}`),
+    `${checksumsFile}  a hash of every file: "sha256sum --check ${checksumsFile}"`,
+    'The program itself computes all of it anew and says what differs: npm run study:verify -- FILE.zip',
+    '',
+  ].join('\r\n');
+}
+
+/** The file of a recording within an export. */
+export const motionPath = ({ participant, trial }: Pick<MotionFile, 'participant' | 'trial'>): string =>
+  `motion/${participant}-${trial.replace(/[^a-z0-9]+/g, '-')}.json`;
+
+const json = (value: unknown): string => `${JSON.stringify(value, null, 2)}\n`;
+
+const sha256 = (text: string): string => createHash('sha256').update(text).digest('hex');
+
+/** The tables of an export by their file without its ending; results are of a whole study. */
+function tablesOf({ records, plan }: ExportContent, whole: boolean): readonly Table[] {
+  const results = whole ? resultTables(records, plan) : [];
+  return [...studyTables(records, plan), ...results.map((table) => ({ ...table, name: `results/${table.name}` }))];
+}
+
+/** File names of an export with their text; of one participant alone where one is named, without results. */
+export function exportFiles(content: ExportContent, participant?: string): Readonly<Record<string, string>> {
+  const { plan, simulated, records, motion, at, retentionUntil, software, planVersion = null } = content;
+  const whole = participant === undefined;
+  const tables = tablesOf(content, whole);
+  const bids = bidsDataset(content);
+  const of = {
+    study: plan.id,
+    planVersion,
+    simulated,
+    participant: participant ?? null,
+    exportedAt: at,
+    retentionUntil,
+  };
+  const files: Record<string, string> = {
+    'README.txt': readme(content, bids.leftOut, whole),
+    'plan.json': json(plan),
+    'software.json': json(software),
+    'records.json': json({ ...of, records }),
+    'codebook.csv': tidyCsv(codebookOf([...tables, codebookOf([])])),
+  };
+  for (const table of tables) files[`${table.name}.csv`] = tidyCsv(table);
+  if (whole) for (const [path, text] of analysisFiles()) files[path] = text;
+  for (const file of motion) files[motionPath(file)] = file.text;
+  for (const [path, text] of Object.entries(bids.files)) files[`bids/${path}`] = text;
+  const lines = Object.entries(files).map(([path, text]) => `${sha256(text)}  ${path}\n`);
+  return { ...files, [checksumsFile]: lines.join('') };
+}
+
+/** The name of an export, so that simulated people are not taken for people. */
+export const exportName = (
+  { plan, simulated, planVersion }: Pick<ExportContent, 'plan' | 'simulated' | 'planVersion'>,
+  participant?: string,
+): string =>
+  [simulated ? 'SIMULATED' : '', plan.id, planVersion === undefined ? '' : `version-${planVersion}`, participant ?? '']
+    .filter(Boolean)
+    .join('-');
+
+/** The export as a zip file, everything in one folder of its name; the same content gives the same bytes. */
+export function exportZip(content: ExportContent, participant?: string): Uint8Array {
+  const folder = exportName(content, participant);
+  const zipped: Zippable = {};
+  for (const [name, text] of Object.entries(exportFiles(content, participant))) {
+    zipped[`${folder}/${name}`] = strToU8(text);
+  }
+  return zipSync(zipped, { level: 6, mtime: new Date(content.at * 1000) });
+}

@@ -1,0 +1,60 @@
+import { createHmac, randomBytes } from 'node:crypto';
+import { ValidationError } from 'threepoint/core/validation/validation';
+import type { StudyPlan } from '../../model/plan/plan';
+import { scheduleFor } from '../../model/plan/schedule';
+import type { PlayedTogether, SignedSeat } from '../../model/progress/study-api';
+
+/** A participant's place in a room, as the server's rooms read it from a signed token. */
+export interface SeatClaim {
+  /** Identifies the participant, the same on every device; nobody else can derive it. */
+  readonly identity: string;
+  readonly room: string;
+  /** The game of the room. */
+  readonly kind: string;
+  readonly terms: { readonly seconds: number; readonly pausable: boolean };
+  /** Seat null: a place among the spectators. */
+  readonly assigned: { readonly seat: number | null; readonly name: string };
+}
+
+/** Returns the claim as signed text that the server's rooms accept. */
+export type SignSeat = (claim: SeatClaim) => Promise<string>;
+
+/** Signs participants, and them alone, into the rooms of their trials. */
+export interface StudySeats {
+  /** The participant's own seat, or a place among those who watch; throws a ValidationError where the step is not played together. */
+  sign(plan: StudyPlan, participant: string, trial: PlayedTogether, watching: boolean): Promise<SignedSeat>;
+}
+
+/** `secret`: names rooms, so that no one can know the name of one beforehand; the same in every process of a fleet. */
+export function createStudySeats(secret: string, signSeat: SignSeat): StudySeats {
+  const nameOf = (purpose: string, ...parts: readonly unknown[]): string =>
+    createHmac('sha256', secret)
+      .update(JSON.stringify([purpose, ...parts]))
+      .digest('hex')
+      .slice(0, 24);
+
+  return {
+    async sign(plan, participant, { step: id, run }, watching) {
+      const schedule = scheduleFor(plan, participant);
+      const step = schedule.steps.find((candidate) => candidate.id === id);
+      const played = step && (step.kind === 'trial' || step.kind === 'tutorial') ? step : null;
+      const task = plan.tasks.find((candidate) => candidate.id === played?.task);
+      if (!played || task?.game !== 'ball') {
+        throw new ValidationError('step', `expected a step that ${participant} plays with others, not "${id}"`);
+      }
+      const group = schedule.groups[played.task];
+      const room = `study.${nameOf('room of a study', plan.id, id, run, group?.number)}`;
+      const token = await signSeat({
+        // The same person on every device and after every reload: the seat is theirs.
+        identity: watching ? randomBytes(12).toString('base64url') : nameOf('participant', plan.id, participant),
+        room,
+        kind: task.game,
+        terms: { seconds: played.seconds, pausable: true },
+        assigned: watching
+          ? { seat: null, name: 'Experimenter' }
+          : { seat: group?.members.indexOf(participant) ?? null, name: participant },
+      });
+      return { room, token };
+    },
+  };
+}

@@ -1,0 +1,208 @@
+import type { IncomingMessage } from 'node:http';
+import type { Worker } from 'node:worker_threads';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import { type Answer, HttpError } from 'threepoint-http/answer';
+import { findClientAddress } from 'threepoint-http/client-address';
+import { ConfigurationError } from 'threepoint-http/configuration-error';
+import type { Call, Route, Service } from 'threepoint-http/router';
+import { shortageOf, startThread, ThreadCalls, ThreadUnavailable } from 'threepoint-http/thread-calls';
+import type { StudyDispatcher, StudyOutcome } from './routes/dispatcher';
+import type { StudyAccess } from './routes/guard';
+import { retryAfterSeconds, type StudyRequest, type StudyRoute } from './routes/routes';
+import type { OpenedStudies, StudyThreadApi, StudyThreadOptions } from './thread';
+
+export interface StudyServiceOptions extends StudyThreadOptions {
+  /** The script of the thread, which calls serveStudies. */
+  readonly thread: URL;
+  /** Seconds since 1970. */
+  readonly now: () => number;
+  /** Believe what a proxy in front says of a client's address. */
+  readonly trustProxy: boolean;
+  /** Receives faults, wrong guesses and deletions by the retention date, one line each. */
+  readonly log: (line: string) => void;
+}
+
+export interface StudyService {
+  readonly service: Service;
+  /** Holds the token; null: it was given. */
+  readonly tokenFile: string | null;
+  close(): Promise<void>;
+}
+
+/** Requests of two hundred participants while the disk hangs, with a recording each from a few of them. */
+const limits = { mostCalls: 1024, mostBytes: 64 * 2 ** 20, deadlineMs: 10_000 } as const;
+/** A thread that ended is started again so often at most [ms]. */
+const restartMs = 1000;
+/** How long the end of the server waits for a disk [ms]. */
+const closingMs = 5000;
+const hourMs = 3_600_000;
+
+const unavailable = (message: string): HttpError =>
+  new HttpError(503, message, { headers: { 'retry-after': String(retryAfterSeconds) } });
+
+const sentences = {
+  full: 'the studies have too many requests at once: nothing of this was stored. Send it again in a few seconds',
+  late: 'the database did not answer in time, and whether this was stored is not known: send it again',
+  ended: 'the studies were interrupted, and whether this was stored is not known: send it again',
+} as const;
+
+/** The thread of the studies; one that ends by a fault of its own, as for want of memory, is started again with the next request. */
+class StudyThread {
+  readonly #options: StudyServiceOptions;
+  #worker: Worker | null = null;
+  #calls: ThreadCalls<StudyThreadApi> | null = null;
+  #startedAt = Number.NEGATIVE_INFINITY;
+
+  constructor(options: StudyServiceOptions) {
+    this.#options = options;
+  }
+
+  /** Starts the thread; throws where it cannot open the folder. */
+  async open(): Promise<Exclude<OpenedStudies, { readonly problem: string }>> {
+    const { directory, token, software, secret, now, log, thread } = this.#options;
+    this.#startedAt = performance.now();
+    const worker = startThread(thread);
+    const calls = new ThreadCalls<StudyThreadApi>(worker, limits, log);
+    this.#worker = worker;
+    this.#calls = calls;
+    let shortage: string | null = null;
+    worker.on('error', (error) => {
+      shortage = shortageOf(error);
+      log(shortage === null ? `study, a fault: ${error.stack ?? error.message}` : `study: ${shortage}`);
+    });
+    worker.once('exit', () => {
+      if (this.#worker === worker) this.#worker = this.#calls = null;
+      calls.end();
+    });
+    const asked = [{ directory, token, software, secret }, now()] as const;
+    try {
+      const opened = await calls.call('open', [...asked], { patient: true });
+      if (!('problem' in opened)) return opened;
+      throw new ConfigurationError(opened.problem);
+    } catch (error) {
+      await worker.terminate();
+      throw shortage === null ? error : new ConfigurationError(shortage);
+    }
+  }
+
+  /** A call of the thread; rejects with an HttpError 503 where it has no room, no answer in time, or has ended. */
+  async call<Name extends keyof StudyThreadApi>(
+    name: Name,
+    args: Parameters<StudyThreadApi[Name]>,
+    options?: { readonly patient: boolean },
+  ): Promise<Awaited<ReturnType<StudyThreadApi[Name]>>> {
+    try {
+      const calls = this.#calls ?? this.#restarted();
+      return await calls.call(name, args, options);
+    } catch (error) {
+      if (!(error instanceof ThreadUnavailable)) throw error;
+      throw unavailable(sentences[error.reason]);
+    }
+  }
+
+  /** Ends the thread once the database is closed, or its disk has hung for too long. */
+  async close(): Promise<void> {
+    const [worker, calls] = [this.#worker, this.#calls];
+    if (!worker || !calls) return;
+    const late = new Promise<void>((resolve) => setTimeout(resolve, closingMs).unref());
+    await Promise.race([calls.call('close', [], { patient: true }), late]);
+    this.#worker = this.#calls = null;
+    // A thread that the disk holds cannot be ended, and the process waits for it.
+    await Promise.race([worker.terminate(), late]);
+  }
+
+  #restarted(): ThreadCalls<StudyThreadApi> {
+    if (performance.now() - this.#startedAt < restartMs) throw new ThreadUnavailable('ended');
+    const { log } = this.#options;
+    log('study: the thread of the database ended; it starts again');
+    this.open().catch((error: unknown) => log(`study: the thread of the database did not start: ${reasonOf(error)}`));
+    if (!this.#calls) throw new ThreadUnavailable('ended');
+    return this.#calls;
+  }
+}
+
+function bearerOf(request: IncomingMessage): string | null {
+  return /^Bearer ([\w~+/.-]{1,256}=*)$/.exec(request.headers.authorization ?? '')?.[1] ?? null;
+}
+
+/** Resolves with what the other side waits for. Nothing moves on its connection meanwhile, which would be ended as a silent one. */
+async function awaited<T>({ socket }: IncomingMessage, answer: Promise<T>): Promise<T> {
+  const silenceMs = socket.timeout ?? 0;
+  socket.setTimeout(0);
+  try {
+    return await answer;
+  } finally {
+    socket.setTimeout(silenceMs);
+  }
+}
+
+/** The answer of an outcome; throws where it is a refusal or a fault. */
+function answerOf(outcome: StudyOutcome): Answer {
+  if ('answer' in outcome) return outcome.answer;
+  if ('fault' in outcome) throw new Error(outcome.fault);
+  const { status, message, ...rest } = outcome.refused;
+  throw new HttpError(status, message, rest);
+}
+
+export interface ServiceOptions extends Pick<StudyServiceOptions, 'now' | 'trustProxy' | 'log'> {
+  readonly routes: readonly Omit<StudyRoute, 'handle'>[];
+  /** Runs the requests, in this thread or another one. */
+  readonly dispatcher: Pick<StudyDispatcher, 'admit' | 'handle'>;
+}
+
+/** The studies' part of the server: all below /api/studies. */
+export function createStudyService({ routes, dispatcher, now, trustProxy, log }: ServiceOptions): Service<StudyAccess> {
+  const requestOf = ({ request, names, query }: Omit<Call, 'body'>): StudyRequest => ({
+    ...{ at: now(), token: bearerOf(request), address: findClientAddress(request, trustProxy) },
+    ...{ names, query: query.toString() },
+  });
+  const table = routes.map((route, index): Route<StudyAccess> => {
+    const { method, path, access, bodyLimit } = route;
+    return {
+      ...{ method, path, access, bodyLimit },
+      async handle(call) {
+        const outcome = dispatcher.handle(index, requestOf(call), call.body);
+        return answerOf(await (route.isPatient ? awaited(call.request, outcome) : outcome));
+      },
+    };
+  });
+  return {
+    routes: table,
+    async admit(route, call) {
+      // Without a body there is nothing to keep out: it crosses once.
+      if (route.bodyLimit === 0) return;
+      answerOf(await dispatcher.admit(table.indexOf(route), requestOf(call)));
+    },
+    refusalOf: () => null,
+    onFault: (error) =>
+      log(`study, a fault: ${error instanceof Error ? (error.stack ?? error.message) : String(error)}`),
+  };
+}
+
+/** Opens the studies of this server: their thread, their routes and, once an hour, what their retention dates demand. */
+export async function openStudyService(options: StudyServiceOptions): Promise<StudyService> {
+  const { now, trustProxy, log } = options;
+  const thread = new StudyThread(options);
+  const { routes, tokenFile } = await thread.open();
+  const expire = () =>
+    thread.call('expire', [now()], { patient: true }).catch((error: unknown) => log(`study: ${reasonOf(error)}`));
+  await expire();
+  const timer = setInterval(expire, hourMs);
+  timer.unref();
+  const service = createStudyService({
+    ...{ routes, now, trustProxy, log },
+    dispatcher: {
+      admit: (index, request) => thread.call('admit', [index, request]),
+      handle: (index, request, body) =>
+        thread.call('handle', [index, request, body], { patient: routes[index]?.isPatient ?? false }),
+    },
+  });
+  return {
+    service,
+    tokenFile,
+    async close() {
+      clearInterval(timer);
+      await thread.close();
+    },
+  };
+}

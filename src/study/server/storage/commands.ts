@@ -1,0 +1,55 @@
+import type { StudyCommand } from '../../model/progress/study-api';
+import { StoreRefusal, type StudyDatabase } from './database';
+import type { StudyPlaces } from './places';
+
+export const mostCommandsPerParticipant = 10_000;
+
+/** A command as a participant's page fetches it. */
+export interface NumberedCommand {
+  readonly number: number;
+  readonly at: number;
+  readonly command: StudyCommand;
+}
+
+/** What the experimenter tells a participant's page to do. */
+export class StudyCommands {
+  readonly #database: StudyDatabase;
+  readonly #places: StudyPlaces;
+
+  constructor(database: StudyDatabase, places: StudyPlaces) {
+    this.#database = database;
+    this.#places = places;
+  }
+
+  add(study: string, participant: string, command: StudyCommand, at: number): number {
+    return this.#database.transaction(() => {
+      this.#places.getPresent(study, participant);
+      const { count } = this.#database.getOne<{ count: number }>(
+        'SELECT count(*) AS count FROM commands WHERE study = ? AND participant = ?',
+        ...[study, participant],
+      );
+      if (count >= mostCommandsPerParticipant) {
+        throw new StoreRefusal('full', `${participant} was sent ${mostCommandsPerParticipant} commands already`);
+      }
+      const { number } = this.#database.getOne<{ number: number }>(
+        'INSERT INTO commands (study, participant, command, at) VALUES (?, ?, ?, ?) RETURNING number',
+        ...[study, participant, JSON.stringify(command), at],
+      );
+      return number;
+    });
+  }
+
+  after(study: string, participant: string, number: number): readonly NumberedCommand[] {
+    this.#places.get(study, participant);
+    const rows = this.#database.all<{ number: number; at: number; command: string }>(
+      'SELECT number, at, command FROM commands WHERE study = ? AND participant = ? AND number > ? ORDER BY number',
+      ...[study, participant, number],
+    );
+    return rows.map((row) => ({ number: row.number, at: row.at, command: JSON.parse(row.command) as StudyCommand }));
+  }
+
+  /** Inside a transaction. */
+  delete(study: string, participant: string): void {
+    this.#database.run('DELETE FROM commands WHERE study = ? AND participant = ?', study, participant);
+  }
+}

@@ -1,0 +1,110 @@
+import type { Receipt } from '../../model/progress/study-api';
+import type { StudyCommands } from './commands';
+import { StoreRefusal, type StudyDatabase } from './database';
+import type { StudyMotion } from './motion';
+import type { StudyPlaces } from './places';
+import type { StudyPlans } from './plans';
+import type { StudyRecords } from './records';
+import { newCode } from './schema';
+
+interface ReceiptRow extends Omit<Receipt, 'motionFiles'> {
+  readonly motion_files: number;
+}
+
+const receiptOf = ({ number, study, participant, reason, records, motion_files, at }: ReceiptRow): Receipt => ({
+  number,
+  study,
+  participant,
+  reason,
+  records,
+  motionFiles: motion_files,
+  at,
+});
+
+export interface StudyDeletionParts {
+  readonly database: StudyDatabase;
+  readonly plans: StudyPlans;
+  readonly places: StudyPlaces;
+  readonly records: StudyRecords;
+  readonly motion: StudyMotion;
+  readonly commands: StudyCommands;
+}
+
+/** Told of whom something could not be deleted, and of what was thrown. */
+export type DeletionFault = (place: { readonly study: string; readonly participant: string }, error: unknown) => void;
+
+/** Deletes all that is stored of a participant, and keeps a receipt of it. */
+export class StudyDeletion {
+  readonly #parts: StudyDeletionParts;
+
+  constructor(parts: StudyDeletionParts) {
+    this.#parts = parts;
+  }
+
+  delete(study: string, participant: string, reason: Receipt['reason'], at: number): Receipt {
+    const { database, plans, places, records, motion, commands } = this.#parts;
+    const receipt = database.transaction(() => {
+      // Refuses a participant whom there is not.
+      places.get(study, participant);
+      const invitation = this.#invitationAfter(study, reason);
+      const recordCount = records.delete(study, participant);
+      const motionFiles = motion.delete(study, participant);
+      commands.delete(study, participant);
+      places.clear(study, participant, invitation, reason === 'withdrawn');
+      if (reason === 'experimenter') plans.freePlaces(study, participant);
+      return database.getOne<ReceiptRow>(
+        `INSERT INTO receipts (study, participant, reason, records, motion_files, at) VALUES (?, ?, ?, ?, ?, ?)
+         RETURNING *`,
+        ...[study, participant, reason, recordCount, motionFiles, at],
+      );
+    });
+    database.forgetDeleted();
+    return receiptOf(receipt);
+  }
+
+  /** Deletes a simulated study to its last record, and its receipts; one of people goes participant by participant. */
+  deleteSimulated(study: string): void {
+    const { database, plans } = this.#parts;
+    if (!plans.get(study).simulated) {
+      throw new StoreRefusal('forbidden', `the study "${study}" is of people: its participants are deleted one by one`);
+    }
+    database.transaction(() => {
+      for (const table of ['records', 'motion', 'receipts']) {
+        database.run(`DELETE FROM ${table} WHERE study = ?`, study);
+      }
+      plans.remove(study);
+    });
+    database.forgetDeleted();
+  }
+
+  /** Deletes everything of the participant who has this code; null: none has. */
+  withdraw(study: string, code: string, at: number): Receipt | null {
+    const participant = this.#parts.places.ownerOf(study, code);
+    return participant === null ? null : this.delete(study, participant, 'withdrawn', at);
+  }
+
+  /** Deletes what is past its retention date, of each participant by itself; tells `onFault` of whom that failed. */
+  deleteExpired(now: number, onFault: DeletionFault): readonly Receipt[] {
+    return this.#parts.places.expired(now).flatMap((place) => {
+      try {
+        return [this.delete(place.study, place.participant, 'retention', now)];
+      } catch (error) {
+        onFault(place, error);
+        return [];
+      }
+    });
+  }
+
+  receipts(study: string): readonly Receipt[] {
+    const rows = this.#parts.database.all<ReceiptRow>('SELECT * FROM receipts WHERE study = ? ORDER BY number', study);
+    return rows.map(receiptOf);
+  }
+
+  /** A participant who withdrew stays out; a place that the experimenter cleared may be taken anew, by a new invitation or by that of all. */
+  #invitationAfter(study: string, reason: Receipt['reason']): string | null {
+    const { plans } = this.#parts;
+    if (reason !== 'experimenter') return null;
+    const common = plans.get(study).plan.entry === 'open' ? plans.commonInvitation(study) : null;
+    return common ?? newCode();
+  }
+}

@@ -1,0 +1,129 @@
+import { randomBytes } from 'node:crypto';
+import { chmodSync, existsSync, mkdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import { ConfigurationError } from 'threepoint-http/configuration-error';
+import { weaknessOf } from 'threepoint-http/secret-bits';
+import type { Software } from 'threepoint-http/software';
+import { FolderLock, FolderTaken, StoreRefusal, sqliteCodeOf } from './database';
+import { DatabaseProblem } from './schema';
+import { openStudyStore, type StudyStore } from './store';
+
+/** The folder of the studies, open: no other server has it. */
+export interface StudyFolder {
+  readonly store: StudyStore;
+  readonly experimenterToken: string;
+  /** Holds the token; null: it was given. */
+  readonly tokenFile: string | null;
+  close(): void;
+}
+
+/** The form of the tokens that this server draws, and has drawn before. */
+const drawnToken = /^([\w-]{43}|[\w-]{32})$/;
+
+const modeOf = (path: string): string => (statSync(path).mode & 0o777).toString(8).padStart(4, '0');
+
+/** The token in this file; drawn and written, readable for its owner alone, where there is none. */
+function keptToken(file: string): string {
+  if (!existsSync(file)) writeFileSync(file, `${randomBytes(32).toString('base64url')}\n`, { mode: 0o600 });
+  const token = readFileSync(file, 'utf8').trim();
+  const weakness = drawnToken.test(token) ? null : weaknessOf(token);
+  if (weakness) throw new ConfigurationError(`The experimenter's token in ${file} ${weakness}`);
+  return token;
+}
+
+/** Takes the rights of other accounts of the machine away from what they could read. Windows has no such modes. */
+function closeToOthers(path: string, mode: number, log: (line: string) => void): void {
+  if (process.platform === 'win32' || !existsSync(path) || (statSync(path).mode & 0o077) === 0) return;
+  const before = `${path} was open to other accounts of this machine (mode ${modeOf(path)})`;
+  try {
+    chmodSync(path, mode);
+    log(`study: ${before}; its mode is ${modeOf(path)} now.`);
+  } catch (error) {
+    log(`study: ${before}, which could not be changed (${reasonOf(error)}): run "chmod ${mode.toString(8)} ${path}".`);
+  }
+}
+
+/** The folder and its files, for the account of the server alone; made where they are missing. */
+function prepare(directory: string, log: (line: string) => void): void {
+  mkdirSync(directory, { recursive: true, mode: 0o700 });
+  closeToOthers(directory, 0o700, log);
+  for (const name of ['studies.db', 'studies.db-wal', 'studies.db-shm', 'studies.lock', 'experimenter-token']) {
+    closeToOthers(join(directory, name), 0o600, log);
+  }
+}
+
+/** What a person can do about a folder that cannot be opened; null: the error is none of its. */
+function remedyOf(error: unknown, directory: string): string | null {
+  const file = join(directory, 'studies.db');
+  const reason = reasonOf(error);
+  if (error instanceof FolderTaken) {
+    return `Another server has the folder ${directory}. End it, or name another folder with --studies.`;
+  }
+  if (error instanceof DatabaseProblem) return `${file} ${error.message}`;
+  if (error instanceof StoreRefusal)
+    return `${file} cannot be written: ${reason}. Mend that, then start the server again.`;
+  const { code } = (error ?? {}) as NodeJS.ErrnoException;
+  if (code === 'ENOSPC' || code === 'EDQUOT') {
+    return `The disk with ${directory} is full (${reason}). Make room, then start the server again.`;
+  }
+  if (code === 'EMFILE' || code === 'ENFILE') {
+    return `The files that the server may have open do not suffice (${reason}). Raise the limit: ulimit -n 1024.`;
+  }
+  if (typeof code === 'string' && /^E[A-Z]+$/.test(code)) {
+    return `The folder ${directory} cannot be used (${reason}). Give the account of the server the right to write there, or name another folder with --studies.`;
+  }
+  const sqlite = sqliteCodeOf(error);
+  if (sqlite === null) return null;
+  switch (sqlite & 0xff) {
+    case 5:
+    case 6:
+      return `${file} is locked by another program (${reason}). End that program, then start the server again.`;
+    case 13:
+      return `The disk with ${file} is full (${reason}). Make room, then start the server again.`;
+    case 11:
+    case 26:
+      return `${file} is damaged, or no database (${reason}). Put a copy of it back, or move it away to begin with an empty one; "sqlite3 ${file} .recover" reads what can still be read.`;
+    default:
+      return `${file} cannot be used (${reason}). Give the account of the server the right to write to it and to its folder, or name another folder with --studies.`;
+  }
+}
+
+export interface StudyFolderOptions {
+  /** Holds the database and a token that the server drew; made where it is missing. */
+  readonly directory: string;
+  /** The experimenter's token; null: the one kept in the directory, drawn at the first start. */
+  readonly token: string | null;
+  /** What serves the studies from now on. */
+  readonly software: Software;
+}
+
+/**
+ * Opens the folder of the studies at this time [s]. Throws a ConfigurationError with the file and the remedy where it cannot be used: taken by
+ * another server, not writable, or with a database that is damaged, locked or of a newer version.
+ */
+export function openStudyFolder(
+  { directory, token, software }: StudyFolderOptions,
+  at: number,
+  log: (line: string) => void,
+): StudyFolder {
+  const opened: (FolderLock | StudyStore)[] = [];
+  const close = () => {
+    for (const part of opened.toReversed()) part.close();
+  };
+  try {
+    prepare(directory, log);
+    opened.push(new FolderLock(join(directory, 'studies.lock')));
+    const tokenFile = token === null ? join(directory, 'experimenter-token') : null;
+    const experimenterToken = token ?? keptToken(tokenFile as string);
+    const store = openStudyStore(join(directory, 'studies.db'));
+    opened.push(store);
+    store.software.note(software, at);
+    return { store, experimenterToken, tokenFile, close };
+  } catch (error) {
+    close();
+    if (error instanceof ConfigurationError) throw error;
+    const remedy = remedyOf(error, directory);
+    throw remedy === null ? error : new ConfigurationError(remedy);
+  }
+}

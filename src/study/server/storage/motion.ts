@@ -1,0 +1,79 @@
+import { gunzipSync, gzipSync } from 'node:zlib';
+import { StoreRefusal, type StudyDatabase } from './database';
+import type { StudyPlaces } from './places';
+
+/** A recording of tracked frames, as recording.ts writes it. */
+export interface MotionFile {
+  readonly participant: string;
+  /** Id of the trial's record. */
+  readonly trial: string;
+  readonly text: string;
+}
+
+/** The same as it is stored. */
+export interface PackedMotion {
+  readonly participant: string;
+  readonly trial: string;
+  readonly gzipped: Uint8Array;
+}
+
+export const unpacked = ({ participant, trial, gzipped }: PackedMotion): MotionFile => ({
+  participant,
+  trial,
+  text: gunzipSync(gzipped).toString(),
+});
+
+/** Compressed bytes of tracked frames. */
+export const mostMotionPerParticipant = 256 * 2 ** 20;
+
+/** The tracked frames of trials, of participants who consented to their being kept. */
+export class StudyMotion {
+  readonly #database: StudyDatabase;
+  readonly #places: StudyPlaces;
+
+  constructor(database: StudyDatabase, places: StudyPlaces) {
+    this.#database = database;
+    this.#places = places;
+  }
+
+  store(study: string, participant: string, trial: string, text: string, at: number): void {
+    const gzipped = gzipSync(text);
+    this.#database.transaction(() => {
+      if (this.#places.getPresent(study, participant).motion_consent !== 1) {
+        throw new StoreRefusal('forbidden', `${participant} has not consented to motion recording`);
+      }
+      const stored = this.#database.get<PackedMotion>(
+        'SELECT gzipped FROM motion WHERE study = ? AND participant = ? AND trial = ?',
+        ...[study, participant, trial],
+      );
+      if (stored) {
+        if (gunzipSync(stored.gzipped).toString() === text) return;
+        throw new StoreRefusal('conflict', `${participant} has stored another recording of "${trial}" already`);
+      }
+      const { bytes } = this.#database.getOne<{ bytes: number }>(
+        'SELECT coalesce(sum(length(gzipped)), 0) AS bytes FROM motion WHERE study = ? AND participant = ?',
+        ...[study, participant],
+      );
+      if (bytes + gzipped.length > mostMotionPerParticipant) {
+        throw new StoreRefusal('full', `${participant} has ${bytes} bytes of motion already`);
+      }
+      this.#database.run(
+        'INSERT INTO motion (study, participant, trial, gzipped, received_at) VALUES (?, ?, ?, ?, ?)',
+        ...[study, participant, trial, gzipped, at],
+      );
+    });
+  }
+
+  /** Of one participant, or of all. */
+  all(study: string, participant?: string): readonly PackedMotion[] {
+    const packed = 'SELECT participant, trial, gzipped FROM motion WHERE study = ?';
+    return participant === undefined
+      ? this.#database.all(`${packed} ORDER BY participant, trial`, study)
+      : this.#database.all(`${packed} AND participant = ? ORDER BY trial`, study, participant);
+  }
+
+  /** Inside a transaction; returns how many files there were. */
+  delete(study: string, participant: string): number {
+    return this.#database.run('DELETE FROM motion WHERE study = ? AND participant = ?', study, participant);
+  }
+}

@@ -1,0 +1,212 @@
+import { ValidationError } from 'threepoint/core/validation/validation';
+import { togetherWith } from '../../model/plan/allocation';
+import { checkedPlan, participantsOf, type StudyPlan, storedPlan } from '../../model/plan/plan';
+import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
+import { StoreRefusal, type StudyDatabase } from './database';
+import { PlanPlaces } from './plan-places';
+
+interface StudyRow {
+  readonly id: string;
+  readonly simulated: number;
+  readonly created_at: number;
+  readonly retention_until: number;
+}
+
+interface VersionRow {
+  readonly version: number;
+  readonly plan: string;
+  readonly since: number;
+}
+
+export interface AddOptions {
+  readonly simulated: boolean;
+  /** Seconds since 1970. */
+  readonly at: number;
+  /** Where the study has begun with another plan: this one is for those who come later. */
+  readonly newVersion?: boolean;
+}
+
+const secondsPerDay = 86_400;
+
+/** "P01, P02 and 3 more". */
+const listed = (names: readonly string[]) =>
+  names.length > 4 ? `${names.slice(0, 3).join(', ')} and ${names.length - 3} more` : names.join(', ');
+
+/** The studies themselves: their plans, version by version, and the places that these have. */
+export class StudyPlans {
+  readonly #database: StudyDatabase;
+  readonly #places: PlanPlaces;
+
+  constructor(database: StudyDatabase) {
+    this.#database = database;
+    this.#places = new PlanPlaces(database);
+  }
+
+  /** The study of this id, its plan in this version or in the newest; throws a StoreRefusal where there is none. */
+  get(id: string, version?: number): StudyInfo {
+    const row = this.#row(id);
+    if (!row) throw new StoreRefusal('unknown', `there is no study "${id}"`);
+    return this.#infoOf(row, version);
+  }
+
+  /** The plan that a participant follows: the one that they began with, else the newest. */
+  planFor(id: string, participant: string): StudyPlan {
+    this.#refuseUnknown(id);
+    const { plan } = this.#database.getOne<VersionRow>(
+      `SELECT * FROM plan_versions WHERE study = ? AND version = coalesce(
+         (SELECT plan_version FROM participants WHERE study = ? AND participant = ?),
+         (SELECT max(version) FROM plan_versions WHERE study = ?))`,
+      ...[id, id, participant, id],
+    );
+    return storedPlan(JSON.parse(plan));
+  }
+
+  /** Oldest first. */
+  all(): readonly StudyInfo[] {
+    return this.#database
+      .all<StudyRow>('SELECT * FROM studies ORDER BY created_at, id')
+      .map((row) => this.#infoOf(row));
+  }
+
+  /**
+   * Adds a study, or finds the same one there. Another plan under the id of a study that has begun is refused, unless it is asked for as a
+   * new version: those who began, and who play with them, stay with theirs.
+   */
+  add(plan: StudyPlan, { simulated, at, newVersion = false }: AddOptions): StudyInfo {
+    return this.#database.transaction(() => {
+      const checked = checkedPlan(plan);
+      const stored = this.#row(checked.id);
+      if (!stored) {
+        this.#insert(checked, simulated, at);
+        return this.get(checked.id);
+      }
+      if (stored.simulated !== Number(simulated)) {
+        throw new StoreRefusal(
+          'conflict',
+          `the study "${checked.id}" is ${stored.simulated ? 'simulated' : 'of people'}: give this one another id`,
+        );
+      }
+      const known = this.#infoOf(stored);
+      if (JSON.stringify(known.plan) === JSON.stringify(checked)) return known;
+      const begun = this.#places.begun(checked.id);
+      if (begun.length === 0) {
+        this.remove(checked.id);
+        this.#insert(checked, simulated, at);
+      } else if (newVersion) this.#addVersion(known, checked, at);
+      else {
+        const text =
+          `the study "${checked.id}" has begun: ${listed(begun.map(({ participant }) => participant))} keep its plan. ` +
+          `What has changed can be version ${known.version + 1}, for those who come later; or give it another id`;
+        throw new StoreRefusal('begun', text);
+      }
+      return this.get(checked.id);
+    });
+  }
+
+  /** Returns the invitation that all places of an open study share in its newest plan, or null if there is none. */
+  commonInvitation(id: string): string | null {
+    return this.#places.commonInvitation(id);
+  }
+
+  /** Moves a cleared place, and those that depend on it, to the newest plan, in a transaction. */
+  freePlaces(id: string, participant: string): void {
+    this.#places.free(this.get(id), participant);
+  }
+
+  /** Inside a transaction, of a study in which nothing is recorded. */
+  remove(id: string): void {
+    for (const table of ['commands', 'participants', 'plan_versions']) {
+      this.#database.run(`DELETE FROM ${table} WHERE study = ?`, id);
+    }
+    this.#database.run('DELETE FROM studies WHERE id = ?', id);
+  }
+
+  #row(id: string): StudyRow | undefined {
+    return this.#database.get<StudyRow>('SELECT * FROM studies WHERE id = ?', id);
+  }
+
+  #refuseUnknown(id: string): void {
+    if (!this.#row(id)) throw new StoreRefusal('unknown', `there is no study "${id}"`);
+  }
+
+  #infoOf(row: StudyRow, asked?: number): StudyInfo {
+    const places = this.#database.all<{ participant: string; plan_version: number | null }>(
+      'SELECT participant, plan_version FROM participants WHERE study = ? ORDER BY participant',
+      row.id,
+    );
+    const versions = this.#database
+      .all<VersionRow>('SELECT * FROM plan_versions WHERE study = ? ORDER BY version', row.id)
+      .map(
+        ({ version, plan, since }): PlanVersion => ({
+          version,
+          plan: storedPlan(JSON.parse(plan)),
+          since,
+          participants: places.filter((place) => place.plan_version === version).map(({ participant }) => participant),
+        }),
+      );
+    const shown = asked === undefined ? versions.at(-1) : versions.find(({ version }) => version === asked);
+    if (!shown) throw new StoreRefusal('unknown', `the plan of "${row.id}" has no version ${asked}`);
+    return {
+      plan: shown.plan,
+      version: shown.version,
+      versions,
+      simulated: row.simulated === 1,
+      createdAt: row.created_at,
+      retentionUntil: row.retention_until,
+    };
+  }
+
+  #addVersion({ versions, version, plan: before, retentionUntil }: StudyInfo, plan: StudyPlan, at: number): void {
+    const { id } = plan;
+    const [text, textBefore] = [plan, before].map(({ consent }) => JSON.stringify({ ...consent, version: '' }));
+    if (text !== textBefore && plan.consent.version === before.consent.version) {
+      throw new ValidationError('consent.version', 'the text has changed, and its version has not');
+    }
+    const [code, codeBefore] = [plan, before].map((one) => participantsOf(one)[0]);
+    if (code !== codeBefore) {
+      throw new ValidationError(
+        'participants',
+        `the codes of participants would change from ${codeBefore} to ${code}, and links that were sent would open nothing: give the plan another id`,
+      );
+    }
+    const kept = new Map<string, number>();
+    for (const { participant, plan_version } of this.#places.begun(id)) {
+      const own = versions.find((one) => one.version === plan_version)?.plan ?? before;
+      for (const member of togetherWith(own, participant)) kept.set(member, plan_version);
+    }
+    for (const participant of participantsOf(plan)) {
+      const mixed = kept.has(participant)
+        ? undefined
+        : [...togetherWith(plan, participant)].find((one) => kept.has(one));
+      if (mixed === undefined) continue;
+      throw new StoreRefusal(
+        'conflict',
+        `${participant} would play with ${mixed}, who stays with version ${kept.get(mixed)}: leave seed, participants and ` +
+          'group sizes as they are, or give the plan another id',
+      );
+    }
+    const common = plan.entry === 'open' ? this.#places.commonInvitation(id) : null;
+    this.#database.run(
+      'INSERT INTO plan_versions (study, version, plan, since) VALUES (?, ?, ?, ?)',
+      ...[id, version + 1, JSON.stringify(plan), at],
+    );
+    // What those who take part were promised holds for all.
+    const until = Math.min(retentionUntil, at + plan.retentionDays * secondsPerDay);
+    this.#database.run('UPDATE studies SET retention_until = ? WHERE id = ?', until, id);
+    this.#places.follow(id, kept);
+    this.#places.renewFree(plan, { linksHold: plan.entry === before.entry, common });
+  }
+
+  #insert(plan: StudyPlan, simulated: boolean, at: number): void {
+    const retentionUntil = at + plan.retentionDays * secondsPerDay;
+    this.#database.run(
+      'INSERT INTO studies (id, simulated, created_at, retention_until) VALUES (?, ?, ?, ?)',
+      ...[plan.id, Number(simulated), at, retentionUntil],
+    );
+    this.#database.run(
+      'INSERT INTO plan_versions (study, version, plan, since) VALUES (?, 1, ?, ?)',
+      ...[plan.id, JSON.stringify(plan), at],
+    );
+    this.#places.add(plan, () => null);
+  }
+}

@@ -1,0 +1,32 @@
+import type { Software } from 'threepoint-http/software';
+import type { StudyDatabase } from './database';
+
+/** Software and since when it served the studies, in seconds since 1970. */
+export type ServedSoftware = Software & { readonly since: number };
+
+/** With which software this server has served its studies. */
+export class StudySoftware {
+  readonly #database: StudyDatabase;
+
+  constructor(database: StudyDatabase) {
+    this.#database = database;
+  }
+
+  /** This software serves from now on; what serves already is not noted again. */
+  note(software: Software, at: number): void {
+    const text = JSON.stringify(software);
+    const last = this.#database.get<{ software: string }>('SELECT software FROM software ORDER BY number DESC LIMIT 1');
+    if (last?.software === text) return;
+    this.#database.transaction(() => {
+      this.#database.run('INSERT INTO software (software, since) VALUES (?, ?)', text, at);
+    });
+  }
+
+  /** What has served since this moment, the oldest first. */
+  since(at: number): readonly ServedSoftware[] {
+    const all = this.#database
+      .all<{ software: string; since: number }>('SELECT software, since FROM software ORDER BY number')
+      .map(({ software, since }) => ({ since, ...(JSON.parse(software) as Software) }));
+    return all.filter((_, index) => (all[index + 1]?.since ?? Number.POSITIVE_INFINITY) > at);
+  }
+}

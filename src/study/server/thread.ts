@@ -1,0 +1,143 @@
+import { join } from 'node:path';
+import type { MessagePort } from 'node:worker_threads';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import type { WrongGuess } from 'threepoint-http/auth-throttle';
+import { ConfigurationError } from 'threepoint-http/configuration-error';
+import { answerCalls, logFrom } from 'threepoint-http/thread-calls';
+import { createExporter } from './export/exporter';
+import { StudyDispatcher, type StudyOutcome } from './routes/dispatcher';
+import { createStudyRoutes, type StudyRequest, type StudyRoute } from './routes/routes';
+import { createStudySeats, type SignSeat } from './routes/seats';
+import { openStudyFolder, type StudyFolder, type StudyFolderOptions } from './storage/folder';
+import type { StudyStore } from './storage/store';
+
+// The thread that has the studies: their database, the secrets that open them and the rules of who may what. Nothing that takes it long, or
+// that a disk does not finish, holds up the thread of the sockets.
+
+export interface StudyThreadOptions extends StudyFolderOptions {
+  /** Signs participants into the rooms of their trials. */
+  readonly secret: string;
+}
+
+export type OpenedStudies =
+  | { readonly problem: string }
+  | {
+      readonly routes: readonly Omit<StudyRoute, 'handle'>[];
+      /** Holds the token; null: it was given. */
+      readonly tokenFile: string | null;
+    };
+
+/** What the thread does for others; `at` is seconds since 1970. */
+export type StudyThreadApi = {
+  /** The first call of all. */
+  open(options: StudyThreadOptions, at: number): OpenedStudies;
+  admit(route: number, request: StudyRequest): Promise<StudyOutcome>;
+  handle(route: number, request: StudyRequest, body: Uint8Array<ArrayBuffer>): Promise<StudyOutcome>;
+  /** Deletes what is past its retention date. */
+  expire(at: number): void;
+  close(): void;
+};
+
+/** How often overwriting deleted data is tried again where it failed [ms]. */
+const forgetMs = 1000;
+
+const wrongGuess = ({ what, of, address, failures }: WrongGuess): string =>
+  `study: a wrong ${what}${of === null ? '' : ` for "${of}"`} came from ${address}, number ${failures} within the hour`;
+
+type Log = (line: string) => void;
+
+/** Deletes what is past its retention date. A full disk or a locked database must not end a server that others use. */
+function expire(store: StudyStore, at: number, log: Log): void {
+  const again = 'which is tried again within the hour';
+  try {
+    const receipts = store.deletion.deleteExpired(at, ({ study, participant }, error) => {
+      const failed = 'is past the retention date and could not be deleted';
+      log(`study "${study}": ${participant} ${failed}, ${again}: ${reasonOf(error)}`);
+    });
+    for (const { study, participant, records } of receipts) {
+      log(`study "${study}": ${participant} is past the retention date, ${records} records deleted`);
+    }
+  } catch (error) {
+    log(`study: who is past a retention date could not be read, ${again}: ${reasonOf(error)}`);
+  }
+}
+
+/** Overwrites deleted data as soon as it can be. */
+function keepForgetting(store: StudyStore, log: Log): NodeJS.Timeout {
+  let isHeld = false;
+  return setInterval(() => {
+    const wasHeld = isHeld;
+    isHeld = !store.forgetDeleted();
+    if (isHeld && !wasHeld) {
+      log(
+        'study: deleted data stays in studies.db-wal while another program reads it or the disk is full: end that program, or make room',
+      );
+    }
+    if (wasHeld && !isHeld) log('study: deleted data is overwritten now');
+  }, forgetMs);
+}
+
+interface OpenFolder {
+  readonly folder: StudyFolder;
+  readonly dispatcher: StudyDispatcher;
+  readonly forgetting: NodeJS.Timeout;
+}
+
+/** Makes the signer of seats from the secret of the server; `now`: seconds since 1970. */
+export type CreateSignSeat = (secret: string, now: () => number) => SignSeat;
+
+/** Answers the calls that arrive on the port of this thread until the process ends. */
+export function serveStudies(port: MessagePort, createSignSeat: CreateSignSeat): void {
+  const log = logFrom(port);
+  let serving: OpenFolder | null = null;
+  // The time of the newest request: the clock of the process is that of its main thread.
+  let newest = 0;
+
+  function open({ secret, ...options }: StudyThreadOptions, at: number): OpenedStudies {
+    newest = at;
+    try {
+      const folder = openStudyFolder(options, at, log);
+      const { store, experimenterToken, tokenFile } = folder;
+      const { directory, software } = options;
+      const routes = createStudyRoutes({
+        ...{ store, experimenterToken, software },
+        seats: createStudySeats(
+          secret,
+          createSignSeat(secret, () => newest),
+        ),
+        makeZip: createExporter(join(directory, 'studies.db')),
+        onWrongGuess: (guess) => log(wrongGuess(guess)),
+      });
+      const dispatcher = new StudyDispatcher({ routes, store, log });
+      serving = { folder, dispatcher, forgetting: keepForgetting(store, log) };
+      return { routes: routes.routes.map(({ handle: _, ...rest }) => rest), tokenFile };
+    } catch (error) {
+      if (error instanceof ConfigurationError) return { problem: error.message };
+      throw error;
+    }
+  }
+
+  function opened(): OpenFolder {
+    if (!serving) throw new Error('the studies are not open');
+    return serving;
+  }
+
+  answerCalls<StudyThreadApi>(port, {
+    open,
+    admit(route, request) {
+      newest = request.at;
+      return opened().dispatcher.admit(route, request);
+    },
+    handle(route, request, body) {
+      newest = request.at;
+      return opened().dispatcher.handle(route, request, body);
+    },
+    expire: (at) => expire(opened().folder.store, at, log),
+    close() {
+      const { folder, forgetting } = opened();
+      clearInterval(forgetting);
+      folder.close();
+      serving = null;
+    },
+  });
+}
