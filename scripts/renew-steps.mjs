@@ -16,14 +16,6 @@ export const steps = [
     renews: 'networks without the people of each fold, in .cache/cross-validation, and their errors',
     takes: 'an hour',
   },
-  // Adds its errors to the contract of the cross-validation, from which the page's networks take them.
-  {
-    name: 'in-turn',
-    script: 'train',
-    options: ['--leave-one-out', '--groups', '4'],
-    renews: 'errors by person and by what is known of hands, in docs/training.md',
-    takes: 'three quarters of an hour',
-  },
   {
     name: 'all-subjects',
     script: 'train',
