@@ -49,7 +49,7 @@ export const steps = [
     name: 'legs',
     script: 'report',
     options: ['--legs'],
-    renews: 'tables of legs in docs/accuracy.md',
+    renews: 'the table of legs in docs/accuracy.md',
     takes: 'five minutes',
   },
   {
