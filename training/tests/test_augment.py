@@ -7,7 +7,7 @@ import pytest
 from threepoint_training import hand_tilt, mirror, quaternion
 from threepoint_training.augment import AugmentConfig, BalanceConfig, BodyParts, draw_batch
 from threepoint_training.chest_features import CHEST_FEATURES, chest_axes
-from threepoint_training.features import ARM_LENGTH, FEATURES, HANDS, HEADSET_HEIGHT, IK_JOINTS, SEEN, frame_features, hand_positions
+from threepoint_training.features import ARM_LENGTH, FEATURES, HANDS, HEADSET_HEIGHT, IK_JOINTS, SEEN, frame_features
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.prepare import EYES_FROM_HEAD_JOINT
 from threepoint_training.residual import network_input, residual
@@ -55,6 +55,11 @@ def joints_of(batch):
     """The true joints [N, 6, 3] from the headset, heading frame, eye heights."""
     newest = batch.inputs[:, :FEATURES].astype(np.float64)
     return newest[:, IK_JOINTS].reshape(-1, 6, 3) + batch.targets.reshape(-1, 6, 3) @ chest_axes(newest)
+
+
+def hand_positions(inputs):
+    """Left and right wrist [..., 2, 3] of inputs [..., ≥ 46]: from the headset, heading frame, in arm lengths."""
+    return np.stack([inputs[..., hand.start : hand.start + 3] for hand in HANDS], axis=-2)
 
 
 def assert_rows_of(batch, rows):

@@ -97,8 +97,7 @@ def main(
         report(f"held out: {', '.join(group)}")
         return _judged(corpus, group, recipe, ik, config)
 
-    shipped = splits.training_people("A", tuple(name for name in corpus.people if name in splits.VARIED))
-    reach = usual_reach(corpus, shipped, config)
+    reach = usual_reach(corpus, trainable, config)
     report(f"usual reach of the people that the page's IK is fitted on: {reach:.3f} (headset-rise.json: {HEADSET_RISE['usualReach']})")
     home = [judged(group) for group in splits.groups_in_turn(trainable, config.groups)]
     away = judged(elsewhere) if elsewhere else np.full((1, len(FAULTS), 2, 2), np.nan)
