@@ -16,14 +16,6 @@ export const steps = [
     renews: 'networks without the people of each fold, in .cache/cross-validation, and their errors',
     takes: 'an hour',
   },
-  // Adds its errors to the contract of the cross-validation, from which the page's networks take them.
-  {
-    name: 'in-turn',
-    script: 'train',
-    options: ['--leave-one-out', '--groups', '4'],
-    renews: 'errors by person and by what is known of hands, in docs/training.md',
-    takes: 'three quarters of an hour',
-  },
   {
     name: 'all-subjects',
     script: 'train',
@@ -57,7 +49,7 @@ export const steps = [
     name: 'legs',
     script: 'report',
     options: ['--legs'],
-    renews: 'tables of legs in docs/accuracy.md',
+    renews: 'the table of legs in docs/accuracy.md',
     takes: 'five minutes',
   },
   {

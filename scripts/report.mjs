@@ -1,6 +1,6 @@
 // npm run report -- --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]: measures the shipping path with the
 // networks that npm run train left without their fold's people, and renews the tables and figures of docs/accuracy.md. npm run report --
-// --redraw: the same from what was measured last. npm run report -- --legs --mocap DIR: the tables of legs alone, with the page's network for
+// --redraw: the same from what was measured last. npm run report -- --legs --mocap DIR: the table of legs alone, with the page's network for
 // the body and those that npm run train:gait left for the gait of people they have not seen.
 import { existsSync, mkdirSync, rmSync } from 'node:fs';
 import { join, resolve } from 'node:path';

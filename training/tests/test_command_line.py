@@ -24,7 +24,7 @@ def test_a_run_has_one_seed_for_both_networks():
         assert (config.paper.seed, config.learned.seed) == (3, 3)
 
 
-@pytest.mark.parametrize(("option", "task"), [("--select", "selection"), ("--noticed", "noticed wear"), ("--leave-one-out", "leave one out"), ("--lockbox", "lockbox")])
+@pytest.mark.parametrize(("option", "task"), [("--select", "selection"), ("--noticed", "noticed wear"), ("--lockbox", "lockbox")])
 def test_a_study_is_done_instead_of_the_training(option, task):
     assert config_of(["--generated", option]).task == task
 
@@ -32,8 +32,8 @@ def test_a_study_is_done_instead_of_the_training(option, task):
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        (["--groups", "4"], "--groups 4 is of --select and --leave-one-out: give one of them too"),
-        (["--leave-one-out", "--groups", "1"], "--groups 1: two groups at least"),
+        (["--groups", "4"], "--groups 4 is of --select: give that too"),
+        (["--select", "--groups", "1"], "--groups 1: two groups at least"),
         (["--lockbox", "--steps", "7"], "--lockbox trains nothing: it takes neither --steps nor --quick"),
         (["--lockbox", "--quick"], "--lockbox trains nothing: it takes neither --steps nor --quick"),
     ],

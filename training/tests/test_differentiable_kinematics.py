@@ -5,12 +5,13 @@ import pytest
 import torch
 from golden_file import assert_as_committed
 from threepoint_training import golden
+from threepoint_training.augment import AugmentConfig, BodyParts, draw_batch
 from threepoint_training.chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, REACH_LENGTHS
 from threepoint_training.differentiable_kinematics import DifferentiableKinematics
 from threepoint_training.features import ARM_LENGTH, IK_JOINTS
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.skeleton import load_proportions
-from threepoint_training.train_learned import Condition, HeldOut, fitted_errors_cm, held_out, ik_errors_cm, mean_distances, raw_errors_cm
+from threepoint_training.train_learned import HeldOut, fitted_errors_cm, held_out, ik_errors_cm, mean_distances, raw_errors_cm
 
 pytestmark = pytest.mark.training
 
@@ -37,7 +38,8 @@ def test_ik_stays_within_a_centimetre_where_hands_are_in_reach():
 @pytest.mark.parametrize("typed", [False, True])
 def test_elbows_lie_where_both_bones_let_them_be(typed):
     """The calibrated ones, whether the forearm is typed or the average's."""
-    people = held_out(CORPUS, tuple(CORPUS.people)[:1], (0.0, 0.1, 0.25), condition=Condition(forearm_typed=typed))
+    config = AugmentConfig(typed_forearms=float(typed))
+    people = draw_batch(BodyParts(CORPUS, tuple(CORPUS.people)), 200, config, np.random.default_rng(4))
     inputs = torch.from_numpy(people.inputs)
     fitted = DifferentiableKinematics()(corrections_of(0.02)[: len(inputs)], inputs).numpy()
     elbow_shift, shoulder_shift = fitted[:, :2], fitted[:, 2:4]

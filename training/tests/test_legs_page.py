@@ -1,4 +1,4 @@
-"""Facts about the tables of legs: people alike, with long clips and short ones; another laboratory in rows of its own."""
+"""Facts about the table of legs: people alike, with long clips and short ones; another laboratory in rows of its own."""
 
 from pathlib import Path
 
@@ -31,14 +31,9 @@ def test_people_count_alike_and_another_laboratory_by_itself() -> None:
     assert lines[0][head.index("contact told")] == "80 %"
 
 
-def test_each_person_has_a_row_that_says_who_was_trained_on() -> None:
-    _, _, *lines = rows(legs_page.by_person(LEGS))
-    assert [line[0] for line in lines] == ["002 (trained on)", "005", "901"]
-
-
 def test_the_page_without_a_place_for_them_is_told(tmp_path: Path) -> None:
     (tmp_path / "legs.json").write_text('{"people": {}}')
     page = tmp_path / "page.md"
-    page.write_text("<!-- legs -->\n<!-- /legs -->\n")
-    with pytest.raises(ValueError, match="no place for legs-people"):
+    page.write_text("# Legs\n")
+    with pytest.raises(ValueError, match="no place for legs"):
         legs_page.main(tmp_path / "legs.json", page)

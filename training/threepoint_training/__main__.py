@@ -15,7 +15,6 @@ from .training_config import Task, TrainConfig, quick
 _TASKS: dict[str, tuple[Task, str]] = {
     "--select": ("selection", "the recipe judged by the selection metric, and compared with earlier ones"),
     "--noticed": ("noticed wear", "what minutes of wearing tell of a wrong calibration, of people held out in four groups, for docs/accuracy.md"),
-    "--leave-one-out": ("leave one out", "each subject held out in turn, for docs/training.md"),
     "--lockbox": ("lockbox", "the learned network in --out on the lockbox people, logged in training/lockbox-log.json; for a release only"),
 }
 
@@ -38,7 +37,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--refit-kinematics", action="store_true", help="also fit the page's body proportions and IK anew")
     for option, (_, what) in _TASKS.items():
         parser.add_argument(option, dest="tasks", action="append_const", const=option, help=f"instead of all that: {what}")
-    parser.add_argument("--groups", type=int, help="with --select or --leave-one-out: so many groups in turn instead of one subject at a time")
+    parser.add_argument("--groups", type=int, help="with --select: so many groups in turn instead of one subject at a time")
     parser.add_argument("--steps", type=int, help=f"of our network's training (default: {TrainConfig.learned.steps})")
     parser.add_argument("--quick", action="store_true", help="a twentieth of the training, but for --steps: does it run?")
     return parser
@@ -69,8 +68,8 @@ def config_of(arguments: Sequence[str]) -> TrainConfig:
     )
     if unknown := set(config.folds) - set(FOLDS):
         parser.error(f"no fold {', '.join(sorted(unknown))}; there are {', '.join(FOLDS)}")
-    if config.groups is not None and config.task not in ("selection", "leave one out"):
-        parser.error(f"--groups {config.groups} is of --select and --leave-one-out: give one of them too")
+    if config.groups is not None and config.task != "selection":
+        parser.error(f"--groups {config.groups} is of --select: give that too")
     if config.groups is not None and config.groups < 2:
         parser.error(f"--groups {config.groups}: two groups at least, or there is no one to train on")
     if given.steps is not None and given.steps < 1:

@@ -64,11 +64,10 @@ class AugmentConfig:
 
 @dataclass(frozen=True)
 class Batch:
-    """inputs [N, T·46 + 38] and targets [N, 18] of the network; people [N, 3]: whose torso, left and right arm, as indices into `BodyParts.people`."""
+    """The inputs [N, T·46 + 38] and targets [N, 18] of the network."""
 
     inputs: NDArray[np.float32]
     targets: NDArray[np.float32]
-    people: NDArray[np.int64]
 
 
 class BodyParts:
@@ -89,7 +88,7 @@ class BodyParts:
         self.clip_start = np.repeat(np.cumsum([0, *lengths[:-1]]), lengths)
         self.sizes = np.repeat(np.array(sizes), lengths, axis=0)
         names = np.array([corpus.clip_people[clip] for clip in clips])
-        self.people, self.person = np.unique(np.repeat(names, lengths), return_inverse=True)
+        people_by_index, self.person = np.unique(np.repeat(names, lengths), return_inverse=True)
 
         self.chest = quaternion.from_matrix(np.stack(chest_axes_of(joint), axis=-1))
         self.torso = np.stack([joint[name] for name in TORSO], axis=1)
@@ -104,7 +103,7 @@ class BodyParts:
             self.arms.append(arm * mirror.POSITION if side == "left" else arm)
             self.wrist_turns.append(wrist * mirror.ROTATION if side == "left" else wrist)
         forearms = hand_tilt.ForearmMeans(corpus, people)
-        own = np.stack([forearms.of(name) for name in self.people])
+        own = np.stack([forearms.of(name) for name in people_by_index])
         # Of each person's left and right hand [P, 2, 2], as a right hand's.
         self.tilts = np.stack([own[:, 0] * mirror.TILT, own[:, 1]], axis=1)
         self.arm_length = [
@@ -358,6 +357,4 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
     truth = tracking.images(truth, mirror.joints(truth))
     targets = residual(truth, newest.positions, newest.rotations, calibrated, newest.vector)
     inputs = np.concatenate([*(each.vector for each in window.values()), chest_features(newest.vector)], axis=1)
-    arms_of = np.stack([parts.person[frames] for frames in bodies.arm_frames], axis=1)
-    whose = np.column_stack([parts.person[bodies.newest], tracking.images(arms_of, arms_of[:, ::-1])])
-    return Batch(inputs.astype(np.float32), targets.astype(np.float32), whose)
+    return Batch(inputs.astype(np.float32), targets.astype(np.float32))

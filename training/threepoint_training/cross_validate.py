@@ -10,7 +10,6 @@ import torch
 
 from . import fit_networks, fitted_kinematics, skeleton, solve_ik, train_learned, train_paper
 from .fit_networks import Destination, TrainingRun
-from .leave_one_out import IN_TURN
 from .motion import MocapError
 from .splits import FOLDS, evaluation_only, training_people
 
@@ -106,29 +105,9 @@ def compact_json(content: Any) -> str:
 
 
 def _found_by_other_runs(run: TrainingRun, name: str) -> dict[str, dict[str, float]]:
-    """Errors of an earlier contract that this run does not measure: on people held out in turn and, without frame_random, of the paper's protocol."""
-    kept = (IN_TURN,) if run.config.frame_random else (IN_TURN, "frame-random")
-    contract = _contract_of_this_motion(run, name)
-    if contract is None:
-        return {}
-    return {row: values for row, values in contract["errors"].items() if any(mark in row for mark in kept)}
-
-
-def warn_without_contract(run: TrainingRun, name: str) -> None:
-    """Prints, before a training of half an hour, that no contract will state its errors because there is none of this corpus."""
-    if _contract_of_this_motion(run, name) is None:
-        run.report.console.print(
-            f"No contract will state these errors: {run.config.cross_validation} has no {name} network of this motion (--cross-validation DIR names another)"
-        )
-
-
-def keep_in_contract(run: TrainingRun, name: str, found: dict[str, dict[str, float]]) -> None:
-    """Adds errors [cm] to the contract of the first fold's network, from which the page's takes them; nothing where there is none of this corpus."""
-    contract = _contract_of_this_motion(run, name)
-    if contract is None:
-        return
-    contract["errors"] |= {row: {joint: round(value, 2) for joint, value in values.items()} for row, values in found.items()}
-    (run.config.cross_validation / f"{name}.json").write_text(json.dumps(contract, indent=2, ensure_ascii=False) + "\n")
+    """Errors in the paper's protocol that an earlier contract states, for a run without frame_random; else nothing."""
+    contract = None if run.config.frame_random else _contract_of_this_motion(run, name)
+    return {} if contract is None else {row: values for row, values in contract["errors"].items() if "frame-random" in row}
 
 
 def _contract(run: TrainingRun, name: str) -> dict[str, Any] | None:

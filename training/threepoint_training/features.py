@@ -60,8 +60,3 @@ def windowed(features: Array, times: Array, window: tuple[float, ...]) -> Array:
         share = np.clip((wanted - times[before]) / (times[after] - times[before]), 0.0, 1.0)[:, None]
         parts.append(features[before] * (1 - share) + features[after] * share)
     return np.concatenate(parts, axis=-1)
-
-
-def hand_positions(inputs: NDArray) -> NDArray:
-    """Left and right wrist [..., 2, 3] of features or inputs [..., ≥ 46]: from the headset, heading frame, in arm lengths."""
-    return np.stack([inputs[..., hand.start : hand.start + 3] for hand in HANDS], axis=-2)

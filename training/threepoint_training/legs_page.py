@@ -1,4 +1,4 @@
-"""Renews the tables of legs in docs/accuracy.md. `npm run report -- --legs` measures and calls this."""
+"""Renews the table of legs in docs/accuracy.md. `npm run report -- --legs` measures and calls this."""
 
 import argparse
 import json
@@ -42,30 +42,14 @@ def drivers(legs: Json) -> str:
     return table(["legs under", *_HEAD], rows)
 
 
-def by_person(legs: Json) -> str:
-    """The table by person, legs under the learned network's pelvis, with the speed of the true foot while it stands."""
-    people = legs["people"]
-    names = [*trainable(list(people)), *evaluation_only(list(people))]
-    rows = [
-        [
-            f"{name} (trained on)" if people[name]["seen"] else name,
-            *_cells([people[name]], "learned"),
-            f"{people[name]['learned']['trueSkateCmS']:.0f}",
-            f"{people[name]['minutes']:.1f}",
-        ]
-        for name in names
-    ]
-    return table(["learned", *_HEAD, "true foot [cm/s]", "minutes"], rows)
-
-
 def main(legs: Path, page: Path) -> None:
     """Writes the page."""
     measured = json.loads(legs.read_text())
-    page.write_text(renew(page.read_text(), {"legs": drivers(measured), "legs-people": by_person(measured)}))
+    page.write_text(renew(page.read_text(), {"legs": drivers(measured)}))
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description="Tables of legs in docs/accuracy.md.")
+    parser = argparse.ArgumentParser(description="The table of legs in docs/accuracy.md.")
     parser.add_argument("--legs", type=Path, required=True)
     parser.add_argument("--page", type=Path, default=REPOSITORY / "docs/accuracy.md")
     given = parser.parse_args()

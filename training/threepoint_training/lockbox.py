@@ -34,7 +34,7 @@ def main(corpus: PreparedCorpus, config: LockboxConfig) -> dict[str, Any]:
         raise MocapError(f"No person of the lockbox ({', '.join(splits.LOCKBOX)}) is in this motion: give a folder with their recordings")
     if known := splits.in_lockbox(contract["trainedOn"]["people"]):
         raise MocapError(f"{config.models / 'learned.json'} was trained on {', '.join(known)}, who are in the lockbox: train it without them first")
-    held_out = train_learned.held_out(corpus, people, tuple(contract["windowSeconds"]), selection.CONDITION)
+    held_out = train_learned.held_out(corpus, people, tuple(contract["windowSeconds"]), hands_measured=False)
     errors = selection.errors_by_person(run(onnx.load(config.models / contract["file"]), held_out.inputs), held_out)
     row = {
         "date": datetime.now(UTC).date().isoformat(),

@@ -95,11 +95,10 @@ class CorrectionNetwork(nn.Module):
         getattr(self, f"{name}_output_mean").copy_(outputs.mean(0))
         getattr(self, f"{name}_output_scale").copy_(outputs.std(0).clamp_min(1e-4))
 
-    def shrink(self, trunk: float, arm: float) -> None:
-        """Multiplies the trunk's and the arm's correction by these shares in [0, 1]."""
-        for name, share in (("trunk", trunk), ("arm", arm)):
-            getattr(self, f"{name}_output_mean").mul_(share)
-            getattr(self, f"{name}_output_scale").mul_(share)
+    def shrink_trunk(self, share: float) -> None:
+        """Multiplies the trunk's correction by this share in [0, 1]."""
+        self.trunk_output_mean.mul_(share)
+        self.trunk_output_scale.mul_(share)
 
     def forward(self, inputs: Tensor) -> Tensor:
         bodies = self._with_mirror_images(inputs)

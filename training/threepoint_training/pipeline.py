@@ -9,7 +9,7 @@ from pathlib import Path
 import torch
 from rich.console import Console
 
-from . import cross_validate, fit_networks, golden, leave_one_out, lockbox, noticed_wear, prepare, selection, train_learned, train_paper, training_page
+from . import cross_validate, fit_networks, golden, lockbox, noticed_wear, prepare, selection, train_learned, train_paper, training_page
 from .export import git_commit
 from .fit_networks import Destination, TrainingRun
 from .generated_motion import generate_corpus
@@ -94,28 +94,6 @@ def _notice(run: TrainingRun) -> Rows:
     return {}
 
 
-def _leave_one_out(run: TrainingRun) -> Rows:
-    """Holds each person, or group of people, out in turn; renews two tables of docs/training.md and what a contract states of them."""
-    cross_validate.warn_without_contract(run, "learned")
-    done, groups = 0, run.config.groups
-    with run.report.task("leave one out", None) as advance:
-
-        def report(people: str) -> None:
-            nonlocal done
-            done += 1
-            advance(done, f"without {people}")
-            run.report.console.print(f"held out: {people}")
-
-        rows = leave_one_out.main(run.corpus, run.config.learned, run.config.ik, report, groups)
-    for row in [*rows.people, *rows.hands]:
-        run.report.console.print("  ".join(row))
-    for row, errors in rows.errors.items():
-        run.report.found(row, errors)
-    cross_validate.keep_in_contract(run, "learned", {row: run.report.rows[row] for row in rows.errors})
-    leave_one_out.write(rows)
-    return {}
-
-
 def _open_lockbox(run: TrainingRun) -> Rows:
     """Evaluates the learned network in `out` on the lockbox people and logs it."""
     row = lockbox.main(run.corpus, lockbox.LockboxConfig(run.config.out, run.config.lockbox_log))
@@ -127,7 +105,6 @@ _TASKS: dict[Task, Callable[[TrainingRun], Rows]] = {
     "train": _train,
     "selection": _select,
     "noticed wear": _notice,
-    "leave one out": _leave_one_out,
     "lockbox": _open_lockbox,
 }
 

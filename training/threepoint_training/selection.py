@@ -13,13 +13,11 @@ from numpy.typing import NDArray
 
 from . import postures, splits, train_learned
 from .prepared_corpus import PreparedCorpus
-from .train_learned import Condition, HeldOut, TrainLearnedConfig
+from .train_learned import HeldOut, TrainLearnedConfig
 from .train_paper import predict
 
 Array = NDArray[np.float64]
 
-# The condition under which recipes are compared: how a user meets the page, who has calibrated no hand.
-CONDITION = Condition(hands_measured=False)
 # Columns of ESTIMATED_JOINTS that a figure averages.
 JOINTS = {"all joints": slice(None), "elbows": slice(0, 2)}
 FRAMES = ("all", "active")
@@ -73,7 +71,7 @@ def main(
     everyone = splits.trainable(tuple(corpus.people))
     found: list[dict[str, dict[str, PersonErrors]]] = [{frames: {} for frames in FRAMES} for _ in range(config.seeds)]
     for group in splits.groups_in_turn(everyone, config.groups):
-        held_out = train_learned.held_out(corpus, group, recipe.window_seconds, CONDITION)
+        held_out = train_learned.held_out(corpus, group, recipe.window_seconds, hands_measured=False)
         others = tuple(name for name in everyone if name not in group)
         for number, of_seed in enumerate(found):
             report(f"held out: {', '.join(group)}; seed {recipe.seed + number}")

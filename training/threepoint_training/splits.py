@@ -17,8 +17,6 @@ VARIED = ("001", "002", "003", "005", "009", "014", "016", "017", "049", "127", 
 LOCKBOX = ("001", "009", "049", "135")
 _LOCKBOX_SEED = 2460
 
-# People of the same database whose recordings were added last: salsa, gestures, lifting, jumps, acrobatics.
-ADDED = ("018", "019", "060", "061", "069", "088", "115", "118", "140")
 # People who were recorded together; they are held out together.
 _PARTNERS = {"019": "018", "061": "060"}
 

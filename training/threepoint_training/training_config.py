@@ -9,7 +9,7 @@ from . import fit_ik, train_learned, train_paper
 REPOSITORY = Path(__file__).parents[2]
 
 # What a run does: trains the networks, or instead makes the tables of one study, or evaluates the lockbox.
-Task = Literal["train", "selection", "noticed wear", "leave one out", "lockbox"]
+Task = Literal["train", "selection", "noticed wear", "lockbox"]
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class TrainConfig:
     networks: tuple[str, ...] = ("paper", "learned")
     frame_random: bool = True
     task: Task = "train"
-    # Of the tasks "selection" and "leave one out": people are held out in this many groups in turn; None: one person at a time.
+    # The task "selection" holds people out in this many groups in turn; None: one person at a time.
     groups: int | None = None
     refit_kinematics: bool = False
     seed: int = 2460
