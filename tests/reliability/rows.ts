@@ -342,6 +342,13 @@ export const attackRows = {
     target: '0 pages that fail',
     tests: ['e2e/storage-denied.spec.ts'],
   },
+  'storage-blocked': {
+    inject:
+      'IndexedDB alone is blocked: missing, null, throwing, of a newer version, without an answer, or failing under way, in a study and on the page',
+    sees: 'The study goes on, the experimenter’s commands arrive, answers reach the server; the page says that nothing is stored',
+    target: '0 sessions that stand still; 0 records lost',
+    tests: ['tests/app/study/blocked-storage.test.ts', 'e2e/storage-denied.spec.ts'],
+  },
   'first-folder': {
     inject:
       'The folder of studies that the first version of the program left, with a study whose plan is not allowed any more',

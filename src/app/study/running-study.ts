@@ -238,7 +238,9 @@ export class RunningStudy {
     const { progress, plan, phrases, safekeeping } = this.session;
     const { participant } = progress;
     const contact = plan.remote?.contact ?? null;
-    const anew = () => void this.#forget().then(() => this.#page.address.reload());
+    const reload = () => this.#page.address.reload();
+    // A device whose storage fails gives nothing out either: the page begins as on another device.
+    const anew = () => void this.#forget().then(reload, reload);
     this.#page.display.ask(
       { kind: 'locked-out', phrases, participant, unsent: safekeeping.unsent, contact, anew },
       this.#host.inSession() ? lockedOutScreen(this.session) : null,
