@@ -329,6 +329,13 @@ export const attackRows = {
     target: '0 records lost or stored twice, 0 reports that lead back, 1 place',
     tests: ['tests/server/study-replays.test.ts'],
   },
+  'study-back': {
+    inject:
+      'A participant presses the browser’s back button and then forward, at every kind of step of a study and in a round',
+    sees: 'The study is where it was, with every answer; a round that was left is void and tried again',
+    target: '0 records lost or stored twice',
+    tests: ['e2e/study-back.spec.ts'],
+  },
   'study-traces': {
     inject:
       'Two of three participants withdraw or are deleted after a whole session with motion, exports and a log of every detail; every file is searched',
