@@ -14,8 +14,9 @@ import {
 } from '../study-participant';
 import { experimenter, shortBallStudy } from '../study-server';
 
-/** The match stands longer than any page takes to draw what has happened [s]. */
+/** The match stands longer than any page takes to draw what has happened [s]: for so many pictures, of which each takes half a second. */
 const standsSeconds = 15;
+const standsPictures = 2 * standsSeconds + 1;
 /** For what takes each page some of its pictures. */
 const patience = { timeout: 180_000 };
 /** As long as the paper's: a command of the experimenter arrives within it on a machine that has much else to do [s]. */
@@ -78,7 +79,7 @@ test('three participants play the ball game together, each in a headset of their
   await keepPicture(first, 'study-standing');
   await keepPicture(second, 'study-paused');
   const stand = await clocks();
-  await Promise.all([...pages.map((page) => frames(page, 20)), third.waitForTimeout(standsSeconds * 1000)]);
+  await all((page) => frames(page, standsPictures));
   expect(await clocks()).toEqual(stand);
   expect(Math.max(...stand)).toBeGreaterThan(0);
   await command('resume');

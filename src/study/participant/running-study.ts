@@ -191,10 +191,12 @@ export class RunningStudy {
 
   #lockedOutForm(): StudyForm {
     const { progress, plan, phrases, uploadStatus } = this.session;
+    const reload = () => this.#page.address.reload();
     return {
       ...{ kind: 'locked-out', phrases, participant: progress.participant, unsent: uploadStatus.unsent },
       contact: plan.remote?.contact ?? null,
-      anew: () => void this.#forget().then(() => this.#page.address.reload()),
+      // A device whose storage fails returns nothing either: after a reload the page starts as on another device.
+      anew: () => void this.#forget().then(reload, reload),
     };
   }
 

@@ -122,20 +122,21 @@ export class SessionStore {
   async acknowledge(ids: readonly string[]): Promise<void> {
     for (const id of ids) this.#records.delete(id);
     this.#unsaved = this.#unsaved.filter(({ id }) => !ids.includes(id));
-    // What the save under way still writes must be removed after it.
-    await this.#saving;
-    const { study, participant } = this.#session;
-    await this.#vault?.removeRecords(study, participant, ids);
-    this.#onChange();
+    await this.#remove((vault, { study, participant }) => vault.removeRecords(study, participant, ids));
   }
 
   /** The server has the recording of this trial. */
   async acknowledgeMotion(trial: string): Promise<void> {
     this.#motion.delete(trial);
     this.#unsavedMotion.delete(trial);
+    await this.#remove((vault, { study, participant }) => vault.removeMotion(study, participant, trial));
+  }
+
+  /** What stays because the device fails is sent again by a later visit, and the server keeps it once. */
+  async #remove(from: (vault: StudyVault, session: KeptSession) => Promise<void>): Promise<void> {
+    // What the save under way still writes must be removed after it.
     await this.#saving;
-    const { study, participant } = this.#session;
-    await this.#vault?.removeMotion(study, participant, trial);
+    if (this.#vault) await from(this.#vault, this.#session).catch((error: unknown) => this.noteFault(error));
     this.#onChange();
   }
 

@@ -9,6 +9,7 @@ import {
   type ParticipantSessionOptions,
   startSession,
 } from './participant-session';
+import type { Unsent } from './session-store';
 import type { ConsentChoices } from './study-form';
 import { type KeptSession, openStudyVault, type StudyVault } from './study-vault';
 
@@ -48,12 +49,23 @@ const noMotionHere = 'On another device the participant did not agree to have mo
 
 export type OpeningOptions = Omit<ParticipantSessionOptions, 'vault'>;
 
-async function openVault(): Promise<StudyVault | null> {
+interface OnDevice {
+  /** null: this browser stores nothing. */
+  readonly vault: StudyVault | null;
+  /** A session of an earlier visit, with what it has not sent. */
+  readonly kept: (Unsent & { readonly session: KeptSession }) | null;
+}
+
+async function readDevice({ study, participant }: Place): Promise<OnDevice> {
   try {
-    return await openStudyVault();
+    const vault = await openStudyVault();
+    const session = await vault.session(study, participant);
+    if (!session) return { vault, kept: null };
+    const [records, motion] = await Promise.all([vault.records(study, participant), vault.motion(study, participant)]);
+    return { vault, kept: { session, records, motion } };
   } catch {
     // reason: a browser without storage is a state of the session (uploadStatus.storageFault), shown on every screen
-    return null;
+    return { vault: null, kept: null };
   }
 }
 
@@ -97,14 +109,13 @@ export async function openSession(place: Place, opening: OpeningOptions): Promis
   const { study: id, participant } = place;
   const { client } = opening;
   if (!(await alone(place))) throw new PhrasedError('entrance.otherTab', { participant });
-  const vault = await openVault();
+  const { vault, kept } = await readDevice(place);
   const options = { ...opening, vault };
-  const kept = (await vault?.session(id, participant)) ?? null;
-  if (kept && vault) {
-    const [records, motion] = await Promise.all([vault.records(id, participant), vault.motion(id, participant)]);
-    const known = await reportedProgress(client, kept);
-    const later = known && isLater(scheduleFor(kept.plan, participant), known, kept.progress);
-    const session = createParticipantSession(later ? { ...kept, progress: known } : kept, { records, motion }, options);
+  if (kept) {
+    const known = await reportedProgress(client, kept.session);
+    const later = known && isLater(scheduleFor(kept.session.plan, participant), known, kept.session.progress);
+    const newest = later ? { ...kept.session, progress: known } : kept.session;
+    const session = createParticipantSession(newest, kept, options);
     session.apply({ type: 'reload' });
     return { kind: 'resumed', session };
   }
@@ -138,8 +149,8 @@ export async function openSession(place: Place, opening: OpeningOptions): Promis
   };
 }
 
-/** Everything of this participant leaves the device. */
+/** Everything of this participant leaves the device; rejects where its storage fails. */
 export async function forgetSession({ study, participant }: Place): Promise<void> {
-  const vault = await openVault();
-  await vault?.forget(study, participant);
+  const vault = await openStudyVault();
+  await vault.forget(study, participant);
 }

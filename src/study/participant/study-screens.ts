@@ -11,8 +11,15 @@ import { questionPart } from './questions/question-screen';
 import { roundScreen } from './round-screens';
 import { askToStopButton, pauseButton, type ScreenParts } from './screen-parts';
 import { noStorage } from './session-store';
+import { silentStorage } from './storage-patience';
 import type { StudyScreen } from './study-screen';
 import type { ScreenActions, ShownSession, StudySituation } from './study-situation';
+
+/** Why the device could not store, in the participant's language where the page knows the reason. */
+function storageReason(fault: string, say: Phrases['say']): string {
+  if (fault === noStorage) return say('kept.noStorage');
+  return fault === silentStorage ? say('kept.silentStorage') : fault;
+}
 
 /** Where answers are, in a sentence; the second part says whether they are in danger. `remote`: of a participant who is alone. */
 export function uploadStatusText(
@@ -26,7 +33,7 @@ export function uploadStatusText(
   }
   if (unsaved > 0) {
     if (storageFault === null) return [say('kept.saving'), false];
-    const reason = storageFault === noStorage ? say('kept.noStorage') : storageFault;
+    const reason = storageReason(storageFault, say);
     return [say('kept.noRoom', { count: unsaved, reason }), true];
   }
   if (!online) return [say('kept.offline', { count: unsent }), false];

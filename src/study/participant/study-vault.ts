@@ -3,6 +3,7 @@ import type { StudyPlan } from '../model/plan/plan';
 import type { Progress } from '../model/progress/progress';
 import type { ParticipantProfile } from '../model/records/participant-profile';
 import type { StudyRecord } from '../model/records/study-record';
+import { StoragePatience } from './storage-patience';
 
 /** A session as this device remembers it. */
 export interface KeptSession extends ParticipantProfile {
@@ -34,7 +35,10 @@ interface Schema extends DBSchema {
 /** The session was in the vault and is no more: another page of this browser has forgotten it, as when its participant withdrew there. */
 export class SessionForgotten extends Error {}
 
-/** What this device keeps until the server has it: sessions, records and tracked frames, in IndexedDB. */
+/**
+ * What this device keeps until the server has it: sessions, records and tracked frames, in IndexedDB. Every request rejects where the
+ * storage does not answer within five seconds.
+ */
 export interface StudyVault {
   session(study: string, participant: string): Promise<KeptSession | null>;
   /**
@@ -64,15 +68,35 @@ function broughtUpToDate({ commandsSeen, ...session }: EarlierSession): KeptSess
 const everyOf = (study: string, participant: string) =>
   IDBKeyRange.bound([study, participant, ''], [study, participant, '\uffff']);
 
-/** Opens the vault; rejects where the browser offers none (some do not in private windows). */
+/** Opens the vault; rejects where the browser offers none (some do not in private windows), or none that answers. */
 export async function openStudyVault(name = 'threepoint-studies'): Promise<StudyVault> {
-  const database: IDBPDatabase<Schema> = await openDB<Schema>(name, 1, {
-    upgrade(fresh) {
-      fresh.createObjectStore('sessions', { keyPath: ['study', 'participant'] });
-      fresh.createObjectStore('records', { keyPath: ['study', 'participant', 'id'] });
-      fresh.createObjectStore('motion', { keyPath: ['study', 'participant', 'trial'] });
-    },
-  });
+  const patience = new StoragePatience();
+  const vault = databaseVault(
+    await patience.answer(() =>
+      openDB<Schema>(name, 1, {
+        upgrade(fresh) {
+          fresh.createObjectStore('sessions', { keyPath: ['study', 'participant'] });
+          fresh.createObjectStore('records', { keyPath: ['study', 'participant', 'id'] });
+          fresh.createObjectStore('motion', { keyPath: ['study', 'participant', 'trial'] });
+        },
+      }),
+    ),
+  );
+  return {
+    session: (study, participant) => patience.answer(() => vault.session(study, participant)),
+    save: (session, records, again) => patience.answer(() => vault.save(session, records, again)),
+    records: (study, participant) => patience.answer(() => vault.records(study, participant)),
+    removeRecords: (study, participant, ids) => patience.answer(() => vault.removeRecords(study, participant, ids)),
+    saveMotion: (study, participant, motion) => patience.answer(() => vault.saveMotion(study, participant, motion)),
+    motion: (study, participant) => patience.answer(() => vault.motion(study, participant)),
+    removeMotion: (study, participant, trial) => patience.answer(() => vault.removeMotion(study, participant, trial)),
+    forget: (study, participant) => patience.answer(() => vault.forget(study, participant)),
+    close: () => vault.close(),
+  };
+}
+
+/** The vault in an open database, which waits for it however long that takes. */
+function databaseVault(database: IDBPDatabase<Schema>): StudyVault {
   return {
     async session(study, participant) {
       const kept = await database.get('sessions', [study, participant]);

@@ -6,6 +6,7 @@ import { heardFrom, kill } from '../../server/child-process';
 export interface RelayMeasure {
   /** What is alive after garbage is collected. */
   readonly heldBytes: number;
+  /** Of the process, without what V8 keeps for new objects. */
   readonly rssBytes: number;
   readonly lagP99Ms: number;
   readonly lagMaxMs: number;

@@ -1,6 +1,6 @@
 // A relay in a process of its own, so that it can be killed and its memory and its event loop measured.
 import { monitorEventLoopDelay } from 'node:perf_hooks';
-import { collectGarbage } from '../../collect-garbage';
+import { releaseMemory } from '../../collect-garbage';
 import { startRelay } from './running-relay';
 
 const lag = monitorEventLoopDelay({ resolution: 5 });
@@ -11,7 +11,7 @@ const environment = Object.fromEntries(
 const { port } = await startRelay(environment, Number(process.argv[2] ?? 0));
 process.on('message', (question) => {
   if (question === 'measure') {
-    collectGarbage();
+    releaseMemory();
     const { heapUsed, external } = process.memoryUsage();
     process.send?.({
       heldBytes: heapUsed + external,

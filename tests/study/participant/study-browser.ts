@@ -3,6 +3,7 @@ import { IDBFactory } from 'fake-indexeddb';
 import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { Side } from 'threepoint/core/math/side';
+import { createPageClock } from 'threepoint/core/tracking/page-clock';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { createParticipantClient } from 'threepoint-study/client/study-client';
 import type { Embodiment } from 'threepoint-study/model/plan/embodiment';
@@ -32,13 +33,18 @@ class StandingClock {
     };
   };
 
+  /** The machine sleeps: what is due meanwhile is done when it is awake. */
+  sleep(seconds: number): void {
+    this.#now += seconds;
+  }
+
   pass(seconds: number): void {
     const end = this.#now + seconds;
     for (;;) {
       const next = this.#due.filter(({ at }) => at <= end).toSorted((a, b) => a.at - b.at)[0];
       if (!next) break;
       this.#due = this.#due.filter((other) => other !== next);
-      this.#now = next.at;
+      this.#now = Math.max(this.#now, next.at);
       next.act();
     }
     this.#now = end;
@@ -268,7 +274,8 @@ export function browser(server: StudyServer) {
     const page: StudyPage = { display, address, languages: ['en-GB'], now: clock.now, after: clock.after };
     const visit = new StudyVisit({ study, participant }, createParticipantClient(server.origin), host, page);
     await visit.enter();
-    let frameTime = 100;
+    let stamp = 100;
+    const pageClock = createPageClock(() => stamp * 1000);
     return {
       visit,
       display,
@@ -282,12 +289,19 @@ export function browser(server: StudyServer) {
       },
       /** Time passes by the clock, and nothing is drawn. */
       pass: (seconds: number) => clock.pass(seconds),
+      /** The machine sleeps: the time of day goes on; so does that of frames, where `both`. */
+      sleep(seconds: number, both: boolean): void {
+        clock.sleep(seconds);
+        if (both) stamp += seconds;
+        clock.pass(0);
+      },
       /** So many seconds are drawn at 30 Hz; `raised`: with both hands above the head. */
       draw(seconds: number, raised = false): void {
         for (let i = 0; i < seconds * 30; i++) {
-          frameTime += 1 / 30;
+          stamp += 1 / 30;
           clock.pass(1 / 30);
-          visit.frame(frameTime, stretched(frameTime, raised, host.eyes));
+          const time = pageClock.tick(stamp * 1000);
+          visit.frame(time, stretched(time, raised, host.eyes));
           host.drew();
         }
       },

@@ -225,6 +225,7 @@ export const english = {
     other: 'Keep this page open: {count} records cannot be stored on this device ({reason}).',
   },
   'kept.noStorage': 'this browser offers no storage',
+  'kept.silentStorage': 'the storage of this browser does not answer',
   'kept.refused': {
     one: 'Call the experimenter: the server refuses {count} record ({reason}). It stays here.',
     other: 'Call the experimenter: the server refuses {count} records ({reason}). They stay here.',

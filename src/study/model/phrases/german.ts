@@ -227,6 +227,7 @@ export const german = {
       'Lassen Sie diese Seite geöffnet: {count} Einträge können auf diesem Gerät nicht gespeichert werden ({reason}).',
   },
   'kept.noStorage': 'dieser Browser hat keinen Speicher',
+  'kept.silentStorage': 'der Speicher dieses Browsers antwortet nicht',
   'kept.refused': {
     one: 'Bitte rufen Sie die Versuchsleitung: Der Server lehnt {count} Eintrag ab ({reason}). Er bleibt hier.',
     other: 'Bitte rufen Sie die Versuchsleitung: Der Server lehnt {count} Einträge ab ({reason}). Sie bleiben hier.',

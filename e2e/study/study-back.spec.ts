@@ -1,0 +1,131 @@
+import type { Page } from '@playwright/test';
+import { measured } from '../../tests/reliability/measured';
+import { enterVr, expect } from '../page-fixture';
+import {
+  calibrate,
+  headsetOf,
+  press,
+  reaches,
+  recordsOf,
+  stretched,
+  study,
+  tellOfOneself,
+  tenHertz,
+  test,
+} from '../study-participant';
+import { experimenter, shortStudy } from '../study-server';
+
+/** Chromium loads a page that has asked for WebXR anew, as the browsers of the tests do with every page. */
+async function backAndForward(page: Page, origin: string): Promise<void> {
+  await page.goBack();
+  expect(page.url()).toBe(`${origin}/withdraw`);
+  await page.goForward();
+  await page.waitForFunction(() => (window.threepoint?.probe().study?.screen ?? 'opening') !== 'opening');
+}
+
+test('the back button leads out of a study and the forward button back to where it was, at every kind of step @realtime', async ({
+  page,
+  origin,
+}) => {
+  test.setTimeout(300_000);
+  await experimenter(origin).begin(shortStudy('back'), true);
+  let journeys = 0;
+  const returns = () => {
+    journeys += 1;
+    return backAndForward(page, origin);
+  };
+  await page.goto(`${origin}/withdraw`);
+  await page.goto(await experimenter(origin).link('back', 'P01', '&emulate&quality=low'));
+  await page.getByLabel(/I have read this/).check();
+  await returns();
+  await expect(page.getByRole('heading', { name: /Taking part/ })).toBeVisible();
+  expect(await recordsOf(origin, 'back')).toEqual([]);
+
+  await page.getByLabel(/I have read this/).check();
+  await page.getByRole('button', { name: 'I agree' }).click();
+  await expect(page.getByText('write this down')).toBeVisible();
+  const code = await page.getByText(/^(\w{4}-){3,}\w{4}$/).textContent();
+  await returns();
+  await expect(page.getByText(code ?? 'no code')).toBeVisible();
+  await page.getByRole('button', { name: 'I have noted it' }).click();
+
+  await page.getByLabel(/Age/).fill('26');
+  await returns();
+  await expect(page.getByLabel(/Age/)).toBeVisible();
+  await tellOfOneself(page);
+  await page.getByRole('button', { name: 'Continue' }).click();
+
+  const wear = async () => {
+    const headset = await headsetOf(page);
+    await enterVr(page, tenHertz);
+    await headset.place(stretched);
+  };
+  await wear();
+  await calibrate(page);
+  await press(page, 'start');
+  await reaches(page, 'trial-ready', 60_000);
+  await press(page, 'start');
+  await expect.poll(async () => (await study(page)).running, { intervals: [20] }).toBe(true);
+  await returns();
+  await reaches(page, 'trial-enter');
+  await wear();
+  await reaches(page, 'trial-ready', 30_000);
+  await press(page, 'start');
+  await reaches(page, 'question-Q1', 60_000);
+  await press(page, 'answer-4');
+  await press(page, 'next');
+  await press(page, 'answer-2');
+  // At once, before anything is sent.
+  await returns();
+  await reaches(page, 'question-Q3');
+  await expect(page.getByRole('button', { name: 'Question 2, answered' })).toBeVisible();
+  for (let i = 0; i < 3; i++) await returns();
+  await reaches(page, 'question-Q3');
+  await expect.poll(async () => (await study(page)).unsent).toBe(0);
+
+  const records = await recordsOf(origin, 'back');
+  const kinds = records.map((record) => (record.kind === 'event' ? record.body.type : record.kind));
+  const count = (kind: string) => kinds.filter((one) => one === kind).length;
+  const counts = ['consent', 'demographics', 'calibration', 'trial', 'interrupted'].map((kind) => [kind, count(kind)]);
+  expect(counts).toEqual([
+    ['consent', 1],
+    ['demographics', 1],
+    ['calibration', 1],
+    ['trial', 2],
+    ['interrupted', 1],
+  ]);
+  measured('study-back', {
+    'times back and forward': journeys,
+    'records stored twice': records.length - new Set(records.map(({ id }) => id)).size,
+  });
+});
+
+test('back to an invitation that was wrong changes nothing of a session that is under way @full', async ({
+  page,
+  origin,
+  complaints,
+}) => {
+  complaints.allow(/403.*\/claim/);
+  await experimenter(origin).begin(shortStudy('wrong'), true);
+  await page.goto(`${origin}/withdraw`);
+  const link = new URL(await experimenter(origin).link('wrong', 'P01', '&quality=low'));
+  const right = link.hash;
+  link.hash = right.replace(/(\w{4}-){3}\w{4}/, 'AAAA-BBBB-CCCC-DDDD');
+  await page.goto(link.href);
+  await page.getByLabel(/I have read this/).check();
+  await page.getByRole('button', { name: 'I agree' }).click();
+  await expect(page.getByText(/not the invitation of P01/)).toBeVisible();
+  link.hash = right;
+  await page.goto(link.href);
+  await page.getByLabel(/I have read this/).check();
+  await page.goBack();
+  expect(new URL(page.url()).hash).not.toBe(right);
+  await page.getByRole('button', { name: 'I agree' }).click();
+  await page.getByRole('button', { name: 'I have noted it' }).click();
+  await expect(page.getByLabel(/Age/)).toBeVisible();
+  await backAndForward(page, origin);
+  await expect(page.getByLabel(/Age/)).toBeVisible();
+  await expect
+    .poll(async () => (await recordsOf(origin, 'wrong')).filter(({ kind }) => kind === 'consent').length)
+    .toBe(1);
+});
