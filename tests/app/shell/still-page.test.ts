@@ -120,7 +120,7 @@ describe.each(bodies.filter(({ plain, name }) => plain || name !== 'learned'))('
   });
   afterAll(() => opened.close());
   // Inference on the page's runtime costs.
-  const runs = { seed, numRuns: cases(name === 'paper' ? 2 : 12), endOnFailure: true };
+  const runs = { seed, numRuns: cases(name === 'paper' ? 1 : 8), endOnFailure: true };
 
   test('a person who holds still: after two seconds still, hands within reach on their controllers', () =>
     fc.assert(
