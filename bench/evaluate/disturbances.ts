@@ -1,9 +1,11 @@
 import type { TrackedPose } from 'threepoint/core/math/pose';
-import { rotate, slerp } from 'threepoint/core/math/quat';
-import { randomNumbers } from 'threepoint/core/math/random';
+import { fromAxisAngle, multiply, rotate, slerp } from 'threepoint/core/math/quat';
+import { normalNumbers, randomNumbers } from 'threepoint/core/math/random';
 import type { Side } from 'threepoint/core/math/side';
-import { add, lerp, type Vec3 } from 'threepoint/core/math/vec3';
+import { add, length, lerp, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { trackers as simulated } from 'threepoint/core/mocap/mocap-rules.json';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { rateHz as handTrackingHz, quantiles } from './hand-tracking-losses.json';
 import type { MeasuredFrame } from './measures';
 import { type RecordedFrame, type TruthJoint, truthJoints } from './recordings';
 
@@ -26,13 +28,31 @@ export function seedOf(text: string): number {
   return hash | 0;
 }
 
-/** Losses of `seconds` at seeded times, of either hand; none where the clip is too short for one and its aftermath. */
-export function scheduleLosses(frames: number, rateHz: number, seconds: number, seed: number): Loss[] {
+/** Draws the length of a loss [s] from numbers in [0, 1). */
+export type LossLength = (random: () => number) => number;
+
+/** Losses that all last as long [s]. */
+export const lasting =
+  (seconds: number): LossLength =>
+  () =>
+    seconds;
+
+/** Losses as long as those of a headset's hand tracking: geometric between its quantiles, no longer than the last. */
+export const asHandTracking: LossLength = (random) => {
+  const share = random();
+  const above = quantiles.findIndex((quantile) => quantile.share > share);
+  const [from, to] = [quantiles.at(above < 0 ? -1 : above - 1)!, quantiles.at(above)!];
+  const within = from === to ? 0 : (share - from.share) / (to.share - from.share);
+  return (from.frames * (to.frames / from.frames) ** within) / handTrackingHz;
+};
+
+/** Losses at seeded times, of either hand; up to the first that the clip is too short for, with its aftermath. */
+export function scheduleLosses(frames: number, rateHz: number, lengthOf: LossLength, seed: number): Loss[] {
   const random = randomNumbers(seed);
   const losses: Loss[] = [];
-  const length = Math.max(1, Math.round(seconds * rateHz));
+  const drawLength = () => Math.max(1, Math.round(lengthOf(random) * rateHz));
   let start = Math.round((earliestSeconds + startSpreadSeconds * random()) * rateHz);
-  while (start + length + aftermathSeconds * rateHz <= frames) {
+  for (let length = drawLength(); start + length + aftermathSeconds * rateHz <= frames; length = drawLength()) {
     const side = random() < 0.5 ? 'left' : 'right';
     losses.push({ side, start, end: start + length });
     start += length + Math.round((restSeconds + restSpreadSeconds * random()) * rateHz);
@@ -72,6 +92,55 @@ export function offsetTrackers(frames: readonly RecordedFrame[], tracker: Tracke
             leftHand: moved(frame.leftHand, { ...offset, x: -offset.x }),
             rightHand: moved(frame.rightHand, offset),
           },
+  }));
+}
+
+/** Standard deviations of a tracker's noise: by axis [m] and by component of a rotation vector [rad]. */
+export interface TrackerNoise {
+  readonly metres: number;
+  readonly radians: number;
+}
+
+/** Noise of head or hands as in the simulated trackers of the evaluation. */
+export const simulatedNoise = (tracker: 'head' | 'hands'): TrackerNoise =>
+  noiseOf(simulated.positionNoise[tracker], simulated.rotationNoiseDegrees[tracker]);
+
+/** White noise that no still headset shows, the same for head and hands: 0.3 mm by axis and 0.1° about a random one. */
+export const strongNoise = noiseOf(0.0003, 0.1);
+
+function noiseOf(metres: number, degrees: number): TrackerNoise {
+  return { metres, radians: (degrees * Math.PI) / 180 / Math.sqrt(3) };
+}
+
+/** The pose with noise added, from normally distributed numbers. */
+export function addNoise<P extends TrackedPose>(pose: P, { metres, radians }: TrackerNoise, normal: () => number): P {
+  const by = (size: number) => vec3(normal() * size, normal() * size, normal() * size);
+  const turn = by(radians);
+  const angle = length(turn);
+  return {
+    ...pose,
+    position: add(pose.position, by(metres)),
+    orientation: multiply(pose.orientation, fromAxisAngle(normalise(turn), angle)),
+  };
+}
+
+/** Recorded frames with the simulated trackers' noise raised to `noise`: independent variances add up. */
+export function raiseNoise(frames: readonly RecordedFrame[], noise: TrackerNoise, seed: number): RecordedFrame[] {
+  const normal = normalNumbers(seed);
+  const missing = (tracker: 'head' | 'hands'): TrackerNoise => {
+    const there = simulatedNoise(tracker);
+    const rest = (part: keyof TrackerNoise) => Math.sqrt(Math.max(0, noise[part] ** 2 - there[part] ** 2));
+    return { metres: rest('metres'), radians: rest('radians') };
+  };
+  const [ofHead, ofHands] = [missing('head'), missing('hands')];
+  return frames.map(({ frame, truth }) => ({
+    truth,
+    frame: {
+      ...frame,
+      head: addNoise(frame.head, ofHead, normal),
+      leftHand: frame.leftHand && addNoise(frame.leftHand, ofHands, normal),
+      rightHand: frame.rightHand && addNoise(frame.rightHand, ofHands, normal),
+    },
   }));
 }
 

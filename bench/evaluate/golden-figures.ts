@@ -108,7 +108,7 @@ export function goldenFigures(tally: GoldenTally): { readonly figures: GoldenFig
 }
 
 function lossFigures(tally: LossTally): GoldenFigures {
-  const { losses, during, after, atLoss, atReturn } = reportLosses(0, tally);
+  const { losses, during, after, atLoss, atReturn } = reportLosses(tally);
   return {
     losses,
     duringMeanCm: during.allCm,

@@ -23,6 +23,7 @@ export interface LongestStep {
 }
 
 export interface LossReport {
+  /** Mean length. */
   readonly milliseconds: number;
   readonly losses: number;
   readonly during: LossErrors;
@@ -51,9 +52,10 @@ interface StepTally {
 }
 const noSteps = (): StepTally => ({ step: 0, joint: '', excess: 0, excessJoint: '', over: 0 });
 
-/** What losses of one length did; add clip by clip, then report. */
+/** What losses of one kind did; add clip by clip, then report. */
 export interface LossTally {
   losses: number;
+  lostSeconds: number;
   readonly during: Sums;
   readonly after: Sums;
   readonly atLoss: StepTally;
@@ -61,6 +63,7 @@ export interface LossTally {
 }
 export const emptyLossTally = (): LossTally => ({
   losses: 0,
+  lostSeconds: 0,
   during: noSums(),
   after: noSums(),
   atLoss: noSteps(),
@@ -78,6 +81,7 @@ export function addLosses(tally: LossTally, estimated: Estimated, losses: readon
   const aftermath = Math.round(aftermathSeconds * rateHz);
   for (const { side, start, end } of losses) {
     tally.losses += 1;
+    tally.lostSeconds += (end - start) / rateHz;
     addErrors(tally.during, estimated, side, start, end);
     addErrors(tally.after, estimated, side, end, end + aftermath);
     addSteps(tally.atLoss, estimated, start, Math.min(end, start + 2 * aftermath), rateHz);
@@ -141,9 +145,9 @@ const longestStep = ({ step, joint, excess, excessJoint, over }: StepTally): Lon
   over5Cm: over,
 });
 
-export function reportLosses(seconds: number, tally: LossTally): LossReport {
+export function reportLosses(tally: LossTally): LossReport {
   return {
-    milliseconds: Math.round(seconds * 1000),
+    milliseconds: Math.round((tally.lostSeconds / tally.losses) * 1000),
     losses: tally.losses,
     during: lossErrors(tally.during),
     after: lossErrors(tally.after),

@@ -1,10 +1,10 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { TrackedPose } from 'threepoint/core/math/pose';
-import { fromAxisAngle, identity, multiply, type Quat } from 'threepoint/core/math/quat';
+import { identity, type Quat } from 'threepoint/core/math/quat';
 import { normalNumbers } from 'threepoint/core/math/random';
-import { add, dot, length, normalise, scale, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { trackers } from 'threepoint/core/mocap/mocap-rules.json';
+import { add, dot, length, scale, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { addNoise, simulatedNoise, type TrackerNoise } from './disturbances';
 import type { Driver } from './drive';
 
 /** The calibration of the person who stands there. */
@@ -107,32 +107,14 @@ function responseOf(slow: Fundamental, quick: Fundamental, hz: number): Response
   return { lagMs, gain: Math.hypot(inPhase, ahead) };
 }
 
-type Tracker = 'head' | 'hands';
-/** Standard deviations of the trackers' noise by axis [m, rad], as in the simulated trackers of the evaluation. */
-const noiseOf = (tracker: Tracker) => ({
-  metres: trackers.positionNoise[tracker],
-  radians: (trackers.rotationNoiseDegrees[tracker] * Math.PI) / 180 / Math.sqrt(3),
-});
-
 /** Root mean square [mm] of what joints move from frame to frame while the wearer stands still and the trackers are noisy. */
 export async function measureTremble(
   driver: Driver,
   joints: readonly string[],
+  noiseOf: (tracker: 'head' | 'hands') => TrackerNoise = simulatedNoise,
   rateHz = 60,
 ): Promise<Readonly<Record<string, number>>> {
   const normal = normalNumbers(15);
-  const noisy = <P extends TrackedPose | null>(pose: P, tracker: Tracker): P => {
-    if (!pose) return pose;
-    const noise = noiseOf(tracker);
-    const by = (size: number) => vec3(normal() * size, normal() * size, normal() * size);
-    const turn = by(noise.radians);
-    const angle = length(turn);
-    return {
-      ...pose,
-      position: add(pose.position, by(noise.metres)),
-      orientation: multiply(pose.orientation, fromAxisAngle(normalise(turn), angle)),
-    };
-  };
   const sums = new Map(joints.map((joint) => [joint, 0]));
   const [settling, counted] = [2 * rateHz, 10 * rateHz];
   let before: Readonly<Record<string, Vec3>> | null = null;
@@ -141,9 +123,9 @@ export async function measureTremble(
     const { head, leftHand, rightHand } = frame;
     const drawn = await driver.draw({
       ...frame,
-      head: noisy(head, 'head'),
-      leftHand: noisy(leftHand, 'hands'),
-      rightHand: noisy(rightHand, 'hands'),
+      head: addNoise(head, noiseOf('head'), normal),
+      leftHand: leftHand && addNoise(leftHand, noiseOf('hands'), normal),
+      rightHand: rightHand && addNoise(rightHand, noiseOf('hands'), normal),
     });
     if (before && row >= 0) {
       for (const joint of joints) {

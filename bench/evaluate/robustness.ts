@@ -3,19 +3,26 @@ import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
 import { nextRandom } from 'threepoint/core/math/random';
 import { vec3 } from 'threepoint/core/math/vec3';
 import {
+  asHandTracking,
+  type LossLength,
+  lasting,
   loseHands,
   offsetTrackers,
+  raiseNoise,
   resampleEstimates,
   resampleFrames,
   scheduleLosses,
   seedOf,
+  simulatedNoise,
+  strongNoise,
   type Tracker,
   trackers,
 } from './disturbances';
-import { drive, type MeasuredMethod } from './drive';
+import { createDriver, drive, type MeasuredMethod } from './drive';
 import { addLosses, emptyLossTally, type LongestStep, type LossReport, reportLosses } from './losses';
-import { addClip, addMeasures, emptyMeasures, type MeasuredFrame, type Measures, report } from './measures';
+import { addClip, addMeasures, emptyMeasures, type MeasuredFrame, type Measures, report, rounded } from './measures';
 import type { RecordedFrame } from './recordings';
+import { measureTremble, standing } from './response';
 
 /** One clip with what its person calibrated. */
 export interface RobustnessClip {
@@ -25,16 +32,33 @@ export interface RobustnessClip {
 }
 
 export const lossSeconds = [0.1, 0.5, 2] as const;
+/** Losses of each of those lengths, then of a headset's hand tracking. */
+const lossKinds: readonly { readonly key: string; readonly lengthOf: LossLength }[] = [
+  ...lossSeconds.map((seconds) => ({ key: String(seconds), lengthOf: lasting(seconds) })),
+  { key: 'hand tracking', lengthOf: asHandTracking },
+];
 export const offsetsCm = [-3, -1, 1, 3] as const;
 const axes = ['x', 'y', 'z'] as const;
 export const heightPercents = [-5, -2, 2, 5] as const;
 export const spanPercents = [-5, 5] as const;
 export const ratesHz = [72, 90, 120] as const;
 
+/** What the trackers' noise does; trembling is root mean square from frame to frame while a person stands still. */
+export interface NoiseReport {
+  readonly mpjpeCm: number;
+  readonly jerkRatio: number;
+  readonly elbowTrembleMm: number;
+  readonly hipsTrembleMm: number;
+}
+
 export interface MethodRobustness {
   readonly mpjpeCm: number;
   readonly jerkRatio: number;
   readonly losses: readonly LossReport[];
+  /** Losses as long as those of a headset's hand tracking. */
+  readonly handTracking: LossReport;
+  /** The simulated noise, which every other figure is of, then the strong one. */
+  readonly noises: readonly NoiseReport[];
   readonly offsets: readonly {
     readonly tracker: Tracker;
     readonly axis: (typeof axes)[number];
@@ -112,6 +136,7 @@ function conditions(rateHz: number) {
   }));
   return {
     clean: same,
+    strongNoise: { ...same, frames: (clip: RobustnessClip) => raiseNoise(clip.frames, strongNoise, seedOf(clip.name)) },
     offsets,
     heights: scaled('eyeHeight', heightPercents),
     spans: scaled('armSpan', spanPercents),
@@ -142,10 +167,11 @@ export async function measureRobustness<
   const all = conditions(rateHz);
   const listed: readonly Condition[] = [
     all.clean,
+    all.strongNoise,
     ...[...all.offsets, ...all.heights, ...all.spans, ...all.rates].map(({ condition }) => condition),
   ];
   const measures = methods.map(() => new Map<Condition, Measures>(listed.map((c) => [c, emptyMeasures()])));
-  const tallies = methods.map(() => lossSeconds.map(emptyLossTally));
+  const tallies = methods.map(() => lossKinds.map(emptyLossTally));
   const total = clips.reduce((sum, clip) => sum + clip.frames, 0);
   let done = 0;
   for (const listedClip of clips) {
@@ -161,8 +187,8 @@ export async function measureRobustness<
         // Errors as the device would show them; jerk at the recording's rate, or rates would not compare.
         addErrorsAndJerk(of, driven, condition.rateHz, rateHz);
       }
-      for (const [which, seconds] of lossSeconds.entries()) {
-        const losses = scheduleLosses(clip.frames.length, rateHz, seconds, seedOf(`${clip.name} ${seconds}`));
+      for (const [which, { key, lengthOf }] of lossKinds.entries()) {
+        const losses = scheduleLosses(clip.frames.length, rateHz, lengthOf, seedOf(`${clip.name} ${key}`));
         if (losses.length === 0) continue;
         const lossy = await drive(name, clip.calibration, regressor, loseHands(clip.frames, losses));
         addLosses(tallies[number]?.[which] ?? emptyLossTally(), { lossy, seen }, losses, rateHz);
@@ -171,6 +197,8 @@ export async function measureRobustness<
     done += listedClip.frames;
     options.told?.(done / total);
   }
+  const lossesOf = (number: number) => lossKinds.map((_, which) => reportLosses(tallies[number]![which]!));
+  const trembles = await Promise.all(methods.map((name) => measureTrembles(name, regressors.get(name) ?? null)));
   const rows = methods.map((name, number): [Method, MethodRobustness] => {
     const figures = ({ condition }: { readonly condition: Condition }) => {
       const { mpjpeCm, jerkRatio } = report(measures[number]?.get(condition) ?? emptyMeasures());
@@ -181,9 +209,12 @@ export async function measureRobustness<
       name,
       {
         ...figures({ condition: all.clean }),
-        losses: lossSeconds.map((seconds, which) =>
-          reportLosses(seconds, tallies[number]?.[which] ?? emptyLossTally()),
-        ),
+        losses: lossesOf(number).slice(0, lossSeconds.length),
+        handTracking: lossesOf(number).at(-1)!,
+        noises: [all.clean, all.strongNoise].map((condition, which) => ({
+          ...figures({ condition }),
+          ...trembles[number]![which]!,
+        })),
         offsets: all.offsets.map((row) => ({
           tracker: row.tracker,
           axis: row.axis,
@@ -202,6 +233,20 @@ export async function measureRobustness<
     frames: total,
     estimators: Object.fromEntries(rows) as Record<Method, MethodRobustness>,
   };
+}
+
+/** How elbow and hips tremble under the simulated noise, then under the strong one. */
+async function measureTrembles(
+  name: MeasuredMethod,
+  regressor: PoseRegressor | null,
+): Promise<Pick<NoiseReport, 'elbowTrembleMm' | 'hipsTrembleMm'>[]> {
+  const reports = [];
+  for (const noiseOf of [simulatedNoise, () => strongNoise]) {
+    const driver = createDriver(name, standing, regressor);
+    const { rightLowerArm, hips } = await measureTremble(driver, ['rightLowerArm', 'hips'], noiseOf);
+    reports.push({ elbowTrembleMm: rounded(rightLowerArm!, 3), hipsTrembleMm: rounded(hips!, 3) });
+  }
+  return reports;
 }
 
 /** Errors of frames at `atHz`, jerk as at `jerkHz`: rates would not compare otherwise. */
@@ -238,18 +283,28 @@ export function robustnessText<Method extends MeasuredMethod>(
     `${cm.toFixed(2)} (${cm < clean ? '−' : '+'}${Math.abs(cm - clean).toFixed(2)})`;
   lines.push(`  ${''.padEnd(34)}${methods.map((name) => name.padStart(22)).join('')}`);
   row('undisturbed', (m) => m.mpjpeCm.toFixed(2));
-  lossSeconds.forEach((seconds, index) => {
-    const of = (m: MethodRobustness) => m.losses[index] as LossReport;
+  const lossRows = (label: string, of: (m: MethodRobustness) => LossReport) => {
     const times = (a: number, b: number) => `${a.toFixed(2)} (${(a / b).toFixed(2)} ×)`;
-    const milliseconds = Math.round(seconds * 1000);
-    row(`hand lost ${milliseconds} ms: all joints`, (m) => times(of(m).during.allCm, of(m).during.allSeenCm));
+    row(`hand lost ${label}: all joints`, (m) => times(of(m).during.allCm, of(m).during.allSeenCm));
     row('  its elbow', (m) => times(of(m).during.elbowCm, of(m).during.elbowSeenCm));
     row('  0.5 s after: all joints', (m) => times(of(m).after.allCm, of(m).after.allSeenCm));
     row('  0.5 s after: its elbow', (m) => times(of(m).after.elbowCm, of(m).after.elbowSeenCm));
     const step = ({ stepCm, excessCm }: LongestStep) => `${stepCm.toFixed(1)} / ${excessCm.toFixed(1)}`;
     row('  longest step / excess, loss [cm]', (m) => step(of(m).atLoss));
     row('  the same at return [cm]', (m) => step(of(m).atReturn));
-  });
+  };
+  for (const [index, seconds] of lossSeconds.entries()) {
+    lossRows(`${Math.round(seconds * 1000)} ms`, (m) => m.losses[index]!);
+  }
+  lossRows('as tracked', (m) => m.handTracking);
+  for (const [index, label] of ['simulated noise', 'strong noise'].entries()) {
+    const of = (m: MethodRobustness) => m.noises[index]!;
+    row(`${label}: MPJPE / jerk`, (m) => `${of(m).mpjpeCm.toFixed(2)} / ${of(m).jerkRatio.toFixed(2)} ×`);
+    row(
+      '  tremble: elbow / hips [mm]',
+      (m) => `${of(m).elbowTrembleMm.toFixed(2)} / ${of(m).hipsTrembleMm.toFixed(2)}`,
+    );
+  }
   for (const tracker of trackers) {
     for (const size of [1, 3]) {
       const of = (m: MethodRobustness) =>

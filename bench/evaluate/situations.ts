@@ -12,6 +12,7 @@ import { right, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import {
   type Loss,
+  lasting,
   loseHands,
   offsetTrackers,
   resampleFrames,
@@ -61,7 +62,7 @@ const lossSeconds = [0.1, 0.5, 1, 2] as const;
 const lost =
   (seconds: number): Stage =>
   (piece, rateHz) => {
-    const losses = scheduleLosses(piece.frames.length, rateHz, seconds, seedOf(`${piece.name} ${seconds}`));
+    const losses = scheduleLosses(piece.frames.length, rateHz, lasting(seconds), seedOf(`${piece.name} ${seconds}`));
     return { calibration: piece.calibration, rateHz, frames: loseHands(piece.frames, losses), losses };
   };
 
@@ -69,7 +70,12 @@ const lost =
 const guessed =
   (seconds: number): Stage =>
   (piece, rateHz) => {
-    const losses = scheduleLosses(piece.frames.length, rateHz, seconds, seedOf(`${piece.name} guessed ${seconds}`));
+    const losses = scheduleLosses(
+      piece.frames.length,
+      rateHz,
+      lasting(seconds),
+      seedOf(`${piece.name} guessed ${seconds}`),
+    );
     const frames = [...piece.frames];
     for (const { side, start, end } of losses) {
       const last = piece.frames[start - 1]?.frame[`${side}Hand`];

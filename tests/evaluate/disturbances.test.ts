@@ -4,14 +4,20 @@ import { distance, subtract } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
 import {
   aftermathSeconds,
+  asHandTracking,
+  lasting,
   loseHands,
   offsetTrackers,
+  raiseNoise,
   resampleEstimates,
   resampleFrames,
   scheduleLosses,
   seedOf,
+  simulatedNoise,
+  strongNoise,
 } from '../../bench/evaluate/disturbances';
 import { drive } from '../../bench/evaluate/drive';
+import { quantiles, rateHz } from '../../bench/evaluate/hand-tracking-losses.json';
 import { person, recordedMotion } from './recorded-motion';
 
 describe('losses', () => {
@@ -19,7 +25,7 @@ describe('losses', () => {
     fc.assert(
       fc.property(fc.integer(), fc.integer({ min: 0, max: 3000 }), fc.constantFrom(0.1, 0.5, 2), (seed, frames, s) => {
         let free = 0;
-        for (const { start, end } of scheduleLosses(frames, 60, s, seed)) {
+        for (const { start, end } of scheduleLosses(frames, 60, lasting(s), seed)) {
           expect(start).toBeGreaterThanOrEqual(free);
           expect(end - start).toBe(Math.round(s * 60));
           expect(end + aftermathSeconds * 60).toBeLessThanOrEqual(frames);
@@ -30,10 +36,22 @@ describe('losses', () => {
   });
 
   test('come at the same times for the same clip, at others for another, and take both hands', () => {
-    const of = (clip: string) => scheduleLosses(3000, 60, 0.5, seedOf(clip));
+    const of = (clip: string) => scheduleLosses(3000, 60, lasting(0.5), seedOf(clip));
     expect(of('05_01')).toEqual(of('05_01'));
     expect(of('05_01')).not.toEqual(of('05_02'));
     expect(new Set(of('05_01').map(({ side }) => side))).toEqual(new Set(['left', 'right']));
+  });
+
+  test('last as long as those of a headset that tracks hands', () => {
+    const losses = scheduleLosses(10_000_000, 60, asHandTracking, seedOf('any'));
+    const seconds = losses.map(({ start, end }) => (end - start) / 60).sort((a, b) => a - b);
+    expect(seconds.length).toBeGreaterThan(10_000);
+    for (const { share, frames } of quantiles.slice(1, -1)) {
+      const lasted = seconds[Math.floor(share * seconds.length)]! * rateHz;
+      expect(Math.abs(lasted / frames - 1)).toBeLessThan(0.15);
+    }
+    expect(seconds[0]! * rateHz).toBeCloseTo(1, 6);
+    expect(seconds.at(-1)! * rateHz).toBeCloseTo(quantiles.at(-1)!.frames, 6);
   });
 
   test('hide one hand in their frames and nothing else', () => {
@@ -47,6 +65,29 @@ describe('losses', () => {
       expect(frame.head).toBe(before.frame.head);
       expect(truth).toBe(before.truth);
     });
+  });
+});
+
+describe('noise', () => {
+  test('is raised to what it is to be, of head and hands alike', () => {
+    const still = Array.from({ length: 4000 }, () => recordedMotion(1, 1)[0]!);
+    const noisy = raiseNoise(still, strongNoise, 7);
+    for (const [point, tracker] of [
+      ['head', 'head'],
+      ['rightHand', 'hands'],
+    ] as const) {
+      const deviation = Math.sqrt(
+        noisy.reduce((sum, { frame }, row) => {
+          const off = distance(frame[point]!.position, still[row]!.frame[point]!.position);
+          return sum + off * off;
+        }, 0) /
+          noisy.length /
+          3,
+      );
+      const before = simulatedNoise(tracker).metres;
+      expect(Math.sqrt(deviation ** 2 + before ** 2)).toBeCloseTo(strongNoise.metres, 5);
+    }
+    expect(noisy.map(({ truth }) => truth)).toEqual(still.map(({ truth }) => truth));
   });
 });
 

@@ -27,7 +27,7 @@ describe('what a loss costs', () => {
     const [, seen] = await measured();
     const tally = emptyLossTally();
     addLosses(tally, { lossy: seen, seen }, losses, 60);
-    const { during, after, atLoss, atReturn } = reportLosses(2, tally);
+    const { during, after, atLoss, atReturn } = reportLosses(tally);
     expect(during.allCm).toBe(during.allSeenCm);
     expect(after.elbowCm).toBe(after.elbowSeenCm);
     expect([atLoss.excessCm, atReturn.excessCm]).toEqual([0, 0]);
@@ -38,7 +38,7 @@ describe('what a loss costs', () => {
     const [lossy, seen] = await measured();
     const tally = emptyLossTally();
     addLosses(tally, { lossy, seen }, losses, 60);
-    const { during, after, losses: count } = reportLosses(2, tally);
+    const { during, after, losses: count } = reportLosses(tally);
     expect(count).toBe(1);
     expect(during.allCm).toBeGreaterThan(during.allSeenCm);
     expect(during.elbowCm - during.elbowSeenCm).toBeGreaterThan(during.allCm - during.allSeenCm);
@@ -52,7 +52,7 @@ describe('what a loss costs', () => {
     );
     const tally = emptyLossTally();
     addLosses(tally, { lossy: jumping, seen }, losses, 60);
-    const { atLoss, atReturn } = reportLosses(2, tally);
+    const { atLoss, atReturn } = reportLosses(tally);
     expect(atLoss).toMatchObject({ joint: 'neck', excessJoint: 'neck', over5Cm: 1 });
     expect(atLoss.stepCm).toBeCloseTo((5 - seen[99]!.joints.neck!.y) * 100, -1);
     expect(atReturn.over5Cm).toBe(0);
@@ -102,6 +102,9 @@ describe('a whole run', () => {
       expect(method.heights.map(({ percent }) => percent)).toEqual(heightPercents);
       expect(method.rates.map(({ hz }) => hz)).toEqual(ratesHz);
       expect(method.losses.map(({ milliseconds }) => milliseconds)).toEqual([100, 500, 2000]);
+      expect(method.handTracking.losses).toBeGreaterThan(0);
+      expect(method.noises[1]!.elbowTrembleMm).toBeGreaterThan(method.noises[0]!.elbowTrembleMm);
+      expect(method.noises[0]).toMatchObject({ mpjpeCm: method.mpjpeCm, jerkRatio: method.jerkRatio });
       // JSON has no NaN: it would stand there as null.
       expect(JSON.stringify(method)).not.toContain('null');
     }

@@ -29,11 +29,17 @@ def report(scale):
 def robustness(clean):
     errors = {"allCm": 1.2 * clean, "allSeenCm": clean, "elbowCm": 2 * clean, "elbowSeenCm": clean}
     step = {"stepCm": 8.0, "joint": "leftHand", "excessCm": 4.0, "excessJoint": "leftHand", "over5Cm": 0}
+
+    def lost(milliseconds):
+        return {"milliseconds": milliseconds, "losses": 7, "during": errors, "after": errors, "atLoss": step, "atReturn": step}
+
     return {
         "mpjpeCm": clean,
         "jerkRatio": 1.05,
-        "losses": [
-            {"milliseconds": ms, "losses": 7, "during": errors, "after": errors, "atLoss": step, "atReturn": step} for ms in (100, 500, 2000)
+        "losses": [lost(ms) for ms in (100, 500, 2000)],
+        "handTracking": lost(300),
+        "noises": [
+            {"mpjpeCm": clean + more, "jerkRatio": 1.05, "elbowTrembleMm": 0.2 + more, "hipsTrembleMm": 0.1 + more} for more in (0, 0.5)
         ],
         "offsets": [
             {"tracker": tracker, "axis": axis, "offsetCm": cm, "mpjpeCm": clean + abs(cm) / 10}
@@ -136,6 +142,23 @@ def test_laboratories_that_were_not_measured_leave_their_table_as_it_was(tmp_pat
         file.write_text(json.dumps(measured))
     assert "| another laboratory, hands measured | 5.00 |" in renewed()
     assert capsys.readouterr().out == ""
+
+
+def test_losses_end_with_those_of_hand_tracking():
+    lines = accuracy_tables.loss(evaluation()).splitlines()
+    assert [line.split(" | ")[0] for line in lines if "losses" in line] == [
+        "| 100 ms, 7 losses",
+        "| 500 ms, 7 losses",
+        "| 2000 ms, 7 losses",
+        "| as hand tracking loses it, 300 ms on average, 7 losses",
+    ]
+
+
+def test_the_stronger_noise_has_a_row():
+    measured, white = accuracy_tables.noise(evaluation()).splitlines()[2:]
+    assert measured.endswith("| 4.00 / 1.05 / 0.20 / 0.10 |")
+    assert white.startswith("| white: 0.3 mm and 0.1° |")
+    assert white.endswith("| 4.50 / 1.05 / 0.70 / 0.60 |")
 
 
 def test_people_held_out_come_first():

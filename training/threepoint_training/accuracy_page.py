@@ -44,6 +44,7 @@ def sections(
         "against-ik": tables.against_ik(evaluation),
         "disturbed": f"Clips, a seeded choice of the people held out, {disturbed}",
         "loss": tables.loss(evaluation),
+        "noise": tables.noise(evaluation),
         "offsets": tables.offsets(evaluation),
         "measures": tables.measures(evaluation),
         "rates": tables.rates(evaluation),

@@ -115,10 +115,28 @@ def against_ik(evaluation: Json) -> str:
     return table(head, [[*a, *b[1:], *c] for a, b, c in zip(mse, mae, mpjpe, strict=True)])
 
 
-def _losses(evaluation: Json) -> list[tuple[int, dict[str, Json]]]:
+def _losses(evaluation: Json) -> list[tuple[str, dict[str, Json]]]:
+    """By length of the loss, the last as those of a headset's hand tracking: what to call it, and each method's figures."""
     estimators = evaluation["robustness"]["estimators"]
-    durations = [loss["milliseconds"] for loss in estimators["ik"]["losses"]]
-    return [(ms, {method: estimators[method]["losses"][i] for method in METHODS}) for i, ms in enumerate(durations)]
+    fixed = [
+        (f"{loss['milliseconds']} ms", {method: estimators[method]["losses"][i] for method in METHODS})
+        for i, loss in enumerate(estimators["ik"]["losses"])
+    ]
+    tracked = {method: estimators[method]["handTracking"] for method in METHODS}
+    return [*fixed, (f"as hand tracking loses it, {tracked['ik']['milliseconds']} ms on average", tracked)]
+
+
+def noise(evaluation: Json) -> str:
+    """Error, jerk and trembling under the simulated noise, then under the strong one."""
+    names = ("as measured: headset 0.05 mm and 0.03°, hands 0.15 mm and 0.05°", "white: 0.3 mm and 0.1°")
+
+    def cell(method: str, number: int) -> str:
+        figures = evaluation["robustness"]["estimators"][method]["noises"][number]
+        tremble = f"{figures['elbowTrembleMm']:.2f} / {figures['hipsTrembleMm']:.2f}"
+        return f"{figures['mpjpeCm']:.2f} / {figures['jerkRatio']:.2f} / {tremble}"
+
+    rows = [[name, *(cell(method, number) for method in METHODS)] for number, name in enumerate(names)]
+    return table(["MPJPE [cm] / jerk / trembling of elbow / hips [mm]", *METHODS.values()], rows)
 
 
 def loss(evaluation: Json) -> str:
@@ -126,7 +144,7 @@ def loss(evaluation: Json) -> str:
         return f"{cm:.2f} ({cm / seen:.2f} ×)"
 
     rows = [["0 ms", "all joints", *(f"{evaluation['robustness']['estimators'][m]['mpjpeCm']:.2f}" for m in METHODS)]]
-    for milliseconds, by_method in _losses(evaluation):
+    for length, by_method in _losses(evaluation):
         lines: list[tuple[str, Callable[[Json], str]]] = [
             ("all joints", lambda f: ratio(f["during"]["allCm"], f["during"]["allSeenCm"])),
             ("its elbow", lambda f: ratio(f["during"]["elbowCm"], f["during"]["elbowSeenCm"])),
@@ -137,7 +155,7 @@ def loss(evaluation: Json) -> str:
         ]
         for number, (label, cell) in enumerate(lines):
             count = by_method["ik"]["losses"]
-            name = f"{milliseconds} ms, {count} losses" if number == 0 else ""
+            name = f"{length}, {count} losses" if number == 0 else ""
             rows.append([name, label, *(cell(by_method[method]) for method in METHODS)])
     return re.sub(r"(?m)^\| --- \| ---:", "| --- | ---", table(["hand lost for", "cm", *METHODS.values()], rows))
 
@@ -245,7 +263,7 @@ def aims(evaluation: Json, contracts: dict[str, Json]) -> str:
     offset = round(max(o["mpjpeCm"] for o in robust["offsets"]) - robust["mpjpeCm"], 2)
     height = round(max(h["mpjpeCm"] for h in robust["heights"]) - robust["mpjpeCm"], 2)
     long = robust["losses"][-1]["during"]
-    jump = max(loss[when]["excessCm"] for loss in robust["losses"] for when in ("atLoss", "atReturn"))
+    jump = max(loss[when]["excessCm"] for loss in (*robust["losses"], robust["handTracking"]) for when in ("atLoss", "atReturn"))
     lost_all, lost_elbow = round(long["allCm"] / long["allSeenCm"], 2), round(long["elbowCm"] / long["elbowSeenCm"], 2)
     held = ", ".join(people_held_out(evaluation))
     rows = [

@@ -85,10 +85,9 @@ def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, 
     k = parameters or load_parameters()
     points = _points(positions, rotations, body)
     turn = _turn_chest(points, k)
-    thorax_up, lower_back_up = _lean_trunk(points, turn, body, k)
-    thorax = _thorax_frame(thorax_up, turn)
+    thorax, lower_back = _lean_trunk(points, turn, body, k)
     neck = _place_neck(points, thorax, body, k)
-    chest_joint, hips = _place_trunk(neck, thorax_up, lower_back_up, body)
+    chest_joint, hips = _place_trunk(neck, thorax[..., :, 1], lower_back[..., :, 1], body)
     shoulders = [_place_shoulder(side, points, (neck, thorax), body, k) for side in (0, 1)]
     elbows = [_place_elbow(side, points, (shoulder, thorax), body, k) for side, shoulder in enumerate(shoulders)]
     return np.stack([*elbows, *shoulders, chest_joint, hips], axis=1)
@@ -113,7 +112,7 @@ def _turn_chest(points: _Points, k: dict[str, Any]) -> Array:
 
 
 def _lean_trunk(points: _Points, turn: Array, body: Body, k: dict[str, Any]) -> tuple[Array, Array]:
-    """2. Lean: the up directions [F, 3] of thorax and lower back."""
+    """2. Lean: the frames of thorax and lower back [F, 3, 3], axes as columns."""
     middle, left, right = points.middle, points.left, points.right
     crouch = _within(1 - points.headset[:, 1] / body.eye_height[..., 0], LIMITS["crouch"])
     # Of the gaze, the head's −Z, and of its right axis the vertical parts.
@@ -121,18 +120,16 @@ def _lean_trunk(points: _Points, turn: Array, body: Body, k: dict[str, Any]) -> 
     sagittal = np.stack([np.ones_like(crouch), looking_down, crouch, -middle[:, 2], -middle[:, 1], looking_down * crouch], -1)
     lateral = np.stack([right_up, middle[:, 0], right[:, 1] - left[:, 1]], -1)
 
-    def up(segment: dict[str, list[float]]) -> Array:
+    def frame(segment: dict[str, list[float]]) -> Array:
         alpha = _within(sagittal @ np.array(segment["forward"]), LIMITS["leanForward"])
         beta = _within(lateral @ np.array(segment["sideways"]), LIMITS["leanSideways"])
-        return _apply(turn, np.stack([np.sin(beta), np.cos(alpha) * np.cos(beta), -np.sin(alpha) * np.cos(beta)], -1))
+        sin_a, cos_a, sin_b, cos_b = np.sin(alpha), np.cos(alpha), np.sin(beta), np.cos(beta)
+        x = np.stack([cos_b, -sin_b * cos_a, sin_b * sin_a], -1)
+        y = np.stack([sin_b, cos_b * cos_a, -cos_b * sin_a], -1)
+        z = np.stack([np.zeros_like(alpha), sin_a, cos_a], -1)
+        return turn @ np.stack([x, y, z], -1)
 
-    return up(k["upper"]), up(k["lower"])
-
-
-def _thorax_frame(thorax_up: Array, turn: Array) -> Array:
-    """3. Thorax frame: its axes as columns [F, 3, 3]."""
-    x = normalise(np.cross(thorax_up, turn[..., :, 2]))
-    return np.stack([x, thorax_up, np.cross(x, thorax_up)], -1)
+    return frame(k["upper"]), frame(k["lower"])
 
 
 def _place_neck(points: _Points, thorax: Array, body: Body, k: dict[str, Any]) -> Array:

@@ -3,7 +3,7 @@ import { type ChestSpaceBody, sideSign } from '../body/skeleton';
 import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../body/two-bone-ik';
 import { clamp } from '../math/damper';
 import { type MutablePose, makePose, type Pose } from '../math/pose';
-import { fromAxes, fromAxisAngle, multiply, type Quat, quat, rotate, rotateInverse } from '../math/quat';
+import { fromAxisAngle, type MutableQuat, multiply, type Quat, quat, rotate, rotateInverse } from '../math/quat';
 import type { Side } from '../math/side';
 import {
   add,
@@ -107,6 +107,8 @@ const across = vec3(0, 0, 0);
 /** The thorax's yaw, and the thorax frame (docs/glossary.md): y from the chest joint to the neck. */
 const yaw = quat(0, 0, 0, 1);
 const thorax = quat(0, 0, 0, 1);
+const lowerBack = quat(0, 0, 0, 1);
+const pitch = quat(0, 0, 0, 1);
 const thoraxUp = vec3(0, 0, 0);
 const lowerBackUp = vec3(0, 0, 0);
 const neck = vec3(0, 0, 0);
@@ -169,19 +171,18 @@ function leanTrunk(head: Pose<'heading'>, body: ChestSpaceBody): void {
   lateral[0] = rotate(head.orientation, right, a).y;
   lateral[1] = middle.x;
   lateral[2] = rightHand.y - left.y;
-  upDirection(parameters.upper, thoraxUp);
-  upDirection(parameters.lower, lowerBackUp);
-
-  normalise(cross(thoraxUp, rotate(yaw, backward, a), a), right, a);
-  fromAxes(a, thoraxUp, cross(a, thoraxUp, b), thorax);
+  leanRotation(parameters.upper, thorax);
+  leanRotation(parameters.lower, lowerBack);
+  rotate(thorax, up, thoraxUp);
+  rotate(lowerBack, up, lowerBackUp);
 }
 
-function upDirection(segment: { forward: number[]; sideways: number[] }, target: MutableVec3): void {
+/** A segment's rotation: sideways, then forward about the chest's side axis, then with the chest's yaw; no lean is singular. */
+function leanRotation(segment: { forward: number[]; sideways: number[] }, target: MutableQuat): void {
   const alpha = clamp(weighted(segment.forward, sagittal), bounds.leanForward.min, bounds.leanForward.max);
   const beta = clamp(weighted(segment.sideways, lateral), bounds.leanSideways.min, bounds.leanSideways.max);
-  const flat = Math.cos(beta);
-  setVec3(target, Math.sin(beta), Math.cos(alpha) * flat, -Math.sin(alpha) * flat);
-  rotate(yaw, target, target);
+  multiply(fromAxisAngle(right, -alpha, pitch), fromAxisAngle(backward, -beta, target), target);
+  multiply(yaw, target, target);
 }
 
 /** 4. Neck base. 5. Chest joint and hips. */

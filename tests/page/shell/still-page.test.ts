@@ -1,0 +1,157 @@
+import { setImmediate } from 'node:timers/promises';
+import fc from 'fast-check';
+import { BodySolver } from 'threepoint/api/body-solver';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
+import { nothingPressed } from 'threepoint/core/input/button-presses';
+import { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { createActor } from 'threepoint-page/emulator/actor';
+import { createFrameLoop } from 'threepoint-page/shell/frame-loop';
+import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
+import { PageFrame, type PageFrameOptions } from 'threepoint-page/shell/page-frame';
+import { TrackingSource } from 'threepoint-page/shell/tracking-source';
+import { Recorder } from 'threepoint-page/studio/recorder';
+import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import { cases } from '../../nightly';
+import { seed } from '../../threepoint/core/arbitraries';
+import { bodies, jointsOf } from '../../threepoint/core/estimation/contract-subjects';
+import type { Joints } from '../../threepoint/core/estimation/drawn';
+import { openPlainModel, openShippedModel } from '../../threepoint/core/estimation/shipped-models';
+import {
+  expectSlow,
+  expectStill,
+  rate,
+  settled,
+  slowPerson,
+  stillPerson,
+  watched,
+} from '../../threepoint/core/estimation/still-people';
+
+type Networks = ConstructorParameters<typeof BodySolver>[0]['networks'];
+
+/** A page in a session whose device reports these frames: what it draws of one, joint by joint. Only the device and the picture are missing. */
+async function openPage(estimator: EstimatorName, calibration: Calibration, networks: Networks) {
+  const recorder = new Recorder();
+  const body = new BodySolver({ estimator, calibration, networks });
+  await body.setEstimator(estimator);
+  const impaired = new TrackingDegradation();
+  let reported: TrackingFrame | null = null;
+  const headset = {
+    worn: true,
+    emulator: null,
+    visibility: 'visible',
+    tracking: {
+      inputs: { buttons: nothingPressed },
+      read: (_: unknown, time: number) => reported && { ...reported, time },
+    },
+    buzz: () => undefined,
+    takePress: () => false,
+    turnByStick: () => false,
+  };
+  const activities = {
+    current: null,
+    mirror: 'never',
+    act: () => null,
+    play: () => [],
+    grasp: () => false,
+    show: () => undefined,
+  };
+  const source = new TrackingSource({
+    settings: { actor: false },
+    headset,
+    recorder,
+    body,
+    actor: createActor(),
+    activities,
+    study: { idle: false },
+  });
+  const faults: unknown[] = [];
+  const parts = {
+    settings: { mirror: false },
+    notices: { show: (_: unknown, fault: unknown) => faults.push(fault) },
+    source,
+    impaired,
+    body,
+    recorder,
+    difference: { observe: () => undefined },
+    avatar: { current: null },
+    headset,
+    activities,
+    controls: { observe: () => undefined, point: () => undefined },
+    study: { run: null },
+    stage: { look: () => undefined, draw: () => undefined },
+    mocap: { frame: () => undefined, aside: 0 },
+  };
+  const loop = createFrameLoop(
+    new PageFrame(parts as unknown as PageFrameOptions),
+    body,
+    createFrameTiming(() => 0),
+  );
+  return {
+    /** Draws a frame, and lets a network that answers later answer. */
+    async show(frame: TrackingFrame) {
+      reported = frame;
+      loop(frame.time * 1000, {} as XRFrame);
+      if (body.provider === 'wasm') await setImmediate();
+    },
+    joints: () => jointsOf(body.pose!, calibration),
+    async close() {
+      expect(faults).toEqual([]);
+      expect(body.estimator).toBe(estimator);
+      await body.dispose();
+    },
+  };
+}
+
+/** Networks that outlive a page: one opened for all cases of a test. */
+function openNetworks() {
+  const shipped = openShippedModel('paper');
+  return {
+    networks: (async (name) =>
+      name === 'learned' ? openPlainModel() : { ...(await shipped), dispose: async () => undefined }) as Networks,
+    close: async () => (await shipped).dispose(),
+  };
+}
+
+describe.each(bodies.filter(({ plain, name }) => plain || name !== 'learned'))('the page draws $label', ({ name }) => {
+  let opened: ReturnType<typeof openNetworks>;
+  beforeAll(() => {
+    opened = openNetworks();
+  });
+  afterAll(() => opened.close());
+  // Inference on the page's runtime costs.
+  const runs = { seed, numRuns: cases(name === 'paper' ? 1 : 8), endOnFailure: true };
+
+  test('a person who holds still: after two seconds still, hands within reach on their controllers', () =>
+    fc.assert(
+      fc.asyncProperty(stillPerson, async (person) => {
+        const page = await openPage(name, person.calibration, opened.networks);
+        for (let i = 0; i < settled; i++) await page.show(person.frame(i * rate));
+        const drawn: Joints[] = [];
+        for (let i = settled; i < settled + watched; i++) {
+          await page.show(person.frame(i * rate));
+          drawn.push(page.joints());
+        }
+        expectStill(drawn, person);
+        await page.close();
+      }),
+      runs,
+    ));
+
+  test('no joint much further in a frame than hands that move slowly', () =>
+    fc.assert(
+      fc.asyncProperty(slowPerson, async ({ calibration, count, frame }) => {
+        const page = await openPage(name, calibration, opened.networks);
+        for (let i = -settled; i < 0; i++) await page.show(frame(i));
+        const drawn: Joints[] = [];
+        for (let i = 0; i <= count; i++) {
+          await page.show(frame(i));
+          drawn.push(page.joints());
+        }
+        expectSlow(drawn);
+        await page.close();
+      }),
+      runs,
+    ));
+});
