@@ -2,4 +2,4 @@
 import { register } from 'tsx/esm/api';
 
 register();
-await import('threepoint-study/server/study-thread.ts');
+await import('./study-thread-work.ts');
