@@ -13,8 +13,7 @@ const out = join(root, 'dist-library');
 const entries = ['index', 'motion', 'three', 'onnx', 'onnx-worker', 'polyfill'];
 /** The manifest of the workspace; the published one is the same without what only this repository can resolve. */
 const own = JSON.parse(readFileSync(join(root, 'src/threepoint/package.json'), 'utf8'));
-const external = (id) =>
-  [...Object.keys(own.peerDependencies), 'valibot'].some((name) => id === name || id.startsWith(`${name}/`));
+const external = (id) => Object.keys(own.peerDependencies).some((name) => id === name || id.startsWith(`${name}/`));
 
 /** Files of the package beside its code, and where they lie here. */
 const copied = {
@@ -28,12 +27,12 @@ const copied = {
   'README.md': 'src/threepoint/README.md',
 };
 
-/** Returns the manifest to publish: without sources, without rooms that are internal, with dependencies that may be newer. */
+/** Returns the manifest to publish: without sources and internal rooms. It has no dependencies: all but the peers is bundled. */
 function published() {
-  const { private: _, devDependencies: __, exports, dependencies, ...rest } = own;
+  const { private: _, devDependencies: __, dependencies: ___, exports, ...rest } = own;
   const outside = Object.entries(exports).flatMap(([name, target]) => {
     if (typeof target === 'string') return [[name, target]];
-    const { source: ___, ...built } = target;
+    const { source: ____, ...built } = target;
     return Object.keys(built).length > 0 ? [[name, built]] : [];
   });
   return {
@@ -41,8 +40,6 @@ function published() {
     // Sources have more files of this kind: workers, which a bundler would drop.
     sideEffects: ['./onnx-worker.js'],
     exports: Object.fromEntries(outside),
-    // Bundled: gltf-validator, in a chunk that loads when an avatar is checked.
-    dependencies: { valibot: `^${dependencies.valibot}` },
   };
 }
 

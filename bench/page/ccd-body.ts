@@ -8,7 +8,7 @@ import {
   SkinnedMesh,
   Uint16BufferAttribute,
 } from 'three';
-import { CCDIKSolver } from 'three/examples/jsm/animation/CCDIKSolver.js';
+import { CCDIKSolver } from 'three/addons/animation/CCDIKSolver.js';
 import { parentOf } from 'threepoint/core/body/joints';
 import type { Skeleton as Body } from 'threepoint/core/body/skeleton';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';

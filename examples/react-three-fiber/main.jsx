@@ -1,7 +1,7 @@
 import { Canvas, useFrame, useThree } from '@react-three/fiber';
 import { useEffect, useState } from 'react';
 import { createRoot } from 'react-dom/client';
-import { VRButton } from 'three/examples/jsm/webxr/VRButton.js';
+import { VRButton } from 'three/addons/webxr/VRButton.js';
 import mannequin from 'threepoint/avatars/mannequin.vrm?url';
 import { BodyTracker, loadAvatar } from 'threepoint/three';
 

@@ -1,5 +1,5 @@
 import { Color, GridHelper, HemisphereLight, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
-import { VRButton } from 'three/examples/jsm/webxr/VRButton.js';
+import { VRButton } from 'three/addons/webxr/VRButton.js';
 import avatarUrl from 'threepoint/avatars/mannequin.vrm?url';
 import { BodyTracker, loadAvatar } from 'threepoint/three';
 

@@ -7,7 +7,7 @@ import {
   MeshLambertMaterial,
   PlaneGeometry,
 } from 'three';
-import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
+import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import { signFont } from '../scene/boards/lettering';
 import { createDrawnTexture } from '../scene/drawn-texture';
 import { woodColor } from '../scene/outdoors/wood';

@@ -1,5 +1,5 @@
 import { PerspectiveCamera, Raycaster, Vector2, Vector3 } from 'three';
-import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import type { Pose } from 'threepoint/core/math/pose';
 import type { Ray } from 'threepoint/core/math/ray';
 

@@ -1,6 +1,6 @@
 import { type VRM, VRMLoaderPlugin, VRMUtils } from '@pixiv/three-vrm';
 import type { Object3D } from 'three';
-import { type GLTF, GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { reasonOf } from '../core/errors/reasons';
 import type { Decoders } from './decoders/decoder-set';
 import type { CheckedAvatar } from './file/check-avatar';

@@ -10,8 +10,8 @@ import {
   type Scene,
   type WebGLRenderer,
 } from 'three';
-import { Reflector } from 'three/examples/jsm/objects/Reflector.js';
-import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
+import { Reflector } from 'three/addons/objects/Reflector.js';
+import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import { eyeLayers } from './eye-layers';
 import { thirdPersonOnlyLayer } from './rig/body-meshes';
 import { seesRectangle } from './sees-rectangle';

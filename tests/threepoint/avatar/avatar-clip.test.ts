@@ -2,7 +2,7 @@ import { type VRM, VRMLoaderPlugin } from '@pixiv/three-vrm';
 import { createVRMAnimationClip, type VRMAnimation, VRMAnimationLoaderPlugin } from '@pixiv/three-vrm-animation';
 import { validateBytes } from 'gltf-validator';
 import { type Object3D, Quaternion, Vector3 } from 'three';
-import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { avatarClip } from 'threepoint/avatar/avatar-clip';
 import { turnPoint } from 'threepoint/core/motion/skeleton';
 import { writeVrma } from 'threepoint/core/motion/write-vrma';

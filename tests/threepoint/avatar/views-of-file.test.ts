@@ -1,5 +1,5 @@
 import { type Mesh, type MeshStandardMaterial, Texture } from 'three';
-import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { chunksOf } from 'threepoint/avatar/file/glb-chunks';
 import { viewsOfFile } from 'threepoint/avatar/file/views-of-file';
 import { describe, expect, test, vi } from 'vitest';

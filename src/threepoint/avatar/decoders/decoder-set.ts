@@ -1,4 +1,4 @@
-import type { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import type { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 
 /**
  * Means to unpack what is compressed, by the name of the extension. A file of its own: who loads avatars without any must not load the workers

@@ -1,5 +1,5 @@
 import { BufferAttribute, BufferGeometry } from 'three';
-import type { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import type { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { avatarLimits } from '../file/inspect-avatar';
 import { AskedWorker } from './asked-worker';
 import type { Decoders } from './decoder-set';
@@ -45,7 +45,7 @@ function dracoInWorker() {
 }
 
 async function meshopt(loader: GLTFLoader): Promise<void> {
-  const { MeshoptDecoder } = await import('three/examples/jsm/libs/meshopt_decoder.module.js');
+  const { MeshoptDecoder } = await import('three/addons/libs/meshopt_decoder.module.js');
   loader.setMeshoptDecoder(MeshoptDecoder);
 }
 

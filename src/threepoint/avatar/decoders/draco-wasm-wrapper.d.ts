@@ -1,5 +1,5 @@
 /** Draco's decoder as emscripten wraps it, as far as this project calls it; pointers are numbers. */
-declare module 'three/examples/jsm/libs/draco/gltf/draco_wasm_wrapper.js' {
+declare module 'three/addons/libs/draco/gltf/draco_wasm_wrapper.js' {
   interface Attribute {
     num_components(): number;
   }

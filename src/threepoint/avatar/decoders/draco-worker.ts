@@ -1,6 +1,6 @@
 import type { TypedArray } from 'three';
-import wasmAddress from 'three/examples/jsm/libs/draco/gltf/draco_decoder.wasm?url';
-import makeDraco from 'three/examples/jsm/libs/draco/gltf/draco_wasm_wrapper.js';
+import wasmAddress from 'three/addons/libs/draco/gltf/draco_decoder.wasm?url';
+import makeDraco from 'three/addons/libs/draco/gltf/draco_wasm_wrapper.js';
 import { reasonOf } from '../../core/errors/reasons';
 
 /** One mesh to be unpacked: Draco's numbers of its attributes, and which kind of array each is to be. */

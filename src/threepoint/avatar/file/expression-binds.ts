@@ -1,4 +1,4 @@
-import type { GLTFLoaderPlugin, GLTFParser } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import type { GLTFLoaderPlugin, GLTFParser } from 'three/addons/loaders/GLTFLoader.js';
 import * as v from 'valibot';
 
 const index = v.pipe(v.number(), v.integer(), v.minValue(0));

@@ -1,5 +1,5 @@
 import { Quaternion, Vector3 } from 'three';
-import { BVHLoader } from 'three/examples/jsm/loaders/BVHLoader.js';
+import { BVHLoader } from 'three/addons/loaders/BVHLoader.js';
 import type { Quat } from 'threepoint/core/math/quat';
 import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { makeJointPoses } from 'threepoint/core/motion/file-motion';

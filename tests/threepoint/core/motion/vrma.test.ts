@@ -3,7 +3,7 @@ import { type VRM, VRMLoaderPlugin } from '@pixiv/three-vrm';
 import { createVRMAnimationClip, type VRMAnimation, VRMAnimationLoaderPlugin } from '@pixiv/three-vrm-animation';
 import { validateBytes } from 'gltf-validator';
 import { Quaternion, Vector3 } from 'three';
-import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { jointNames } from 'threepoint/core/body/joints';
 import { distance } from 'threepoint/core/math/vec3';
 import { makePosedBones, poseBones } from 'threepoint/core/motion/motion';
