@@ -55,7 +55,7 @@ export interface BallScene {
   /** A built-in player has the own seat. */
   readonly acting: boolean;
   readonly voices: Pick<SeatVoices, 'markOf' | 'levelOf'>;
-  /** The seats of players whom the user has hidden. */
+  /** The seats of the players that the user has hidden. */
   readonly hidden: ReadonlySet<number>;
   /** The viewer's eyes and ears, floor frame of the user. */
   readonly head: Pose<'floor'>;

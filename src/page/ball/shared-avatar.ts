@@ -2,13 +2,13 @@ import { type AvatarHash, mostAvatarBytes, plainAvatar, type WornAvatar } from '
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
 import type { RoomView } from 'threepoint-rooms/client/connection';
-import type { OwnWear } from '../activity/activity-context';
+import type { UserAvatar } from '../activity/activity-context';
 
 export interface SharedAvatarOptions {
   /** null: there is no server, or its rooms are a study's, where all look alike. */
   readonly exchange: AvatarExchange | null;
   /** What the others are to see, asked for in every frame, the same object for as long as it is worn; null: the wearer wants theirs seen by no one. */
-  wear(): OwnWear | null;
+  wear(): UserAvatar | null;
   /** Says to the room what this player has on. */
   tell(avatar: WornAvatar): void;
   notify(level: 'info' | 'warning', text: string): void;
@@ -30,7 +30,7 @@ async function bring(exchange: AvatarExchange, hash: AvatarHash, file: Blob): Pr
 export class SharedAvatar {
   readonly #options: SharedAvatarOptions;
   /** The avatar that was sent last, and the stay in the room in which it was sent. */
-  #wear: OwnWear | null = null;
+  #wear: UserAvatar | null = null;
   #welcomes = 0;
   #turn = 0;
 
@@ -52,7 +52,7 @@ export class SharedAvatar {
   }
 
   /** Never rejects. `quiet`: it was said before. */
-  async #share({ name, file, hash }: Exclude<OwnWear, string>, turn: number, quiet: boolean): Promise<void> {
+  async #share({ name, file, hash }: Exclude<UserAvatar, string>, turn: number, quiet: boolean): Promise<void> {
     const { exchange, tell, notify } = this.#options;
     if (!exchange) return;
     const isNewest = () => turn === this.#turn;

@@ -205,7 +205,7 @@ export class MocapView {
     return {
       chooseClip: (index) => this.#chooseClip(index),
       setPaused: (on) => {
-        // A replay that was stopped, or is over, begins anew.
+        // A replay that was stopped or has ended restarts.
         if (replay.mode === 'replaying') replay.setPaused(on);
         else this.#seek(0);
         this.show();
@@ -238,13 +238,19 @@ export class MocapView {
     const clip = clips[index]!;
     const recording = recordingOf(clip);
     const { replay, networks } = this.#options;
-    // Where it throws, what is shown stays.
+    // If this throws, the shown motion stays.
     replay.begin(`${clip.name}.json`, recording, asked);
     this.close();
     const truth = new Truth(clip);
     const means = new ClipMeans(recording, truth, networks);
     this.#opened = {
-      ...{ name, addresses, clips, index, recording, truth, means },
+      name,
+      addresses,
+      clips,
+      index,
+      recording,
+      truth,
+      means,
       meter: new ErrorMeter(clip.calibration),
     };
     this.#placeTruth(outlook.truth ?? this.#truthPlace);
@@ -281,7 +287,13 @@ export class MocapView {
     if (!clip || !estimator) return;
     const { scene, networks, replay, loadAvatar, labels, tell } = this.#options;
     this.#second = new SecondBody({
-      ...{ scene, networks, replay, loadAvatar, estimator, calibration: clip.calibration, aside: secondAside },
+      scene,
+      networks,
+      replay,
+      loadAvatar,
+      estimator,
+      calibration: clip.calibration,
+      aside: secondAside,
       onFallback: (name, reason) =>
         tell('warning', `${labels[name]} could not be used (${firstLine(reason)}): inverse kinematics takes over.`),
     });

@@ -11,10 +11,10 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Notices } from 'threepoint-ui/notices';
 import type { MocapView, Outlook, Replay } from '../mocap/mocap-view';
 import type { Recorder } from '../studio/recorder';
+import { fetchOwnAvatar } from './avatar-loader';
 import { estimatorTexts } from './estimator-texts';
 import type { PreferenceStore } from './preferences';
 import type { Settings } from './settings';
-import { fetchOwnAvatar } from './shown-avatar';
 
 export interface PageMocapOptions {
   readonly scene: Object3D;
@@ -87,7 +87,10 @@ export class PageMocap {
   #build(View: typeof MocapView): MocapView {
     const { scene, body, networks, store, notices, prepare, onChange } = this.#options;
     return new View({
-      ...{ scene, networks, labels, prepare },
+      scene,
+      networks,
+      labels,
+      prepare,
       region: document.body,
       replay: this.#replay(),
       method: {

@@ -1,9 +1,5 @@
 import type { Object3D } from 'three';
-import { BareBody, type CalibrationSource } from 'threepoint/api/bare-body';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { firstLine } from 'threepoint/core/errors/reasons';
 import { ImpairedTracking } from 'threepoint/core/tracking/impaired-tracking';
-import { createPageClock } from 'threepoint/core/tracking/page-clock';
 import { ServerPresence } from 'threepoint-http/server-presence';
 import { pageElement } from 'threepoint-ui/element';
 import { createMouseAim } from 'threepoint-ui/mouse-aim';
@@ -16,14 +12,15 @@ import { affordableQuality } from '../scene/renderer';
 import { Recorder } from '../studio/recorder';
 import { Activities } from './activities';
 import { activities as registeredActivities } from './activity-registry';
+import { fetchOwnAvatar } from './avatar-loader';
 import { Controls } from './controls/controls';
 import { DeviceDifference } from './device-difference';
 import { Emitter } from './emitter';
-import { estimatorTexts } from './estimator-texts';
-import { createFrameTiming, type FrameTiming } from './frame-timing';
+import { createFrameTiming } from './frame-timing';
 import { Headset } from './headset';
 import { KnownBones } from './known-bones';
-import { createNetworkLoader } from './network-loading';
+import { createPageBody } from './page-body';
+import type { PageContext } from './page-context';
 import { surviveLostGraphics } from './page-faults';
 import { PageFrame } from './page-frame';
 import type { PageLoading } from './page-loading';
@@ -32,57 +29,25 @@ import { PageStudy } from './page-study';
 import { exposeProbe, readProbe } from './probe';
 import { SessionChanges } from './session-changes';
 import { pressSheetsByMouse } from './sheet-pointing';
-import { fetchOwnAvatar, ShownAvatar } from './shown-avatar';
+import { ShownAvatar } from './shown-avatar';
 import { createStage } from './stage';
 import { TrackingSource } from './tracking-source';
-import type { Visit } from './visit';
-import { Wearer } from './wearer';
+import { UserCalibration } from './user-calibration';
 
 export interface PageOptions {
-  readonly visit: Visit;
+  readonly context: PageContext;
   readonly notices: Notices;
   readonly loading: PageLoading;
 }
 
-/** Creates the body that head and hands move, and the events that it emits to parts of the page that are built later. */
-function createBody({ visit, notices, loading }: PageOptions, timing: FrameTiming) {
-  const { switches, store, changes } = visit;
-  const clock = createPageClock(() => performance.now());
-  const calibrated = new Emitter<[calibration: Calibration, source: CalibrationSource]>();
-  const outgrown = new Emitter<[difference: number]>();
-  const jumps = new Emitter();
-  const networks = createNetworkLoader({ provider: switches.executionProvider, notices, loading });
-  const body = new BareBody({
-    estimator: 'ik',
-    calibration: store.preferences.calibration ?? 'auto',
-    // A study measures its participants itself.
-    grows: switches.study === null,
-    networks,
-    clock,
-    timing,
-    events: {
-      calibrated: calibrated.emit,
-      outgrown: outgrown.emit,
-      jumped: jumps.emit,
-      changed: changes.emit,
-      fallback(name, reason) {
-        const { label } = estimatorTexts[name];
-        notices.show('warning', `${label} could not be used (${firstLine(reason)}): inverse kinematics takes over.`);
-      },
-    },
-  });
-  return { body, networks, clock, calibrated, outgrown, jumps };
-}
-
-/** What a visit needs for the studio and for every game: a stage, a body on it, and the headset that may move it. */
-function createGround(options: PageOptions) {
-  const { visit, notices, loading } = options;
-  const { switches, settings, store, changes } = visit;
+/** Creates the stage with the user's body, avatar and headset. */
+function createBase({ context, notices, loading }: PageOptions) {
+  const { switches, settings, store, changes } = context;
   const timing = createFrameTiming(() => performance.now());
-
-  // Everything that travels starts at once; only then is anything built.
+  // Downloads start before anything is built.
   const ownAvatar = fetchOwnAvatar(settings.ownBody, (part) => loading.report('the avatar', part));
-  const ground = createBody(options, timing);
+  const pageBody = createPageBody({ context, notices, loading, timing });
+  const { body } = pageBody;
 
   const canvas = pageElement('stage', HTMLCanvasElement);
   const quality = switches.quality ?? affordableQuality();
@@ -90,23 +55,24 @@ function createGround(options: PageOptions) {
   const stage = createStage(canvas, quality);
   loading.mark('scene');
 
-  const onChange = changes.emit;
-  const recorder = new Recorder(onChange);
-  const difference = new DeviceDifference();
-  const { body } = ground;
+  const { renderer, studio } = stage;
+  const { scene } = studio;
+  const prepare = (object: Object3D) => prepareFirstPicture(renderer, scene, object);
   const knownBones = new KnownBones(store);
-  const { scene } = stage.studio;
-  const prepare = (object: Object3D) => prepareFirstPicture(stage.renderer, scene, object);
-  const avatar = new ShownAvatar({ scene, settings, body, notices, knownBones, prepare, onChange });
+  const avatar = new ShownAvatar({ scene, settings, body, notices, knownBones, prepare, onChange: changes.emit });
   const avatarShown = avatar.openOwn(ownAvatar);
-  const headset = new Headset({ renderer: stage.renderer, quality, switches, settings, notices });
-  return { ...ground, canvas, quality, timing, stage, recorder, difference, avatar, avatarShown, headset, prepare };
+  const recorder = new Recorder(changes.emit);
+  const headset = new Headset({ renderer, quality, switches, settings, notices });
+  return { pageBody, canvas, quality, timing, stage, recorder, avatar, avatarShown, headset, prepare };
 }
 
-/** What people do on that stage: the games, and the body that plays them. */
-function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof createGround>) {
-  const { switches, settings, writer, store, changes } = visit;
-  const { canvas, quality, stage, body, clock, avatar, headset, recorder } = ground;
+type Base = ReturnType<typeof createBase>;
+
+/** Creates the activities, and what moves the body in them. */
+function createPlay({ context, notices }: PageOptions, base: Base) {
+  const { switches, settings, writer, store, changes } = context;
+  const { canvas, quality, stage, avatar, headset, recorder, pageBody } = base;
+  const { body, clock } = pageBody;
   const study = new PageStudy();
   const impaired = new ImpairedTracking();
   const server = new ServerPresence(pageFolder(), changes.emit);
@@ -114,27 +80,26 @@ function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof c
   const mouse = createMouseAim(canvas);
   const captions = new Emitter<[text: string]>();
   const arrivals = new Emitter();
-  const services = {
-    quality,
-    clock,
-    settings,
-    writer,
-    switches,
-    stage,
-    mouse,
-    headset,
-    body,
-    avatar,
-    fetchOwnAvatar,
-    server,
-    notices,
-    study,
-    onCaption: captions.emit,
-    onChange: changes.emit,
-  };
   const activities = new Activities({
     activities: registeredActivities,
-    services,
+    services: {
+      quality,
+      clock,
+      settings,
+      writer,
+      switches,
+      stage,
+      mouse,
+      headset,
+      body,
+      avatar,
+      fetchOwnAvatar,
+      server,
+      notices,
+      study,
+      onCaption: captions.emit,
+      onChange: changes.emit,
+    },
     seed: switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31),
     stage,
     mouse,
@@ -144,77 +109,105 @@ function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof c
     wear: (palette) => avatar.wear(palette),
     onArrival: arrivals.emit,
   });
-  const wearer = new Wearer({ body, headset, view: stage.view, writer, store, notices });
+  const userCalibration = new UserCalibration({ body, headset, view: stage.view, writer, store, notices });
   const source = new TrackingSource({ settings, headset, recorder, body, actor, activities, study });
   actor.calibrate(body.calibration);
-  ground.calibrated.listen((calibration, source) => {
-    wearer.measured(source);
+  pageBody.calibrated.listen((calibration, from) => {
+    userCalibration.measured(from);
     actor.calibrate(calibration);
     activities.current?.calibrate?.(calibration);
     avatar.current?.fitTo(calibration);
   });
-  ground.outgrown.listen((difference) => wearer.outgrown(difference));
-  ground.jumps.listen(() => {
+  pageBody.outgrown.listen((difference) => userCalibration.outgrown(difference));
+  pageBody.jumped.listen(() => {
     impaired.reset();
     activities.current?.jumped?.();
   });
-  return { study, impaired, server, activities, captions, arrivals, wearer, source };
+  return { study, impaired, server, activities, captions, arrivals, userCalibration, source };
 }
 
-/** Builds the parts of the page and introduces them to each other. */
-export function createPage(options: PageOptions) {
-  const { visit, notices, loading } = options;
-  const { switches, settings, writer, store } = visit;
-  const ground = createGround(options);
-  const play = createPlay(options, ground);
-  const { body, networks, canvas, timing, stage, recorder, difference, avatar, headset, prepare } = ground;
-  const { study, impaired, server, activities, wearer, source } = play;
+type Play = ReturnType<typeof createPlay>;
+
+/** Creates the controls, motion capture and the steps of a frame. */
+function createInterface({ context, notices }: PageOptions, base: Base, play: Play) {
+  const { switches, settings, writer, store, changes } = context;
+  const { timing, stage, recorder, avatar, headset, prepare } = base;
+  const { body, networks } = base.pageBody;
+  const { study, server, activities, userCalibration, source, impaired } = play;
   const { scene } = stage.studio;
-  const onChange = visit.changes.emit;
-  const onCovered = () => controls.layOut();
-  const mocap = new PageMocap({
-    ...{ scene, recorder, settings, store, body, networks, notices, prepare },
-    ...{ onChange, onCovered },
+  const difference = new DeviceDifference();
+  const onChange = changes.emit;
+  const mocap: PageMocap = new PageMocap({
+    scene,
+    recorder,
+    settings,
+    store,
+    body,
+    networks,
+    notices,
+    prepare,
+    onChange,
+    onCovered: () => controls.layOut(),
   });
   const controls = new Controls({
-    ...{ switches, settings, writer, store, notices, onChange, mocap },
-    ...{ timing, difference, stage, recorder, headset, avatar, activities, body, networks, wearer, study, server },
-  });
-  const sessions = new SessionChanges({
-    headset,
-    recorder,
+    switches,
+    settings,
+    writer,
+    store,
+    notices,
+    onChange,
+    mocap,
     timing,
-    view: stage.view,
+    difference,
+    stage,
+    recorder,
+    headset,
+    avatar,
+    activities,
     body,
+    networks,
+    userCalibration,
+    study,
+    server,
+  });
+  const frame = new PageFrame({
+    settings,
+    notices,
+    source,
+    impaired,
+    body,
+    recorder,
+    difference,
+    avatar,
+    headset,
     activities,
     controls,
     study,
-  });
-  const frame = new PageFrame({
-    ...{
-      settings,
-      notices,
-      source,
-      impaired,
-      body,
-      recorder,
-      difference,
-      avatar,
-      headset,
-      activities,
-      controls,
-      study,
-    },
     stage,
     mocap,
   });
+  return { mocap, controls, frame };
+}
 
+/** Creates all parts of the page and connects them. Nothing runs yet. */
+export function createPage(options: PageOptions) {
+  const { context, notices, loading } = options;
+  const { settings, changes } = context;
+  const base = createBase(options);
+  const play = createPlay(options, base);
+  const { mocap, controls, frame } = createInterface(options, base, play);
+  const { canvas, timing, stage, recorder, avatar, avatarShown, headset } = base;
+  const { body } = base.pageBody;
+  const { study, impaired, activities, userCalibration, source } = play;
+  const { view } = stage;
+
+  const sessions = new SessionChanges({ headset, recorder, timing, view, body, activities, controls, study });
   headset.listen(sessions);
   sessions.followWindow();
-  visit.changes.listen(() => controls.show());
+  changes.listen(() => controls.show());
   play.captions.listen((text) => {
     controls.caption(text);
-    // In the headset words would lie before the game: they are for players without sound.
+    // In the headset a caption lies in front of the game: it is for players without sound.
     stage.caption(settings.sound ? '' : text);
   });
   play.arrivals.listen(() => {
@@ -224,13 +217,29 @@ export function createPage(options: PageOptions) {
     timing.reset();
     controls.show();
   });
-  pressSheetsByMouse({ canvas, view: stage.view, headset, study, activities });
+  pressSheetsByMouse({ canvas, view, headset, study, activities });
   surviveLostGraphics({ canvas, notices, headset, studio: stage.studio, timing });
   const kept = new KeptPage();
   const probed = { loading, kept, settings, notices, timing, frame, source, body, avatar, headset, recorder };
   exposeProbe(() => readProbe({ ...probed, activities, study, stage }));
-  return { ...ground, ...play, controls, frame, kept, mocap };
+  return {
+    activities,
+    avatar,
+    avatarShown,
+    body,
+    controls,
+    frame,
+    headset,
+    impaired,
+    kept,
+    mocap,
+    recorder,
+    stage,
+    study,
+    timing,
+    userCalibration,
+  };
 }
 
-/** The parts of the page, all built and none of them running. */
+/** The parts of the page, none of them running yet. */
 export type Page = ReturnType<typeof createPage>;

@@ -3,7 +3,10 @@ import { describe, expect, it } from 'vitest';
 
 const seated = (seat: number, change: Partial<Seated> = {}): Seated => ({
   ...{ seat, name: `Player ${seat}`, role: 'Right thrower' },
-  ...{ voice: 'open', link: 'connected', silenced: false, hidden: false },
+  voice: 'open',
+  link: 'connected',
+  silenced: false,
+  hidden: false,
   ...change,
 });
 

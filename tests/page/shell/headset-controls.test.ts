@@ -81,7 +81,13 @@ function headset() {
   });
   const [menu] = controls.objects;
   return {
-    ...{ controls, study, done, hands, pointers, menu, settings },
+    controls,
+    study,
+    done,
+    hands,
+    pointers,
+    menu,
+    settings,
     measure(next: CalibrationStep | null) {
       step = next;
       controls.show();

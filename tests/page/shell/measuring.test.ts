@@ -55,19 +55,29 @@ function page({ actor = false, emulator = null as Emulator | null } = {}) {
   const headset = { worn: false, emulator, buttons: nothingPressed, read: () => null };
   const body = { wearerCalibration: defaultCalibration };
   const measuring = new Measuring({
-    ...{ settings, headset, body, recorder },
-    wearer: { calibrateForGood: (calibration) => void remembered.push(calibration) },
+    settings,
+    headset,
+    body,
+    recorder,
+    userCalibration: { calibrateForGood: (calibration) => void remembered.push(calibration) },
     notices: { show: (_, text) => void told.push(text) },
   });
   const source = new TrackingSource({
-    ...{ settings, headset, body, recorder },
+    settings,
+    headset,
+    body,
+    recorder,
     actor: createActor(),
     activities: { current: null, act: () => null },
     study: { idle: false },
   });
   let now = 0;
   return {
-    ...{ measuring, told, remembered, recorder, settings },
+    measuring,
+    told,
+    remembered,
+    recorder,
+    settings,
     /** So many seconds of the page at 60 frames a second. */
     pass(seconds: number) {
       for (let frame = 0; frame < 60 * seconds; frame++) {

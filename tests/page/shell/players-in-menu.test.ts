@@ -102,8 +102,17 @@ describe('the other players in the headset', () => {
   test('are written above their buttons, with role and voice, no wider than the sheet', () => {
     const texts: { text: string; y: number; most: number | undefined }[] = [];
     const context = {
-      ...{ font: '', fillStyle: '', textAlign: '', textBaseline: '', globalAlpha: 1, lineWidth: 1, strokeStyle: '' },
-      ...{ beginPath: () => undefined, roundRect: () => undefined, fill: () => undefined, stroke: () => undefined },
+      font: '',
+      fillStyle: '',
+      textAlign: '',
+      textBaseline: '',
+      globalAlpha: 1,
+      lineWidth: 1,
+      strokeStyle: '',
+      beginPath: () => undefined,
+      roundRect: () => undefined,
+      fill: () => undefined,
+      stroke: () => undefined,
       fillText: (text: string, _: number, y: number, most?: number) => void texts.push({ text, y, most }),
     } as unknown as CanvasRenderingContext2D;
     const long = player(1, { name: 'W'.repeat(longestName) });

@@ -55,7 +55,9 @@ test('going from place to place leaves the graphics device one place’s reflect
   const field = {
     quality: 'high',
     towardsSun: new Vector3(1, 2, 1),
-    ...{ sunIntensity: 3, skyIntensity: 0.5, groundColor: '#5f7a35' },
+    sunIntensity: 3,
+    skyIntensity: 0.5,
+    groundColor: '#5f7a35',
     shadows: { middle: new Vector3(), halfSize: 4 },
   } as const;
   const outdoors = { object: new Scene(), lighting: daylight(field, { position: zero, orientation: identity }) };

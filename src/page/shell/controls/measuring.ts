@@ -12,7 +12,7 @@ import type { Recorder } from '../../studio/recorder';
 import { Emitter } from '../emitter';
 import type { Headset } from '../headset';
 import type { Settings } from '../settings';
-import type { Wearer } from '../wearer';
+import type { UserCalibration } from '../user-calibration';
 
 export interface MeasuringOptions {
   readonly body: Pick<BareBody, 'wearerCalibration'>;
@@ -20,7 +20,7 @@ export interface MeasuringOptions {
   readonly settings: Pick<Settings, 'actor'>;
   readonly recorder: Pick<Recorder, 'mode'>;
   readonly notices: Pick<Notices, 'show'>;
-  readonly wearer: Pick<Wearer, 'calibrateForGood'>;
+  readonly userCalibration: Pick<UserCalibration, 'calibrateForGood'>;
 }
 
 /** The guided calibration of this page: a dialog on the desktop, the menu in the headset. */
@@ -33,7 +33,7 @@ export class Measuring {
   #step: CalibrationStep | null = null;
 
   constructor(options: MeasuringOptions) {
-    const { body, headset, wearer } = options;
+    const { body, headset, userCalibration } = options;
     this.#options = options;
     this.#dialog = createCalibrationDialog(
       () => this.cancel(),
@@ -43,7 +43,7 @@ export class Measuring {
       onStep: (step) => this.#show(step),
       // Three points do not determine the length of a forearm: a typed one stays.
       onMeasured: (calibration) =>
-        wearer.calibrateForGood(withForearm(calibration, body.wearerCalibration.forearm), 'measured'),
+        userCalibration.calibrateForGood(withForearm(calibration, body.wearerCalibration.forearm), 'measured'),
       closesItself: () => headset.worn,
     });
   }

@@ -142,7 +142,7 @@ export function createBonesForm(give: (bones: BoneMap) => void) {
       select.value = waiting.bones[bone] ?? '';
     }
     text.value = '';
-    hint.textContent = `${waiting.name} has ${found.length} bones, and their names tell no body. Say which is which; it is remembered for this file.`;
+    hint.textContent = `The ${found.length} bones of ${waiting.name} could not be matched to a humanoid. Map them by hand. The page remembers the map for this file.`;
   }
 
   return {
