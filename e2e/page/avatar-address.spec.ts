@@ -26,8 +26,8 @@ const plain = () =>
 /** What the address of an avatar may answer, and what is said of it. */
 const answers = {
   'nothing.vrm': [() => ({ status: 404, body: 'no' }), /nothing\.vrm could not be shown: the server answers 404/],
-  'page.vrm': [() => ({ contentType: 'text/html', body: '<!doctype html><p>Welcome' }), /answers with a web page/],
-  'large.vrm': [() => glb(new ArrayBuffer(61 * 2 ** 20)), /more than 60 MB/],
+  'page.vrm': [() => ({ contentType: 'text/html', body: '<!doctype html><p>Welcome' }), /sent a web page instead of/],
+  'large.vrm': [() => glb(new ArrayBuffer(61 * 2 ** 20)), /larger than 60 MB/],
   'compressed.vrm': [
     () => glb(compressed()),
     /compressed\.vrm could not be shown: (not valid glTF|no VRM or GLB file|cannot be read as glTF)/,
@@ -61,8 +61,8 @@ test('an avatar of the address that does not arrive leaves our own body standing
   await page.getByRole('tab', { name: 'Avatar' }).click();
   await expect(page.getByText('plain.glb is waiting for its bones to be mapped.', { exact: true })).toBeVisible();
   await keepPicture(page, 'avatar-refused');
-  await page.getByRole('button', { name: 'Back to ours' }).click();
-  await expect(page.getByRole('button', { name: 'Back to ours' })).toBeHidden();
+  await page.getByRole('button', { name: 'Back to the page’s avatar' }).click();
+  await expect(page.getByRole('button', { name: 'Back to the page’s avatar' })).toBeHidden();
   expect(new URL(page.url()).searchParams.has('avatar')).toBe(false);
   measured('avatar-missing', { 'our own body stands there': `${stood} of ${Object.keys(answers).length}` });
 });
@@ -107,10 +107,10 @@ test('our own body stands there until the avatar of the address has arrived; the
   await joint(page, 'hips');
   await page.getByRole('tab', { name: 'Avatar' }).click();
   await expect(page.getByText('slow.vrm is loading.')).toBeVisible();
-  await expect(page.getByRole('button', { name: 'Back to ours' })).toBeVisible();
+  await expect(page.getByRole('button', { name: 'Back to the page’s avatar' })).toBeVisible();
   letThrough.emit('now');
   await expect.poll(async () => (await probe(page)).avatar.name).toBe('slow.vrm');
-  await page.getByRole('button', { name: 'Back to ours' }).click();
+  await page.getByRole('button', { name: 'Back to the page’s avatar' }).click();
   await expect.poll(async () => (await probe(page)).avatar.name).toBe('Mannequin');
 });
 

@@ -25,7 +25,7 @@ test('a VRM from a local file takes the place of ours, with the hands still on t
       return 1000 * Math.hypot(now[0] - hand[0], now[1] - hand[1], now[2] - hand[2]);
     })
     .toBeLessThan(1);
-  await page.getByRole('button', { name: 'Back to ours' }).click();
+  await page.getByRole('button', { name: 'Back to the page’s avatar' }).click();
   await expect.poll(async () => (await probe(page)).avatar.name).not.toMatch(/another-person/);
 });
 
@@ -119,7 +119,7 @@ test('pictures packed as KTX2 are unpacked under the page’s policy; one that c
     ['etc1s', etc1sPicture],
     ['zstandard', zstdPicture],
   ] as const) {
-    await page.getByRole('button', { name: 'Back to ours' }).click();
+    await page.getByRole('button', { name: 'Back to the page’s avatar' }).click();
     await expect.poll(() => magenta(page)).toBe(0);
     await give(`${name}.vrm`, picture);
     await expect.poll(async () => (await probe(page)).avatar.name).toMatch(name);

@@ -152,7 +152,7 @@ async function talkForAMinute(minute: number, until: number, [ann, ben]: readonl
     await bar(ann).getByRole('button', { name: 'Unmute me (T)', exact: true }).press('Enter');
   }
   if (minute % rejoinEvery === 0) {
-    await bar(ben).getByRole('button', { name: 'Leave the voices' }).press('Enter');
+    await bar(ben).getByRole('button', { name: 'Leave voice chat' }).press('Enter');
     await seen(both, [{ other: undefined }, { phase: 'off' }]);
     await join(ben);
   }

@@ -24,7 +24,7 @@ export const linkTo = (room: string): RoomLink => ({
   room,
   address: `${pageFolder()}/?play=ball&room=${encodeURIComponent(room)}`,
   limit: onlyHere(location.hostname)
-    ? 'This address works on this computer only. For other devices start the server with --lan and open the https:// address that it prints.'
+    ? 'This address works only on this computer. For other devices, start the server with --lan and open the https:// address that it prints.'
     : null,
 });
 
@@ -45,7 +45,7 @@ export function createRoomLink({ main }: { readonly main: boolean }) {
       said.textContent = 'The link is copied.';
     } catch {
       // reason: pages without a secure context and browsers that ask first have no clipboard; the link is selected instead.
-      said.textContent = 'This browser does not let the page copy: the link is selected, copy it by hand.';
+      said.textContent = 'This browser does not let the page copy. The link is selected: copy it by hand.';
     }
   }
 

@@ -25,7 +25,7 @@ export function createVrPanel(width: number, height: number, pixelsPerMetre: num
   canvas.width = width;
   canvas.height = height;
   const context = canvas.getContext('2d');
-  if (!context) throw new Error('ui/vr-panel: this browser offers no 2D canvas');
+  if (!context) throw new Error('ui/vr-panel: this browser does not support 2D canvas');
   const texture = new CanvasTexture(canvas);
   texture.colorSpace = SRGBColorSpace;
   texture.minFilter = LinearMipmapLinearFilter;

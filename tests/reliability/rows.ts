@@ -159,7 +159,7 @@ export const faultRows = {
   },
   'avatar-missing': {
     inject: 'The address of an avatar answers 404, a web page, 61 MB, a compressed body, a body without bones',
-    sees: 'Our own body stands there until another has arrived, and stays; a sentence says why; the panel offers *Back to ours*',
+    sees: 'Our own body stands there until another has arrived, and stays; a sentence says why; the panel offers *Back to the page’s avatar*',
     target: 'our own body with the first picture, 5 of 5',
     tests: ['e2e/page/avatar-address.spec.ts', 'tests/ui/limited-files.test.ts'],
   },

@@ -147,13 +147,13 @@ function createScore() {
 }
 
 /** What can be pressed now; where this page is in the room no longer, nothing but the way back. */
-function createDeeds(actions: BallBarActions) {
+function createButtons(actions: BallBarActions) {
   let isReady = false;
   const ready = button('Ready', () => actions.ready(!isReady), { class: 'primary' });
-  const rejoin = button('Take over again', actions.rejoin, { class: 'primary' });
+  const rejoin = button('Rejoin', actions.rejoin, { class: 'primary' });
   const watch = button('Watch', () => actions.sit(null));
   const steer = button('Play with the mouse', () => actions.steer(true), { class: 'primary' });
-  const rest = button('Let the built-in player play', () => actions.steer(false));
+  const rest = button('Let the computer play', () => actions.steer(false));
   const hint = element('p', { class: 'hint' });
   return {
     node: element('div', { class: 'row' }, rejoin, ready, steer, rest, watch),
@@ -171,11 +171,11 @@ function createDeeds(actions: BallBarActions) {
       steer.classList.toggle('primary', !out);
       rest.hidden = !seated || mouse !== true;
       watch.hidden = !seated;
-      for (const deed of [ready, steer, rest, watch]) deed.disabled = out;
+      for (const each of [ready, steer, rest, watch]) each.disabled = out;
       hint.hidden = !seated || mouse !== true || out;
       hint.textContent = round?.throws
-        ? 'Point at the basket and hold the button: the ring shows where the ball will come down. Let go when it is green. Esc: not yet.'
-        : 'Point at where the basket is to be; it turns towards the balls by itself.';
+        ? 'Point at the basket and hold the button. The ring shows where the ball will land. Release the button when it is green. Esc cancels the throw.'
+        : 'Point to where you want the basket. It turns towards the balls by itself.';
     },
   };
 }
@@ -216,8 +216,8 @@ const serverTexts: Readonly<Record<ServerState, string | null>> = {
   unknown: null,
   asked: null,
   here: null,
-  none: 'This page comes from a host without a threepoint server: there are no rooms for others. Alone, with bots, you can play.',
-  silent: 'Rooms for others are on the server, which does not answer now.',
+  none: 'This page’s host has no threepoint server, so there are no shared rooms. You can play alone with bots.',
+  silent: 'The server with the shared rooms does not answer. Try again later.',
 };
 
 /** The way to others: a room for them, or why there is none. */
@@ -262,7 +262,7 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
   const where = element('p', { class: 'hint' });
   const waiting = element('p', { class: 'waiting', role: 'status' });
   const seats = createSeats(actions);
-  const deeds = createDeeds(actions);
+  const buttons = createButtons(actions);
   const company = createCompany(actions);
   const voices = createVoicesBar(actions.voices);
   const players = createPlayers(actions, setSound);
@@ -272,8 +272,8 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
     score.node,
     where,
     waiting,
-    deeds.node,
-    deeds.hint,
+    buttons.node,
+    buttons.hint,
     company.node,
     seats.places,
     seats.cameras,
@@ -292,7 +292,7 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
       const sentence = round?.ended ?? round?.waiting ?? null;
       if (waiting.textContent !== (sentence ?? '')) waiting.textContent = sentence;
       waiting.hidden = sentence === null;
-      deeds.show(state);
+      buttons.show(state);
       seats.show(state);
       company.show(state);
       if (round) voices.show(round.voices, round);

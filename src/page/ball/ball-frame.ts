@@ -26,7 +26,7 @@ import { ballInPalm } from 'threepoint-games/fist';
 import type { Connection, ConnectionStatus, RoomView } from 'threepoint-rooms/client/connection';
 import type { RemotePlayer } from 'threepoint-rooms/client/remote-players';
 import { seatLooks } from './court-plan';
-import { shownToEyes } from './personal-space';
+import { proximityFade } from './personal-space';
 
 /** A person or bot at the court in one frame. Heads and palms are the same objects in every frame: copy what must stay. */
 export interface PlayerFrame {
@@ -219,23 +219,23 @@ export class CourtPeople {
         body.pose = there.pose;
         body.fingers = there.fingers;
         composeTransforms(floorFromArena, arenaFromFloor, body.placement);
-        body.opacity = there.opacity * (frame ? shownToEyes(frame.head.position, there.pose, body.placement) : 1);
+        body.opacity = there.opacity * (frame ? proximityFade(frame.head.position, there.pose, body.placement) : 1);
         this.bodies.push(body);
       }
       if (!player) continue;
-      const told = view.player;
-      told.name = row.name;
-      told.bot = row.bot;
-      told.presence = row.presence;
-      told.me = seat === mySeat;
-      told.role = player.role;
-      told.station = player.station;
-      told.ready = player.ready;
-      told.head = place && transformPoint(arenaFromFloor, place.head.position, view.head);
-      told.palms.left = palmIn(arenaFromFloor, place?.leftHand, view.palms.left);
-      told.palms.right = palmIn(arenaFromFloor, place?.rightHand, view.palms.right);
-      told.opacity = told.me ? 1 : (there?.opacity ?? 0);
-      this.players[seat] = told;
+      const entry = view.player;
+      entry.name = row.name;
+      entry.bot = row.bot;
+      entry.presence = row.presence;
+      entry.me = seat === mySeat;
+      entry.role = player.role;
+      entry.station = player.station;
+      entry.ready = player.ready;
+      entry.head = place && transformPoint(arenaFromFloor, place.head.position, view.head);
+      entry.palms.left = palmIn(arenaFromFloor, place?.leftHand, view.palms.left);
+      entry.palms.right = palmIn(arenaFromFloor, place?.rightHand, view.palms.right);
+      entry.opacity = entry.me ? 1 : (there?.opacity ?? 0);
+      this.players[seat] = entry;
     }
   }
 

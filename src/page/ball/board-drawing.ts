@@ -89,7 +89,7 @@ export function waitingFor(standing: Standing): string | null {
   const names = idle.flatMap((player) => (player !== me && people[player] ? [nameOf(people[player])] : []));
   const press = state.phase === 'over' ? 'Play again' : 'Ready';
   if (me !== null && !acting && idle.includes(me)) return `Waiting for ${listed(['you', ...names])}: press ${press}.`;
-  return names.length > 0 ? `Waiting for ${listed(names)}.` : 'The match begins in a moment.';
+  return names.length > 0 ? `Waiting for ${listed(names)}.` : 'The match starts in a moment.';
 }
 
 export const boardSize = { width: 1024, height: 588 } as const;
@@ -192,11 +192,11 @@ export function paintLobby(context: CanvasRenderingContext2D, standing: Standing
   } else {
     context.fillStyle = ink.text;
     context.font = `600 46px ${signFont}`;
-    context.fillText('Two throw, one catches in the basket.', width / 2, 172, width - 128);
+    context.fillText('Two players throw, one catches with the basket.', width / 2, 172, width - 128);
     context.fillStyle = ink.soft;
     context.font = `600 42px ${signFont}`;
     context.fillText(
-      `${state.options.balls} balls, ${Math.round(state.options.seconds)} seconds, a point a catch`,
+      `${state.options.balls} balls, ${Math.round(state.options.seconds)} seconds, a point per catch`,
       width / 2,
       240,
     );

@@ -22,9 +22,9 @@ const whoIs = ({ people, me }: Hearing, player: number): string => {
 };
 
 const refusals: Partial<Readonly<Record<Refusal, string>>> = {
-  taken: 'Another player has that ball',
+  taken: 'Another player holds that ball',
   reach: 'Too far away',
-  zone: 'Step back to your mark: throws count from there',
+  zone: 'Step back to your mark: only throws from there count',
   time: 'Too late: time is up',
   speed: 'That was faster than an arm can throw',
 };

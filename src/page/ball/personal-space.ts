@@ -28,7 +28,7 @@ function distanceToLine(point: Vec3, from: Vec3, to: Vec3): number {
  * How much is to be seen of another body from these eyes, floor frame: 1 from half a metre on, 0 where its head, trunk or hands come
  * as close as 0.2 m. `placement`: where its floor lies.
  */
-export function shownToEyes(eyes: Vec3, pose: AvatarPose, placement: Transform<'floor', 'floor'>): number {
+export function proximityFade(eyes: Vec3, pose: AvatarPose, placement: Transform<'floor', 'floor'>): number {
   transformPoint(placement, pose.head.position, head);
   if (pose.body) transformPoint(placement, pose.body.hipsPosition, low);
   else {

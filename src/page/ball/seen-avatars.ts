@@ -68,12 +68,12 @@ export class SeenAvatars {
     const bytes = await this.#fetch(hash);
     const question = { name, unpacked: Object.keys(decoders), limits: seenAvatarLimits };
     const checked = await checkInWorker(bytes, question);
-    if (checked.hash !== hash) throw new Error('another file came than the one that was told of');
+    if (checked.hash !== hash) throw new Error('the server sent a different file than the player announced');
     return parseChecked(checked, name, { decoders });
   }
 
   async #fetch(hash: AvatarHash): Promise<ArrayBuffer> {
-    if (!this.#exchange) throw new Error('there is no server that has it');
+    if (!this.#exchange) throw new Error('no server has the file');
     // Named, and asked below: Node forgets a timeout of which nothing but AbortSignal.any knows (nodejs/node#57736).
     const late = AbortSignal.timeout(this.#patienceMs);
     const signal = AbortSignal.any([this.#leaving.signal, late]);

@@ -55,15 +55,15 @@ function createPeople(actions: VoicesBarActions) {
 
 /** What is read before the first time, with the way to take part and the way not to. */
 function createConsent(actions: VoicesBarActions) {
-  const relay = toggle('Hide my address: by the relay only', actions.relayOnly);
+  const relay = toggle('Hide my address (relay only)', actions.relayOnly);
   const without = element(
     'p',
     { class: 'hint' },
-    'This server has no relay that could hide your address: if you mind, do not join.',
+    'This server has no relay, so your address cannot be hidden. Do not join if you do not want that.',
   );
   const node = element(
     'div',
-    { class: 'consent', role: 'group', 'aria-label': 'Before you join the voices' },
+    { class: 'consent', role: 'group', 'aria-label': 'Before you join voice chat' },
     element('p', {}, consentText),
     relay.node,
     without,
@@ -90,7 +90,7 @@ export function createVoicesBar(actions: VoicesBarActions) {
   let muted = true;
   const ask = button('Talk with the others', () => actions.ask(true));
   const mute = button('Unmute me', () => actions.mute(!muted), { 'aria-keyshortcuts': 't' });
-  const leave = button('Leave the voices', actions.leave);
+  const leave = button('Leave voice chat', actions.leave);
   const said = element('p', { class: 'hint', role: 'status' });
   const consent = createConsent(actions);
   const people = createPeople(actions);
@@ -110,9 +110,9 @@ export function createVoicesBar(actions: VoicesBarActions) {
       const isIn = phase === 'in';
       ask.hidden = phase !== 'off' && phase !== 'joining';
       ask.disabled = phase === 'joining';
-      ask.textContent = phase === 'joining' ? 'Joining the voices …' : 'Talk with the others';
+      ask.textContent = phase === 'joining' ? 'Joining voice chat …' : 'Talk with the others';
       mute.hidden = !isIn || round?.seat === null;
-      mute.textContent = deaf ? 'Look for a microphone' : muted ? 'Unmute me (T)' : 'Mute me (T)';
+      mute.textContent = deaf ? 'Find a microphone' : muted ? 'Unmute me (T)' : 'Mute me (T)';
       mute.classList.toggle('primary', isIn && !muted);
       mute.setAttribute('aria-pressed', String(!muted));
       leave.hidden = !isIn;

@@ -37,4 +37,4 @@ export interface VoicesProbe {
 
 /** What everyone reads before they first take part. */
 export const consentText =
-  'Voices go straight from page to page: people in the room could learn your network address (IP). Nothing is recorded, and you begin muted.';
+  'Voices are sent directly between browsers, so people in the room could learn your network address (IP). Nothing is recorded, and you join muted.';

@@ -109,7 +109,7 @@ export class Voices {
       if (turn !== this.#turn) return;
       this.#microphone.close();
       this.#phase = 'off';
-      this.#fault = `Voices could not be joined: ${firstLine(reasonOf(error))}`;
+      this.#fault = `Voice chat could not be joined: ${firstLine(reasonOf(error))}`;
     }
   }
 

@@ -119,7 +119,7 @@ function createErrorTable(labels: Labels) {
       const measured = unmeasured.find(({ mean }) => progressOf(mean)?.share);
       const told = [...unmeasured.filter((method) => method !== measured), ...(measured ? [measured] : [])];
       const words = told.map(
-        ({ estimator, mean }) => `${labels[estimator]}: ${typeof mean === 'string' ? mean : 'measuring the clip'}`,
+        ({ estimator, mean }) => `${labels[estimator]}: ${typeof mean === 'string' ? mean : 'measuring …'}`,
       );
       const progress = measured && progressOf(measured.mean);
       line.show(words.join(' · '), progress ? `, ${percent(progress)}` : '');
@@ -230,7 +230,7 @@ export function createMocapCard(labels: Labels, actions: CardActions): MocapCard
     link.disabled = !state.shareable;
     link.title = state.shareable
       ? 'To this second and this method'
-      : 'A file of this device has no address that others could open';
+      : 'A file on this device has no address that others could open';
     table.show(state.methods);
     timeline.show(state);
   };

@@ -295,7 +295,10 @@ export class MocapView {
       calibration: clip.calibration,
       aside: secondAside,
       onFallback: (name, reason) =>
-        tell('warning', `${labels[name]} could not be used (${firstLine(reason)}): inverse kinematics takes over.`),
+        tell(
+          'warning',
+          `${labels[name]} could not be used, so inverse kinematics takes over. Reason: ${firstLine(reason)}`,
+        ),
     });
     this.#second.ready.catch((error: unknown) =>
       tell('error', `The second body could not be shown: ${firstLine(reasonOf(error))}`),
@@ -328,7 +331,7 @@ export class MocapView {
       tell('info', 'The link is copied.');
     } catch {
       // reason: a browser may refuse; the address bar has the link then.
-      tell('info', 'The link stands in the address bar.');
+      tell('info', 'The link is in the address bar.');
     }
   }
 }

@@ -31,7 +31,7 @@ export class KeptPage {
    */
   async keep(workers: ServiceWorkerContainer | undefined): Promise<void> {
     if (!workers) {
-      this.#state = { refused: 'this browser offers no service workers here' };
+      this.#state = { refused: 'this browser does not support service workers here' };
       return;
     }
     this.#state = 'coming';

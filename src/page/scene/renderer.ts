@@ -30,7 +30,7 @@ function drawsInSoftware(context: WebGLRenderingContext | WebGL2RenderingContext
 export function affordableQuality(): Quality {
   const context = document.createElement('canvas').getContext('webgl2');
   if (!context)
-    throw new Error('This browser offers no WebGL 2: switch on hardware acceleration or use another browser.');
+    throw new Error('This browser does not support WebGL 2. Turn on hardware acceleration or use another browser.');
   const software = drawsInSoftware(context);
   context.getExtension('WEBGL_lose_context')?.loseContext();
   return software ? 'low' : 'high';

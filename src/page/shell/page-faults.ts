@@ -28,8 +28,8 @@ export interface LostGraphicsOptions {
   readonly timing: Pick<FrameTiming, 'reset'>;
 }
 
-const pictureLost = 'The graphics device was lost. The picture comes back as soon as the browser gives it back.';
-const sessionLost = 'The graphics device was lost, and VR with it. Your game goes on: enter VR again.';
+const pictureLost = 'The graphics device was lost. The picture returns when the browser restores it.';
+const sessionLost = 'The graphics device was lost, and VR has ended. Your game continues. Enter VR again.';
 
 /** The page outlives its graphics device and says what becomes of the picture. */
 export function surviveLostGraphics({ canvas, notices, headset, studio, timing }: LostGraphicsOptions): void {

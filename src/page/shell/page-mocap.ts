@@ -59,7 +59,7 @@ export class PageMocap {
       this.#view ??= this.#build(MocapView);
     } catch (error) {
       const reason = firstLine(reasonOf(error));
-      this.#options.notices.show('error', `What shows motion capture could not be loaded: ${reason}`);
+      this.#options.notices.show('error', `The motion capture viewer could not be loaded: ${reason}`);
     }
     await this.#view?.open(sources, outlook, asked);
   }

@@ -86,12 +86,12 @@ const takes: Readonly<Record<keyof typeof schema.entries, string>> = {
   view: oneOf(viewNames),
   play: oneOf(placeNames),
   seconds: 'a whole number from 1 to 3600',
-  room: 'small letters, digits and hyphens, 32 at most, the first no hyphen',
+  room: 'lower-case letters, digits and hyphens, up to 32, not starting with a hyphen',
   bots: 'on or off',
   name: 'a name of 1 to 40 characters',
   balls: 'a whole number from 1 to 20',
   seed: 'a whole number from 0 to 999999999',
-  study: 'the id of a study: small letters, digits and hyphens',
+  study: 'the id of a study: lower-case letters, digits and hyphens',
   participant: 'a code such as P01',
 };
 
@@ -104,8 +104,8 @@ function complaintOf(key: keyof typeof takes, value: string): string {
   const shown = value.length > 40 ? `${value.slice(0, 40)}…` : value;
   const said =
     value === ''
-      ? `The address says ${key}= and no value`
-      : `The address says ${key}=${shown}, which this page does not know`;
+      ? `The address has ${key}= without a value`
+      : `The address has ${key}=${shown}, which is not a valid value`;
   return `${said}: ${key} takes ${takes[key]}.`;
 }
 

@@ -66,7 +66,7 @@ export class UserCalibration {
     const centimetres = Math.round(100 * difference);
     this.#options.notices.show(
       'info',
-      `You stand ${centimetres} cm taller than your calibration says: you may want to calibrate again.`,
+      `You stand ${centimetres} cm taller than your calibration. You may want to calibrate again.`,
     );
   }
 

@@ -192,8 +192,8 @@ export class Recorder {
 
   /** Takes a recording; the one at hand is forgotten. Throws a sentence while another is being made, and where a newer wish has brought one. */
   take(name: string, recording: Replayable, asked = this.ask()): void {
-    if (this.#mode === 'recording') throw new Error('a recording is being made; stop it first');
-    if (asked < this.#newest) throw new Error('a newer recording is at hand');
+    if (this.#mode === 'recording') throw new Error('a recording is in progress; stop it first');
+    if (asked < this.#newest) throw new Error('a newer recording was opened');
     this.stop();
     this.#newest = asked;
     this.#recording = recording;

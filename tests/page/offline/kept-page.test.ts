@@ -14,7 +14,7 @@ const browserWith = (offered: Partial<Record<keyof ServiceWorkerContainer, unkno
 test('a browser without service workers keeps nothing, and the page hears no exception', async () => {
   const kept = new KeptPage();
   await kept.keep(undefined);
-  expect(kept.state).toEqual({ refused: expect.stringContaining('no service workers') });
+  expect(kept.state).toEqual({ refused: expect.stringContaining('does not support service workers') });
 });
 
 test.each([

@@ -99,7 +99,7 @@ describe('calibrating at a desk', () => {
     const { measuring, told } = page();
     measuring.start();
     expect(measuring.step).toBeNull();
-    expect(told).toEqual([expect.stringContaining('enter VR first')]);
+    expect(told).toEqual([expect.stringContaining('Enter VR first')]);
   });
 
   test('begins where the user moves the emulated headset, and not where the actor does', () => {
@@ -121,7 +121,7 @@ describe('calibrating at a desk', () => {
     pass(8);
     expect(remembered).toEqual([]);
     expect(measuring.step).toBeNull();
-    expect(told).toEqual([expect.stringContaining('stop the replay first')]);
+    expect(told).toEqual([expect.stringContaining('Stop the replay first')]);
   });
 
   test('ends with a sentence where a replay, or the actor, takes over while it measures', () => {
@@ -132,7 +132,7 @@ describe('calibrating at a desk', () => {
     interrupted.pass(8);
     expect(interrupted.remembered).toEqual([]);
     expect(interrupted.measuring.step).toBeNull();
-    expect(interrupted.told).toEqual([expect.stringContaining('stop the replay first')]);
+    expect(interrupted.told).toEqual([expect.stringContaining('Stop the replay first')]);
     const left = page({ emulator: emulatedHeadset });
     left.measuring.start();
     left.pass(2);

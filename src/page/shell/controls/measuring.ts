@@ -85,9 +85,9 @@ export class Measuring {
     if (headset.worn) return null;
     // The actor moves, or no one does.
     if (settings.actor || !headset.emulator)
-      return 'This measures the wearer of the headset: enter VR first, or type your measures.';
+      return 'Calibration measures the user of the headset. Enter VR first, or type your measurements.';
     if (recorder.mode === 'replaying')
-      return 'This measures you, not the person in a recording: stop the replay first, or type your measures.';
+      return 'Calibration measures you, not the person in a recording. Stop the replay first, or type your measurements.';
     return null;
   }
 

@@ -34,7 +34,8 @@ function createEstimators(actions: Pick<BodyActions, 'chooseEstimator'>) {
         input.checked = name === estimator;
         input.disabled = reason !== undefined;
         node.classList.toggle('unavailable', reason !== undefined);
-        const missing = name === 'device' && bodyComplaint !== null ? `Learned draws: ${bodyComplaint}.` : null;
+        const missing =
+          name === 'device' && bodyComplaint !== null ? `Learned is used instead: ${bodyComplaint}.` : null;
         about.textContent = reason ?? missing ?? estimatorTexts[name].text;
       }
     },
@@ -43,9 +44,9 @@ function createEstimators(actions: Pick<BodyActions, 'chooseEstimator'>) {
 
 /** Whether the headset is asked for its own body. */
 function createDeviceBody(actions: Pick<BodyActions, 'setDeviceBody'>) {
-  const ask = toggle('Ask the headset for its body', (on) => actions.setDeviceBody(on));
+  const ask = toggle('Use the headset’s body tracking', (on) => actions.setDeviceBody(on));
   const about =
-    'From the next time VR is entered, for this visit. Off at first: headset browsers have crashed when asked.';
+    'Applies when you next enter VR, until you close the page. It is off by default because headset browsers have crashed.';
   return {
     node: element('section', {}, ask.node, element('p', { class: 'hint' }, about)),
     show({ deviceBody }: PanelState) {
