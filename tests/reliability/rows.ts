@@ -105,7 +105,7 @@ export const faultRows = {
       'tests/reliability/comfort.test.ts',
       'tests/threepoint/xr/tracker.test.ts',
       'tests/page/archery/boards.test.ts',
-      'tests/page/archery/captions.test.ts',
+      'tests/page/archery/archery-captions.test.ts',
       'tests/study/model/trial-log.test.ts',
     ],
     manual: ['Push a stick to the side: one step of 30°, dark edges for a moment, no nausea.'],

@@ -7,14 +7,14 @@ import { arrowLength, braceHeight } from 'threepoint-games/archery/bow';
 import type { BowCue } from 'threepoint-games/archery/gestures';
 import type { Quality } from '../scene/renderer';
 import type { AudibleStage } from '../scene/sound/sound-stage';
+import { createSounds } from './archery-sounds';
 import { makeArrowPose } from './arrow-pose';
 import { createArrows } from './arrows';
-import { createBow } from './bow';
+import { createBow } from './bow-model';
 import { createRange, type Range } from './range';
 import { createResultPanel, type ResultPanel } from './result-panel';
 import { ScorePops } from './score-pops';
 import { createScoreboard } from './scoreboard';
-import { createSounds } from './sounds';
 import { createTargetStands } from './target-stands';
 import { createTrails } from './trails';
 

@@ -1,7 +1,7 @@
 import type { ServerState } from 'threepoint-http/server-presence';
 import { button, element } from 'threepoint-ui/element';
+import { ballRulesText, rulesList } from 'threepoint-ui/game-rules-text';
 import { createRoomLink } from 'threepoint-ui/invitation';
-import { ballRulesText, rulesList } from 'threepoint-ui/rules';
 import { toggle } from 'threepoint-ui/toggle';
 import type { BallRound } from './ball-round';
 import { otherPlayers } from './other-players';

@@ -10,6 +10,7 @@ import type { Quality } from '../scene/renderer';
 import type { AudibleStage } from '../scene/sound/sound-stage';
 import type { Surroundings } from '../scene/surroundings';
 import { createAimArc } from './aim-arc';
+import { type BallSounds, createBallSounds } from './ball-sounds';
 import { type Balls, createBalls } from './balls';
 import { lineOfEvent, type Person, type Standing, waitingLine } from './board-drawing';
 import { type Boards, createBoards } from './boards';
@@ -18,7 +19,6 @@ import { type Court, createCourt } from './court';
 import { createLobbySheet, type LobbySheet } from './lobby-sheet';
 import { createNameLabels, type NameLabels } from './name-labels';
 import type { SeatVoices } from './seat-voices';
-import { type BallSounds, createBallSounds } from './sounds';
 import { createWickerBasket } from './wicker-basket';
 import { createZoneRing } from './zone-ring';
 

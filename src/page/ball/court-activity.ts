@@ -17,6 +17,7 @@ import type { ActivityMenu } from '../activity/activity-menu';
 import type { CameraScene } from '../scene/desktop-view';
 import type { BallPlace } from './ball-connections';
 import type { BallFrame, BallProbe } from './ball-frame';
+import { eventHaptics } from './ball-haptics';
 import { BallMenu } from './ball-menu';
 import { createBallPanel } from './ball-panel';
 import { type BallPlay, createBallPlay } from './ball-play';
@@ -28,8 +29,7 @@ import { CourtAvatars } from './court-avatars';
 import { CourtCamera } from './court-camera';
 import { graspAtCourt } from './court-grasp';
 import { seatLooks } from './court-plan';
-import { eventHaptics } from './haptics';
-import { createMatchClock } from './match-clock';
+import { createMatchClock } from './displayed-clock';
 import { Voices } from './voices';
 import type { VoicesProbe } from './voices-state';
 

@@ -1,4 +1,4 @@
-import { createProgress, type Progress } from 'threepoint-ui/progress';
+import { createProgress, type Progress } from 'threepoint-ui/progress-bar';
 
 /** The page on its way to the first body: the bar that people see, and when each step was reached, for tools. */
 export class PageLoading {

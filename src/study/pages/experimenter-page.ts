@@ -3,7 +3,7 @@ import { reasonOf } from 'threepoint/core/errors/reasons';
 import { offerDownload } from 'threepoint-ui/downloads';
 import { element, pageElement } from 'threepoint-ui/element';
 import { pageFolder } from 'threepoint-ui/page-folder';
-import { sentence } from 'threepoint-ui/phrases';
+import { sentence } from 'threepoint-ui/phrase-parts';
 import { type ExperimenterClient, ServerRefusal } from '../client/study-client';
 import type { StudyPlan } from '../model/plan';
 import type { StudyCommand, StudyInfo } from '../model/study-api';

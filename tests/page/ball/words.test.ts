@@ -2,6 +2,8 @@ import { identity } from 'threepoint/core/math/quat';
 import { vec3 } from 'threepoint/core/math/vec3';
 import type { BallEvent, BallPlace, BallState } from 'threepoint-games/ball/ball-state';
 import { ballRules } from 'threepoint-games/ball/rules';
+import { cueCaption, eventCaption } from 'threepoint-page/ball/ball-captions';
+import { eventHaptics } from 'threepoint-page/ball/ball-haptics';
 import {
   catchesOf,
   lineOfEvent,
@@ -13,9 +15,7 @@ import {
   waitingFor,
   waitingLine,
 } from 'threepoint-page/ball/board-drawing';
-import { cueCaption, eventCaption } from 'threepoint-page/ball/captions';
-import { eventHaptics } from 'threepoint-page/ball/haptics';
-import { createMatchClock } from 'threepoint-page/ball/match-clock';
+import { createMatchClock } from 'threepoint-page/ball/displayed-clock';
 import { labelScale } from 'threepoint-page/ball/name-labels';
 import { createSettling, settlingSeconds } from 'threepoint-page/scene/boards/sheet';
 import { describe, expect, it } from 'vitest';

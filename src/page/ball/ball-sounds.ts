@@ -14,10 +14,10 @@ import {
   type Recipes,
   type SoundStage,
 } from '../scene/sound/sound-stage';
-import { bell, chime, click, warning, whoosh } from '../scene/sound/synthesis';
+import { bell, chime, click, warning, whoosh } from '../scene/sound/sound-synthesis';
+import { cueCaption, eventCaption, type Hearing } from './ball-captions';
+import { bounce, caughtInWicker, knock, tick, whistle } from './ball-synthesis';
 import type { Person } from './board-drawing';
-import { cueCaption, eventCaption, type Hearing } from './captions';
-import { bounce, caughtInWicker, knock, tick, whistle } from './synthesis';
 
 /** Plays the sounds of the ball game from where they happen, with captions. */
 export interface BallSounds {

@@ -13,9 +13,9 @@ import {
   type Recipes,
   type SoundStage,
 } from '../scene/sound/sound-stage';
-import { bell, chime, click, warning, whoosh } from '../scene/sound/synthesis';
-import { cueCaption, eventCaption } from './captions';
-import { creak, earth, rattle, thud, twang } from './synthesis';
+import { bell, chime, click, warning, whoosh } from '../scene/sound/sound-synthesis';
+import { cueCaption, eventCaption } from './archery-captions';
+import { creak, earth, rattle, thud, twang } from './archery-synthesis';
 
 /** Plays the sounds of archery from where they happen, with captions. */
 export interface Sounds {
