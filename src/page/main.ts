@@ -29,7 +29,7 @@ function run({ controls, stage, frame, body, timing }: Page, { switches, setting
   stage.renderer.setAnimationLoop((timestampMs, deviceFrame) => loop(timestampMs, deviceFrame ?? undefined));
 }
 
-/** Shows the first body: our own avatar, bent by the best estimator that is there. */
+/** Shows the first body: the page's own avatar, moved by the best estimator that is available. */
 async function showFirstBody({ avatarShown, frame }: Page, loading: PageLoading): Promise<void> {
   await avatarShown;
   loading.mark('avatar');
@@ -38,7 +38,7 @@ async function showFirstBody({ avatarShown, frame }: Page, loading: PageLoading)
   loading.bodyShown();
 }
 
-/** Goes where the address asks, and only there begins what it asks for: who arrives in a game leaves a replay and the controls behind. */
+/** Goes to the place in the address, and then opens what the address asks for: arriving in a game ends a replay and closes the controls. */
 async function goWhereAsked({ activities, controls, mocap, recorder }: Page, { switches }: PageContext): Promise<void> {
   // Before anything that the user opens meanwhile.
   const [replay, motion] = [recorder.ask(), recorder.ask()];
@@ -75,12 +75,12 @@ async function start(): Promise<void> {
   const page = createPage({ context, notices, loading });
   const { avatar, body, controls, headset, timing } = page;
 
-  // Ours stands there until another has arrived, and stays where that does not.
+  // The page's own avatar is shown until another one has been loaded, and stays if that fails.
   if (switches.avatar) void avatar.open(switches.avatar);
   const enterButton = createEnterButton(pageElement('enter', HTMLDivElement), () => void headset.enter());
   run(page, context);
 
-  // The way to the first body: the chosen network loads beside the avatar, and IK draws until it is there.
+  // The network loads in parallel to the avatar, and IK draws until it is ready.
   const sessionsOffered = offerSessions(headset, enterButton);
   const chosen = body.choose(switches.estimator ?? store.preferences.estimator ?? 'learned');
   void chosen.then(() => loading.report('the network', 1));

@@ -15,7 +15,7 @@ const onlyHere = (hostname: string): boolean => /^(localhost|.*\.localhost|127\.
 export interface RoomLink {
   readonly room: string;
   readonly address: string;
-  /** Who cannot come by it, and what to do about that; null: all can. */
+  /** A sentence about devices that cannot use the address, and what to do; null: all can. */
   readonly limit: string | null;
 }
 

@@ -14,7 +14,7 @@ export const nameOf = (source: string | File): string =>
 export interface ReadOptions {
   /** Called with the share [0, 1] that has arrived. */
   readonly onProgress?: (share: number) => void;
-  /** Ends a download on its way. */
+  /** Cancels a download. */
   readonly signal?: AbortSignal;
   /** The headers of a download. */
   readonly headers?: Readonly<Record<string, string>>;

@@ -1,6 +1,6 @@
 import { element } from './element';
 
-/** A line whose words are announced when they change; the figures behind them, which run, are only shown. */
+/** A line whose words are announced when they change. The running figures after them are only shown. */
 export interface RunningLine {
   readonly node: HTMLParagraphElement;
   show(words: string, figures?: string): void;

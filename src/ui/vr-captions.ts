@@ -9,7 +9,7 @@ import { createVrPanel, fillRounded, vrColors, vrFont } from './vr-panel';
 /** Shows captions of sounds in the headset: a line low in the view, for players without sound. */
 export interface VrCaptions {
   readonly object: Mesh;
-  /** An empty text takes away what is said. */
+  /** Shows a caption; an empty text hides it. */
   say(text: string): void;
   /** At this time [s] before these eyes, floor frame; null: no one reads. */
   show(time: number, eyes: Pose<'floor'> | null): void;

@@ -8,7 +8,7 @@ import {
   Vector3,
 } from 'three';
 
-/** A flat sheet in the world whose picture is a 2D canvas; seen from its front (+Z) only, so a mirror shows no back. */
+/** A flat panel in the world that is drawn on a 2D canvas; visible from its front (+Z) only, so that a mirror shows no back. */
 export interface VrPanel {
   readonly mesh: Mesh;
   readonly width: number;

@@ -77,7 +77,7 @@ class RangeSounds implements Sounds {
   /** The sound of each arrow in the air. */
   readonly #flying = new Map<number, AudioBufferSourceNode>();
   #head: Pose<'floor'> = { position: vec3(0, 1.6, 0), orientation: { x: 0, y: 0, z: 0, w: 1 } };
-  /** The bow's creaking was said in this draw. */
+  /** The creaking of the bow was captioned in this draw. */
   #creaked = false;
 
   constructor({ floorFromArena, onCaption, createContext }: SoundsOptions) {
@@ -114,7 +114,7 @@ class RangeSounds implements Sounds {
     return transformPoint(this.#floorFromArena, point);
   }
 
-  /** A bow creaks many times in a draw; it is said once. */
+  /** Captions a cue. A bow creaks many times in a draw; one caption is enough. */
   #captionCue(cue: BowCue): void {
     if (cue.type === 'creak' && this.#creaked) return;
     if (cue.type === 'creak') this.#creaked = true;

@@ -22,7 +22,7 @@ import { createTrails } from './trails';
 export interface ArcheryView {
   /** The place to give to the arena; holds all of the view but the bow and what is nocked on it. */
   readonly range: Range;
-  /** The bow in its hand; in the floor frame, to be added to the scene beside the avatar. */
+  /** The bow in its hand, floor frame; to be added to the scene next to the avatar. */
   readonly bow: Group;
   readonly result: Pick<ResultPanel, 'restartAt' | 'setHovered'>;
   /** Draws a state at a time of the match [s]; the bow and head as tracked now, floor frame. No bow is seen where it is null. */

@@ -13,15 +13,15 @@ export interface BallBarState {
   readonly round: BallRound | null;
   /** null: in this page alone. */
   readonly room: string | null;
-  /** Who could host a room for others. */
+  /** The state of the server, which hosts shared rooms. */
   readonly server: ServerState;
   readonly bots: boolean;
-  /** A built-in player moves the own body: no person is there to be asked. */
+  /** A simulated player moves the user's body: no person can be asked. */
   readonly acting: boolean;
-  /** The mouse moves the own body; null: it cannot, a headset is worn or an emulated one is steered. */
+  /** The mouse moves the user's body; null: it cannot, because a headset is worn or an emulated one is steered. */
   readonly mouse: boolean | null;
   readonly name: string;
-  /** What others call a player who has given no name. */
+  /** The name that others see if the player gave none. */
   readonly guestName: string;
   /** The seat that a spectator's camera follows; null: the camera is free. */
   readonly following: number | null;
@@ -39,16 +39,16 @@ export interface BallBarActions {
   askServer(): void;
   /** Shows what to send to others so that they come. */
   invite(): void;
-  /** Into the room again that this page is in no longer. */
+  /** Rejoins the room that this page is no longer in. */
   rejoin(): void;
   /** The camera of a spectator: with a player, or null: free. */
   follow(seat: number | null): void;
-  /** The mouse moves the own body, or a built-in player does. */
+  /** Lets the mouse or the simulated player move the user's body. */
   steer(on: boolean): void;
   readonly voices: VoicesBarActions;
 }
 
-/** This page is in the room no longer. */
+/** This page is no longer in the room. */
 const isOut = (round: BallRound | null): boolean => (round?.ended ?? null) !== null;
 
 /** Before and after a match, while another person could take a place. */
@@ -83,7 +83,7 @@ function createOffers(attributes: Record<string, string>) {
   };
 }
 
-/** Who plays and by which rules, folded away. */
+/** Players and rules, in a section that can be folded. */
 function createPlayers(actions: BallBarActions, setSound: (on: boolean) => void) {
   const bots = toggle('Bots take free places', actions.setBots);
   const rotate = toggle('Swap roles after each match', actions.rotate);
@@ -146,7 +146,7 @@ function createScore() {
   };
 }
 
-/** What can be pressed now; where this page is in the room no longer, nothing but the way back. */
+/** The buttons of the current state. If this page is no longer in the room, only the way back is enabled. */
 function createButtons(actions: BallBarActions) {
   let isReady = false;
   const ready = button('Ready', () => actions.ready(!isReady), { class: 'primary' });
@@ -238,7 +238,7 @@ function createCompany(actions: BallBarActions) {
       element('div', { class: 'row' }, openRoom, invite, ask),
     ),
     show({ room, server, round }: BallBarState): void {
-      // In a room the banner says what is the matter with its server.
+      // In a room the banner describes the problem with its server.
       const text = room === null ? serverTexts[server] : null;
       if (said.textContent !== (text ?? '')) said.textContent = text;
       said.hidden = text === null;
@@ -256,7 +256,7 @@ function createCompany(actions: BallBarActions) {
   };
 }
 
-/** Score, places and settings of the ball game, beside the picture. */
+/** Score, places and settings of the ball game. */
 export function createBallBar(actions: BallBarActions, setSound: (on: boolean) => void) {
   const score = createScore();
   const where = element('p', { class: 'hint' });

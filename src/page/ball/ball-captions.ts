@@ -56,7 +56,7 @@ export function eventCaption(event: BallEvent, at: Vec3 | null, hearing: Hearing
   }
 }
 
-/** What one's own hands sound like, in words; null: nothing that an event does not say too. */
+/** Captions a cue of the user's hands; null: an event has a caption for it. */
 export function cueCaption({ type, side }: BallCue): string | null {
   switch (type) {
     case 'grabbed':

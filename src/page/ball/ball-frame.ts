@@ -37,14 +37,14 @@ export interface PlayerFrame {
   readonly role: BallRole;
   readonly station: number;
   readonly ready: boolean;
-  /** Arena frame; null: not to be seen now. */
+  /** The position of the head, arena frame; null: it is not visible now. */
   readonly head: Vec3 | null;
   /** The position of a ball in each hand, arena frame; null: the hand is not tracked. */
   readonly palms: Readonly<Record<Side, Vec3 | null>>;
   readonly opacity: number;
 }
 
-/** A body to be drawn; its floor as it lies in this room. */
+/** A body to draw, with its floor in the user's floor frame. */
 export interface BodyFrame {
   readonly id: number;
   readonly calibration: Calibration;
@@ -71,7 +71,7 @@ export interface BallFrame {
   readonly role: BallRole | null;
   readonly rotate: boolean;
   readonly spectators: number;
-  /** The match's clock stands because a player stopped it. */
+  /** A player has paused the match's clock. */
   readonly paused: boolean;
   readonly players: readonly (PlayerFrame | null)[];
   readonly bodies: readonly BodyFrame[];
@@ -161,7 +161,7 @@ interface SeatView {
   readonly palms: Readonly<Record<Side, MutableVec3>>;
 }
 
-/** Who is where in this frame, own floor frame of each. */
+/** Head and hands of a player, in that player's floor frame. */
 interface Place {
   readonly head: { readonly position: Vec3 };
   readonly leftHand: TrackedPose | null;
@@ -181,9 +181,7 @@ export class CourtPeople {
   private readonly right = makePose<'arena'>();
   private readonly head = vec3(0, 0, 0);
 
-  /**
-   * Looks at everyone; `frame`: the own hands, null where nothing is tracked. floorFromArena: where the arena lies in this room.
-   */
+  /** Updates all people. `frame`: the user's hands, null if nothing is tracked. `floorFromArena`: the arena in the user's floor frame. */
   look(
     line: Connection,
     seen: RoomView,

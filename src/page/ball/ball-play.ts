@@ -18,7 +18,7 @@ import { BallBots, type CourtSight, gesturesOf, play, readyAfter } from './ball-
 import { type BallFrame, type BallProbe, CourtPeople, probeOf } from './ball-frame';
 import { joined, SimulatedPlayer } from './simulated-player';
 
-/** A match and who plays it, apart from everything that is seen of it. */
+/** A match and its players, without the view. */
 export interface BallPlay {
   readonly status: ConnectionStatus;
   readonly room: RoomView | null;
@@ -29,21 +29,18 @@ export interface BallPlay {
   readonly newest: BallFrame | null;
   /** Receives messages from the room and moves the bots. Call it first in every frame. */
   begin(time: number): void;
-  /**
-   * Head, hands and buttons of a built-in player on the own seat at `time` [s]; null: there is no seat yet. catchUp: what it does
-   * between two slow frames is played as well, as no device could.
-   */
+  /** Returns the input of the simulated player on the user's seat at a time [s], or null without a seat. `catchUp`: also plays the moments between two slow frames, which no device could. */
   act(time: number, catchUp?: boolean): Performed | null;
   /** The tracked frame and its buttons become play; null frame: no one is seen, or a spectator. */
   follow(time: number, frame: TrackingFrame | null, buttons: Buttons): BallFrame | null;
   /** The solved body of this frame, for the others. */
   send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void;
-  /** The floor lies elsewhere from the next frame on: others see a jump and no streak, and hands throw nothing by it. */
+  /** The user's floor frame changes with the next frame: others see a jump without interpolation, and hands throw nothing. */
   jumped(): void;
   ready(on: boolean): void;
   rotate(on: boolean): void;
   sit(seat: number | null): void;
-  /** Stops the match's clock, or no longer wants it stopped; refused where the room's terms do not allow it. */
+  /** Pauses the match's clock, or withdraws the pause. Refused if the room's terms do not allow it. */
   pause(on: boolean): void;
   away(on: boolean): void;
   calibrate(calibration: Calibration): void;
@@ -56,11 +53,11 @@ export interface BallPlay {
 export interface BallPlayOptions {
   connect(visitor: Visitor, time: number): Connection;
   readonly visitor: Visitor;
-  /** Whether bots take the seats that are free; asked for in every frame. */
+  /** Whether bots take free seats; read in every frame. */
   bots(): boolean;
-  /** Whether the own seat's hands are a built-in player's: who is then ready by itself. */
+  /** Whether a simulated player has the user's seat. It is ready without being asked. */
   acting(): boolean;
-  /** What a mouse wants of the own seat's player, own floor frame; null or absent: nothing, a built-in one plays. */
+  /** The mouse's target, floor frame of the user; null or absent: a simulated player plays. */
   steering?(): BallSteering | null;
   readonly seed: number;
 }
@@ -68,7 +65,7 @@ export interface BallPlayOptions {
 const nowhere: Transform<'floor', 'arena'> = { position: zero, orientation: identity };
 const connecting: ConnectionStatus = { phase: 'connecting', attempt: 0, retryIn: null, reason: null };
 const emptyHands: Readonly<Record<Side, number | null>> = { left: null, right: null };
-/** A result that a person may want to read stands this long before a built-in player wants another round [s]. */
+/** The time for which a person can read a result before a simulated player asks for another round [s]. */
 const rematchAfter = 7;
 
 /** The start of a list that has nothing in it mostly. */
@@ -88,7 +85,7 @@ class MatchPlay implements BallPlay {
   private jump = false;
   /** Since when the match has been waiting in this phase for a player to be ready [s]. */
   private waitingSince: { readonly phase: string; readonly at: number } | null = null;
-  /** Who sat where when it was looked at last. */
+  /** The seats at the last check. */
   private seating: RoomView['seats'] = none;
   private begunAt: number | null = null;
   private placedBy: Transform<'arena', 'floor'> | null = null;
@@ -235,7 +232,7 @@ class MatchPlay implements BallPlay {
     this.connection?.leave();
   }
 
-  /** A person who takes a seat does not glide there from where the one before them was. */
+  /** Prevents a person who takes a seat from gliding there from the previous person's position. */
   private watchSeats(): void {
     const seats = this.room?.seats;
     if (!seats || seats === this.seating) return;
@@ -246,7 +243,7 @@ class MatchPlay implements BallPlay {
     this.seating = seats;
   }
 
-  /** A built-in player is ready by itself. */
+  /** Reports a simulated player as ready. */
   private readyByItself(time: number): void {
     const { options } = this;
     const seen = this.room;
@@ -256,7 +253,7 @@ class MatchPlay implements BallPlay {
       return;
     }
     if (this.waitingSince?.phase !== match.phase) this.waitingSince = { phase: match.phase, at: time };
-    // A mouse has a person behind it, who says when.
+    // A person uses the mouse, and decides when to be ready.
     if (!options.acting() || options.steering?.() || match.players[seen.mySeat]?.ready) return;
     const patience = match.phase === 'over' ? rematchAfter : readyAfter;
     if (time - this.waitingSince.at > patience && match.players.filter(({ present }) => present).length > 1) {

@@ -24,7 +24,7 @@ import { createZoneRing } from './zone-ring';
 
 /** A player at the court as they are drawn in this frame. */
 export interface Attendant extends Person {
-  /** Arena frame; null: not to be seen now. */
+  /** The position of the head, arena frame; null: it is not visible now. */
   readonly head: Vec3 | null;
   /** The position of a ball in each hand, arena frame; null: the hand is not tracked. */
   readonly palms: Readonly<Record<'left' | 'right', Vec3 | null>>;
@@ -43,16 +43,16 @@ export interface BallScene {
   readonly rotate: boolean;
   /** The basket where its holder's hands had it last; null: where the state has it. Arena frame. */
   readonly opening: Opening | null;
-  /** How a ball would fly that is let go now, arena frame; null: no player here aims with a mouse. */
+  /** The flight of a ball if it were released now, arena frame; null: no player here aims with a mouse. */
   readonly aim: Launch | null;
-  /** The match's clock stands. */
+  /** The match's clock is paused. */
   readonly paused: boolean;
   /** Seconds until the bell; after a match what was left at its end. */
   readonly secondsLeft: number;
   /** The page's time [s], and whether it is still in the room. */
   readonly pageTime: number;
   readonly inRoom: boolean;
-  /** A built-in player has the own seat. */
+  /** A simulated player has the user's seat. */
   readonly acting: boolean;
   readonly voices: Pick<SeatVoices, 'markOf' | 'levelOf'>;
   /** The seats of the players that the user has hidden. */
@@ -63,9 +63,9 @@ export interface BallScene {
 
 /** Everything that is seen of the ball game but the people. */
 export interface BallView {
-  /** The place as it lies in a room whose floor is there; to be given to the arena, and again whenever the seat changes. */
+  /** Returns the court for the user's floor frame. Call it again after a change of the seat. */
   placed(floorFromArena: Transform<'floor', 'arena'>): Surroundings;
-  /** What belongs to the viewer, own floor frame; to be added to the scene. */
+  /** The parts in the user's floor frame, to be added to the scene. */
   readonly own: Group;
   readonly lobby: Pick<LobbySheet, 'buttonAt' | 'setHovered'>;
   show(scene: BallScene): void;
@@ -178,7 +178,7 @@ class CourtView implements BallView {
     this.#balls.show(state, time, (player, side) => attendants[player]?.palms[side] ?? null, opening);
   }
 
-  /** What the board says while the clock goes on: what happened a moment ago, or what the match waits for. */
+  /** Returns the line of the board: the last event, or what the match waits for. */
   #said(standing: Standing, pageTime: number): string {
     const { text, until } = this.#line;
     return pageTime < until && standing.state.phase === 'running' ? text : waitingLine(standing);

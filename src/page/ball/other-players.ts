@@ -1,6 +1,6 @@
 import type { PersonVoice } from './voices-state';
 
-/** A seat of the room, and how it stands with the voice of the player on it. */
+/** A seat of the room, and the voice of its player. */
 export interface Seated extends PersonVoice {
   readonly seat: number;
   /** null: no player is there. */
@@ -13,7 +13,7 @@ export interface OtherPlayer {
   readonly seat: number;
   readonly name: string;
   readonly role: string;
-  /** How it stands with them here, in words; empty: nothing to say. */
+  /** The state of their voice in words; empty: nothing to show. */
   readonly said: string;
   readonly silenced: boolean;
   readonly hidden: boolean;
@@ -23,7 +23,7 @@ export interface OtherPlayer {
 
 const linkTexts = { none: '', connecting: 'connecting …', connected: '', lost: 'connection lost' } as const;
 
-/** How it stands with a player's voice, in words. */
+/** Describes the state of a player's voice. */
 function voiceText({ voice, link, silenced }: PersonVoice): string {
   if (voice === 'none') return '';
   if (silenced) return 'muted by you';
@@ -43,6 +43,6 @@ export const otherPlayers = (
     return [{ seat, name, role, said, silenced, hidden, muting }];
   });
 
-/** What the button says that mutes or unmutes a player, and the one that hides or shows them. */
+/** The labels of the buttons that mute and hide a player. */
 export const muteLabel = ({ silenced }: Pick<OtherPlayer, 'silenced'>): string => (silenced ? 'Unmute' : 'Mute');
 export const hideLabel = ({ hidden }: Pick<OtherPlayer, 'hidden'>): string => (hidden ? 'Show' : 'Hide');

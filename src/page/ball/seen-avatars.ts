@@ -18,7 +18,7 @@ import { type FileKind, readLimited } from 'threepoint-ui/limited-files';
 /** The file of another person. */
 const seenFile: FileKind = { what: 'an avatar that others see', megabytes: seenAvatarLimits.megabytes };
 interface SeenAvatarsOptions {
-  /** A file that is on its way for longer [ms] is given up: others wait for theirs. */
+  /** A download that takes longer [ms] is cancelled: other avatars wait for it. */
   readonly patienceMs?: number;
 }
 
@@ -58,7 +58,7 @@ export class SeenAvatars {
     return parseAvatar(await file, `${body}.vrm`);
   }
 
-  /** Ends what is on its way. */
+  /** Cancels all downloads. */
   leave(): void {
     this.#leaving.abort();
   }

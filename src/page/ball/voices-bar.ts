@@ -3,7 +3,7 @@ import { toggle } from 'threepoint-ui/toggle';
 import { hideLabel, muteLabel, type OtherPlayer, otherPlayers, type Seated } from './other-players';
 import { consentText, type VoicesState } from './voices-state';
 
-/** Who is in the room, as far as this part of the bar needs it. */
+/** The people in the room, for this part of the bar. */
 export interface ListedPeople {
   /** The own one; null: a spectator. */
   readonly seat: number | null;

@@ -1,4 +1,4 @@
-/** How the own page takes part in the voices, as it is shown. */
+/** The user's part in the voices, as panels show it. */
 export interface VoicesState {
   /** none: the room has no voices. asked: the user reads the consent text. in: the user takes part. */
   readonly phase: 'none' | 'off' | 'asked' | 'joining' | 'in';
@@ -8,11 +8,11 @@ export interface VoicesState {
   readonly relayOnly: boolean;
   /** What a person should know of their voice; null: nothing. */
   readonly said: string | null;
-  /** There is no microphone, and it may be asked for again. */
+  /** There is no microphone. The user can request it again. */
   readonly deaf: boolean;
 }
 
-/** How it stands with the voice of another player. */
+/** The voice of another player. */
 export interface PersonVoice {
   readonly voice: 'none' | 'muted' | 'open';
   readonly link: 'none' | 'connecting' | 'connected' | 'lost';

@@ -115,7 +115,7 @@ function createErrorTable(labels: Labels) {
         }
       }
       const unmeasured = methods.filter(({ mean }) => !(mean instanceof Float64Array));
-      // One is measured at a time: it stands last, before its figures.
+      // One method is measured at a time: it is listed last, before its figures.
       const measured = unmeasured.find(({ mean }) => progressOf(mean)?.share);
       const told = [...unmeasured.filter((method) => method !== measured), ...(measured ? [measured] : [])];
       const words = told.map(
@@ -159,7 +159,7 @@ export interface MocapCard {
   readonly node: HTMLElement;
   /** What it covers of the window; null: it is not shown. */
   readonly covers: DOMRect | null;
-  /** A file is on its way; null: none is. */
+  /** Shows the progress of reading a file; null: none is being read. */
   showProgress(name: string, progress: WorkProgress | null): void;
   /** null: no clip is open. */
   show(state: CardState | null): void;

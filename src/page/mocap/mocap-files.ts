@@ -14,7 +14,7 @@ export interface MocapFiles {
 
 const endingOf = (file: MocapFile): string => nameOf(file).split('.').at(-1)!.toLowerCase();
 
-/** Whether a file beside a motion is a map of its skeleton. */
+/** Whether a file is a map of a skeleton. */
 export const isMap = (file: MocapFile): boolean => endingOf(file) === 'json';
 
 /**

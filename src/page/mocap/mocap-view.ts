@@ -69,7 +69,7 @@ interface Opened {
   readonly means: ClipMeans;
 }
 
-/** Metres to the right of the body: a second body, and the truth where it stands beside. */
+/** The distance of the second body, and of the ground truth beside it, to the right of the body [m]. */
 const secondAside = 1.15;
 const truthAside = -0.85;
 
@@ -82,7 +82,7 @@ export class MocapView {
   #second: SecondBody | null = null;
   #truthPlace: TruthPlace = 'inside';
   #reading = new AbortController();
-  /** What was to be shown last, shown or not. */
+  /** The files that were requested last. */
   #asked: readonly MocapFile[] = [];
   /** Errors of the picture: of the body, and of the second. */
   readonly #errors = [makeJointErrors(), makeJointErrors()] as const;
@@ -137,7 +137,7 @@ export class MocapView {
     return this.#card.covers;
   }
 
-  /** How far right of the page's body the middle of what stands on the stage lies [m]. */
+  /** The distance of the middle of all shown bodies to the right of the page's body [m]. */
   get aside(): number {
     if (!this.#opened || this.#options.replay.mode !== 'replaying') return 0;
     const [left, right] = [this.#truthPlace === 'beside' ? truthAside : 0, this.#second ? secondAside : 0];

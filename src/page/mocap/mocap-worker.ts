@@ -4,7 +4,7 @@ import { type MocapSource, type PreparedMocap, prepareMocap } from 'threepoint/c
 import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
 import type { MocapFile, MocapFiles } from './mocap-files';
 
-/** What the worker says: how far it is [0, 1], what it read, or why it could not. */
+/** The worker's messages: progress [0, 1], the result, or the reason of a failure. */
 export type MocapAnswer =
   | { readonly share: number }
   | { readonly prepared: PreparedMocap }

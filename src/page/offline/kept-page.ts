@@ -1,7 +1,7 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { pageFolder } from 'threepoint-ui/page-folder';
 
-/** What this browser has of the page for a visit without a network: nothing yet, a copy on its way, a whole copy; or why it keeps none. */
+/** This browser's copy of the page for use without a network: none, loading, complete, or the reason why there is none. */
 export type KeptState = 'nothing' | 'coming' | 'whole' | { readonly refused: string };
 
 /** Resolves when the worker has its files, or never will. */
@@ -25,10 +25,7 @@ export class KeptPage {
     return this.#state;
   }
 
-  /**
-   * Brings the copy, or a newer one beside it. A browser that keeps nothing (no secure context, a private window, full storage, a policy)
-   * leaves the page as it is. Never rejects.
-   */
+  /** Stores a copy of the page, or a newer one. A browser that stores nothing (no secure context, a private window, full storage, a policy) changes nothing. Never rejects. */
   async keep(workers: ServiceWorkerContainer | undefined): Promise<void> {
     if (!workers) {
       this.#state = { refused: 'this browser does not support service workers here' };

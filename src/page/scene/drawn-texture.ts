@@ -1,7 +1,7 @@
 import { CanvasTexture, LinearMipmapLinearFilter, SRGBColorSpace } from 'three';
 import { anisotropyOf, type Quality } from './renderer';
 
-/** A texture whose picture is a 2D canvas. */
+/** A texture that is drawn on a 2D canvas. */
 export interface DrawnTexture {
   readonly texture: CanvasTexture;
   /** Clears the canvas and draws. Call it only when something changed. */

@@ -26,7 +26,7 @@ function drawsInSoftware(context: WebGLRenderingContext | WebGL2RenderingContext
   return /swiftshader|llvmpipe|software/i.test(name);
 }
 
-/** The quality this machine can afford when none was asked for; throws where there is no WebGL 2. */
+/** Returns the quality that this machine can afford. Throws without WebGL 2. */
 export function affordableQuality(): Quality {
   const context = document.createElement('canvas').getContext('webgl2');
   if (!context)
@@ -68,5 +68,5 @@ export function fitToWindow(renderer: WebGLRenderer, quality: Quality): void {
   renderer.setSize(window.innerWidth, window.innerHeight, false);
 }
 
-/** The camera of a session: the headset places it, this only says how near and how far it sees. */
+/** Creates the camera of a session. The headset places it; this sets its near and far planes only. */
 export const createHeadsetCamera = (): PerspectiveCamera => new PerspectiveCamera(70, 1, 0.05, 90);

@@ -31,7 +31,7 @@ export interface LostGraphicsOptions {
 const pictureLost = 'The graphics device was lost. The picture returns when the browser restores it.';
 const sessionLost = 'The graphics device was lost, and VR has ended. Your game continues. Enter VR again.';
 
-/** The page outlives its graphics device and says what becomes of the picture. */
+/** Keeps the page alive when the graphics device is lost, and notifies the user. */
 export function surviveLostGraphics({ canvas, notices, headset, studio, timing }: LostGraphicsOptions): void {
   canvas.addEventListener('webglcontextlost', () => {
     notices.show('warning', headset.worn ? sessionLost : pictureLost);

@@ -69,7 +69,7 @@ export class PageMocap {
     return this.#view?.covers ?? null;
   }
 
-  /** How far right of the body the middle of what is shown lies [m]. */
+  /** The distance of the middle of what is shown to the right of the body [m]. */
   get aside(): number {
     return this.#view?.aside ?? 0;
   }

@@ -23,9 +23,9 @@ import type { TrackingSource } from './tracking-source';
 
 type Triple = readonly [number, number, number];
 
-/** What the page is doing, as plain data: for tests and tools, to be read and not to be written. */
+/** The state of the page as plain data, for tests and tools; read-only. */
 export interface Probe {
-  /** A body stands on the floor. */
+  /** The first body is drawn. */
   readonly ready: boolean;
   /** 'loading', 'desktop', 'vr'. */
   readonly activity: 'loading' | 'desktop' | 'vr';

@@ -15,7 +15,7 @@ export interface Switches {
   readonly avatar: string | null;
   readonly quality: Quality | null;
   readonly replay: string | null;
-  /** Addresses of the files of one motion, and how it is to be looked at; null: none is asked for. */
+  /** The addresses of the files of one motion, and how it is shown; null: none is requested. */
   readonly mocap: ({ readonly addresses: readonly string[] } & Outlook) | null;
   readonly view: ViewName | null;
   /** Whether the controls are open; null: as they were left. */
@@ -26,11 +26,11 @@ export interface Switches {
   readonly seed: number | null;
   /** The length of a round [s]; null: the default of the game. */
   readonly seconds: number | null;
-  /** A study and who takes part in it (null: to be asked); null: no study. */
+  /** A study and its participant (null: the page asks); null: no study. */
   readonly study: { readonly study: string; readonly participant: string | null } | null;
   /** The room on the server; null: a room in this page. */
   readonly room: string | null;
-  /** Watches, from a camera of its own. */
+  /** The user watches, with a free camera. */
   readonly spectate: boolean;
   /** Whether bots take free seats; null: in a room of one's own they do. */
   readonly bots: boolean | null;

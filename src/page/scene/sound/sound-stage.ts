@@ -78,7 +78,7 @@ function createPlayer(context: AudioContext, recipes: Recipes) {
     start(name, at, delay);
   }
 
-  /** Starts one that goes along with something for so long [s]: where that is so many seconds from now, floor frame. */
+  /** Starts a sound that moves for this time [s]. `placeAfter`: its position after a number of seconds, floor frame. */
   function playAlong(name: string, seconds: number, placeAfter: (after: number) => Vec3): AudioBufferSourceNode {
     const { source, panner } = start(name, placeAfter(0), 0);
     for (let step = 1; step <= 4; step++) {

@@ -53,7 +53,7 @@ export class Measuring {
     return this.#step;
   }
 
-  /** Measures the wearer, or says what is missing for that. */
+  /** Measures the user, or reports what is missing. */
   start(): void {
     const missing = this.#missing();
     if (missing) this.#options.notices.show('info', missing);

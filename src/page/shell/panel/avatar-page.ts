@@ -110,7 +110,7 @@ function otherAvatars(actions: AvatarActions): HTMLElement {
   );
 }
 
-/** Who sees whose avatar. */
+/** Which avatars players show to each other. */
 function createSight(actions: AvatarActions) {
   const share = toggle('Others see my avatar', (on) => actions.setShareAvatar(on));
   const plain = toggle('Show all others as mannequins', (on) => actions.setPlainOthers(on));

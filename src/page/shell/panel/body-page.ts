@@ -42,7 +42,7 @@ function createEstimators(actions: Pick<BodyActions, 'chooseEstimator'>) {
   };
 }
 
-/** Whether the headset is asked for its own body. */
+/** Whether the headset's body tracking is used. */
 function createDeviceBody(actions: Pick<BodyActions, 'setDeviceBody'>) {
   const ask = toggle('Use the headset’s body tracking', (on) => actions.setDeviceBody(on));
   const about =
@@ -118,7 +118,7 @@ function createMeasures(ranges: MeasureRanges, actions: BodyActions) {
   };
 }
 
-/** What the body is estimated by, and whose it is. */
+/** The estimator and the measurements of the body. */
 export function createBodyPage(ranges: MeasureRanges, actions: BodyActions): PanelPage {
   const estimators = createEstimators(actions);
   const deviceBody = createDeviceBody(actions);

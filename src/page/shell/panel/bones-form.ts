@@ -102,7 +102,7 @@ export function createBonesForm(give: (bones: BoneMap) => void) {
     placeholder: '{"leftIndexProximal": "…"}',
   });
   let found: readonly string[] = [];
-  /** What the page said of the bones that were given last. */
+  /** The page's last complaint about given bones. */
   let told: string | null = null;
 
   function submit(): void {

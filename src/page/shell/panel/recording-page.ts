@@ -110,7 +110,7 @@ function createExportSection(actions: RecordingActions) {
   };
 }
 
-/** Who or what moves the body where no headset is worn. */
+/** Chooses what moves the body while no headset is worn. */
 function createMovers(actions: RecordingActions) {
   const actor = toggle('Actor moves the body', (on) => actions.setActor(on));
   const emulatorPanel = toggle('Emulator controls', (on) => actions.setEmulatorPanel(on));
