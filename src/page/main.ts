@@ -7,7 +7,7 @@ import { createFrameLoop } from './shell/frame-loop';
 import type { Headset } from './shell/headset';
 import { joinStudy } from './shell/join-study';
 import { type PageContext, readPageContext } from './shell/page-context';
-import { showThatNothingStarts, tellOfFaults } from './shell/page-faults';
+import { reportFaults, showStartFailure } from './shell/page-faults';
 import { PageLoading } from './shell/page-loading';
 
 /** What entering would mean: a real headset, or why not and the emulated one. */
@@ -39,7 +39,10 @@ async function showFirstBody({ avatarShown, frame }: Page, loading: PageLoading)
 }
 
 /** Goes to the place in the address, and then opens what the address asks for: arriving in a game ends a replay and closes the controls. */
-async function goWhereAsked({ activities, controls, mocap, recorder }: Page, { switches }: PageContext): Promise<void> {
+async function openFromAddress(
+  { activities, controls, mocap, recorder }: Page,
+  { switches }: PageContext,
+): Promise<void> {
   // Before anything that the user opens meanwhile.
   const [replay, motion] = [recorder.ask(), recorder.ask()];
   await activities.goTo(switches.play);
@@ -49,7 +52,7 @@ async function goWhereAsked({ activities, controls, mocap, recorder }: Page, { s
 }
 
 /** Takes part in the study that the address asks for, if it does. */
-async function takePart(page: Page, context: PageContext): Promise<void> {
+async function joinStudyOfAddress(page: Page, context: PageContext): Promise<void> {
   const { switches } = context;
   if (!switches.study) return;
   const joined = await joinStudy({ ...page, ...context, asked: switches.study });
@@ -58,7 +61,7 @@ async function takePart(page: Page, context: PageContext): Promise<void> {
 }
 
 /** Keeps the page for a visit without a network, now that this one has all it needs. A study runs on what its server serves. */
-function keepForLater({ kept }: Page, { switches }: PageContext): void {
+function storeOfflineCopy({ kept }: Page, { switches }: PageContext): void {
   // Only what has been built for good can be kept.
   if (import.meta.env.PROD && !switches.study) void kept.keep(navigator.serviceWorker);
 }
@@ -67,7 +70,7 @@ function keepForLater({ kept }: Page, { switches }: PageContext): void {
 async function start(): Promise<void> {
   allowOwnScripts();
   const notices = createNotices(pageElement('notices', HTMLElement));
-  tellOfFaults(notices);
+  reportFaults(notices);
   const loading = new PageLoading();
   loading.mark('script');
   const context = readPageContext(notices);
@@ -85,13 +88,13 @@ async function start(): Promise<void> {
   const chosen = body.choose(switches.estimator ?? store.preferences.estimator ?? 'learned');
   void chosen.then(() => loading.report('the network', 1));
   await showFirstBody(page, loading);
-  await Promise.all([chosen, sessionsOffered, goWhereAsked(page, context)]);
-  await takePart(page, context);
+  await Promise.all([chosen, sessionsOffered, openFromAddress(page, context)]);
+  await joinStudyOfAddress(page, context);
   loading.finish();
   // Compiling shaders is loading, not drawing.
   timing.reset();
   controls.show();
-  keepForLater(page, context);
+  storeOfflineCopy(page, context);
 }
 
-start().catch(showThatNothingStarts);
+start().catch(showStartFailure);

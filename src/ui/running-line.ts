@@ -7,13 +7,13 @@ export interface RunningLine {
 }
 
 export function createRunningLine(attributes: { readonly class?: string } = {}): RunningLine {
-  const said = element('span', { role: 'status' });
+  const status = element('span', { role: 'status' });
   const running = element('span');
   return {
-    node: element('p', attributes, said, running),
+    node: element('p', attributes, status, running),
     show(words, figures = '') {
       // Said again, it would be announced again.
-      if (said.textContent !== words) said.textContent = words;
+      if (status.textContent !== words) status.textContent = words;
       running.textContent = figures;
     },
   };

@@ -78,7 +78,7 @@ export class ArcheryActivity implements OpenActivity {
     const buttons = study.idle ? nothingPressed : allButtons;
     const { events, cues, haptics, bow } = this.play.follow(frame, buttons);
     const taken = cues.findLast(({ type }) => type === 'taken')?.side ?? null;
-    this.#view.hear(events, cues);
+    this.#view.playEvents(events, cues);
     const bowSide = bow?.bowSide ?? taken ?? settings.bowSide;
     if (taken) writer.keep({ bowSide: taken });
     if (events.length > 0) onChange();

@@ -22,9 +22,9 @@ export interface Sounds {
   /** The stage that plays the sounds. It must be unlocked; captions work without it. */
   readonly stage: AudibleStage;
   /** Plays and captions what happened in this frame; cues are in the floor frame, events in the arena frame. */
-  hear(state: ArcheryState, events: readonly ArcheryEvent[], cues: readonly BowCue[]): void;
+  playEvents(state: ArcheryState, events: readonly ArcheryEvent[], cues: readonly BowCue[]): void;
   /** Sets the pose of the listener's head, floor frame. */
-  listen(head: Pose<'floor'>): void;
+  setListener(head: Pose<'floor'>): void;
   dispose(): void;
 }
 
@@ -87,7 +87,7 @@ class RangeSounds implements Sounds {
     this.stage = createSoundStage(recipes, createContext);
   }
 
-  hear({ targets, options }: ArcheryState, events: readonly ArcheryEvent[], cues: readonly BowCue[]): void {
+  playEvents({ targets, options }: ArcheryState, events: readonly ArcheryEvent[], cues: readonly BowCue[]): void {
     const playing = this.stage.player;
     for (const cue of cues) {
       this.#captionCue(cue);
@@ -101,9 +101,9 @@ class RangeSounds implements Sounds {
     }
   }
 
-  listen(head: Pose<'floor'>): void {
+  setListener(head: Pose<'floor'>): void {
     this.#head = head;
-    this.stage.listen(head);
+    this.stage.setListener(head);
   }
 
   dispose(): void {

@@ -28,7 +28,7 @@ export interface ArcheryView {
   /** Draws a state at a time of the match [s]; the bow and head as tracked now, floor frame. No bow is seen where it is null. */
   show(state: ArcheryState, bow: BowView | null, matchTime: number, head: Pose<'floor'>): void;
   /** Plays and captions what happened since the last frame; cues of the bow are in the floor frame. */
-  hear(events: readonly ArcheryEvent[], cues: readonly BowCue[]): void;
+  playEvents(events: readonly ArcheryEvent[], cues: readonly BowCue[]): void;
   readonly sound: AudibleStage;
   dispose(): void;
 }
@@ -65,7 +65,7 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
     sound: sounds.stage,
     show(state, bowView, matchTime, head) {
       shown = state;
-      sounds.listen(head);
+      sounds.setListener(head);
       const nocked = bowView?.arrow;
       if (nocked) {
         const { tip, direction } = onString;
@@ -83,8 +83,8 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
       range.setZoneWarning(!state.inZone);
       range.animate(matchTime);
     },
-    hear(events, cues) {
-      if (shown) sounds.hear(shown, events, cues);
+    playEvents(events, cues) {
+      if (shown) sounds.playEvents(shown, events, cues);
     },
     dispose() {
       for (const part of [sounds, stands, arrows, trails, scoreboard, pops, result, bow, range]) part.dispose();

@@ -224,7 +224,7 @@ const serverTexts: Readonly<Record<ServerState, string | null>> = {
 function createCompany(actions: BallBarActions) {
   const openRoom = button('Play with others', actions.openRoom);
   const invite = button('Invite others', actions.invite);
-  const said = element('p', { class: 'hint', role: 'status' });
+  const status = element('p', { class: 'hint', role: 'status' });
   const ask = button('Ask again', actions.askServer);
   const link = createRoomLink({ main: false });
   /** The room that the link leads to; null: none yet. */
@@ -233,15 +233,15 @@ function createCompany(actions: BallBarActions) {
     node: element(
       'div',
       { class: 'company' },
-      said,
+      status,
       link.node,
       element('div', { class: 'row' }, openRoom, invite, ask),
     ),
     show({ room, server, round }: BallBarState): void {
       // In a room the banner describes the problem with its server.
       const text = room === null ? serverTexts[server] : null;
-      if (said.textContent !== (text ?? '')) said.textContent = text;
-      said.hidden = text === null;
+      if (status.textContent !== (text ?? '')) status.textContent = text;
+      status.hidden = text === null;
       openRoom.hidden = room !== null || text !== null;
       openRoom.disabled = server !== 'here';
       const waited = room !== null && isWaitedFor(round);

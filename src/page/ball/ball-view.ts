@@ -70,7 +70,7 @@ export interface BallView {
   readonly lobby: Pick<LobbySheet, 'buttonAt' | 'setHovered'>;
   show(scene: BallScene): void;
   /** Plays, captions and writes on the board what happened since the last frame. After `show`. */
-  hear(events: readonly BallEvent[], cues: readonly BallCue[]): void;
+  playEvents(events: readonly BallEvent[], cues: readonly BallCue[]): void;
   readonly sound: AudibleStage;
   dispose(): void;
 }
@@ -141,19 +141,19 @@ class CourtView implements BallView {
     this.#shown = scene;
     const { state, attendants, me, rotate, head, acting, pageTime } = scene;
     const eyes = transformPoint(invertTransform(this.#floorFromArena), head.position);
-    this.#sounds.listen(head, this.#floorFromArena);
+    this.#sounds.setListener(head, this.#floorFromArena);
     this.#showBalls(scene);
     this.#pops.show(pageTime, eyes);
     const people = attendants.map(writtenOf);
     const standing: Standing = { state, seconds: Math.ceil(scene.secondsLeft), people, me, rotate, acting };
-    this.#boards.show(standing, scene.paused ? 'Paused' : this.#said(standing, pageTime));
+    this.#boards.show(standing, scene.paused ? 'Paused' : this.#lineNow(standing, pageTime));
     this.lobby.show(standing, head.position.y, pageTime, scene.inRoom);
     this.#showNames(scene, people);
     const station = stationOf(state, me);
     this.#ring.show(station === null ? null : (stations[station]?.position ?? null), eyes);
   }
 
-  hear(events: readonly BallEvent[], cues: readonly BallCue[]): void {
+  playEvents(events: readonly BallEvent[], cues: readonly BallCue[]): void {
     if (!this.#shown) return;
     const { state, time, pageTime, attendants: people, me, opening } = this.#shown;
     for (const event of events) {
@@ -162,7 +162,7 @@ class CourtView implements BallView {
       if (event.type === 'caught') this.#pops.add((opening ?? state.basket).position, pageTime);
     }
     const mine = me === null ? null : people[me];
-    this.#sounds.hear({ state, time, events, cues, me, people, palms: mine?.palms ?? unseenPalms });
+    this.#sounds.playEvents({ state, time, events, cues, me, people, palms: mine?.palms ?? unseenPalms });
   }
 
   dispose(): void {
@@ -179,7 +179,7 @@ class CourtView implements BallView {
   }
 
   /** Returns the line of the board: the last event, or what the match waits for. */
-  #said(standing: Standing, pageTime: number): string {
+  #lineNow(standing: Standing, pageTime: number): string {
     const { text, until } = this.#line;
     return pageTime < until && standing.state.phase === 'running' ? text : waitingLine(standing);
   }

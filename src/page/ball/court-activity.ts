@@ -181,7 +181,7 @@ export class CourtActivity implements OpenActivity {
       voices: this.voices.seats,
       hidden: this.blocked.hidden,
     });
-    this.#view.hear(newest.events, newest.cues);
+    this.#view.playEvents(newest.events, newest.cues);
   }
 
   point({ origin, direction }: Ray, press: boolean): number | null {

@@ -14,7 +14,7 @@ export interface OtherPlayer {
   readonly name: string;
   readonly role: string;
   /** The state of their voice in words; empty: nothing to show. */
-  readonly said: string;
+  readonly status: string;
   readonly silenced: boolean;
   readonly hidden: boolean;
   /** none: the player has no voice to mute. off: the player is hidden, which mutes the voice too. */
@@ -38,9 +38,9 @@ export const otherPlayers = (
   people.flatMap((person): OtherPlayer[] => {
     const { seat, name, role, voice, silenced, hidden } = person;
     if (name === null || seat === own) return [];
-    const said = hidden ? 'hidden' : inVoices ? voiceText(person) : '';
+    const status = hidden ? 'hidden' : inVoices ? voiceText(person) : '';
     const muting = !inVoices || voice === 'none' ? 'none' : hidden ? 'off' : 'offered';
-    return [{ seat, name, role, said, silenced, hidden, muting }];
+    return [{ seat, name, role, status, silenced, hidden, muting }];
   });
 
 /** The labels of the buttons that mute and hide a player. */

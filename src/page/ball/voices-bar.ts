@@ -28,7 +28,7 @@ function createPeople(actions: VoicesBarActions) {
   const node = element('ul', { class: 'people', 'aria-label': 'Other players' });
   let shown = '';
   const row = (player: OtherPlayer) => {
-    const { seat, name, said, silenced, hidden, muting } = player;
+    const { seat, name, status, silenced, hidden, muting } = player;
     const mute = button(muteLabel(player), () => actions.silence(seat, !silenced), {
       'aria-label': `${muteLabel(player)} ${name}`,
       disabled: muting === 'off',
@@ -37,7 +37,7 @@ function createPeople(actions: VoicesBarActions) {
     const hide = button(hideLabel(player), () => actions.hide(seat, !hidden), {
       'aria-label': `${hideLabel(player)} ${name}`,
     });
-    const who = element('p', { class: 'who' }, element('span', {}, name), element('span', { class: 'hint' }, said));
+    const who = element('p', { class: 'who' }, element('span', {}, name), element('span', { class: 'hint' }, status));
     return element('li', {}, who, element('div', { class: 'buttons' }, mute, hide));
   };
   return {
@@ -91,7 +91,7 @@ export function createVoicesBar(actions: VoicesBarActions) {
   const ask = button('Talk with the others', () => actions.ask(true));
   const mute = button('Unmute me', () => actions.mute(!muted), { 'aria-keyshortcuts': 't' });
   const leave = button('Leave voice chat', actions.leave);
-  const said = element('p', { class: 'hint', role: 'status' });
+  const status = element('p', { class: 'hint', role: 'status' });
   const consent = createConsent(actions);
   const people = createPeople(actions);
   const node = element(
@@ -99,7 +99,7 @@ export function createVoicesBar(actions: VoicesBarActions) {
     { class: 'voices', role: 'group', 'aria-label': 'Voices' },
     consent.node,
     element('div', { class: 'row' }, ask, mute, leave),
-    said,
+    status,
     people.node,
   );
   return {
@@ -116,9 +116,9 @@ export function createVoicesBar(actions: VoicesBarActions) {
       mute.classList.toggle('primary', isIn && !muted);
       mute.setAttribute('aria-pressed', String(!muted));
       leave.hidden = !isIn;
-      const sentence = phase === 'none' ? '' : (state.said ?? (isIn && muted ? 'You are muted.' : ''));
-      if (said.textContent !== sentence) said.textContent = sentence;
-      said.hidden = sentence === '';
+      const sentence = phase === 'none' ? '' : (state.message ?? (isIn && muted ? 'You are muted.' : ''));
+      if (status.textContent !== sentence) status.textContent = sentence;
+      status.hidden = sentence === '';
       consent.show(state);
       people.show(round, isIn);
       node.hidden = phase === 'none' && people.node.hidden;

@@ -7,7 +7,7 @@ export interface VoicesState {
   readonly relay: boolean;
   readonly relayOnly: boolean;
   /** What a person should know of their voice; null: nothing. */
-  readonly said: string | null;
+  readonly message: string | null;
   /** There is no microphone. The user can request it again. */
   readonly deaf: boolean;
 }
@@ -26,7 +26,7 @@ export interface PersonVoice {
 export interface VoicesProbe {
   readonly phase: VoicesState['phase'];
   readonly muted: boolean;
-  readonly said: string | null;
+  readonly message: string | null;
   /** All voices at the own ears [dB of full scale]; −120: silence. */
   readonly loudness: number;
   /** The loudness of all voices before distance and direction change them [dB of full scale]. */

@@ -6,7 +6,7 @@ import { createMouseAim } from 'threepoint-ui/mouse-aim';
 import type { Notices } from 'threepoint-ui/notices';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { createActor } from '../emulator/actor';
-import { KeptPage } from '../offline/kept-page';
+import { OfflineCopy } from '../offline/offline-copy';
 import { prepareFirstPicture } from '../scene/first-picture';
 import { affordableQuality } from '../scene/renderer';
 import { Recorder } from '../studio/recorder';
@@ -21,7 +21,7 @@ import { Headset } from './headset';
 import { KnownBones } from './known-bones';
 import { createPageBody } from './page-body';
 import type { PageContext } from './page-context';
-import { surviveLostGraphics } from './page-faults';
+import { handleLostGraphics } from './page-faults';
 import { PageFrame } from './page-frame';
 import type { PageLoading } from './page-loading';
 import { PageMocap } from './page-mocap';
@@ -218,8 +218,8 @@ export function createPage(options: PageOptions) {
     controls.show();
   });
   pressSheetsByMouse({ canvas, view, headset, study, activities });
-  surviveLostGraphics({ canvas, notices, headset, studio: stage.studio, timing });
-  const kept = new KeptPage();
+  handleLostGraphics({ canvas, notices, headset, studio: stage.studio, timing });
+  const kept = new OfflineCopy();
   const probed = { loading, kept, settings, notices, timing, frame, source, body, avatar, headset, recorder };
   exposeProbe(() => readProbe({ ...probed, activities, study, stage }));
   return {

@@ -77,7 +77,7 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
     studio,
     view,
     vignette,
-    caption: captions.say,
+    caption: captions.setText,
     placeMirror(side) {
       const { x, z, turned } = mirrorAside;
       const sign = side === 'right' ? 1 : -1;

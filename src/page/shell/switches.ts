@@ -102,11 +102,11 @@ function oneOf(values: readonly string[]): string {
 /** A sentence about a value that its switch does not take. */
 function complaintOf(key: keyof typeof takes, value: string): string {
   const shown = value.length > 40 ? `${value.slice(0, 40)}…` : value;
-  const said =
+  const problem =
     value === ''
       ? `The address has ${key}= without a value`
       : `The address has ${key}=${shown}, which is not a valid value`;
-  return `${said}: ${key} takes ${takes[key]}.`;
+  return `${problem}: ${key} takes ${takes[key]}.`;
 }
 
 function mocapOf({ mocap, clip, at, beside, truth }: v.InferOutput<typeof schema>): Switches['mocap'] {

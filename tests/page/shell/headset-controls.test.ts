@@ -227,7 +227,7 @@ describe('the buttons of the menu', () => {
     seat: 1,
     name: 'Ben',
     role: 'Right thrower',
-    said: 'muted',
+    status: 'muted',
     silenced: false,
     hidden: false,
     muting: 'offered',

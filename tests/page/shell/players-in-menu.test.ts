@@ -17,14 +17,14 @@ const player = (seat: number, change: Partial<OtherPlayer> = {}): OtherPlayer =>
   seat,
   name: `Player ${seat}`,
   role: 'Right thrower',
-  said: 'can be heard',
+  status: 'can be heard',
   silenced: false,
   hidden: false,
   muting: 'offered',
   ...change,
 });
 const ben = player(0, { name: 'Ben' });
-const bot = player(2, { name: 'Kim (bot)', said: '', muting: 'none' });
+const bot = player(2, { name: 'Kim (bot)', status: '', muting: 'none' });
 const menuActions = {} as VrMenuActions;
 
 /** Records every press. */

@@ -16,7 +16,7 @@ export interface SoundStage {
   open(): Promise<AudioContext>;
   /** null while the audio rests: it would keep everything and play it at once later. */
   readonly player: Player | null;
-  listen(head: Pose<'floor'>): void;
+  setListener(head: Pose<'floor'>): void;
   /** 0 silent to 1. */
   setVolume(volume: number): void;
   setMuted(on: boolean): void;
@@ -146,7 +146,7 @@ export function createSoundStage(
       await (await awaken()).warm();
     },
     open: async () => (await awaken()).context,
-    listen(head) {
+    setListener(head) {
       if (player) placeListener(player.context, head);
     },
     setVolume(next) {

@@ -2,7 +2,7 @@ import { reasonOf } from 'threepoint/core/errors/reasons';
 import { pageFolder } from 'threepoint-ui/page-folder';
 
 /** This browser's copy of the page for use without a network: none, loading, complete, or the reason why there is none. */
-export type KeptState = 'nothing' | 'coming' | 'whole' | { readonly refused: string };
+export type OfflineCopyState = 'nothing' | 'coming' | 'whole' | { readonly refused: string };
 
 /** Resolves when the worker has its files, or never will. */
 function settled(worker: ServiceWorker): Promise<void> {
@@ -18,10 +18,10 @@ function settled(worker: ServiceWorker): Promise<void> {
 }
 
 /** The copy of the page that this browser keeps, so that the next visit needs no network. */
-export class KeptPage {
-  #state: KeptState = 'nothing';
+export class OfflineCopy {
+  #state: OfflineCopyState = 'nothing';
 
-  get state(): KeptState {
+  get state(): OfflineCopyState {
     return this.#state;
   }
 
