@@ -38,10 +38,10 @@ test('a file whose bones’ names tell nothing is worn once they are told, and a
 
   await form.getByLabel('Hips').selectOption(bones.hips ?? '');
   await form.getByText('As text, including fingers and toes').click();
-  const text = form.getByLabel('The same as text');
+  const text = form.getByLabel('Bone map as text');
   await text.fill('{"spine": "backbone"}');
   await form.getByRole('button', { name: 'Use these bones' }).click();
-  await expect(form.getByRole('alert')).toContainText('spine is “backbone”, which is not in this file');
+  await expect(form.getByRole('alert')).toContainText('The text maps spine to “backbone”, which is not in this file');
   const { hips: _, ...others } = bones;
   await text.fill(JSON.stringify(others));
   await form.getByRole('button', { name: 'Use these bones' }).click();
