@@ -154,7 +154,7 @@ export async function joinVoices(page: Page): Promise<void> {
   await bar(page).getByRole('button', { name: 'Talk with the others' }).click();
   await expect(bar(page)).toContainText('people in the room could learn your network address (IP)');
   await bar(page).getByRole('button', { name: 'Join, muted' }).click();
-  await expect(bar(page).getByRole('button', { name: 'Leave the voices' })).toBeVisible();
+  await expect(bar(page).getByRole('button', { name: 'Leave voice chat' })).toBeVisible();
 }
 
 export const connected = (page: Page) => expect.poll(async () => (await otherOf(page))?.link).toBe('connected');

@@ -68,7 +68,7 @@ export async function measureArchery(stage: ArcheryStage): Promise<Record<Estima
         const started = performance.now();
         const { frame, buttons } = round.play.act(round.frame / rateHz);
         const { state, bow, time, events, cues } = round.play.follow(frame, buttons);
-        view.hear(events, cues);
+        view.playEvents(events, cues);
         const { pose, request } = estimator.update(frame);
         avatar.setPose(pose, frame.time);
         view.show(state, bow, time, frame.head);

@@ -26,13 +26,13 @@ const plain = () =>
 /** What the address of an avatar may answer, and what is said of it. */
 const answers = {
   'nothing.vrm': [() => ({ status: 404, body: 'no' }), /nothing\.vrm could not be shown: the server answers 404/],
-  'page.vrm': [() => ({ contentType: 'text/html', body: '<!doctype html><p>Welcome' }), /answers with a web page/],
-  'large.vrm': [() => glb(new ArrayBuffer(61 * 2 ** 20)), /more than 60 MB/],
+  'page.vrm': [() => ({ contentType: 'text/html', body: '<!doctype html><p>Welcome' }), /sent a web page instead of/],
+  'large.vrm': [() => glb(new ArrayBuffer(61 * 2 ** 20)), /larger than 60 MB/],
   'compressed.vrm': [
     () => glb(compressed()),
     /compressed\.vrm could not be shown: (not valid glTF|no VRM or GLB file|cannot be read as glTF)/,
   ],
-  'plain.glb': [() => glb(plain()), /the names of its bones tell no body\. Say which is which/],
+  'plain.glb': [() => glb(plain()), /Its bones could not be matched to a humanoid\. Map them by hand/],
 } as const;
 
 test('an avatar of the address that does not arrive leaves our own body standing, and says why @full', async ({
@@ -59,10 +59,10 @@ test('an avatar of the address that does not arrive leaves our own body standing
   }
   await page.getByRole('button', { name: 'Controls' }).click();
   await page.getByRole('tab', { name: 'Avatar' }).click();
-  await expect(page.getByText('plain.glb waits to be told which bone is which.', { exact: true })).toBeVisible();
+  await expect(page.getByText('plain.glb is waiting for its bones to be mapped.', { exact: true })).toBeVisible();
   await keepPicture(page, 'avatar-refused');
-  await page.getByRole('button', { name: 'Back to ours' }).click();
-  await expect(page.getByRole('button', { name: 'Back to ours' })).toBeHidden();
+  await page.getByRole('button', { name: 'Back to the page’s avatar' }).click();
+  await expect(page.getByRole('button', { name: 'Back to the page’s avatar' })).toBeHidden();
   expect(new URL(page.url()).searchParams.has('avatar')).toBe(false);
   measured('avatar-missing', { 'our own body stands there': `${stood} of ${Object.keys(answers).length}` });
 });
@@ -80,11 +80,11 @@ test('an avatar on its way can be given up, and ours stays @full', async ({ page
   await open(page, 'quality=low&estimator=ik&avatar=/elsewhere/endless.vrm');
   await joint(page, 'hips');
   await page.getByRole('tab', { name: 'Avatar' }).click();
-  await expect(page.getByText('endless.vrm is on its way.')).toBeVisible();
+  await expect(page.getByText('endless.vrm is loading.')).toBeVisible();
   const ended = page.waitForEvent('requestfailed', (request) => request.url().endsWith('/endless.vrm'));
   await page.getByRole('button', { name: 'Cancel loading' }).click();
   expect((await ended).failure()?.errorText).toBe('net::ERR_ABORTED');
-  await expect(page.getByText('endless.vrm is on its way.')).toBeHidden();
+  await expect(page.getByText('endless.vrm is loading.')).toBeHidden();
   await expect(page.getByRole('button', { name: 'Cancel loading' })).toBeHidden();
   letThrough.emit('now');
   expect((await probe(page)).avatar).toMatchObject({ name: 'Mannequin' });
@@ -106,11 +106,11 @@ test('our own body stands there until the avatar of the address has arrived; the
   await open(page, 'quality=low&estimator=ik&avatar=/elsewhere/slow.vrm');
   await joint(page, 'hips');
   await page.getByRole('tab', { name: 'Avatar' }).click();
-  await expect(page.getByText('slow.vrm is on its way.')).toBeVisible();
-  await expect(page.getByRole('button', { name: 'Back to ours' })).toBeVisible();
+  await expect(page.getByText('slow.vrm is loading.')).toBeVisible();
+  await expect(page.getByRole('button', { name: 'Back to the page’s avatar' })).toBeVisible();
   letThrough.emit('now');
   await expect.poll(async () => (await probe(page)).avatar.name).toBe('slow.vrm');
-  await page.getByRole('button', { name: 'Back to ours' }).click();
+  await page.getByRole('button', { name: 'Back to the page’s avatar' }).click();
   await expect.poll(async () => (await probe(page)).avatar.name).toBe('Mannequin');
 });
 

@@ -86,7 +86,7 @@ test('without a headset a mouse takes a ball, aims and throws it @full', async (
   const gone = holdAt<CourtProbe>(page, { phase: 'running', aim: null, held: { left: null, right: null } });
   await Promise.all([gone, page.mouse.up()]);
   await goOn(page);
-  await page.getByRole('button', { name: 'Let the built-in player play' }).click();
+  await page.getByRole('button', { name: 'Let the computer play' }).click();
   await until(page, ({ ballsLeft }) => ballsLeft < 18);
 });
 

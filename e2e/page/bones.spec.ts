@@ -33,15 +33,15 @@ test('a file whose bones’ names tell nothing is worn once they are told, and a
   const form = page.locator('.bones');
   await expect(form.getByRole('heading', { name: 'Bones of this file' })).toBeVisible();
   await form.getByRole('button', { name: 'Use these bones' }).click();
-  await expect(form.getByRole('alert')).toContainText('Still to be said: hips, spine, head, left upper arm');
+  await expect(form.getByRole('alert')).toContainText('Still missing: hips, spine, head, left upper arm');
   await keepPicture(page, 'bones-asked');
 
   await form.getByLabel('Hips').selectOption(bones.hips ?? '');
-  await form.getByText('As text, fingers and toes too').click();
-  const text = form.getByLabel('The same as text');
+  await form.getByText('As text, including fingers and toes').click();
+  const text = form.getByLabel('Bone map as text');
   await text.fill('{"spine": "backbone"}');
   await form.getByRole('button', { name: 'Use these bones' }).click();
-  await expect(form.getByRole('alert')).toContainText('spine is “backbone”, which is not in this file');
+  await expect(form.getByRole('alert')).toContainText('The text maps spine to “backbone”, which is not in this file');
   const { hips: _, ...others } = bones;
   await text.fill(JSON.stringify(others));
   await form.getByRole('button', { name: 'Use these bones' }).click();
@@ -54,6 +54,6 @@ test('a file whose bones’ names tell nothing is worn once they are told, and a
   await openRobot(page);
   await expect.poll(async () => (await probe(page)).avatar.name).toBe('robot.glb');
   await keepPicture(page, 'bones-remembered');
-  await page.getByRole('button', { name: 'Back to ours' }).click();
+  await page.getByRole('button', { name: 'Back to the page’s avatar' }).click();
   await page.evaluate(() => localStorage.clear());
 });

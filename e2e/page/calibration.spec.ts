@@ -148,7 +148,7 @@ freshTest(
     await stand(typed.eyeHeight);
     await enterVr(page);
     await stand(typed.eyeHeight + 0.08);
-    await expect(page.getByText(/You stand 8 cm taller than your calibration says/)).toBeVisible();
+    await expect(page.getByText(/You stand 8 cm taller than your calibration/)).toBeVisible();
     expect((await probe(page)).calibration).toEqual(typed);
   },
 );

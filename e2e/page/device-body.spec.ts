@@ -38,7 +38,7 @@ function evaluated(recording: string, json: string) {
   return only as { frames: number; estimators: Record<string, { mpjpeCm: { mean: number; median: number } }> };
 }
 
-const askSwitch = (page: Page) => page.getByRole('switch', { name: 'Ask the headset for its body' });
+const askSwitch = (page: Page) => page.getByRole('switch', { name: 'Use the headset’s body tracking' });
 /** Presses what may lie below the emulator's picture, or on a page of the panel that is not shown. */
 const press = (page: Page, role: 'button' | 'radio', name: string) =>
   page.getByRole(role, { name, exact: true, includeHidden: true }).dispatchEvent('click');

@@ -23,7 +23,7 @@ test('motion capture is shown with its truth, and methods are compared on the sa
   await keepPicture(page, 'motion-capture');
 
   await card(page).getByLabel('Method').selectOption('hands-only');
-  await expect(card(page)).toContainText('Hands only: it draws no body');
+  await expect(card(page)).toContainText('Hands only: it yields no body');
 
   await page.getByRole('tab', { name: 'Body' }).click();
   await page.getByRole('radio', { name: 'Device' }).check();
@@ -47,7 +47,7 @@ test('motion capture leaves a recording that is being made, and says so @full', 
   await page.getByRole('button', { name: 'Record', exact: true }).click();
   await expect.poll(async () => (await probe(page)).recorder.frames).toBeGreaterThan(0);
   await choose(page, filesOf(acclaim!));
-  await expect(page.getByRole('alert')).toContainText('could not be shown: a recording is being made; stop it first');
+  await expect(page.getByRole('alert')).toContainText('could not be shown: a recording is in progress; stop it first');
   expect((await probe(page)).recorder.mode).toBe('recording');
   await expect(card(page)).toBeHidden();
   await page.getByRole('button', { name: 'Stop', exact: true }).click();

@@ -48,7 +48,7 @@ test('a browser that stores nothing shows the page, plays with others and takes 
     const { estimator, notices } = await probe(page);
     expect(estimator).toBe('learned');
     expect(notices.map(({ text }) => text)).toEqual([
-      'This browser lets the page keep nothing: calibration and settings last for this visit only.',
+      'This browser does not let the page store anything, so calibration and settings are lost when you close it.',
     ]);
 
     await page.goto(`${origin}/?play=ball&room=denied&bots=off&panel=off&quality=low&estimator=ik&overlay=off`);

@@ -74,11 +74,11 @@ freshTest(
         expect(await overlap(page, '#banner', covered), covered).toBe(false);
       }
       await keepPicture(page, 'ball-taken-over');
-      await bar(page).getByRole('button', { name: 'Take over again' }).click();
+      await bar(page).getByRole('button', { name: 'Rejoin' }).click();
       await joinedRoom(page);
       await expect(bar(page).getByRole('button', { name: 'Watch' })).toBeEnabled();
       await other.bringToFront();
-      await expect(bar(other).getByRole('button', { name: 'Take over again' })).toBeVisible();
+      await expect(bar(other).getByRole('button', { name: 'Rejoin' })).toBeVisible();
 
       await other.addInitScript(keepWritten);
       await other.goto(`${link}&panel=off&quality=low&estimator=ik&emulate&actor=off`);

@@ -142,7 +142,7 @@ freshTest(
       );
       await enter(page, server.origin, 'meadow', '&name=Ben');
       await enter(other, server.origin, 'meadow', '&name=Ann&avatar=/elsewhere/blue.vrm');
-      await expect(other.getByText('The others see you as blue.vrm now.')).toBeVisible({ timeout: 60_000 });
+      await expect(other.getByText('The other players see you as blue.vrm now.')).toBeVisible({ timeout: 60_000 });
       await shows(page, 'Ann', hashOf(file));
       await keepPicture(page, 'others-own-avatar');
 
@@ -217,7 +217,7 @@ freshTest(
       const [ben, ann] = [await context.newPage(), await context.newPage()];
       await enter(ben, server.origin, 'meadow', '&name=Ben');
       await enter(ann, server.origin, 'meadow', `&name=Ann&avatar=${elsewhere.folder}${hashOf(file)}`);
-      await expect(ann.getByText(/The others see you as .* now\.$/)).toBeVisible({ timeout: 60_000 });
+      await expect(ann.getByText(/The other players see you as .* now\.$/)).toBeVisible({ timeout: 60_000 });
       await ben.bringToFront();
       await shows(ben, 'Ann', hashOf(file));
       const path = `/avatars/${hashOf(file)}`;
@@ -252,7 +252,7 @@ freshTest(
         }
         tried += 1;
         await eve.putOn(file());
-        const notice = page.getByText(/The avatar of Eve is not shown, a mannequin is:/).filter({ hasText: sentence });
+        const notice = page.getByText(/The avatar of Eve could not be shown, so you see a mannequin\./).filter({ hasText: sentence });
         await expect(notice, what).toBeVisible({ timeout: 60_000 });
         expect(await drawnAs(page, 'Eve'), what).toBe('mannequin');
         const { frame } = await probe(page);
@@ -271,7 +271,7 @@ freshTest(
         (route) => route.fulfill(glb(good)),
       );
       await last.putOn(swapped);
-      await expect(page.getByText(/Eve is not shown.*another file came than the one that was told of/)).toBeVisible();
+      await expect(page.getByText(/Eve is not shown.*the server sent a different file than the player announced/)).toBeVisible();
       expect(await drawnAs(page, 'Eve')).toBe('mannequin');
 
       const ann = await comes(server.origin, 'birch', 'Ann');

@@ -120,11 +120,11 @@ async function join(page: Page): Promise<void> {
 
 /** How a page takes part itself, and how it stands with its room and with the other person. */
 async function voices(page: Page) {
-  const { phase, muted, said, people } = await voicesOf(page);
+  const { phase, muted, message, people } = await voicesOf(page);
   const other = people.find(({ voice }) => voice !== 'none');
   const { game, frame } = await probe(page);
   const { connection, welcomes } = game?.name === 'ball' ? game : {};
-  return { phase, muted, said, connection, welcomes, frames: frame.count, link: other?.link, other: other?.voice };
+  return { phase, muted, message, connection, welcomes, frames: frame.count, link: other?.link, other: other?.voice };
 }
 
 type SeenVoices = Awaited<ReturnType<typeof voices>>;
@@ -152,7 +152,7 @@ async function talkForAMinute(minute: number, until: number, [ann, ben]: readonl
     await bar(ann).getByRole('button', { name: 'Unmute me (T)', exact: true }).press('Enter');
   }
   if (minute % rejoinEvery === 0) {
-    await bar(ben).getByRole('button', { name: 'Leave the voices' }).press('Enter');
+    await bar(ben).getByRole('button', { name: 'Leave voice chat' }).press('Enter');
     await seen(both, [{ other: undefined }, { phase: 'off' }]);
     await join(ben);
   }

@@ -70,7 +70,7 @@ test.describe(`voices by the relay only${turnProgram === null ? ' (coturn is not
       const join = async (name: string): Promise<Page> => {
         const { page } = await talker(origin, name, { inPage: keepConnections });
         await bar(page).getByRole('button', { name: 'Talk with the others' }).click();
-        await bar(page).getByText('Hide my address: by the relay only').click();
+        await bar(page).getByText('Hide my address (relay only)').click();
         await bar(page).getByRole('button', { name: 'Join, muted' }).click();
         return page;
       };
@@ -84,7 +84,7 @@ test.describe(`voices by the relay only${turnProgram === null ? ' (coturn is not
         expect((await found(page)).kinds).toEqual(['local-candidate relay', 'remote-candidate relay']);
 
       // Once more under passes of forty seconds: each page asks for another one after thirty.
-      await bar(ann).getByRole('button', { name: 'Leave the voices' }).click();
+      await bar(ann).getByRole('button', { name: 'Leave voice chat' }).click();
       await silent(ben);
       const server = await shortPasses(ann, turn.url, 40);
       await joinVoices(ann);

@@ -85,7 +85,7 @@ test('two people hear each other: 6 dB less with twice the distance, nothing of 
   await heard(ann);
   await expect.poll(async () => (await probe(ann)).players[0]?.drawnAs).toBe('mannequin');
 
-  await bar(ben).getByRole('button', { name: 'Leave the voices' }).click();
+  await bar(ben).getByRole('button', { name: 'Leave voice chat' }).click();
   await silent(ann);
   await expect.poll(async () => (await otherOf(ann))?.voice).toBe('none');
 });
@@ -223,13 +223,13 @@ test('a microphone that its device ends is taken again; refused then, a sentence
   // Taking the permission back ends the microphone too.
   await ben.context().clearPermissions();
   await expect(bar(ben)).toContainText('The browser does not let this page use the microphone');
-  await expect(bar(ben)).toContainText('You hear the others all the same.');
+  await expect(bar(ben)).toContainText('You can still hear the others.');
   await silent(ann);
   await expect.poll(async () => (await otherOf(ann))?.voice).toBe('muted');
   await heard(ben);
 
   await ben.context().grantPermissions(['microphone'], { origin });
-  await bar(ben).getByRole('button', { name: 'Look for a microphone' }).click();
+  await bar(ben).getByRole('button', { name: 'Find a microphone' }).click();
   await heard(ann);
   expect(await microphones()).toEqual(['ended', 'ended', 'live']);
 });
@@ -243,12 +243,12 @@ test('what keeps a person from talking is a sentence: refused, no microphone, no
   const { page: refused } = await talker(origin, 'Ann', { microphone: 'refused', seldomDrawn: true });
   await joinVoices(refused);
   await expect(bar(refused)).toContainText('The browser does not let this page use the microphone');
-  await expect(bar(refused)).toContainText('You hear the others all the same.');
+  await expect(bar(refused)).toContainText('You can still hear the others.');
 
   const { page: without } = await talker(origin, 'Ben', { microphone: 'none' });
   await joinVoices(without);
-  await expect(bar(without)).toContainText('No microphone was found. You hear the others all the same.');
-  await expect(bar(without).getByRole('button', { name: 'Look for a microphone' })).toBeVisible();
+  await expect(bar(without)).toContainText('No microphone was found. You can still hear the others.');
+  await expect(bar(without).getByRole('button', { name: 'Find a microphone' })).toBeVisible();
   await keepPicture(without, 'voices-no-microphone');
 
   const { page: third } = await talker(origin, 'Cal', { seldomDrawn: true });
@@ -259,7 +259,7 @@ test('what keeps a person from talking is a sentence: refused, no microphone, no
 
   const { page: fourth } = await talker(origin, 'Dot');
   await joinVoices(fourth);
-  await expect(bar(fourth)).toContainText('You are watching: voices are for the players on the seats.');
+  await expect(bar(fourth)).toContainText('You are watching. Only players on the seats can talk.');
   await keepPicture(fourth, 'voices-names');
   expect((await voicesOf(fourth)).people.every(({ link }) => link === 'none')).toBe(true);
 

@@ -2,13 +2,13 @@ import { pageElement } from 'threepoint-ui/element';
 import { createEnterButton, type EnterButton } from 'threepoint-ui/enter-button';
 import { createNotices } from 'threepoint-ui/notices';
 import { allowOwnScripts } from 'threepoint-ui/own-scripts';
+import { createPage, type Page } from './shell/create-page';
 import { createFrameLoop } from './shell/frame-loop';
 import type { Headset } from './shell/headset';
 import { joinStudy } from './shell/join-study';
-import { createPage, type Page } from './shell/page';
-import { showThatNothingStarts, tellOfFaults } from './shell/page-faults';
+import { type PageContext, readPageContext } from './shell/page-context';
+import { reportFaults, showStartFailure } from './shell/page-faults';
 import { PageLoading } from './shell/page-loading';
-import { beginVisit, type Visit } from './shell/visit';
 
 /** What entering would mean: a real headset, or why not and the emulated one. */
 async function offerSessions(headset: Headset, button: EnterButton): Promise<void> {
@@ -21,7 +21,7 @@ async function offerSessions(headset: Headset, button: EnterButton): Promise<voi
 }
 
 /** Lets frames be drawn; the panel is as the address asks, else as it was left. */
-function run({ controls, stage, frame, body, timing }: Page, { switches, settings }: Visit): void {
+function run({ controls, stage, frame, body, timing }: Page, { switches, settings }: PageContext): void {
   controls.setPanelOpen(settings.panel);
   if (switches.view) stage.view.setView(switches.view);
   controls.layOut();
@@ -29,7 +29,7 @@ function run({ controls, stage, frame, body, timing }: Page, { switches, setting
   stage.renderer.setAnimationLoop((timestampMs, deviceFrame) => loop(timestampMs, deviceFrame ?? undefined));
 }
 
-/** Shows the first body: our own avatar, bent by the best estimator that is there. */
+/** Shows the first body: the page's own avatar, moved by the best estimator that is available. */
 async function showFirstBody({ avatarShown, frame }: Page, loading: PageLoading): Promise<void> {
   await avatarShown;
   loading.mark('avatar');
@@ -38,8 +38,11 @@ async function showFirstBody({ avatarShown, frame }: Page, loading: PageLoading)
   loading.bodyShown();
 }
 
-/** Goes where the address asks, and only there begins what it asks for: who arrives in a game leaves a replay and the controls behind. */
-async function goWhereAsked({ activities, controls, mocap, recorder }: Page, { switches }: Visit): Promise<void> {
+/** Goes to the place in the address, and then opens what the address asks for: arriving in a game ends a replay and closes the controls. */
+async function openFromAddress(
+  { activities, controls, mocap, recorder }: Page,
+  { switches }: PageContext,
+): Promise<void> {
   // Before anything that the user opens meanwhile.
   const [replay, motion] = [recorder.ask(), recorder.ask()];
   await activities.goTo(switches.play);
@@ -49,16 +52,16 @@ async function goWhereAsked({ activities, controls, mocap, recorder }: Page, { s
 }
 
 /** Takes part in the study that the address asks for, if it does. */
-async function takePart(page: Page, visit: Visit): Promise<void> {
-  const { switches } = visit;
+async function joinStudyOfAddress(page: Page, context: PageContext): Promise<void> {
+  const { switches } = context;
   if (!switches.study) return;
-  const joined = await joinStudy({ ...page, ...visit, asked: switches.study });
+  const joined = await joinStudy({ ...page, ...context, asked: switches.study });
   page.study.join(joined);
   page.stage.studio.scene.add(joined.run.object);
 }
 
 /** Keeps the page for a visit without a network, now that this one has all it needs. A study runs on what its server serves. */
-function keepForLater({ kept }: Page, { switches }: Visit): void {
+function storeOfflineCopy({ kept }: Page, { switches }: PageContext): void {
   // Only what has been built for good can be kept.
   if (import.meta.env.PROD && !switches.study) void kept.keep(navigator.serviceWorker);
 }
@@ -67,31 +70,31 @@ function keepForLater({ kept }: Page, { switches }: Visit): void {
 async function start(): Promise<void> {
   allowOwnScripts();
   const notices = createNotices(pageElement('notices', HTMLElement));
-  tellOfFaults(notices);
+  reportFaults(notices);
   const loading = new PageLoading();
   loading.mark('script');
-  const visit = beginVisit(notices);
-  const { switches, store } = visit;
-  const page = createPage({ visit, notices, loading });
+  const context = readPageContext(notices);
+  const { switches, store } = context;
+  const page = createPage({ context, notices, loading });
   const { avatar, body, controls, headset, timing } = page;
 
-  // Ours stands there until another has arrived, and stays where that does not.
+  // The page's own avatar is shown until another one has been loaded, and stays if that fails.
   if (switches.avatar) void avatar.open(switches.avatar);
   const enterButton = createEnterButton(pageElement('enter', HTMLDivElement), () => void headset.enter());
-  run(page, visit);
+  run(page, context);
 
-  // The way to the first body: the chosen network loads beside the avatar, and IK draws until it is there.
+  // The network loads in parallel to the avatar, and IK draws until it is ready.
   const sessionsOffered = offerSessions(headset, enterButton);
   const chosen = body.setEstimator(switches.estimator ?? store.preferences.estimator ?? 'learned');
   void chosen.then(() => loading.report('the network', 1));
   await showFirstBody(page, loading);
-  await Promise.all([chosen, sessionsOffered, goWhereAsked(page, visit)]);
-  await takePart(page, visit);
+  await Promise.all([chosen, sessionsOffered, openFromAddress(page, context)]);
+  await joinStudyOfAddress(page, context);
   loading.finish();
   // Compiling shaders is loading, not drawing.
   timing.reset();
   controls.show();
-  keepForLater(page, visit);
+  storeOfflineCopy(page, context);
 }
 
-start().catch(showThatNothingStarts);
+start().catch(showStartFailure);

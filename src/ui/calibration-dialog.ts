@@ -16,7 +16,7 @@ export type CalibrationStep =
 
 export const calibrationInstruction = 'Stand straight, look ahead, stretch both arms forward, wrists straight.';
 
-/** What a step says in one word or figure, for the dialog and for the menu in the headset. */
+/** Returns the word or figure of a step, for the dialog and for the menu in the headset. */
 export function calibrationHeadline(step: CalibrationStep): string {
   if (step.kind === 'countdown') return String(Math.ceil(step.secondsLeft));
   if (step.kind === 'measuring') return 'Hold still';

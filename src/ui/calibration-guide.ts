@@ -78,7 +78,7 @@ export function createCalibrationGuide(options: CalibrationGuideOptions): Calibr
       const { calibration } = measuring;
       options.onMeasured(calibration);
       const eyes = Math.round(calibration.eyeHeight * 100);
-      options.onStep({ kind: 'done', text: `Your eyes are ${eyes} cm above the floor. This is remembered.` });
+      options.onStep({ kind: 'done', text: `Your eyes are ${eyes} cm above the floor. The page stores this.` });
     },
   };
 }

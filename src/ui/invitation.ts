@@ -15,7 +15,7 @@ const onlyHere = (hostname: string): boolean => /^(localhost|.*\.localhost|127\.
 export interface RoomLink {
   readonly room: string;
   readonly address: string;
-  /** Who cannot come by it, and what to do about that; null: all can. */
+  /** A sentence about devices that cannot use the address, and what to do; null: all can. */
   readonly limit: string | null;
 }
 
@@ -24,7 +24,7 @@ export const linkTo = (room: string): RoomLink => ({
   room,
   address: `${pageFolder()}/?play=ball&room=${encodeURIComponent(room)}`,
   limit: onlyHere(location.hostname)
-    ? 'This address works on this computer only. For other devices start the server with --lan and open the https:// address that it prints.'
+    ? 'This address works only on this computer. For other devices, start the server with --lan and open the https:// address that it prints.'
     : null,
 });
 
@@ -33,19 +33,19 @@ export function createRoomLink({ main }: { readonly main: boolean }) {
   // Two lines: a bar is too narrow for an address, and its end names the room.
   const link = element('textarea', { rows: 2, readonly: true, 'aria-label': 'Link for the others' });
   const code = element('div', { class: 'qr' });
-  const said = element('p', { class: 'hint', role: 'status' });
+  const status = element('p', { class: 'hint', role: 'status' });
   const copies = button('Copy link', () => void copy(), main ? { class: 'primary', autofocus: true } : {});
-  const node = element('div', { class: 'room-link' }, code, element('div', { class: 'row' }, link, copies), said);
+  const node = element('div', { class: 'room-link' }, code, element('div', { class: 'row' }, link, copies), status);
   link.addEventListener('focus', () => link.select());
 
   async function copy(): Promise<void> {
     link.select();
     try {
       await navigator.clipboard.writeText(link.value);
-      said.textContent = 'The link is copied.';
+      status.textContent = 'The link is copied.';
     } catch {
       // reason: pages without a secure context and browsers that ask first have no clipboard; the link is selected instead.
-      said.textContent = 'This browser does not let the page copy: the link is selected, copy it by hand.';
+      status.textContent = 'This browser does not let the page copy. The link is selected: copy it by hand.';
     }
   }
 
@@ -54,7 +54,7 @@ export function createRoomLink({ main }: { readonly main: boolean }) {
     show(room: string): void {
       const { address, limit } = linkTo(room);
       link.value = address;
-      said.textContent = limit;
+      status.textContent = limit;
       code.replaceChildren();
       qrCode(address).then(
         (made) => code.replaceChildren(qrPicture(made)),

@@ -14,7 +14,7 @@ export const nameOf = (source: string | File): string =>
 export interface ReadOptions {
   /** Called with the share [0, 1] that has arrived. */
   readonly onProgress?: (share: number) => void;
-  /** Ends a download on its way. */
+  /** Cancels a download. */
   readonly signal?: AbortSignal;
   /** The headers of a download. */
   readonly headers?: Readonly<Record<string, string>>;
@@ -40,11 +40,11 @@ function readFile(file: File, kind: FileKind): Promise<ArrayBuffer> {
 }
 
 const tooLarge = (name: string, { what, megabytes }: FileKind): Error =>
-  new Error(`${name}: more than ${megabytes} MB; ${what} may have that at most`);
+  new Error(`${name}: larger than ${megabytes} MB, the limit for ${what}`);
 
 /** Browsers do not say which of the two refused: the policy of the page's own server, or the other server. */
 const otherServerHint =
-  '. Files of another server need its permission (CORS) and that of this page (THREEPOINT_FILES_FROM). Save the file and open it from this device';
+  '. Files on another server need its permission (CORS) and that of this page (THREEPOINT_FILES_FROM). Save the file and open it from this device';
 
 const isOfOtherServer = (url: string): boolean =>
   URL.canParse(url) && new URL(url).origin !== globalThis.location?.origin;
@@ -60,7 +60,7 @@ async function download(
   signal?.addEventListener('abort', () => aborting.abort());
   const response = await fetch(url, { signal: aborting.signal, headers }).catch((error: unknown) => {
     const why = isOfOtherServer(url) ? otherServerHint : '';
-    throw new PassingFault(`${name}: could not be fetched (${firstLine(reasonOf(error))})${why}`);
+    throw new PassingFault(`${name}: could not be downloaded (${firstLine(reasonOf(error))})${why}`);
   });
   /** Ends the answer, so that nothing more of it comes. */
   const refuse = (error: Error): never => {
@@ -70,7 +70,7 @@ async function download(
   if (!response.ok || !response.body)
     return refuse(new PassingFault(`${name}: the server answers ${response.status} ${response.statusText}`.trim()));
   if (/^text\/html\b/i.test(response.headers.get('content-type') ?? ''))
-    return refuse(new Error(`${name}: the server answers with a web page, not with ${kind.what}`));
+    return refuse(new Error(`${name}: the server sent a web page instead of ${kind.what}`));
   const total = Number(response.headers.get('content-length')) || 0;
   if (total > most) return refuse(tooLarge(name, kind));
   const pieces: Uint8Array[] = [];
@@ -78,7 +78,7 @@ async function download(
   const reader = response.body.getReader();
   for (;;) {
     const { done, value } = await reader.read().catch((error: unknown) => {
-      throw new PassingFault(`${name}: the connection was lost on the way (${firstLine(reasonOf(error))})`);
+      throw new PassingFault(`${name}: the connection was lost during the download (${firstLine(reasonOf(error))})`);
     });
     if (done) break;
     pieces.push(value);

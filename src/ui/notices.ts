@@ -1,6 +1,6 @@
 import { button, element } from './element';
 
-/** info: worth knowing. warning: something else takes over. error: something asked for did not happen. */
+/** info: worth knowing. warning: something else replaces what failed. error: a request failed. */
 export type NoticeLevel = 'info' | 'warning' | 'error';
 
 export interface Notice {
@@ -11,7 +11,7 @@ export interface Notice {
 export interface Notices {
   /** Shows a sentence. The same sentence twice is shown once; information leaves by itself, trouble stays until closed or over. */
   show(level: NoticeLevel, text: string): void;
-  /** Takes a sentence back that is true no longer. */
+  /** Removes a notice that is no longer true. */
   withdraw(text: string): void;
   /** What is on the screen now, oldest first. */
   current(): readonly Notice[];

@@ -7,7 +7,7 @@ export interface StageCost {
   readonly p95Ms: number;
 }
 
-/** What the overlay says; all of it measured over the last seconds. */
+/** The content of the overlay, measured over the last seconds. */
 export interface FrameReport {
   readonly p50Ms: number;
   readonly p95Ms: number;
@@ -17,7 +17,7 @@ export interface FrameReport {
   readonly rateHz: number;
   readonly estimator: string;
   readonly provider: string;
-  /** How far the drawn joints are from where the device's own body has them [cm]; null: it has none now. */
+  /** The distance of the drawn joints from those of the device's own body [cm]; null: it has none now. */
   readonly fromDevice: readonly { readonly name: string; readonly cm: number }[] | null;
 }
 
@@ -33,7 +33,7 @@ export function milliseconds(ms: number): string {
   return ms < 0.995 ? ms.toFixed(2) : ms < 9.95 ? ms.toFixed(1) : ms.toFixed(0);
 }
 
-/** How many frames came late, in words: the count says more than a percentage while they are few. */
+/** Describes how many frames were late: a count is clearer than a percentage while they are few. */
 export function missedFrames(report: Pick<FrameReport, 'missed' | 'frames' | 'rateHz'>): string {
   const share = report.frames === 0 ? 0 : (100 * report.missed) / report.frames;
   return `${share.toFixed(share > 0 && share < 9.95 ? 1 : 0)} % missed at ${Math.round(report.rateHz)} Hz`;

@@ -1,19 +1,19 @@
 import { element } from './element';
 
-/** A line whose words are announced when they change; the figures behind them, which run, are only shown. */
+/** A line whose words are announced when they change. The running figures after them are only shown. */
 export interface RunningLine {
   readonly node: HTMLParagraphElement;
   show(words: string, figures?: string): void;
 }
 
 export function createRunningLine(attributes: { readonly class?: string } = {}): RunningLine {
-  const said = element('span', { role: 'status' });
+  const status = element('span', { role: 'status' });
   const running = element('span');
   return {
-    node: element('p', attributes, said, running),
+    node: element('p', attributes, status, running),
     show(words, figures = '') {
       // Said again, it would be announced again.
-      if (said.textContent !== words) said.textContent = words;
+      if (status.textContent !== words) status.textContent = words;
       running.textContent = figures;
     },
   };

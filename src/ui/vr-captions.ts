@@ -9,8 +9,8 @@ import { createVrPanel, fillRounded, vrColors, vrFont } from './vr-panel';
 /** Shows captions of sounds in the headset: a line low in the view, for players without sound. */
 export interface VrCaptions {
   readonly object: Mesh;
-  /** An empty text takes away what is said. */
-  say(text: string): void;
+  /** Shows a caption; an empty text hides it. */
+  setText(text: string): void;
   /** At this time [s] before these eyes, floor frame; null: no one reads. */
   show(time: number, eyes: Pose<'floor'> | null): void;
 }
@@ -31,15 +31,15 @@ export function createVrCaptions(): VrCaptions {
   showToEyesAlone(mesh);
   const material = [mesh.material].flat()[0];
   if (material) material.depthTest = false;
-  let said: { readonly text: string; until: number | null } | null = null;
+  let current: { readonly text: string; until: number | null } | null = null;
   let place: Vec3 | null = null;
   let last = 0;
 
   return {
     object: mesh,
-    say(text) {
-      said = text === '' ? null : { text, until: null };
-      if (said === null) return;
+    setText(text) {
+      current = text === '' ? null : { text, until: null };
+      if (current === null) return;
       draw((context) => {
         context.font = `600 46px ${vrFont}`;
         const wide = Math.min(width, context.measureText(text).width + 64);
@@ -51,8 +51,8 @@ export function createVrCaptions(): VrCaptions {
       });
     },
     show(time, eyes) {
-      if (said) said.until ??= time + readFor;
-      if (!said?.until || time > said.until || !eyes) {
+      if (current) current.until ??= time + readFor;
+      if (!current?.until || time > current.until || !eyes) {
         mesh.visible = false;
         place = null;
         return;

@@ -8,7 +8,7 @@ import {
   Vector3,
 } from 'three';
 
-/** A flat sheet in the world whose picture is a 2D canvas; seen from its front (+Z) only, so a mirror shows no back. */
+/** A flat panel in the world that is drawn on a 2D canvas; visible from its front (+Z) only, so that a mirror shows no back. */
 export interface VrPanel {
   readonly mesh: Mesh;
   readonly width: number;
@@ -25,7 +25,7 @@ export function createVrPanel(width: number, height: number, pixelsPerMetre: num
   canvas.width = width;
   canvas.height = height;
   const context = canvas.getContext('2d');
-  if (!context) throw new Error('ui/vr-panel: this browser offers no 2D canvas');
+  if (!context) throw new Error('ui/vr-panel: this browser does not support 2D canvas');
   const texture = new CanvasTexture(canvas);
   texture.colorSpace = SRGBColorSpace;
   texture.minFilter = LinearMipmapLinearFilter;

@@ -6,9 +6,9 @@ import { createPageClock } from 'threepoint/core/tracking/page-clock';
 import { ServerPresence } from 'threepoint-http/server-presence';
 import type { ActivityServices } from 'threepoint-page/activity/activity-context';
 import type { Surroundings } from 'threepoint-page/scene/surroundings';
+import { fetchOwnAvatar } from 'threepoint-page/shell/avatar-loader';
 import { PageStudy } from 'threepoint-page/shell/page-study';
 import { createSettings, type LastingSettings, SettingsWriter } from 'threepoint-page/shell/settings';
-import { fetchOwnAvatar } from 'threepoint-page/shell/shown-avatar';
 import { readSwitches } from 'threepoint-page/shell/switches';
 import type { Notice } from 'threepoint-ui/notices';
 

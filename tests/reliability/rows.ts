@@ -114,7 +114,7 @@ export const faultRows = {
       'tests/reliability/comfort.test.ts',
       'tests/threepoint/xr/tracked-session.test.ts',
       'tests/page/archery/boards.test.ts',
-      'tests/page/archery/captions.test.ts',
+      'tests/page/archery/archery-captions.test.ts',
       'tests/study/model/trial-log.test.ts',
     ],
     manual: ['Push a stick to the side: one step of 30°, dark edges for a moment, no nausea.'],
@@ -168,7 +168,7 @@ export const faultRows = {
   },
   'avatar-missing': {
     inject: 'The address of an avatar answers 404, a web page, 61 MB, a compressed body, a body without bones',
-    sees: 'Our own body stands there until another has arrived, and stays; a sentence says why; the panel offers *Back to ours*',
+    sees: 'Our own body stands there until another has arrived, and stays; a sentence says why; the panel offers *Back to the page’s avatar*',
     target: 'our own body with the first picture, 5 of 5',
     tests: ['e2e/page/avatar-address.spec.ts', 'tests/ui/limited-files.test.ts'],
   },

@@ -43,7 +43,7 @@ describe('a file of this device', () => {
   test('of 300 MB is refused before a byte of it is read', async () => {
     const { file, reads } = dropped(300 * 2 ** 20);
     await expect(readLimited(file, { what: 'a recording', megabytes: 100 })).rejects.toThrow(
-      'walk.json: more than 100 MB; a recording may have that at most',
+      'walk.json: larger than 100 MB, the limit for a recording',
     );
     expect(reads()).toBe(0);
     measured('bad-input', { 'bytes read of 300 MB': 0 });
@@ -72,17 +72,17 @@ describe('what an address answers', () => {
     ['nothing', 'walk.json: the server answers 404 Not Found', (_, response) => response.writeHead(404).end('no')],
     [
       'a web page',
-      'walk.json: the server answers with a web page, not with a recording',
+      'walk.json: the server sent a web page instead of a recording',
       (_, response) => response.setHeader('content-type', 'text/html; charset=utf-8').end('<!doctype html>'),
     ],
     [
       'more than it may be, and says so',
-      'walk.json: more than 1 MB; a recording may have that at most',
+      'walk.json: larger than 1 MB, the limit for a recording',
       (_, response) => response.setHeader('content-length', 300 * 2 ** 20).write('{'),
     ],
     [
       'half of what it promised',
-      /^walk\.json: the connection was lost on the way \(/,
+      /^walk\.json: the connection was lost during the download \(/,
       (_, response) => {
         response.setHeader('content-length', 1000).write('{');
         setImmediate(() => response.destroy());
@@ -108,14 +108,14 @@ describe('what an address answers', () => {
       });
       more();
     });
-    await expect(readLimited(url, recording)).rejects.toThrow('more than 1 MB');
+    await expect(readLimited(url, recording)).rejects.toThrow('larger than 1 MB');
     await expect.poll(() => ended).toBe(true);
     expect(sent).toBeLessThan(64 * 2 ** 20);
   });
 
   test('from a server that is not there: a sentence', async () => {
     await expect(readLimited('http://127.0.0.1:9/walk.json', recording)).rejects.toThrow(
-      /^walk\.json: could not be fetched \(/,
+      /^walk\.json: could not be downloaded \(/,
     );
   });
 });

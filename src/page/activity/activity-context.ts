@@ -63,7 +63,7 @@ export interface ActivitySettingsWriter {
 }
 
 /** The avatar that the user shows to others: one of the page's own, or a file. */
-export type OwnWear =
+export type UserAvatar =
   | OwnAvatar
   | {
       readonly name: string;
@@ -92,7 +92,7 @@ export interface ActivityServices {
   readonly headset: { readonly worn: boolean; readonly emulator: object | null };
   readonly body: { readonly calibration: Calibration };
   /** The user's avatar; `own`: it is one of the page's own, not a file. */
-  readonly avatar: { readonly own: boolean; readonly worn: OwnWear };
+  readonly avatar: { readonly own: boolean; readonly worn: UserAvatar };
   /** Downloads one of the page's own avatars. */
   fetchOwnAvatar(name: OwnBody): Promise<ArrayBuffer>;
   readonly server: Pick<ServerPresence, 'state' | 'known' | 'ask'>;

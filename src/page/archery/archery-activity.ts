@@ -12,10 +12,10 @@ import type { ActivityPanel, OpenActivity, PlayerInput } from '../activity/activ
 import type { ActivityContext } from '../activity/activity-context';
 import type { ActivityMenu } from '../activity/activity-menu';
 import type { CameraScene } from '../scene/desktop-view';
+import { eventHaptics } from './archery-haptics';
 import { type ArcheryRound, type ArcheryRules, createArcheryPanel } from './archery-panel';
 import { type ArcheryPlay, type ArcheryProbe, createArcheryPlay, probeOf, roundOf } from './archery-play';
 import { type ArcheryView, createArcheryView } from './archery-view';
-import { eventHaptics } from './haptics';
 import { lineOf } from './scoreboard-drawing';
 
 /** The floor frame of the user is the arena frame of the range: the zone lies around the origin, the targets ahead. */
@@ -78,7 +78,7 @@ export class ArcheryActivity implements OpenActivity {
     const buttons = study.idle ? nothingPressed : allButtons;
     const { events, cues, haptics, bow } = this.play.follow(frame, buttons);
     const taken = cues.findLast(({ type }) => type === 'taken')?.side ?? null;
-    this.#view.hear(events, cues);
+    this.#view.playEvents(events, cues);
     const bowSide = bow?.bowSide ?? taken ?? settings.bowSide;
     if (taken) writer.keep({ bowSide: taken });
     if (events.length > 0) onChange();

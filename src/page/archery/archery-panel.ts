@@ -1,5 +1,5 @@
 import { button, element } from 'threepoint-ui/element';
-import { archeryRulesText, rulesList } from 'threepoint-ui/rules';
+import { archeryRulesText, rulesList } from 'threepoint-ui/game-rules-text';
 import { toggle } from 'threepoint-ui/toggle';
 import type { ActivityPanel } from '../activity/activity';
 import type { ActivityContext, StoredActivitySettings } from '../activity/activity-context';

@@ -18,7 +18,7 @@ import { createSteeredArcher, type SteeredArcher } from 'threepoint-games/archer
 import { createMatch, type Match } from 'threepoint-games/match';
 import type { PlayerInput } from '../activity/activity';
 
-/** What the player may choose; asked for in every frame. */
+/** The player's choices, read in every frame. */
 export interface ArcherySettings {
   readonly bowSide: Side;
   readonly oneHanded: boolean;
@@ -32,7 +32,7 @@ export interface ArcherySettings {
 /** The result of one frame of play, for view, sound and haptics. */
 export interface ArcheryFrame {
   readonly state: ArcheryState;
-  /** Seconds of the match at this frame; they go on when it is over, for what its last arrow left to be seen. */
+  /** Seconds of the match. They continue after its end, for the effects of the last arrow. */
   readonly time: number;
   readonly bow: BowView | null;
   readonly events: readonly ArcheryEvent[];
@@ -40,7 +40,7 @@ export interface ArcheryFrame {
   readonly haptics: readonly HapticPulse[];
 }
 
-/** A round and who plays it, apart from everything that is seen of it. */
+/** A round and its player, without the view. */
 export interface ArcheryPlay {
   /** The targets of this round. */
   readonly targets: ArcheryState['targets'];
@@ -48,13 +48,13 @@ export interface ArcheryPlay {
   readonly newest: ArcheryFrame | null;
   /** The tracked frame and its buttons become play. */
   follow(frame: TrackingFrame, buttons: Buttons): ArcheryFrame;
-  /** Head, hands and buttons of the built-in archer at `time` [s]. */
+  /** Returns the input of the simulated archer at a time [s]. */
   act(time: number): PlayerInput;
   /** Returns the input of an archer who is steered by a mouse: aims along a ray (arena frame, unit direction). */
   steer(time: number, ray: Ray, wish: { readonly pressed: boolean; readonly cancelled: boolean }): PlayerInput;
-  /** Another round, for a person with these measures whose eyes are this high now [m], standing or seated. */
+  /** Starts another round for a person with this calibration, whose eyes are at this height now [m], standing or seated. */
   restart(calibration: Calibration, eyeHeight?: number): void;
-  /** The floor lies elsewhere from the next frame on. */
+  /** The user's floor frame changes with the next frame. */
   jumped(): void;
   /** Other hands hold the bow from the next frame on. They do not release the arrow that the previous hands drew. */
   handedOver(): void;

@@ -7,14 +7,14 @@ import { arrowLength, braceHeight } from 'threepoint-games/archery/bow';
 import type { BowCue } from 'threepoint-games/archery/gestures';
 import type { Quality } from '../scene/renderer';
 import type { AudibleStage } from '../scene/sound/sound-stage';
+import { createSounds } from './archery-sounds';
 import { makeArrowPose } from './arrow-pose';
 import { createArrows } from './arrows';
-import { createBow } from './bow';
+import { createBow } from './bow-model';
 import { createRange, type Range } from './range';
 import { createResultPanel, type ResultPanel } from './result-panel';
 import { ScorePops } from './score-pops';
 import { createScoreboard } from './scoreboard';
-import { createSounds } from './sounds';
 import { createTargetStands } from './target-stands';
 import { createTrails } from './trails';
 
@@ -22,13 +22,13 @@ import { createTrails } from './trails';
 export interface ArcheryView {
   /** The place to give to the arena; holds all of the view but the bow and what is nocked on it. */
   readonly range: Range;
-  /** The bow in its hand; in the floor frame, to be added to the scene beside the avatar. */
+  /** The bow in its hand, floor frame; to be added to the scene next to the avatar. */
   readonly bow: Group;
   readonly result: Pick<ResultPanel, 'restartAt' | 'setHovered'>;
   /** Draws a state at a time of the match [s]; the bow and head as tracked now, floor frame. No bow is seen where it is null. */
   show(state: ArcheryState, bow: BowView | null, matchTime: number, head: Pose<'floor'>): void;
   /** Plays and captions what happened since the last frame; cues of the bow are in the floor frame. */
-  hear(events: readonly ArcheryEvent[], cues: readonly BowCue[]): void;
+  playEvents(events: readonly ArcheryEvent[], cues: readonly BowCue[]): void;
   readonly sound: AudibleStage;
   dispose(): void;
 }
@@ -65,7 +65,7 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
     sound: sounds.stage,
     show(state, bowView, matchTime, head) {
       shown = state;
-      sounds.listen(head);
+      sounds.setListener(head);
       const nocked = bowView?.arrow;
       if (nocked) {
         const { tip, direction } = onString;
@@ -83,8 +83,8 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
       range.setZoneWarning(!state.inZone);
       range.animate(matchTime);
     },
-    hear(events, cues) {
-      if (shown) sounds.hear(shown, events, cues);
+    playEvents(events, cues) {
+      if (shown) sounds.playEvents(shown, events, cues);
     },
     dispose() {
       for (const part of [sounds, stands, arrows, trails, scoreboard, pops, result, bow, range]) part.dispose();

@@ -39,7 +39,7 @@ function netTexture(quality: Quality): DataTexture {
   return texture;
 }
 
-/** Cords every so many metres. */
+/** The distance between two cords [m]. */
 const cordSpacing = 0.11;
 
 /** A net from the ground up; arrows that miss end in it. Its ends, width and height are those of the wall that the rules know. */

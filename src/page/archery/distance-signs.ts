@@ -18,7 +18,7 @@ const signWidth = 0.56;
 const signHeight = 0.28;
 const cell = { width: 256, height: 128 };
 
-/** A distance as a sign says it: "4.5 m". */
+/** Formats a distance for a sign: "4.5 m". */
 export const distanceLabel = (distance: number): string => `${Number(distance.toFixed(1))} m`;
 
 function paintLabels(context: CanvasRenderingContext2D, labels: readonly string[]): void {

@@ -13,7 +13,7 @@ import { createGround } from './ground';
 import { createTufts } from './tufts';
 import { createZone } from './zone';
 
-/** The place where archery is played; stands in for the studio (`arena.setSurroundings`). Its object is in the arena frame, placed in the floor frame. */
+/** The place where archery is played, instead of the studio. Its object is in the arena frame, placed in the floor frame. */
 export interface Range extends Surroundings {
   readonly object: Group;
   setZoneWarning(on: boolean): void;

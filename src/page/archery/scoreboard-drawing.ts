@@ -4,7 +4,7 @@ import { ink, paintCard, paintGround, signFont } from '../scene/boards/lettering
 import { paintScoreHeading } from '../scene/boards/score-heading';
 import { paintButton } from '../scene/boards/sheet';
 
-/** What the board says; equal boards are drawn once. */
+/** The texts of the board; equal boards are drawn once. */
 export interface BoardText {
   readonly score: number;
   readonly maximum: number;

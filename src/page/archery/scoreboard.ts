@@ -6,7 +6,7 @@ import { createDrawnTexture } from '../scene/drawn-texture';
 import type { Quality } from '../scene/renderer';
 import { boardSize, boardText, paintBoard } from './scoreboard-drawing';
 
-/** A board on two posts beside the field: score, arrows, time, the last hit; arena frame. */
+/** A board on two posts next to the field: score, arrows, time, the last hit; arena frame. */
 export interface Scoreboard {
   readonly object: Group;
   /** At a time of the match [s]; draws only what changed. */

@@ -27,7 +27,7 @@ import { merged, painted } from '../scene/painted-geometry';
 import type { Quality } from '../scene/renderer';
 import { createRingTexture } from './target-rings';
 
-/** Four discs on wooden legs, each with a plate that says what it is worth; arena frame. */
+/** Four discs on wooden legs, each with a plate that shows its points; arena frame. */
 export interface TargetStands {
   readonly object: Group;
   /** Stands and plates for a state at a time of the match [s]: what has scored is lit, ticked and marked with its points. */
@@ -304,7 +304,7 @@ class Stands implements TargetStands {
     if (targets.length > 0) this.#build(targets);
   }
 
-  /** Takes the stands away; the materials stay for the next ones, but for the shadows', which have their own and a texture. */
+  /** Removes the stands. Their materials are kept for the next ones, except those of the shadows, which have a texture. */
   #clear(): void {
     if (this.#shadows) disposeTree(this.#shadows);
     for (const child of [...this.object.children]) {

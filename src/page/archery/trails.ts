@@ -25,7 +25,7 @@ export interface Trails {
   dispose(): void;
 }
 
-/** How long a trail lasts [s]: what lies further back has faded. */
+/** The duration of a trail [s], after which it has faded. */
 const memory = 0.32;
 const points = 20;
 /** No archer has more arrows in the air. */

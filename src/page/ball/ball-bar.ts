@@ -1,7 +1,7 @@
 import type { ServerState } from 'threepoint-http/server-presence';
 import { button, element } from 'threepoint-ui/element';
+import { ballRulesText, rulesList } from 'threepoint-ui/game-rules-text';
 import { createRoomLink } from 'threepoint-ui/invitation';
-import { ballRulesText, rulesList } from 'threepoint-ui/rules';
 import { toggle } from 'threepoint-ui/toggle';
 import type { BallRound } from './ball-round';
 import { otherPlayers } from './other-players';
@@ -13,15 +13,15 @@ export interface BallBarState {
   readonly round: BallRound | null;
   /** null: in this page alone. */
   readonly room: string | null;
-  /** Who could host a room for others. */
+  /** The state of the server, which hosts shared rooms. */
   readonly server: ServerState;
   readonly bots: boolean;
-  /** A built-in player moves the own body: no person is there to be asked. */
+  /** A simulated player moves the user's body: no person can be asked. */
   readonly acting: boolean;
-  /** The mouse moves the own body; null: it cannot, a headset is worn or an emulated one is steered. */
+  /** The mouse moves the user's body; null: it cannot, because a headset is worn or an emulated one is steered. */
   readonly mouse: boolean | null;
   readonly name: string;
-  /** What others call a player who has given no name. */
+  /** The name that others see if the player gave none. */
   readonly guestName: string;
   /** The seat that a spectator's camera follows; null: the camera is free. */
   readonly following: number | null;
@@ -39,16 +39,16 @@ export interface BallBarActions {
   askServer(): void;
   /** Shows what to send to others so that they come. */
   invite(): void;
-  /** Into the room again that this page is in no longer. */
+  /** Rejoins the room that this page is no longer in. */
   rejoin(): void;
   /** The camera of a spectator: with a player, or null: free. */
   follow(seat: number | null): void;
-  /** The mouse moves the own body, or a built-in player does. */
+  /** Lets the mouse or the simulated player move the user's body. */
   steer(on: boolean): void;
   readonly voices: VoicesBarActions;
 }
 
-/** This page is in the room no longer. */
+/** This page is no longer in the room. */
 const isOut = (round: BallRound | null): boolean => (round?.ended ?? null) !== null;
 
 /** Before and after a match, while another person could take a place. */
@@ -83,7 +83,7 @@ function createOffers(attributes: Record<string, string>) {
   };
 }
 
-/** Who plays and by which rules, folded away. */
+/** Players and rules, in a section that can be folded. */
 function createPlayers(actions: BallBarActions, setSound: (on: boolean) => void) {
   const bots = toggle('Bots take free places', actions.setBots);
   const rotate = toggle('Swap roles after each match', actions.rotate);
@@ -146,14 +146,14 @@ function createScore() {
   };
 }
 
-/** What can be pressed now; where this page is in the room no longer, nothing but the way back. */
-function createDeeds(actions: BallBarActions) {
+/** The buttons of the current state. If this page is no longer in the room, only the way back is enabled. */
+function createButtons(actions: BallBarActions) {
   let isReady = false;
   const ready = button('Ready', () => actions.ready(!isReady), { class: 'primary' });
-  const rejoin = button('Take over again', actions.rejoin, { class: 'primary' });
+  const rejoin = button('Rejoin', actions.rejoin, { class: 'primary' });
   const watch = button('Watch', () => actions.sit(null));
   const steer = button('Play with the mouse', () => actions.steer(true), { class: 'primary' });
-  const rest = button('Let the built-in player play', () => actions.steer(false));
+  const rest = button('Let the computer play', () => actions.steer(false));
   const hint = element('p', { class: 'hint' });
   return {
     node: element('div', { class: 'row' }, rejoin, ready, steer, rest, watch),
@@ -171,11 +171,11 @@ function createDeeds(actions: BallBarActions) {
       steer.classList.toggle('primary', !out);
       rest.hidden = !seated || mouse !== true;
       watch.hidden = !seated;
-      for (const deed of [ready, steer, rest, watch]) deed.disabled = out;
+      for (const each of [ready, steer, rest, watch]) each.disabled = out;
       hint.hidden = !seated || mouse !== true || out;
       hint.textContent = round?.throws
-        ? 'Point at the basket and hold the button: the ring shows where the ball will come down. Let go when it is green. Esc: not yet.'
-        : 'Point at where the basket is to be; it turns towards the balls by itself.';
+        ? 'Point at the basket and hold the button. The ring shows where the ball will land. Release the button when it is green. Esc cancels the throw.'
+        : 'Point to where you want the basket. It turns towards the balls by itself.';
     },
   };
 }
@@ -216,15 +216,15 @@ const serverTexts: Readonly<Record<ServerState, string | null>> = {
   unknown: null,
   asked: null,
   here: null,
-  none: 'This page comes from a host without a threepoint server: there are no rooms for others. Alone, with bots, you can play.',
-  silent: 'Rooms for others are on the server, which does not answer now.',
+  none: 'This page’s host has no threepoint server, so there are no shared rooms. You can play alone with bots.',
+  silent: 'The server with the shared rooms does not answer. Try again later.',
 };
 
 /** The way to others: a room for them, or why there is none. */
 function createCompany(actions: BallBarActions) {
   const openRoom = button('Play with others', actions.openRoom);
   const invite = button('Invite others', actions.invite);
-  const said = element('p', { class: 'hint', role: 'status' });
+  const status = element('p', { class: 'hint', role: 'status' });
   const ask = button('Ask again', actions.askServer);
   const link = createRoomLink({ main: false });
   /** The room that the link leads to; null: none yet. */
@@ -233,15 +233,15 @@ function createCompany(actions: BallBarActions) {
     node: element(
       'div',
       { class: 'company' },
-      said,
+      status,
       link.node,
       element('div', { class: 'row' }, openRoom, invite, ask),
     ),
     show({ room, server, round }: BallBarState): void {
-      // In a room the banner says what is the matter with its server.
+      // In a room the banner describes the problem with its server.
       const text = room === null ? serverTexts[server] : null;
-      if (said.textContent !== (text ?? '')) said.textContent = text;
-      said.hidden = text === null;
+      if (status.textContent !== (text ?? '')) status.textContent = text;
+      status.hidden = text === null;
       openRoom.hidden = room !== null || text !== null;
       openRoom.disabled = server !== 'here';
       const waited = room !== null && isWaitedFor(round);
@@ -256,13 +256,13 @@ function createCompany(actions: BallBarActions) {
   };
 }
 
-/** Score, places and settings of the ball game, beside the picture. */
+/** Score, places and settings of the ball game. */
 export function createBallBar(actions: BallBarActions, setSound: (on: boolean) => void) {
   const score = createScore();
   const where = element('p', { class: 'hint' });
   const waiting = element('p', { class: 'waiting', role: 'status' });
   const seats = createSeats(actions);
-  const deeds = createDeeds(actions);
+  const buttons = createButtons(actions);
   const company = createCompany(actions);
   const voices = createVoicesBar(actions.voices);
   const players = createPlayers(actions, setSound);
@@ -272,8 +272,8 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
     score.node,
     where,
     waiting,
-    deeds.node,
-    deeds.hint,
+    buttons.node,
+    buttons.hint,
     company.node,
     seats.places,
     seats.cameras,
@@ -292,7 +292,7 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
       const sentence = round?.ended ?? round?.waiting ?? null;
       if (waiting.textContent !== (sentence ?? '')) waiting.textContent = sentence;
       waiting.hidden = sentence === null;
-      deeds.show(state);
+      buttons.show(state);
       seats.show(state);
       company.show(state);
       if (round) voices.show(round.voices, round);

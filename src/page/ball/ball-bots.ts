@@ -17,12 +17,12 @@ import { holderStation, stations } from 'threepoint-games/ball/stations';
 import { type BallBot, createThrower } from 'threepoint-games/ball/thrower-motion';
 import type { Visitor } from 'threepoint-rooms/client/connection';
 
-/** A built-in player moves at least this often, however slowly pictures come: a throw is over in a fifth of a second. */
+/** The least rate at which a simulated player moves, even if pictures are slower: a throw takes a fifth of a second. */
 const movesPerSecond = 60;
-/** After a longer pause than this [s] nothing is made up for. */
+/** After a longer gap than this [s] nothing is caught up. */
 const longestCatchUp = 1;
 
-/** The moments since the last one at which a built-in player moves; the last is now. */
+/** Returns the moments since the last one at which a simulated player moves; the last is now. */
 export function momentsUntil(time: number, last: number | null): readonly number[] {
   const passed = last === null ? 0 : time - last;
   if (passed > longestCatchUp) return [time];
@@ -32,7 +32,7 @@ export function momentsUntil(time: number, last: number | null): readonly number
   return moments;
 }
 
-const isDeed = (action: BallAction): action is Extract<BallAction, { type: 'grab' | 'drop' | 'throw' }> =>
+const isHandAction = (action: BallAction): action is Extract<BallAction, { type: 'grab' | 'drop' | 'throw' }> =>
   action.type === 'grab' || action.type === 'drop' || action.type === 'throw';
 
 export const bodyAt = (station: number, calibration: Calibration): PlayerBody => ({
@@ -41,20 +41,20 @@ export const bodyAt = (station: number, calibration: Calibration): PlayerBody =>
   arenaFromFloor: stations[station] ?? { position: zero, orientation: identity },
 });
 
-/** The built-in player of a station; `seed`: of the scatter of its throws. */
+/** Creates the simulated player of a station. `seed`: for the scatter of its throws. */
 export function actorFor(station: number, calibration: Calibration, seed: number): BallBot {
   const body = bodyAt(station, calibration);
   return station === holderStation ? createHolder(body) : createThrower(body, seed + 31 * station);
 }
 
-/** What built-in players know of the court besides the state of the match. */
+/** What simulated players know about the court in addition to the state of the match. */
 export interface CourtSight {
-  /** For how long the match's clock has stood in all [s]: built-in players stand still meanwhile. */
-  stood: number;
+  /** The total time for which the match's clock was paused [s]: simulated players stand still meanwhile. */
+  pausedSeconds: number;
   opening: Opening | null;
 }
 
-/** Hands become deeds on this connection. */
+/** Creates the gestures of the player on this connection. */
 export function gesturesOf(of: BallConnection): BallGestures {
   return createBallGestures(() => {
     const seen = of.room;
@@ -69,7 +69,7 @@ export function gesturesOf(of: BallConnection): BallGestures {
   });
 }
 
-/** One player's frame as deeds, sent. While the clock stands hands mean nothing. */
+/** Sends the actions of a player's frame. While the clock is paused, hands do nothing. */
 export function play(
   of: BallConnection,
   gestures: BallGestures,
@@ -78,28 +78,28 @@ export function play(
 ): BallGestureFrame {
   const done = gestures.follow(of.room?.paused ? { ...frame, suspended: true } : frame, buttons);
   for (const action of done.actions) {
-    if (!isDeed(action)) continue;
-    const { player: _, ...deed } = action;
-    of.act(deed);
+    if (!isHandAction(action)) continue;
+    const { player: _, ...ownAction } = action;
+    of.act(ownAction);
   }
   return done;
 }
 
 export const stationOf = (seen: BallRoomView, seat: number): number => seen.match?.players[seat]?.station ?? seat;
 
-/** Head, hands and buttons of a built-in player, whose own time stands when the match's does. */
+/** Returns head, hands and buttons of a simulated player. Its own time stops while the match is paused. */
 export function performedAt(
   actor: BallBot,
   time: number,
   state: BallState,
   player: number,
-  { stood, opening }: CourtSight,
+  { pausedSeconds, opening }: CourtSight,
 ): Performed {
-  const done = actor.follow(time - stood, { state, player, ...(opening && { basket: opening.position }) });
-  return stood === 0 ? done : { ...done, frame: { ...done.frame, time } };
+  const done = actor.follow(time - pausedSeconds, { state, player, ...(opening && { basket: opening.position }) });
+  return pausedSeconds === 0 ? done : { ...done, frame: { ...done.frame, time } };
 }
 
-/** A built-in player on a connection, and how its body is solved. */
+/** A simulated player on a connection, and the estimator that solves its body. */
 export interface Mover {
   readonly line: BallConnection;
   readonly gestures: BallGestures;
@@ -107,7 +107,7 @@ export interface Mover {
   readonly estimator: PoseEstimator;
 }
 
-/** One moment of a built-in player: deeds, and the solved body to the others. */
+/** Plays one moment of a simulated player: sends its actions and its solved body. */
 export function moveOnce(
   { line, gestures, actor, estimator }: Mover,
   moment: number,
@@ -121,16 +121,16 @@ export function moveOnce(
   return play(line, gestures, frame, buttons);
 }
 
-/** Bots of different build; they say that they are bots. */
+/** Bots of different build. Labels mark them as bots. */
 const botPeople: readonly { readonly name: string; readonly calibration: Calibration }[] = [
   { name: 'Ada', calibration: { eyeHeight: 1.52, armSpan: 1.42 } },
   { name: 'Max', calibration: { eyeHeight: 1.7, armSpan: 1.62 } },
   { name: 'Kim', calibration: { eyeHeight: 1.6, armSpan: 1.51 } },
 ];
 
-/** Seconds between two looks for free seats. */
+/** The interval between two checks for free seats [s]. */
 const seatsEvery = 0.4;
-/** A built-in player is ready after this long [s]. */
+/** A simulated player is ready after this time [s]. */
 export const readyAfter = 1;
 
 interface Bot {
@@ -139,7 +139,7 @@ interface Bot {
   readonly estimator: PoseEstimator;
   gestures: BallGestures | null;
   actor: BallBot | null;
-  /** For which station and phase its actor was made. */
+  /** The station of its actor; `fresh`: the actor was created before the match. */
   station: number;
   fresh: boolean;
   readonly since: number;
@@ -148,12 +148,12 @@ interface Bot {
 
 export interface BotsOptions {
   connect(visitor: Visitor, time: number): BallConnection;
-  /** Whether bots take the seats that are free; asked for in every frame. */
+  /** Whether bots take free seats; read in every frame. */
   bots(): boolean;
   readonly seed: number;
 }
 
-/** The bots that this page brings along. */
+/** The bots of this page. */
 export class BallBots {
   private bots: Bot[] = [];
   private lookedAt = Number.NEGATIVE_INFINITY;
@@ -163,7 +163,7 @@ export class BallBots {
     private readonly sight: CourtSight,
   ) {}
 
-  /** Bots come for seats that are free in the room of `connection`, and go when they are not wanted or a person has come. */
+  /** Seats bots in the free seats of the room of `connection`. Removes them when they are not wanted or a person takes the seat. */
   seat(connection: BallConnection, time: number): void {
     const { options } = this;
     const wanted = options.bots();
@@ -183,7 +183,7 @@ export class BallBots {
     for (const seat of free) this.invite(seat, time);
   }
 
-  /** Moves all of them, as often as 60 times a second. */
+  /** Moves all bots, at least 60 times a second. */
   move(time: number): void {
     for (const bot of this.bots) this.moveBot(bot, time);
   }
@@ -226,7 +226,7 @@ export class BallBots {
     if (me && !me.ready && match.phase !== 'running' && time - bot.since > readyAfter) line.ready(true);
   }
 
-  /** Another station, or another round: another actor, but not while a round is played. */
+  /** Returns the actor of a bot; a new one for another station or another round, except during a match. */
   private actorOf(bot: Bot, station: number, phase: BallState['phase'], seat: number): BallBot {
     const fresh = phase === 'ready';
     if (!bot.actor || ((bot.station !== station || bot.fresh !== fresh) && phase !== 'running')) {

@@ -67,7 +67,7 @@ export async function connectionsFor(
       room,
       visitor,
       clock,
-      // Each bot is a guest of its own.
+      // Each bot is a guest with its own pass.
       pass: visitor.bot ? createRoomPass(server, room, 'ball') : person,
     });
   return {

@@ -27,7 +27,7 @@ import { ballInPalm } from 'threepoint-games/fist';
 import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
 import type { RemotePlayer } from 'threepoint-rooms/client/remote-players';
 import { seatLooks } from './court-plan';
-import { shownToEyes } from './personal-space';
+import { proximityFade } from './personal-space';
 
 /** A person or bot at the court in one frame. Heads and palms are the same objects in every frame: copy what must stay. */
 export interface PlayerFrame {
@@ -38,14 +38,14 @@ export interface PlayerFrame {
   readonly role: BallRole;
   readonly station: number;
   readonly ready: boolean;
-  /** Arena frame; null: not to be seen now. */
+  /** The position of the head, arena frame; null: it is not visible now. */
   readonly head: Vec3 | null;
   /** The position of a ball in each hand, arena frame; null: the hand is not tracked. */
   readonly palms: Readonly<Record<Side, Vec3 | null>>;
   readonly opacity: number;
 }
 
-/** A body to be drawn; its floor as it lies in this room. */
+/** A body to draw, with its floor in the user's floor frame. */
 export interface BodyFrame {
   readonly id: number;
   readonly calibration: Calibration;
@@ -72,7 +72,7 @@ export interface BallFrame {
   readonly role: BallRole | null;
   readonly rotate: boolean;
   readonly spectators: number;
-  /** The match's clock stands because a player stopped it. */
+  /** A player has paused the match's clock. */
   readonly paused: boolean;
   readonly players: readonly (PlayerFrame | null)[];
   readonly bodies: readonly BodyFrame[];
@@ -162,7 +162,7 @@ interface SeatView {
   readonly palms: Readonly<Record<Side, MutableVec3>>;
 }
 
-/** Who is where in this frame, own floor frame of each. */
+/** Head and hands of a player, in that player's floor frame. */
 interface Place {
   readonly head: { readonly position: Vec3 };
   readonly leftHand: TrackedPose | null;
@@ -182,9 +182,7 @@ export class CourtPeople {
   private readonly right = makePose<'arena'>();
   private readonly head = vec3(0, 0, 0);
 
-  /**
-   * Looks at everyone; `frame`: the own hands, null where nothing is tracked. floorFromArena: where the arena lies in this room.
-   */
+  /** Updates all people. `frame`: the user's hands, null if nothing is tracked. `floorFromArena`: the arena in the user's floor frame. */
   look(
     line: BallConnection,
     seen: BallRoomView,
@@ -220,23 +218,23 @@ export class CourtPeople {
         body.pose = there.pose;
         body.fingers = there.fingers;
         composeTransforms(floorFromArena, arenaFromFloor, body.placement);
-        body.opacity = there.opacity * (frame ? shownToEyes(frame.head.position, there.pose, body.placement) : 1);
+        body.opacity = there.opacity * (frame ? proximityFade(frame.head.position, there.pose, body.placement) : 1);
         this.bodies.push(body);
       }
       if (!player) continue;
-      const told = view.player;
-      told.name = row.name;
-      told.bot = row.bot;
-      told.presence = row.presence;
-      told.me = seat === mySeat;
-      told.role = player.role;
-      told.station = player.station;
-      told.ready = player.ready;
-      told.head = place && transformPoint(arenaFromFloor, place.head.position, view.head);
-      told.palms.left = palmIn(arenaFromFloor, place?.leftHand, view.palms.left);
-      told.palms.right = palmIn(arenaFromFloor, place?.rightHand, view.palms.right);
-      told.opacity = told.me ? 1 : (there?.opacity ?? 0);
-      this.players[seat] = told;
+      const entry = view.player;
+      entry.name = row.name;
+      entry.bot = row.bot;
+      entry.presence = row.presence;
+      entry.me = seat === mySeat;
+      entry.role = player.role;
+      entry.station = player.station;
+      entry.ready = player.ready;
+      entry.head = place && transformPoint(arenaFromFloor, place.head.position, view.head);
+      entry.palms.left = palmIn(arenaFromFloor, place?.leftHand, view.palms.left);
+      entry.palms.right = palmIn(arenaFromFloor, place?.rightHand, view.palms.right);
+      entry.opacity = entry.me ? 1 : (there?.opacity ?? 0);
+      this.players[seat] = entry;
     }
   }
 

@@ -98,7 +98,7 @@ export class BallMenu {
     const { settings } = this.#context;
     const court = this.#court;
     const round = court.round();
-    const { phase, muted, deaf, said } = court.voices.state;
+    const { phase, muted, deaf, message } = court.voices.state;
     const isAsked = round !== null && round.ended === null && round.seat !== null && round.phase !== 'running';
     const others = round ? otherPlayers(round, phase === 'in') : [];
     const canInvite = this.#openRoom() !== null;
@@ -112,7 +112,7 @@ export class BallMenu {
     return {
       entries: ballEntries(state, this.#actions()),
       sheet: this.#sheet(canInvite, round === null ? null : others),
-      notice: (phase === 'asked' ? consentText : said) ?? court.banner(),
+      notice: (phase === 'asked' ? consentText : message) ?? court.banner(),
       hint: round?.waiting ?? round?.connection ?? null,
     };
   }

@@ -5,6 +5,7 @@ import { type BallBarActions, type BallBarState, createBallBar } from './ball-ba
 import type { BallPlay } from './ball-play';
 import type { BallRound } from './ball-round';
 import type { BlockList } from './block-list';
+import type { CourtCamera } from './court-camera';
 import type { Voices } from './voices';
 
 /** What the panel shows and acts on. */
@@ -12,8 +13,8 @@ export interface CourtControls {
   readonly play: Pick<BallPlay, 'ready' | 'rotate' | 'sit'>;
   readonly voices: Voices;
   readonly blocked: BlockList;
+  readonly camera: Pick<CourtCamera, 'follow'>;
   round(): BallRound | null;
-  followSeat(seat: number | null): void;
 }
 
 /** The fragment of an address that opens a new room and its invitation. */
@@ -66,7 +67,7 @@ class BallPanel implements ActivityPanel {
       askServer: () => void this.#askServer(),
       invite: () => this.#invite(),
       rejoin: reopen,
-      follow: (seat) => this.#court.followSeat(seat),
+      follow: (seat) => this.#court.camera.follow(seat),
       steer: (on) => chooseInput(on ? 'mouse' : 'actor'),
       voices: {
         ask: (on) => voices.ask(on),

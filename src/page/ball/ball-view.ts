@@ -10,6 +10,7 @@ import type { Quality } from '../scene/renderer';
 import type { AudibleStage } from '../scene/sound/sound-stage';
 import type { Surroundings } from '../scene/surroundings';
 import { createAimArc } from './aim-arc';
+import { type BallSounds, createBallSounds } from './ball-sounds';
 import { type Balls, createBalls } from './balls';
 import { lineOfEvent, type Person, type Standing, waitingLine } from './board-drawing';
 import { type Boards, createBoards } from './boards';
@@ -18,13 +19,12 @@ import { type Court, createCourt } from './court';
 import { createLobbySheet, type LobbySheet } from './lobby-sheet';
 import { createNameLabels, type NameLabels } from './name-labels';
 import type { SeatVoices } from './seat-voices';
-import { type BallSounds, createBallSounds } from './sounds';
 import { createWickerBasket } from './wicker-basket';
 import { createZoneRing } from './zone-ring';
 
 /** A player at the court as they are drawn in this frame. */
 export interface Attendant extends Person {
-  /** Arena frame; null: not to be seen now. */
+  /** The position of the head, arena frame; null: it is not visible now. */
   readonly head: Vec3 | null;
   /** The position of a ball in each hand, arena frame; null: the hand is not tracked. */
   readonly palms: Readonly<Record<'left' | 'right', Vec3 | null>>;
@@ -43,19 +43,19 @@ export interface BallScene {
   readonly rotate: boolean;
   /** The basket where its holder's hands had it last; null: where the state has it. Arena frame. */
   readonly opening: Opening | null;
-  /** How a ball would fly that is let go now, arena frame; null: no player here aims with a mouse. */
+  /** The flight of a ball if it were released now, arena frame; null: no player here aims with a mouse. */
   readonly aim: Launch | null;
-  /** The match's clock stands. */
+  /** The match's clock is paused. */
   readonly paused: boolean;
   /** Seconds until the bell; after a match what was left at its end. */
   readonly secondsLeft: number;
   /** The page's time [s], and whether it is still in the room. */
   readonly pageTime: number;
   readonly inRoom: boolean;
-  /** A built-in player has the own seat. */
+  /** A simulated player has the user's seat. */
   readonly acting: boolean;
   readonly voices: Pick<SeatVoices, 'markOf' | 'levelOf'>;
-  /** The seats of players whom the user has hidden. */
+  /** The seats of the players that the user has hidden. */
   readonly hidden: ReadonlySet<number>;
   /** The viewer's eyes and ears, floor frame of the user. */
   readonly head: Pose<'floor'>;
@@ -63,14 +63,14 @@ export interface BallScene {
 
 /** Everything that is seen of the ball game but the people. */
 export interface BallView {
-  /** The place as it lies in a room whose floor is there; to be given to the arena, and again whenever the seat changes. */
+  /** Returns the court for the user's floor frame. Call it again after a change of the seat. */
   placed(floorFromArena: Transform<'floor', 'arena'>): Surroundings;
-  /** What belongs to the viewer, own floor frame; to be added to the scene. */
+  /** The parts in the user's floor frame, to be added to the scene. */
   readonly own: Group;
   readonly lobby: Pick<LobbySheet, 'buttonAt' | 'setHovered'>;
   show(scene: BallScene): void;
   /** Plays, captions and writes on the board what happened since the last frame. After `show`. */
-  hear(events: readonly BallEvent[], cues: readonly BallCue[]): void;
+  playEvents(events: readonly BallEvent[], cues: readonly BallCue[]): void;
   readonly sound: AudibleStage;
   dispose(): void;
 }
@@ -141,19 +141,19 @@ class CourtView implements BallView {
     this.#shown = scene;
     const { state, attendants, me, rotate, head, acting, pageTime } = scene;
     const eyes = transformPoint(invertTransform(this.#floorFromArena), head.position);
-    this.#sounds.listen(head, this.#floorFromArena);
+    this.#sounds.setListener(head, this.#floorFromArena);
     this.#showBalls(scene);
     this.#pops.show(pageTime, eyes);
     const people = attendants.map(writtenOf);
     const standing: Standing = { state, seconds: Math.ceil(scene.secondsLeft), people, me, rotate, acting };
-    this.#boards.show(standing, scene.paused ? 'Paused' : this.#said(standing, pageTime));
+    this.#boards.show(standing, scene.paused ? 'Paused' : this.#lineNow(standing, pageTime));
     this.lobby.show(standing, head.position.y, pageTime, scene.inRoom);
     this.#showNames(scene, people);
     const station = stationOf(state, me);
     this.#ring.show(station === null ? null : (stations[station]?.position ?? null), eyes);
   }
 
-  hear(events: readonly BallEvent[], cues: readonly BallCue[]): void {
+  playEvents(events: readonly BallEvent[], cues: readonly BallCue[]): void {
     if (!this.#shown) return;
     const { state, time, pageTime, attendants: people, me, opening } = this.#shown;
     for (const event of events) {
@@ -162,7 +162,7 @@ class CourtView implements BallView {
       if (event.type === 'caught') this.#pops.add((opening ?? state.basket).position, pageTime);
     }
     const mine = me === null ? null : people[me];
-    this.#sounds.hear({ state, time, events, cues, me, people, palms: mine?.palms ?? unseenPalms });
+    this.#sounds.playEvents({ state, time, events, cues, me, people, palms: mine?.palms ?? unseenPalms });
   }
 
   dispose(): void {
@@ -178,8 +178,8 @@ class CourtView implements BallView {
     this.#balls.show(state, time, (player, side) => attendants[player]?.palms[side] ?? null, opening);
   }
 
-  /** What the board says while the clock goes on: what happened a moment ago, or what the match waits for. */
-  #said(standing: Standing, pageTime: number): string {
+  /** Returns the line of the board: the last event, or what the match waits for. */
+  #lineNow(standing: Standing, pageTime: number): string {
     const { text, until } = this.#line;
     return pageTime < until && standing.state.phase === 'running' ? text : waitingLine(standing);
   }

@@ -112,7 +112,7 @@ function createMesh(geometry: BufferGeometry, material: Material, count: number)
   return mesh;
 }
 
-/** How far a ball has turned that was let go so: one that flies tumbles, one that rolls turns as far as it has gone [rad]. */
+/** Returns the rotation of a released ball [rad]: a flying one tumbles, a rolling one turns with its distance. */
 function turnedBy(
   on: 'air' | 'floor',
   { velocity, position: from, time: since }: TimedLaunch,
@@ -214,7 +214,7 @@ class MatchBalls implements Balls {
     this.#meshes[ball < this.#perRack ? 0 : 1].setMatrixAt(ball % this.#perRack, matrix);
   }
 
-  /** Each ball lies turned in its own way; one on its way turns about the axis across it. */
+  /** Rotates a ball. Each resting ball has its own rotation; a moving one turns around the axis across its path. */
   #setTurn(ball: number, place: BallPlace, position: Vec3, time: number): void {
     const axis = this.#axis;
     this.#turn.setFromAxisAngle(axis.set(0.6, 0.2, 0.77).normalize(), ball * 1.9);

@@ -14,24 +14,24 @@ export interface Person {
   readonly me: boolean;
 }
 
-/** What is written of a match: the state at this frame and who sits where, by player. */
+/** A match as boards show it: the state of this frame and the person on each seat. */
 export interface Standing {
   readonly state: BallState;
   /** Whole seconds until the bell, rounded up. */
   readonly seconds: number;
   readonly people: readonly (Person | null)[];
-  /** The receiver's own player; null: a spectator. */
+  /** The user's player; null: a spectator. */
   readonly me: number | null;
   /** Roles move on with every match. */
   readonly rotate: boolean;
-  /** A built-in player has the own seat, and is ready by itself. */
+  /** A simulated player has the user's seat, and is ready without being asked. */
   readonly acting: boolean;
 }
 
 /** What a player reads in place of a name that they have not given. */
 export const ownName = 'You';
 
-/** A bot's name says that it is one. */
+/** Returns a name that marks bots as such. */
 export const nameOf = ({ name, bot }: Pick<Person, 'name' | 'bot'>): string =>
   bot && !/\bbot\b/i.test(name) ? `${name} (bot)` : name;
 
@@ -61,7 +61,7 @@ export function lineOfEvent(event: BallEvent, people: readonly (Person | null)[]
   }
 }
 
-/** What the board says while nothing happens. */
+/** Returns the line of the board while nothing happens. */
 export function waitingLine({ state, people }: Standing): string {
   if (state.phase === 'running') return 'Catch them in the basket';
   if (state.phase === 'over') return state.end === 'time' ? 'Time is up' : 'All balls thrown';
@@ -76,7 +76,7 @@ export function waitingLine({ state, people }: Standing): string {
 const listed = (names: readonly string[]): string =>
   names.length < 2 ? (names[0] ?? '') : `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
 
-/** What a match waits for, to be read beside the player; null: for nothing, it runs. */
+/** Describes what a match waits for; null: it is running. */
 export function waitingFor(standing: Standing): string | null {
   const { state, people, me, rotate, acting } = standing;
   if (state.phase === 'running') return null;
@@ -89,7 +89,7 @@ export function waitingFor(standing: Standing): string | null {
   const names = idle.flatMap((player) => (player !== me && people[player] ? [nameOf(people[player])] : []));
   const press = state.phase === 'over' ? 'Play again' : 'Ready';
   if (me !== null && !acting && idle.includes(me)) return `Waiting for ${listed(['you', ...names])}: press ${press}.`;
-  return names.length > 0 ? `Waiting for ${listed(names)}.` : 'The match begins in a moment.';
+  return names.length > 0 ? `Waiting for ${listed(names)}.` : 'The match starts in a moment.';
 }
 
 export const boardSize = { width: 1024, height: 588 } as const;
@@ -140,7 +140,7 @@ const readyButton: SheetButton<LobbyButton> = { id: 'ready', x: 512, y: 740, wid
 const rotateButton: SheetButton<LobbyButton> = { id: 'rotate', x: 64, y: 740, width: 424, height: 112 };
 const seatIds = ['seat0', 'seat1', 'seat2'] as const;
 
-/** The seat that a button stands for; null: it is no seat's. */
+/** Returns the seat of a button, or null if it has none. */
 export const seatOfButton = (id: LobbyButton): number | null => {
   const seat = (seatIds as readonly string[]).indexOf(id);
   return seat < 0 ? null : seat;
@@ -164,7 +164,7 @@ export function lobbyButtons(standing: Standing): readonly SheetButton<LobbyButt
   return me === null ? places : [...places, rotateButton, readyButton];
 }
 
-/** What comes before a match and what came of one: who plays, who is ready, the result. */
+/** Paints the sheet before and after a match: players, who is ready, the result. */
 export function paintLobby(context: CanvasRenderingContext2D, standing: Standing, hovered: LobbyButton | null): void {
   const { state, people, me, rotate } = standing;
   const { width, height } = lobbySize;
@@ -192,11 +192,11 @@ export function paintLobby(context: CanvasRenderingContext2D, standing: Standing
   } else {
     context.fillStyle = ink.text;
     context.font = `600 46px ${signFont}`;
-    context.fillText('Two throw, one catches in the basket.', width / 2, 172, width - 128);
+    context.fillText('Two players throw, one catches with the basket.', width / 2, 172, width - 128);
     context.fillStyle = ink.soft;
     context.font = `600 42px ${signFont}`;
     context.fillText(
-      `${state.options.balls} balls, ${Math.round(state.options.seconds)} seconds, a point a catch`,
+      `${state.options.balls} balls, ${Math.round(state.options.seconds)} seconds, a point per catch`,
       width / 2,
       240,
     );

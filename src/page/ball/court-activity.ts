@@ -1,12 +1,9 @@
 import type { Holding } from 'threepoint/avatar/hands/holding';
-import { createRemoteAvatars, type RemoteAvatars } from 'threepoint/avatar/remote-avatars';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { Fingers, MutableHandShape } from 'threepoint/core/body/hand-shape';
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
-import { type Pose, type Transform, transformPose } from 'threepoint/core/math/pose';
+import type { Pose, Transform } from 'threepoint/core/math/pose';
 import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
@@ -20,6 +17,7 @@ import type { ActivityMenu } from '../activity/activity-menu';
 import type { CameraScene } from '../scene/desktop-view';
 import type { BallPlace } from './ball-connections';
 import type { BallFrame, BallProbe } from './ball-frame';
+import { eventHaptics } from './ball-haptics';
 import { BallMenu } from './ball-menu';
 import { createBallPanel } from './ball-panel';
 import { type BallPlay, createBallPlay } from './ball-play';
@@ -27,14 +25,11 @@ import { type BallRound, ballRound } from './ball-round';
 import { type BallView, createBallView } from './ball-view';
 import { BlockList } from './block-list';
 import { type LobbyButton, ownName, seatOfButton } from './board-drawing';
+import { CourtAvatars } from './court-avatars';
+import { CourtCamera } from './court-camera';
 import { graspAtCourt } from './court-grasp';
 import { seatLooks } from './court-plan';
-import { courtMiddle, courtScene, standsScene } from './court-scenes';
-import { eventHaptics } from './haptics';
-import { createMatchClock } from './match-clock';
-import { playersOf } from './player-probe';
-import { SeenAvatars } from './seen-avatars';
-import { SharedAvatar } from './shared-avatar';
+import { createMatchClock } from './displayed-clock';
 import { Voices } from './voices';
 import type { VoicesProbe } from './voices-state';
 
@@ -55,12 +50,11 @@ export class CourtActivity implements OpenActivity {
   readonly sound: BallView['sound'];
   readonly voices: Voices;
   readonly blocked = new BlockList(() => this.voices.seats.applyBlocks());
+  readonly camera: CourtCamera;
   readonly mirrorSide = null;
   readonly #context: ActivityContext;
   readonly #view: BallView;
-  readonly #others: RemoteAvatars;
-  readonly #seen: SeenAvatars;
-  readonly #shared: SharedAvatar;
+  readonly #avatars: CourtAvatars;
   readonly #menu: BallMenu;
   readonly #clock = createMatchClock();
   /** The user joined without a name, and reads “You” instead of the one that others see. */
@@ -76,7 +70,7 @@ export class CourtActivity implements OpenActivity {
 
   /** `mannequin`: the file of the body that other players have. */
   constructor(context: ActivityContext, room: BallPlace, mannequin: ArrayBuffer) {
-    const { quality, place, settings, switches, avatar, body, layout, stage, notices, onCaption } = context;
+    const { quality, place, settings, switches, body, layout, stage, onCaption } = context;
     this.#context = context;
     this.#unnamed = place === null && settings.name === '';
     this.play = createBallPlay({
@@ -101,26 +95,21 @@ export class CourtActivity implements OpenActivity {
       openAudio: () => this.sound.open(),
       relayOnly: () => settings.voicesByRelay,
     });
-    this.#seen = new SeenAvatars(mannequin, (name) => context.fetchOwnAvatar(name), room.avatars);
-    this.#others = createRemoteAvatars({
-      load: (worn) => this.#seen.load(worn),
-      plain: () => settings.plainOthers,
-      mouthOf: (seat) => this.voices.seats.mouthOf(seat),
-      onRefused: (worn, reason) => this.#notifyRefused(worn, reason),
-    });
-    this.#shared = new SharedAvatar({
+    this.#avatars = new CourtAvatars({
+      context,
       exchange: room.avatars,
-      wear: () => (settings.shareAvatar || avatar.own ? avatar.worn : null),
-      tell: (worn) => this.play.wear(worn),
-      notify: (level, text) => notices.show(level, text),
+      mannequin,
+      play: this.play,
+      voices: this.voices,
     });
+    this.camera = new CourtCamera({ context, play: this.play, hipsOf: (seat) => this.#avatars.hipsOf(seat) });
     this.#menu = new BallMenu(this, context);
-    stage.studio.scene.add(this.#view.own, this.#others.object);
+    stage.studio.scene.add(this.#view.own, this.#avatars.object);
     this.#place();
   }
 
   get scene(): CameraScene {
-    return this.#spectating && this.#context.settings.following === null ? standsScene : courtScene;
+    return this.camera.scene;
   }
 
   /** The colours of the user's seat; null: a spectator. */
@@ -131,10 +120,7 @@ export class CourtActivity implements OpenActivity {
   }
 
   get watched(): Watched | null {
-    if (!this.#spectating) return null;
-    const { settings, stage } = this.#context;
-    const followed = settings.following === null ? null : this.#bodyOf(settings.following);
-    return followed ?? { pelvis: courtMiddle, eyes: stage.view.pose };
+    return this.camera.watched;
   }
 
   get mouth(): number {
@@ -146,7 +132,7 @@ export class CourtActivity implements OpenActivity {
     this.play.begin(time);
     this.blocked.update(this.play.room?.seats ?? noSeats);
     this.voices.begin();
-    this.#shared.follow(this.play.room);
+    this.#avatars.begin();
     this.#place();
     const voided = this.play.room?.voided ?? 0;
     if (voided > this.#voided) this.#notice = { text: voidedNotice, until: time + noticeSeconds };
@@ -175,7 +161,7 @@ export class CourtActivity implements OpenActivity {
     const newest = this.play.newest;
     const bodies = newest?.bodies ?? noBodies;
     this.voices.seats.locate(bodies);
-    this.#others.show(this.blocked.visible(bodies), time);
+    this.#avatars.show(this.blocked.visible(bodies), time);
     if (!newest) return;
     const { pose } = this.#context.stage.view;
     this.#view.show({
@@ -188,14 +174,14 @@ export class CourtActivity implements OpenActivity {
       aim: newest.aim,
       paused: newest.paused,
       secondsLeft: this.#clock.secondsLeft,
-      head: (this.#spectating ? null : (frame ?? this.#newestFrame)?.head) ?? pose,
+      head: (this.camera.spectating ? null : (frame ?? this.#newestFrame)?.head) ?? pose,
       pageTime: time,
       inRoom: !this.#ended,
       acting: this.acting,
       voices: this.voices.seats,
       hidden: this.blocked.hidden,
     });
-    this.#view.hear(newest.events, newest.cues);
+    this.#view.playEvents(newest.events, newest.cues);
   }
 
   point({ origin, direction }: Ray, press: boolean): number | null {
@@ -254,13 +240,7 @@ export class CourtActivity implements OpenActivity {
   }
 
   players(): readonly PlayerProbe[] {
-    return playersOf(this.play, this.#others);
-  }
-
-  /** Lets a spectator's camera follow the player on this seat; null: the camera is free. */
-  followSeat(seat: number | null): void {
-    this.#context.writer.change({ following: seat });
-    this.#context.placeCamera();
+    return this.#avatars.players();
   }
 
   dispose(): void {
@@ -268,8 +248,7 @@ export class CourtActivity implements OpenActivity {
     this.play.leave();
     this.#view.own.removeFromParent();
     this.#context.stage.studio.setSurroundings(null);
-    this.#seen.leave();
-    this.#others.dispose();
+    this.#avatars.dispose();
     this.#view.dispose();
   }
 
@@ -284,11 +263,6 @@ export class CourtActivity implements OpenActivity {
     return place === null && settings.actor && (!headset.worn || headset.emulator !== null);
   }
 
-  get #spectating(): boolean {
-    const newest = this.play.newest;
-    return newest !== null && newest.me === null && !this.#context.headset.worn;
-  }
-
   /** This page is no longer in the room. */
   get #ended(): boolean {
     return this.play.status.phase === 'ended';
@@ -298,29 +272,6 @@ export class CourtActivity implements OpenActivity {
     const { settings, headset, stage, mouse } = this.#context;
     if (!settings.mouse || headset.worn) return null;
     return { ray: stage.view.rayThrough(mouse.x, mouse.y), pressed: mouse.pressed, cancelled: mouse.cancelled };
-  }
-
-  /** Pelvis and eyes of the player on this seat, floor frame of the user; null: nobody is drawn there. */
-  #bodyOf(seat: number): Watched | null {
-    const body = this.play.newest?.bodies.find(({ id }) => id === seat);
-    const pelvis = this.#others.jointsOf(seat)?.hips;
-    if (!body || !pelvis) return null;
-    const { position, orientation } = body.pose.head;
-    return { pelvis, eyes: transformPose(body.placement, { position, orientation }) };
-  }
-
-  #notifyRefused(worn: AvatarRef, reason: unknown): void {
-    const seats = this.play.room?.seats ?? [];
-    const names = seats.flatMap((seat, index) =>
-      seat?.avatar === worn && index !== this.play.room?.mySeat ? [seat.name] : [],
-    );
-    // The player may have changed avatars in the meantime.
-    if (names.length === 0) return;
-    const why = firstLine(reasonOf(reason)).replace(/^the avatar: /, '');
-    this.#context.notices.show(
-      'info',
-      `The avatar of ${names.join(' and ')} could not be shown, so you see a mannequin: ${why}`,
-    );
   }
 
   /** Turns the court around the user, after every change of seat. */

@@ -12,10 +12,7 @@ export const court = {
   /** The radius of each player's mark. */
   padRadius: 0.46,
   holderZ: stations[holderStation]?.position.z ?? -throwingDistance,
-  /**
-   * One board for the throwers, one for the holder, who is further away from it. Their middles are as high as it takes for no one's
-   * name to hide a line.
-   */
+  /** One board for the throwers, one for the holder, who is further away from it. They hang high enough that no name label hides a line. */
   boards: [
     { z: -9.4, turned: 0, width: 3.1, middle: 3.8 },
     { z: 6.6, turned: Math.PI, width: 3.7, middle: 4.5 },
@@ -26,7 +23,7 @@ export const court = {
 export interface SeatLook {
   readonly color: string;
   readonly ink: string;
-  /** What is painted on the mark and beside the name. */
+  /** The mark on the floor and next to the name. */
   readonly mark: string;
   /** Colours of the avatar: one of `palettes` in src/threepoint/avatar. */
   readonly palette: string;

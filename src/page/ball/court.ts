@@ -13,7 +13,7 @@ import { createCourtGround } from './court-ground';
 /** The place where the ball game is played; its object holds everything that is given in the arena frame. */
 export interface Court {
   readonly object: Group;
-  /** The place as it lies in the room of a player whose floor is there. */
+  /** Returns the court for a user's floor frame. */
   placed(floorFromArena: Transform<'floor', 'arena'>): Surroundings;
   dispose(): void;
 }

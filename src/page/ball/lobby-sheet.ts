@@ -4,7 +4,7 @@ import { disposeTree } from '../scene/dispose-tree';
 import type { Quality } from '../scene/renderer';
 import { type LobbyButton, lobbyButtons, lobbySize, paintLobby, type Standing } from './board-drawing';
 
-/** Before and after a match, in front of the player; own floor frame. */
+/** The sheet in front of the player before and after a match, floor frame of the user. */
 export interface LobbySheet extends Pick<Sheet<LobbyButton>, 'buttonAt' | 'setHovered'> {
   readonly object: Group;
   /** eyeHeight [m]: of the reader; `time` [s]: the page's. Hides itself during a match, and where `inRoom` is false. */

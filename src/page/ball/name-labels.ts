@@ -10,7 +10,7 @@ import { roleTexts, seatLooks } from './court-plan';
 /** Names and roles over heads; arena frame. */
 export interface NameLabels {
   readonly object: Group;
-  /** By player; null: no player is there, or it is one's own. */
+  /** Shows the labels, by player; null: there is no player, or it is the user. */
   show(labels: readonly (Label | null)[]): void;
   dispose(): void;
 }
@@ -71,7 +71,7 @@ function paintMicrophone(context: CanvasRenderingContext2D, x: number, y: number
   }
 }
 
-/** The ring about the mark of a player who speaks, drawn once for all. */
+/** Paints the ring around the mark of a speaking player; all labels share it. */
 function paintRing(context: CanvasRenderingContext2D): void {
   context.strokeStyle = '#7be0a5';
   context.lineWidth = 12;
@@ -127,7 +127,7 @@ function paint(context: CanvasRenderingContext2D, { person, station, voice }: La
   return left + 60;
 }
 
-/** What a player says is seen by a ring about their mark, which is as clear as they are loud. */
+/** Creates a label. The ring around the mark shows speech: the louder, the clearer. */
 function createLabel(quality: Quality, ringTexture: CanvasTexture) {
   const { texture, draw } = createDrawnTexture(size.width, size.height, quality);
   const material = new SpriteMaterial({
@@ -175,7 +175,7 @@ function createLabel(quality: Quality, ringTexture: CanvasTexture) {
         shown = key;
         draw((context) => {
           const mark = paint(context, label);
-          // A sprite turns about its centre: this one lies off its own, at the mark.
+          // A sprite turns around its centre, which for this one is the mark, not its own middle.
           ring.center.x = 0.5 - ((mark / size.width - 0.5) * metres) / wide;
         });
       }

@@ -1,6 +1,6 @@
 import type { PersonVoice } from './voices-state';
 
-/** A seat of the room, and how it stands with the voice of the player on it. */
+/** A seat of the room, and the voice of its player. */
 export interface Seated extends PersonVoice {
   readonly seat: number;
   /** null: no player is there. */
@@ -13,8 +13,8 @@ export interface OtherPlayer {
   readonly seat: number;
   readonly name: string;
   readonly role: string;
-  /** How it stands with them here, in words; empty: nothing to say. */
-  readonly said: string;
+  /** The state of their voice in words; empty: nothing to show. */
+  readonly status: string;
   readonly silenced: boolean;
   readonly hidden: boolean;
   /** none: the player has no voice to mute. off: the player is hidden, which mutes the voice too. */
@@ -23,7 +23,7 @@ export interface OtherPlayer {
 
 const linkTexts = { none: '', connecting: 'connecting …', connected: '', lost: 'connection lost' } as const;
 
-/** How it stands with a player's voice, in words. */
+/** Describes the state of a player's voice. */
 function voiceText({ voice, link, silenced }: PersonVoice): string {
   if (voice === 'none') return '';
   if (silenced) return 'muted by you';
@@ -38,11 +38,11 @@ export const otherPlayers = (
   people.flatMap((person): OtherPlayer[] => {
     const { seat, name, role, voice, silenced, hidden } = person;
     if (name === null || seat === own) return [];
-    const said = hidden ? 'hidden' : inVoices ? voiceText(person) : '';
+    const status = hidden ? 'hidden' : inVoices ? voiceText(person) : '';
     const muting = !inVoices || voice === 'none' ? 'none' : hidden ? 'off' : 'offered';
-    return [{ seat, name, role, said, silenced, hidden, muting }];
+    return [{ seat, name, role, status, silenced, hidden, muting }];
   });
 
-/** What the button says that mutes or unmutes a player, and the one that hides or shows them. */
+/** The labels of the buttons that mute and hide a player. */
 export const muteLabel = ({ silenced }: Pick<OtherPlayer, 'silenced'>): string => (silenced ? 'Unmute' : 'Mute');
 export const hideLabel = ({ hidden }: Pick<OtherPlayer, 'hidden'>): string => (hidden ? 'Show' : 'Hide');

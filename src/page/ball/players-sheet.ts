@@ -50,14 +50,14 @@ function playerButtons(player: OtherPlayer, row: number, actions: PlayersSheetAc
 /** Name, role and voice of each player above their buttons. */
 function drawPlayers(context: CanvasRenderingContext2D, players: readonly OtherPlayer[]): void {
   context.textAlign = 'left';
-  for (const [row, { name, role, said }] of players.entries()) {
+  for (const [row, { name, role, status }] of players.entries()) {
     const top = playersTop + row * playerHeight;
     context.fillStyle = vrColors.ink;
     context.font = `650 40px ${vrFont}`;
     context.fillText(name, menuMargin + 4, top + 24, fullWidth - 8);
     context.fillStyle = vrColors.inkSoft;
     context.font = `500 28px ${vrFont}`;
-    context.fillText([role, said].filter(Boolean).join(' · '), menuMargin + 4, top + 70, fullWidth - 8);
+    context.fillText([role, status].filter(Boolean).join(' · '), menuMargin + 4, top + 70, fullWidth - 8);
   }
   if (players.length > 0) return;
   context.fillStyle = vrColors.inkSoft;

@@ -18,7 +18,7 @@ import { type FileKind, readLimited } from 'threepoint-ui/limited-files';
 /** The file of another person. */
 const seenFile: FileKind = { what: 'an avatar that others see', megabytes: seenAvatarLimits.megabytes };
 interface SeenAvatarsOptions {
-  /** A file that is on its way for longer [ms] is given up: others wait for theirs. */
+  /** A download that takes longer [ms] is cancelled: other avatars wait for it. */
   readonly patienceMs?: number;
 }
 
@@ -58,7 +58,7 @@ export class SeenAvatars {
     return parseAvatar(await file, `${body}.vrm`);
   }
 
-  /** Ends what is on its way. */
+  /** Cancels all downloads. */
   leave(): void {
     this.#leaving.abort();
   }
@@ -68,12 +68,12 @@ export class SeenAvatars {
     const bytes = await this.#fetch(hash);
     const question = { name, unpacked: Object.keys(decoders), limits: seenAvatarLimits };
     const checked = await checkInWorker(bytes, question);
-    if (checked.hash !== hash) throw new Error('another file came than the one that was told of');
+    if (checked.hash !== hash) throw new Error('the server sent a different file than the player announced');
     return parseChecked(checked, name, { decoders });
   }
 
   async #fetch(hash: AvatarHash): Promise<ArrayBuffer> {
-    if (!this.#exchange) throw new Error('there is no server that has it');
+    if (!this.#exchange) throw new Error('no server has the file');
     // Named, and asked below: Node forgets a timeout of which nothing but AbortSignal.any knows (nodejs/node#57736).
     const late = AbortSignal.timeout(this.#patienceMs);
     const signal = AbortSignal.any([this.#leaving.signal, late]);

@@ -2,27 +2,27 @@ import { type AvatarHash, type AvatarRef, mostAvatarBytes, plainAvatar } from 't
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import type { BallRoomView } from 'threepoint-games/ball/ball-client';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
-import type { OwnWear } from '../activity/activity-context';
+import type { UserAvatar } from '../activity/activity-context';
 
 export interface SharedAvatarOptions {
-  /** null: there is no server, or its rooms are a study's, where all look alike. */
+  /** null: there is no server, or the room belongs to a study, where all avatars are alike. */
   readonly exchange: AvatarExchange | null;
-  /** What the others are to see, asked for in every frame, the same object for as long as it is worn; null: the wearer wants theirs seen by no one. */
-  wear(): OwnWear | null;
-  /** Says to the room what this player has on. */
-  tell(avatar: AvatarRef): void;
+  /** Returns the avatar to show to others: the same object for as long as it is worn; null: the user does not share it. Called in every frame. */
+  wear(): UserAvatar | null;
+  /** Sends the reference of the user's avatar to the room. */
+  send(avatar: AvatarRef): void;
   notify(level: 'info' | 'warning', text: string): void;
 }
 
 const megabytes = (bytes: number): string => `${Math.round(bytes / 2 ** 20)} MB`;
 
-/** Into the room's store, unless it lies there. Rejects with a sentence where the server does not take it. */
-async function bring(exchange: AvatarExchange, hash: AvatarHash, file: Blob): Promise<void> {
+/** Uploads a file to the room's store unless it is there. Rejects with a reason if the server refuses it. */
+async function upload(exchange: AvatarExchange, hash: AvatarHash, file: Blob): Promise<void> {
   const { mostBytes, yours } = await exchange.terms();
   if (yours === hash) return;
-  if (mostBytes === 0) throw new Error('this server takes no avatars');
+  if (mostBytes === 0) throw new Error('this server accepts no avatars');
   if (file.size > mostBytes)
-    throw new Error(`it has ${megabytes(file.size)}; this server takes ${megabytes(mostBytes)}`);
+    throw new Error(`it has ${megabytes(file.size)}; this server accepts up to ${megabytes(mostBytes)}`);
   await exchange.store(hash, file);
 }
 
@@ -30,7 +30,7 @@ async function bring(exchange: AvatarExchange, hash: AvatarHash, file: Blob): Pr
 export class SharedAvatar {
   readonly #options: SharedAvatarOptions;
   /** The avatar that was sent last, and the stay in the room in which it was sent. */
-  #wear: OwnWear | null = null;
+  #wear: UserAvatar | null = null;
   #welcomes = 0;
   #turn = 0;
 
@@ -38,8 +38,8 @@ export class SharedAvatar {
     this.#options = options;
   }
 
-  /** Once a frame; `room`: null before the first welcome. */
-  follow(room: BallRoomView | null): void {
+  /** Once per frame; `room`: null before the first welcome. */
+  update(room: BallRoomView | null): void {
     if (!room || room.mySeat === null) return;
     const wear = this.#options.wear();
     if (wear === this.#wear && room.welcomes === this.#welcomes) return;
@@ -47,30 +47,31 @@ export class SharedAvatar {
     this.#wear = wear;
     this.#welcomes = room.welcomes;
     this.#turn += 1;
-    if (wear === null || typeof wear === 'string') this.#options.tell(wear ?? plainAvatar);
+    if (wear === null || typeof wear === 'string') this.#options.send(wear ?? plainAvatar);
     else void this.#share(wear, this.#turn, returned);
   }
 
-  /** Never rejects. `quiet`: it was said before. */
-  async #share({ name, file, hash }: Exclude<OwnWear, string>, turn: number, quiet: boolean): Promise<void> {
-    const { exchange, tell, notify } = this.#options;
+  /** Never rejects. `quiet`: the user was notified before. */
+  async #share({ name, file, hash }: Exclude<UserAvatar, string>, turn: number, quiet: boolean): Promise<void> {
+    const { exchange, send, notify } = this.#options;
     if (!exchange) return;
     const isNewest = () => turn === this.#turn;
-    // Until the file is there the others see the plain one, not what was worn before.
-    if (!quiet) tell(plainAvatar);
+    // Until the file is uploaded the others see the plain avatar, not the previous one.
+    if (!quiet) send(plainAvatar);
     try {
       if (hash === null) throw new Error('this page is not on a secure connection (https)');
       if (file.size > mostAvatarBytes)
-        throw new Error(`it has ${megabytes(file.size)}, of at most ${megabytes(mostAvatarBytes)}`);
+        throw new Error(`it has ${megabytes(file.size)}; the limit is ${megabytes(mostAvatarBytes)}`);
       const kept = (await exchange.liesElsewhere(hash)) ? '' : ' The server keeps the file until you leave.';
-      if (kept && isNewest()) await bring(exchange, hash, file);
+      if (kept && isNewest()) await upload(exchange, hash, file);
       if (!isNewest()) return;
-      tell(hash);
-      if (!quiet) notify('info', `The others see you as ${name} now.${kept}`);
+      send(hash);
+      if (!quiet) notify('info', `The other players see you as ${name} now.${kept}`);
     } catch (error) {
       if (!isNewest()) return;
-      tell(plainAvatar);
-      if (!quiet) notify('warning', `The others see you as a mannequin, not as ${name}: ${reasonOf(error)}.`);
+      send(plainAvatar);
+      if (!quiet)
+        notify('warning', `The other players see you as a mannequin, not as ${name}. Reason: ${reasonOf(error)}.`);
     }
   }
 }

@@ -3,7 +3,7 @@ import { toggle } from 'threepoint-ui/toggle';
 import { hideLabel, muteLabel, type OtherPlayer, otherPlayers, type Seated } from './other-players';
 import { consentText, type VoicesState } from './voices-state';
 
-/** Who is in the room, as far as this part of the bar needs it. */
+/** The people in the room, for this part of the bar. */
 export interface ListedPeople {
   /** The own one; null: a spectator. */
   readonly seat: number | null;
@@ -28,7 +28,7 @@ function createPeople(actions: VoicesBarActions) {
   const node = element('ul', { class: 'people', 'aria-label': 'Other players' });
   let shown = '';
   const row = (player: OtherPlayer) => {
-    const { seat, name, said, silenced, hidden, muting } = player;
+    const { seat, name, status, silenced, hidden, muting } = player;
     const mute = button(muteLabel(player), () => actions.silence(seat, !silenced), {
       'aria-label': `${muteLabel(player)} ${name}`,
       disabled: muting === 'off',
@@ -37,7 +37,7 @@ function createPeople(actions: VoicesBarActions) {
     const hide = button(hideLabel(player), () => actions.hide(seat, !hidden), {
       'aria-label': `${hideLabel(player)} ${name}`,
     });
-    const who = element('p', { class: 'who' }, element('span', {}, name), element('span', { class: 'hint' }, said));
+    const who = element('p', { class: 'who' }, element('span', {}, name), element('span', { class: 'hint' }, status));
     return element('li', {}, who, element('div', { class: 'buttons' }, mute, hide));
   };
   return {
@@ -55,15 +55,15 @@ function createPeople(actions: VoicesBarActions) {
 
 /** What is read before the first time, with the way to take part and the way not to. */
 function createConsent(actions: VoicesBarActions) {
-  const relay = toggle('Hide my address: by the relay only', actions.relayOnly);
+  const relay = toggle('Hide my address (relay only)', actions.relayOnly);
   const without = element(
     'p',
     { class: 'hint' },
-    'This server has no relay that could hide your address: if you mind, do not join.',
+    'This server has no relay, so your address cannot be hidden. Do not join if you do not want that.',
   );
   const node = element(
     'div',
-    { class: 'consent', role: 'group', 'aria-label': 'Before you join the voices' },
+    { class: 'consent', role: 'group', 'aria-label': 'Before you join voice chat' },
     element('p', {}, consentText),
     relay.node,
     without,
@@ -90,8 +90,8 @@ export function createVoicesBar(actions: VoicesBarActions) {
   let muted = true;
   const ask = button('Talk with the others', () => actions.ask(true));
   const mute = button('Unmute me', () => actions.mute(!muted), { 'aria-keyshortcuts': 't' });
-  const leave = button('Leave the voices', actions.leave);
-  const said = element('p', { class: 'hint', role: 'status' });
+  const leave = button('Leave voice chat', actions.leave);
+  const status = element('p', { class: 'hint', role: 'status' });
   const consent = createConsent(actions);
   const people = createPeople(actions);
   const node = element(
@@ -99,7 +99,7 @@ export function createVoicesBar(actions: VoicesBarActions) {
     { class: 'voices', role: 'group', 'aria-label': 'Voices' },
     consent.node,
     element('div', { class: 'row' }, ask, mute, leave),
-    said,
+    status,
     people.node,
   );
   return {
@@ -110,15 +110,15 @@ export function createVoicesBar(actions: VoicesBarActions) {
       const isIn = phase === 'in';
       ask.hidden = phase !== 'off' && phase !== 'joining';
       ask.disabled = phase === 'joining';
-      ask.textContent = phase === 'joining' ? 'Joining the voices …' : 'Talk with the others';
+      ask.textContent = phase === 'joining' ? 'Joining voice chat …' : 'Talk with the others';
       mute.hidden = !isIn || round?.seat === null;
-      mute.textContent = deaf ? 'Look for a microphone' : muted ? 'Unmute me (T)' : 'Mute me (T)';
+      mute.textContent = deaf ? 'Find a microphone' : muted ? 'Unmute me (T)' : 'Mute me (T)';
       mute.classList.toggle('primary', isIn && !muted);
       mute.setAttribute('aria-pressed', String(!muted));
       leave.hidden = !isIn;
-      const sentence = phase === 'none' ? '' : (state.said ?? (isIn && muted ? 'You are muted.' : ''));
-      if (said.textContent !== sentence) said.textContent = sentence;
-      said.hidden = sentence === '';
+      const sentence = phase === 'none' ? '' : (state.message ?? (isIn && muted ? 'You are muted.' : ''));
+      if (status.textContent !== sentence) status.textContent = sentence;
+      status.hidden = sentence === '';
       consent.show(state);
       people.show(round, isIn);
       node.hidden = phase === 'none' && people.node.hidden;

@@ -1,4 +1,4 @@
-/** How the own page takes part in the voices, as it is shown. */
+/** The user's part in the voices, as panels show it. */
 export interface VoicesState {
   /** none: the room has no voices. asked: the user reads the consent text. in: the user takes part. */
   readonly phase: 'none' | 'off' | 'asked' | 'joining' | 'in';
@@ -7,12 +7,12 @@ export interface VoicesState {
   readonly relay: boolean;
   readonly relayOnly: boolean;
   /** What a person should know of their voice; null: nothing. */
-  readonly said: string | null;
-  /** There is no microphone, and it may be asked for again. */
+  readonly message: string | null;
+  /** There is no microphone. The user can request it again. */
   readonly deaf: boolean;
 }
 
-/** How it stands with the voice of another player. */
+/** The voice of another player. */
 export interface PersonVoice {
   readonly voice: 'none' | 'muted' | 'open';
   readonly link: 'none' | 'connecting' | 'connected' | 'lost';
@@ -26,7 +26,7 @@ export interface PersonVoice {
 export interface VoicesProbe {
   readonly phase: VoicesState['phase'];
   readonly muted: boolean;
-  readonly said: string | null;
+  readonly message: string | null;
   /** All voices at the own ears [dB of full scale]; −120: silence. */
   readonly loudness: number;
   /** The loudness of all voices before distance and direction change them [dB of full scale]. */
@@ -37,4 +37,4 @@ export interface VoicesProbe {
 
 /** What everyone reads before they first take part. */
 export const consentText =
-  'Voices go straight from page to page: people in the room could learn your network address (IP). Nothing is recorded, and you begin muted.';
+  'Voices are sent directly between browsers, so people in the room could learn your network address (IP). Nothing is recorded, and you join muted.';

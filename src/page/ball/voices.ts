@@ -61,7 +61,7 @@ export class Voices {
       muted: this.#silent,
       relay,
       relayOnly: relay && relayOnly(),
-      said: this.#message,
+      message: this.#message,
       deaf: this.#phase === 'in' && this.#microphone.complaint !== null,
     };
   }
@@ -109,7 +109,7 @@ export class Voices {
       if (turn !== this.#turn) return;
       this.#microphone.close();
       this.#phase = 'off';
-      this.#fault = `Voices could not be joined: ${firstLine(reasonOf(error))}`;
+      this.#fault = `Voice chat could not be joined: ${firstLine(reasonOf(error))}`;
     }
   }
 
@@ -141,9 +141,9 @@ export class Voices {
   }
 
   probe(): VoicesProbe {
-    const { phase, muted, said } = this.state;
+    const { phase, muted, message } = this.state;
     const loudness = this.#call?.loudness() ?? { loudness: -120, spokenLoudness: -120 };
-    return { phase, muted, said, ...loudness, ...this.seats.probe() };
+    return { phase, muted, message, ...loudness, ...this.seats.probe() };
   }
 
   dispose(): void {

@@ -4,7 +4,7 @@ import type { Vec3 } from 'threepoint/core/math/vec3';
 import { zoneRadius } from 'threepoint-games/ball/stations';
 import { bothSides } from '../scene/both-sides';
 
-/** The edge of where throws and catches count: seen only by a player who comes near it; arena frame. */
+/** The edge of the zone in which throws and catches count, visible only to a player close to it; arena frame. */
 export interface ZoneRing {
   readonly mesh: Mesh;
   /** The station's middle and one's own head; null: a spectator. */

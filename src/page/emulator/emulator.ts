@@ -7,7 +7,7 @@ import { vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { gripFromWrist, type HandleFit, handleFit, wristFromGrip } from 'threepoint/xr/grip-offsets';
 
-/** An emulated headset, in place of a device that is not there. */
+/** An emulated headset, for browsers without a device. */
 export interface Emulator {
   readonly device: XRDevice;
   /** Head and wrists as the emulator has them now, outside of any session. */
@@ -103,7 +103,7 @@ class EmulatedHeadset implements Emulator {
     return { ...wristFromGrip<'floor'>(grip, side, this.#fit), tracking: 'tracked' };
   }
 
-  /** iwer places controllers by their target ray; the grip lies where its configuration has it. */
+  /** Returns the grip relative to the target ray: iwer places controllers by their target ray. */
   #gripInRay(side: Side): Pose<'floor'> {
     return matrixPose(this.#config?.layout[side]?.gripOffsetMatrix);
   }

@@ -12,7 +12,7 @@ export type ClipMean = JointErrors | WorkProgress | string;
 
 const notBegun: WorkProgress = { share: 0, secondsLeft: null };
 
-/** Measures methods over a whole clip, one after the other, while the page goes on drawing. */
+/** Measures methods over a whole clip, one after the other, while the page continues to draw. */
 export class ClipMeans {
   readonly #recording: Replayable;
   readonly #truth: Truth;

@@ -43,7 +43,7 @@ const colour = new Color('#7ff0d2');
 const up = new Vector3(0, 1, 0);
 const nowhere = new Matrix4().makeScale(0, 0, 0);
 
-/** The true joints of a person as a figure of sticks, which shines through the body that it stands in. */
+/** The true joints of a person as a stick figure, which shines through the body around it. */
 export class Ghost {
   readonly object = new Group();
   readonly #sticks: readonly InstancedMesh[];
@@ -82,7 +82,7 @@ export class Ghost {
     }
   }
 
-  /** Joints that are not there are not drawn. `headTurn`: how the head is turned, floor frame. */
+  /** Draws the joints that are known. `headTurn`: the rotation of the head, floor frame. */
   show(places: Places, headTurn: Quat): void {
     for (const [i, [from, to]] of bones.entries()) this.#placeStick(i, places[from], places[to]);
     for (const [i, joint] of joints.entries()) {

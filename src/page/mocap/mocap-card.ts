@@ -115,11 +115,11 @@ function createErrorTable(labels: Labels) {
         }
       }
       const unmeasured = methods.filter(({ mean }) => !(mean instanceof Float64Array));
-      // One is measured at a time: it stands last, before its figures.
+      // One method is measured at a time: it is listed last, before its figures.
       const measured = unmeasured.find(({ mean }) => progressOf(mean)?.share);
       const told = [...unmeasured.filter((method) => method !== measured), ...(measured ? [measured] : [])];
       const words = told.map(
-        ({ estimator, mean }) => `${labels[estimator]}: ${typeof mean === 'string' ? mean : 'measuring the clip'}`,
+        ({ estimator, mean }) => `${labels[estimator]}: ${typeof mean === 'string' ? mean : 'measuring …'}`,
       );
       const progress = measured && progressOf(measured.mean);
       line.show(words.join(' · '), progress ? `, ${percent(progress)}` : '');
@@ -159,7 +159,7 @@ export interface MocapCard {
   readonly node: HTMLElement;
   /** What it covers of the window; null: it is not shown. */
   readonly covers: DOMRect | null;
-  /** A file is on its way; null: none is. */
+  /** Shows the progress of reading a file; null: none is being read. */
   showProgress(name: string, progress: WorkProgress | null): void;
   /** null: no clip is open. */
   show(state: CardState | null): void;
@@ -230,7 +230,7 @@ export function createMocapCard(labels: Labels, actions: CardActions): MocapCard
     link.disabled = !state.shareable;
     link.title = state.shareable
       ? 'To this second and this method'
-      : 'A file of this device has no address that others could open';
+      : 'A file on this device has no address that others could open';
     table.show(state.methods);
     timeline.show(state);
   };

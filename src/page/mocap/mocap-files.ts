@@ -14,7 +14,7 @@ export interface MocapFiles {
 
 const endingOf = (file: MocapFile): string => nameOf(file).split('.').at(-1)!.toLowerCase();
 
-/** Whether a file beside a motion is a map of its skeleton. */
+/** Whether a file is a map of a skeleton. */
 export const isMap = (file: MocapFile): boolean => endingOf(file) === 'json';
 
 /**
@@ -25,8 +25,8 @@ export function pairFiles(files: readonly MocapFile[]): MocapFiles & { readonly 
   const [map = null] = files.filter(isMap);
   const skeletons = files.filter((file) => endingOf(file) === 'asf');
   if (!motion && map)
-    throw new Error(`${nameOf(map)}: a map of a skeleton without motion; open the motion together with it`);
-  if (!motion) throw new Error(`${nameOf(skeletons[0]!)}: a skeleton without motion; open its .amc together with it`);
+    throw new Error(`${nameOf(map)}: a skeleton map without motion; open it together with the motion`);
+  if (!motion) throw new Error(`${nameOf(skeletons[0]!)}: a skeleton without motion; open it together with its .amc`);
   const without = (taken: readonly MocapFile[]) => files.filter((file) => !taken.includes(file)).map(nameOf);
   const given = map ? [map] : [];
   if (endingOf(motion) !== 'amc') return { motion, skeleton: null, map, others: without([motion, ...given]) };
@@ -35,6 +35,6 @@ export function pairFiles(files: readonly MocapFile[]): MocapFiles & { readonly 
   // Both 10.asf and 105.asf match the start of 105_01.amc: the longer name is right.
   const likely = skeletons.filter((file) => name.startsWith(stemOf(file)));
   const [own = skeletons[0]] = likely.sort((a, b) => stemOf(b).length - stemOf(a).length);
-  if (!own) throw new Error(`${name}: a motion without its skeleton; open its .asf together with it`);
+  if (!own) throw new Error(`${name}: a motion without its skeleton; open it together with its .asf`);
   return { motion, skeleton: own, map, others: without([motion, own, ...given]) };
 }

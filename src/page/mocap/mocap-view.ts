@@ -69,7 +69,7 @@ interface Opened {
   readonly means: ClipMeans;
 }
 
-/** Metres to the right of the body: a second body, and the truth where it stands beside. */
+/** The distance of the second body, and of the ground truth beside it, to the right of the body [m]. */
 const secondAside = 1.15;
 const truthAside = -0.85;
 
@@ -82,7 +82,7 @@ export class MocapView {
   #second: SecondBody | null = null;
   #truthPlace: TruthPlace = 'inside';
   #reading = new AbortController();
-  /** What was to be shown last, shown or not. */
+  /** The files that were requested last. */
   #asked: readonly MocapFile[] = [];
   /** Errors of the picture: of the body, and of the second. */
   readonly #errors = [makeJointErrors(), makeJointErrors()] as const;
@@ -137,7 +137,7 @@ export class MocapView {
     return this.#card.covers;
   }
 
-  /** How far right of the page's body the middle of what stands on the stage lies [m]. */
+  /** The distance of the middle of all shown bodies to the right of the page's body [m]. */
   get aside(): number {
     if (!this.#opened || this.#options.replay.mode !== 'replaying') return 0;
     const [left, right] = [this.#truthPlace === 'beside' ? truthAside : 0, this.#second ? secondAside : 0];
@@ -205,7 +205,7 @@ export class MocapView {
     return {
       chooseClip: (index) => this.#chooseClip(index),
       setPaused: (on) => {
-        // A replay that was stopped, or is over, begins anew.
+        // A replay that was stopped or has ended restarts.
         if (replay.mode === 'replaying') replay.setPaused(on);
         else this.#seek(0);
         this.show();
@@ -238,13 +238,19 @@ export class MocapView {
     const clip = clips[index]!;
     const recording = recordingOf(clip);
     const { replay, networks } = this.#options;
-    // Where it throws, what is shown stays.
+    // If this throws, the shown motion stays.
     replay.begin(`${clip.name}.json`, recording, asked);
     this.close();
     const truth = new Truth(clip);
     const means = new ClipMeans(recording, truth, networks);
     this.#opened = {
-      ...{ name, addresses, clips, index, recording, truth, means },
+      name,
+      addresses,
+      clips,
+      index,
+      recording,
+      truth,
+      means,
       meter: new ErrorMeter(clip.calibration),
     };
     this.#placeTruth(outlook.truth ?? this.#truthPlace);
@@ -281,9 +287,18 @@ export class MocapView {
     if (!clip || !estimator) return;
     const { scene, networks, replay, loadAvatar, labels, tell } = this.#options;
     this.#second = new SecondBody({
-      ...{ scene, networks, replay, loadAvatar, estimator, calibration: clip.calibration, aside: secondAside },
+      scene,
+      networks,
+      replay,
+      loadAvatar,
+      estimator,
+      calibration: clip.calibration,
+      aside: secondAside,
       onFallback: (name, reason) =>
-        tell('warning', `${labels[name]} could not be used (${firstLine(reason)}): inverse kinematics takes over.`),
+        tell(
+          'warning',
+          `${labels[name]} could not be used, so inverse kinematics takes over. Reason: ${firstLine(reason)}`,
+        ),
     });
     this.#second.ready.catch((error: unknown) =>
       tell('error', `The second body could not be shown: ${firstLine(reasonOf(error))}`),
@@ -316,7 +331,7 @@ export class MocapView {
       tell('info', 'The link is copied.');
     } catch {
       // reason: a browser may refuse; the address bar has the link then.
-      tell('info', 'The link stands in the address bar.');
+      tell('info', 'The link is in the address bar.');
     }
   }
 }

@@ -4,7 +4,7 @@ import { type MocapSource, type PreparedMocap, prepareMocap } from 'threepoint/c
 import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
 import type { MocapFile, MocapFiles } from './mocap-files';
 
-/** What the worker says: how far it is [0, 1], what it read, or why it could not. */
+/** The worker's messages: progress [0, 1], the result, or the reason of a failure. */
 export type MocapAnswer =
   | { readonly share: number }
   | { readonly prepared: PreparedMocap }
@@ -26,11 +26,11 @@ async function sourceOf({ motion, skeleton, map }: MocapFiles): Promise<MocapSou
   if (skeleton) return { format: 'amc', ...(await named(motion)), skeleton: await named(skeleton), ...mapped };
   if (!/\.vrma$/i.test(name)) return { format: 'bvh', ...(await named(motion)), ...mapped };
   const chunks = chunksOf(new Uint8Array(await bytesOf(motion)));
-  if (!chunks) throw new Error(`${name}: no VRM Animation: it is no GLB file, or cut short`);
+  if (!chunks) throw new Error(`${name}: not a VRM Animation: not a GLB file, or truncated`);
   try {
     return { format: 'vrma', name, description: JSON.parse(chunks.json), binary: chunks.binary, ...mapped };
   } catch (error) {
-    throw new Error(`${name}: its description is no JSON: ${reasonOf(error)}`);
+    throw new Error(`${name}: its description is not JSON: ${reasonOf(error)}`);
   }
 }
 

@@ -30,7 +30,7 @@ export function readMocap(
       }
     });
     worker.addEventListener('error', ({ message }) => {
-      reject(new Error(`${nameOf(motion)}: it cannot be read (${message || 'its reader did not start'})`));
+      reject(new Error(`${nameOf(motion)}: it could not be read (${message || 'its reader did not start'})`));
     });
     const files: MocapFiles = {
       motion: forWorker(motion),

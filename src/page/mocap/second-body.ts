@@ -20,7 +20,7 @@ export interface SecondBodyOptions {
   onFallback(estimator: EstimatorName, reason: string): void;
 }
 
-/** Another method's body of the same person, beside the first. */
+/** Another method's body of the same person, next to the first. */
 export class SecondBody {
   readonly place = new Group();
   readonly #body: BodySolver;
@@ -56,7 +56,7 @@ export class SecondBody {
     return pose?.body ?? null;
   }
 
-  /** The next frame lies elsewhere. */
+  /** The next frame is elsewhere in time. */
   jumped(): void {
     this.#body.discontinuity();
   }

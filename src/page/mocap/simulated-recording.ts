@@ -6,7 +6,7 @@ import { trackedWidth } from 'threepoint/core/mocap/simulate-trackers';
 import type { Replayable, TrackingFrames } from 'threepoint/core/tracking/recording';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
-/** What the trackers saw of a clip. A frame is made when it is asked for and not kept: half an hour of them would hold up the page. */
+/** The tracking of a clip. Frames are computed on request and not kept: half an hour of them would block the page. */
 class SimulatedFrames implements TrackingFrames {
   readonly length: number;
   readonly #numbers: Float32Array;

@@ -11,7 +11,7 @@ declare const self: ServiceWorkerGlobalScope & {
   readonly keptFiles: readonly { readonly url: string; readonly revision: string | null; readonly integrity: string }[];
 };
 
-/** The windows whose page is another version than the kept one, by their ids. A worker is often ended and begun: it is written down. */
+/** The ids of windows whose page is another version than the stored one. They are stored, because browsers often restart workers. */
 const strangersCache = `threepoint windows ${self.registration.scope}`;
 
 const kept = new PrecacheController({
@@ -39,7 +39,7 @@ self.addEventListener('activate', (event) => {
   event.waitUntil(Promise.all([kept.activate(event), caches.delete(strangersCache)]));
 });
 
-/** A host that is silent for so long [ms] is taken to be away. */
+/** The time after which a host that does not answer counts as offline [ms]. */
 const patienceMs = 4000;
 
 /** A study runs on what its server serves now; what computes by WebGPU is too large to be kept, and must fit its page. */

@@ -1,7 +1,7 @@
 import { CanvasTexture, LinearMipmapLinearFilter, SRGBColorSpace } from 'three';
 import { anisotropyOf, type Quality } from './renderer';
 
-/** A texture whose picture is a 2D canvas. */
+/** A texture that is drawn on a 2D canvas. */
 export interface DrawnTexture {
   readonly texture: CanvasTexture;
   /** Clears the canvas and draws. Call it only when something changed. */
@@ -14,7 +14,7 @@ export function createDrawnTexture(width: number, height: number, quality: Quali
   canvas.width = width;
   canvas.height = height;
   const context = canvas.getContext('2d');
-  if (!context) throw new Error('scene/drawn-texture: this browser offers no 2D canvas');
+  if (!context) throw new Error('scene/drawn-texture: this browser does not support 2D canvas');
   const texture = new CanvasTexture(canvas);
   texture.colorSpace = SRGBColorSpace;
   texture.minFilter = LinearMipmapLinearFilter;

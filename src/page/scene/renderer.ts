@@ -26,11 +26,11 @@ function drawsInSoftware(context: WebGLRenderingContext | WebGL2RenderingContext
   return /swiftshader|llvmpipe|software/i.test(name);
 }
 
-/** The quality this machine can afford when none was asked for; throws where there is no WebGL 2. */
+/** Returns the quality that this machine can afford. Throws without WebGL 2. */
 export function affordableQuality(): Quality {
   const context = document.createElement('canvas').getContext('webgl2');
   if (!context)
-    throw new Error('This browser offers no WebGL 2: switch on hardware acceleration or use another browser.');
+    throw new Error('This browser does not support WebGL 2. Turn on hardware acceleration or use another browser.');
   const software = drawsInSoftware(context);
   context.getExtension('WEBGL_lose_context')?.loseContext();
   return software ? 'low' : 'high';
@@ -68,5 +68,5 @@ export function fitToWindow(renderer: WebGLRenderer, quality: Quality): void {
   renderer.setSize(window.innerWidth, window.innerHeight, false);
 }
 
-/** The camera of a session: the headset places it, this only says how near and how far it sees. */
+/** Creates the camera of a session. The headset places it; this sets its near and far planes only. */
 export const createHeadsetCamera = (): PerspectiveCamera => new PerspectiveCamera(70, 1, 0.05, 90);

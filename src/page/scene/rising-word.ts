@@ -51,7 +51,7 @@ export class RisingWord {
     });
   }
 
-  /** At this place, arena frame, so long [s] after it began; before that and after its time it is hidden. `eyes`: of the reader. */
+  /** Shows the word at this place, arena frame, at this age [s]; before and after its time it is hidden. `eyes`: the reader's. */
   show(place: Vec3, age: number, eyes: Vec3): void {
     const share = age / this.#options.seconds;
     this.object.visible = share >= 0 && share < 1;

@@ -24,7 +24,7 @@ export interface Lighting {
     readonly resolution: number;
     /** Penumbra [texels]. */
     readonly softness: number;
-    /** Its middle on the floor [m]; null: it goes with the body that stands there. */
+    /** Its centre on the floor [m]; null: it follows the body. */
     readonly centre: { readonly x: number; readonly z: number } | null;
   };
   readonly fog: { readonly color: string; readonly near: number; readonly far: number };

@@ -8,7 +8,7 @@ import { distance, vec3 } from 'threepoint/core/math/vec3';
 import { deviceJoint } from 'threepoint/core/tracking/device-body';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
-/** Half-life of the mean [s]: long enough to be read. */
+/** Half-life of the mean [s]: long enough to read. */
 const halfLife = 0.5;
 
 /** What the joints are called on the page. */
@@ -32,7 +32,7 @@ export class DeviceDifference {
   #skeletonOf: Calibration | null = null;
   #time = Number.NaN;
 
-  /** Every frame that is drawn; one without a body of the device says nothing. */
+  /** Called with every drawn frame. A frame without a body of the device is ignored. */
   observe({ time, deviceBody }: TrackingFrame, { body }: AvatarPose, calibration: Calibration): void {
     if (!deviceBody || !body) {
       this.#time = Number.NaN;

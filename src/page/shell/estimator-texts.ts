@@ -5,7 +5,10 @@ export const estimatorTexts: Readonly<Record<EstimatorName, { readonly label: st
   learned: { label: 'Learned', text: 'A network trained on motion capture corrects the IK body.' },
   ik: { label: 'Inverse kinematics', text: 'Spine, clavicles and elbows in closed form.' },
   paper: { label: 'Paper', text: 'The network of Anvari, Park and Kim (2023), as published.' },
-  device: { label: 'Device', text: 'The body that the headset itself tracks; Learned where it reports none.' },
+  device: {
+    label: 'Device',
+    text: 'The body that the headset itself tracks. Learned replaces it when the headset reports none.',
+  },
   'hands-only': { label: 'Hands only', text: 'Head and hands as tracked, no body between them.' },
 };
 

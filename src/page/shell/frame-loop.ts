@@ -15,7 +15,7 @@ export interface FrameParts<DeviceFrame> {
   skin(pose: AvatarPose, frame: TrackingFrame): void;
   /** Draws, mirror included; frame: what was tracked, null where nothing was. */
   render(time: number, frame: TrackingFrame | null): void;
-  /** A part threw: the page says so; the next frame is tried all the same. */
+  /** A step threw: the page reports it and continues with the next frame. */
   fail(error: unknown): void;
 }
 

@@ -8,7 +8,7 @@ import type { Headset } from './headset';
 import type { JoinedStudy } from './page-study';
 import type { Settings, SettingsWriter } from './settings';
 import type { Switches } from './switches';
-import type { Wearer } from './wearer';
+import type { UserCalibration } from './user-calibration';
 
 /** Characters of the device's name that a record keeps. */
 const longestDeviceName = 160;
@@ -22,7 +22,7 @@ export interface JoinStudyOptions extends EmbodyingParts {
   readonly activities: Activities;
   readonly timing: FrameTiming;
   readonly body: EmbodyingParts['body'] & Pick<BodySolver, 'wearerCalibration'>;
-  readonly wearer: Pick<Wearer, 'calibrate' | 'forget'>;
+  readonly userCalibration: Pick<UserCalibration, 'calibrate' | 'forget'>;
 }
 
 /** Makes the tasks that studies run, by the names of their activities. */
@@ -47,7 +47,7 @@ export async function createRunners({
 
 /** Joins a study, which decides from then on what is played and with which body. */
 export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy> {
-  const { asked, switches, settings, writer, headset, timing, body, wearer } = options;
+  const { asked, switches, settings, writer, headset, timing, body, userCalibration } = options;
   const { createStudyRun } = await import('threepoint-study/participant/study-run');
   writer.change({ startSignal: true });
   const runners = await createRunners(options);
@@ -59,8 +59,8 @@ export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy>
     room: () => headset.room,
     calibration: () => body.wearerCalibration,
     setCalibration(calibration) {
-      if (calibration) wearer.calibrate(calibration, 'measured');
-      else wearer.forget();
+      if (calibration) userCalibration.calibrate(calibration, 'measured');
+      else userCalibration.forget();
     },
     embody: (embodiment, seed) => embody(options, embodiment, seed),
     estimator: () => body.estimator,

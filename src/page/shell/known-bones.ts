@@ -2,7 +2,7 @@ import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
 import * as v from 'valibot';
 import { boneMap, type PreferenceStore } from './preferences';
 
-/** The maps of so many files are remembered, the newest ones. */
+/** The number of files whose maps are stored, the newest ones. */
 const mostFiles = 20;
 
 /** The maps of bones that were given for files of unknown naming, by the files' SHA-256; on this device only. */

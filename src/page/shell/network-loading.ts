@@ -16,7 +16,7 @@ export interface NetworkLoadingOptions {
   readonly loading: Pick<PageLoading, 'report'>;
 }
 
-/** Brings networks by name, by the runtime. The code that runs them is asked for at once. */
+/** Loads networks by name. The download of the runtime starts at once. */
 export function createNetworkLoader(options: NetworkLoadingOptions): BodySolverOptions['networks'] {
   const { provider, notices, loading } = options;
   const networksArrive = import('threepoint/api/onnx').then(({ onnxNetworks }) =>

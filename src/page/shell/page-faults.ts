@@ -5,14 +5,14 @@ import type { FrameTiming } from './frame-timing';
 import type { Headset } from './headset';
 
 /** What no part has caught becomes a sentence. */
-export function tellOfFaults(notices: Pick<Notices, 'show'>): void {
+export function reportFaults(notices: Pick<Notices, 'show'>): void {
   const wentWrong = (text: string) => notices.show('error', `Something went wrong: ${firstLine(text)}`);
   window.addEventListener('error', ({ message }) => wentWrong(message));
   window.addEventListener('unhandledrejection', ({ reason }) => wentWrong(reasonOf(reason)));
 }
 
 /** In place of a page that cannot start. */
-export function showThatNothingStarts(error: unknown): void {
+export function showStartFailure(error: unknown): void {
   const text = document.createElement('p');
   text.className = 'fault';
   text.setAttribute('role', 'alert');
@@ -28,11 +28,11 @@ export interface LostGraphicsOptions {
   readonly timing: Pick<FrameTiming, 'reset'>;
 }
 
-const pictureLost = 'The graphics device was lost. The picture comes back as soon as the browser gives it back.';
-const sessionLost = 'The graphics device was lost, and VR with it. Your game goes on: enter VR again.';
+const pictureLost = 'The graphics device was lost. The picture returns when the browser restores it.';
+const sessionLost = 'The graphics device was lost, and VR has ended. Your game continues. Enter VR again.';
 
-/** The page outlives its graphics device and says what becomes of the picture. */
-export function surviveLostGraphics({ canvas, notices, headset, studio, timing }: LostGraphicsOptions): void {
+/** Keeps the page alive when the graphics device is lost, and notifies the user. */
+export function handleLostGraphics({ canvas, notices, headset, studio, timing }: LostGraphicsOptions): void {
   canvas.addEventListener('webglcontextlost', () => {
     notices.show('warning', headset.worn ? sessionLost : pictureLost);
     // What the headset shows was drawn by the lost device; a session cannot be given another one.

@@ -1,6 +1,6 @@
-import { createProgress, type Progress } from 'threepoint-ui/progress';
+import { createProgress, type Progress } from 'threepoint-ui/progress-bar';
 
-/** The page on its way to the first body: the bar that people see, and when each step was reached, for tools. */
+/** The page until it shows the first body: the progress bar, and the time of each step for tools. */
 export class PageLoading {
   readonly #progress: Progress = createProgress([
     { name: 'the avatar', weight: 3 },
@@ -10,7 +10,7 @@ export class PageLoading {
   readonly #marks: Record<string, number> = {};
   #ready = false;
 
-  /** Everything asked for is there, or known not to come. */
+  /** Everything has been loaded, or has failed. */
   get ready(): boolean {
     return this.#ready;
   }

@@ -11,10 +11,10 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Notices } from 'threepoint-ui/notices';
 import type { MocapView, Outlook, Replay } from '../mocap/mocap-view';
 import type { Recorder } from '../studio/recorder';
+import { fetchOwnAvatar } from './avatar-loader';
 import { estimatorTexts } from './estimator-texts';
 import type { PreferenceStore } from './preferences';
 import type { Settings } from './settings';
-import { fetchOwnAvatar } from './shown-avatar';
 
 export interface PageMocapOptions {
   readonly scene: Object3D;
@@ -59,7 +59,7 @@ export class PageMocap {
       this.#view ??= this.#build(MocapView);
     } catch (error) {
       const reason = firstLine(reasonOf(error));
-      this.#options.notices.show('error', `What shows motion capture could not be loaded: ${reason}`);
+      this.#options.notices.show('error', `The motion capture viewer could not be loaded: ${reason}`);
     }
     await this.#view?.open(sources, outlook, asked);
   }
@@ -69,7 +69,7 @@ export class PageMocap {
     return this.#view?.covers ?? null;
   }
 
-  /** How far right of the body the middle of what is shown lies [m]. */
+  /** The distance of the middle of what is shown to the right of the body [m]. */
   get aside(): number {
     return this.#view?.aside ?? 0;
   }
@@ -87,7 +87,10 @@ export class PageMocap {
   #build(View: typeof MocapView): MocapView {
     const { scene, body, networks, store, notices, prepare, onChange } = this.#options;
     return new View({
-      ...{ scene, networks, labels, prepare },
+      scene,
+      networks,
+      labels,
+      prepare,
       region: document.body,
       replay: this.#replay(),
       method: {

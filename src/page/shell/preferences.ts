@@ -13,10 +13,13 @@ const calibration = v.pipe(
     gazePitch: v.optional(v.number()),
     handTilts: v.optional(handTiltsSchema),
   }),
-  v.check((measures) => calibrationComplaint(measures) === null, 'no person measures that'),
+  v.check((measures) => calibrationComplaint(measures) === null, 'no person has these measurements'),
 );
 
-const boneName = v.custom<BoneName>((name) => typeof name === 'string' && boneNames.has(name), 'no bone is called so');
+const boneName = v.custom<BoneName>(
+  (name) => typeof name === 'string' && boneNames.has(name),
+  'there is no bone of this name',
+);
 /** VRM's names of bones, and what a file calls them. */
 export const boneMap = v.record(
   boneName,
@@ -77,19 +80,20 @@ export function parsePreferences(text: string | null): { preferences: Preference
     const where = v.getDotPath(issue) ?? 'the whole';
     return {
       preferences: {},
-      complaint: `What this browser remembered of your calibration and settings was damaged (${where}), so the defaults apply. Calibrate again to be remembered.`,
+      complaint: `The stored calibration and settings are damaged (${where}), so the defaults apply. Calibrate again to store a new calibration.`,
     };
   } catch (error) {
     if (!(error instanceof SyntaxError)) throw error;
     return {
       preferences: {},
       complaint:
-        'What this browser remembered of your calibration and settings was unreadable, so the defaults apply. Calibrate again to be remembered.',
+        'The stored calibration and settings are unreadable, so the defaults apply. Calibrate again to store a new calibration.',
     };
   }
 }
 
-const denied = 'This browser lets the page keep nothing: calibration and settings last for this visit only.';
+const denied =
+  'This browser does not let the page store anything, so calibration and settings are lost when you close it.';
 
 /** Keeps preferences in a storage (localStorage); null: the browser grants none. `onDenied` is called once if the storage refuses to store. */
 export function createPreferenceStore(

@@ -8,7 +8,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { StudyProbe } from 'threepoint-study/participant/study-run';
 import type { Notices } from 'threepoint-ui/notices';
 import type { PlayerProbe } from '../activity/activity';
-import type { KeptPage, KeptState } from '../offline/kept-page';
+import type { OfflineCopy, OfflineCopyState } from '../offline/offline-copy';
 import type { Recorder } from '../studio/recorder';
 import type { Activities } from './activities';
 import type { GameProbe } from './activity-registry';
@@ -23,9 +23,9 @@ import type { TrackingSource } from './tracking-source';
 
 type Triple = readonly [number, number, number];
 
-/** What the page is doing, as plain data: for tests and tools, to be read and not to be written. */
+/** The state of the page as plain data, for tests and tools; read-only. */
 export interface Probe {
-  /** A body stands on the floor. */
+  /** The first body is drawn. */
   readonly ready: boolean;
   /** 'loading', 'desktop', 'vr'. */
   readonly activity: 'loading' | 'desktop' | 'vr';
@@ -58,7 +58,7 @@ export interface Probe {
   /** Milliseconds from opening the page to each mark of loading. */
   readonly loading: Readonly<Record<string, number>>;
   /** What this browser keeps of the page for a visit without a network. */
-  readonly kept: KeptState;
+  readonly kept: OfflineCopyState;
   /** What the graphics device holds for us, and how dark the edges of the picture are (0 to 1). */
   readonly drawing: {
     readonly geometries: number;
@@ -77,7 +77,7 @@ export interface Probe {
 /** The parts of the page that a probe reads. */
 export interface ProbeParts {
   readonly loading: PageLoading;
-  readonly kept: Pick<KeptPage, 'state'>;
+  readonly kept: Pick<OfflineCopy, 'state'>;
   readonly settings: Pick<Settings, 'calibrationSource'>;
   readonly notices: Pick<Notices, 'current'>;
   readonly timing: Pick<FrameTiming, 'summary'>;

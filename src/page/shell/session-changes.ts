@@ -36,7 +36,7 @@ export class SessionChanges implements HeadsetListener {
 
   left(): void {
     const { recorder, controls, view } = this.#options;
-    // What moves the body from now on is not what the recording says.
+    // Another source moves the body now, which the recording's header does not name.
     if (recorder.mode === 'recording') recorder.stop();
     controls.setWorn(false);
     view.setView(view.view);

@@ -14,10 +14,10 @@ export interface Settings extends ActivitySettings {
   readonly largerText: boolean;
   /** Keys without a modifier act: not where speech or a tremor presses them by chance. */
   readonly singleKeys: boolean;
-  /** Whether the controls are to be open where there is place for them beside the picture. */
+  /** Whether the controls are open if there is space for them beside the picture. */
   readonly panel: boolean;
   readonly palette: string;
-  /** Which of our own bodies is worn where no other avatar is. */
+  /** The page's own avatar that is worn unless another one is. */
   readonly ownBody: OwnBody;
   /** The skin tone of a human avatar; undefined: the avatar's own. */
   readonly skinTone: SkinTone | undefined;

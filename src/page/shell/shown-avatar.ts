@@ -1,99 +1,73 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
-import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
-import { decoders } from 'threepoint/avatar/decoders/decoders';
+import type { Avatar } from 'threepoint/avatar/avatar';
 import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
-import { checkInWorker } from 'threepoint/avatar/file/check-in-worker';
-import { hashOf } from 'threepoint/avatar/file/file-hash';
-import { avatarLimits } from 'threepoint/avatar/file/inspect-avatar';
 import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
-import { withNamedBones } from 'threepoint/avatar/humanoid/name-bones';
 import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones';
-import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
 import { labelOf } from 'threepoint/avatar/own-bodies';
-import { bodyOf, type OwnBody, ownAvatarOf, plainAvatar, skinToneOf } from 'threepoint/core/body/avatar-ref';
+import { bodyOf, type OwnBody, plainAvatar, skinToneOf } from 'threepoint/core/body/avatar-ref';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
+import { nameOf } from 'threepoint-ui/limited-files';
 import type { Notices } from 'threepoint-ui/notices';
-import { pageFolder } from 'threepoint-ui/page-folder';
-import type { OwnWear } from '../activity/activity-context';
+import type { UserAvatar } from '../activity/activity-context';
 import type { Studio } from '../studio/studio';
-import type { KnownBones } from './known-bones';
+import { AvatarLoader, type AvatarLoaderOptions, fetchOwnAvatar, type LoadedUserAvatar } from './avatar-loader';
 import type { Settings } from './settings';
 
-export interface ShownAvatarOptions {
+export interface ShownAvatarOptions extends AvatarLoaderOptions {
   readonly scene: Studio['scene'];
   readonly settings: Pick<Settings, 'palette' | 'upperBodyOnly' | 'ownBody' | 'skinTone'>;
   readonly body: Pick<BodySolver, 'calibration'>;
   readonly notices: Pick<Notices, 'show'>;
-  /** The maps of bones that were given for files of unknown naming. */
-  readonly knownBones: Pick<KnownBones, 'of' | 'keep'>;
-  /** Brings what a body needs to the graphics device before it is shown. */
-  prepare(object: Avatar['object']): Promise<void>;
   onChange(): void;
 }
 
-/** A body from a file. */
-export const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megabytes };
-const howToTell = 'Say which is which: Controls, Avatar, Bones of this file.';
-
-/** The file of one of our own bodies, which lie beside the page, on its way; `onProgress` hears the share [0, 1] that has come. */
-export const fetchOwnAvatar = (name: OwnBody, onProgress?: (share: number) => void): Promise<ArrayBuffer> =>
-  readLimited(`${pageFolder()}/avatars/${name}.vrm`, avatarFile, onProgress && { onProgress });
-
-/** A file that came whole, but whose bones are to be told first. */
+/** A loaded file whose bones could not be matched to a humanoid: the user must map them. */
 export interface WaitingForBones {
   readonly name: string;
-  /** What the file calls its bones. */
+  /** The names of the file's bones. */
   readonly found: readonly string[];
-  /** Those that are known, or were given last. */
+  /** The bones that are known, or that the user gave last. */
   readonly bones: BoneMap;
-  /** What is wrong with them, in a sentence; null: nothing was given yet. */
+  /** A sentence about what is wrong with them; null: the user gave none yet. */
   readonly complaint: string | null;
 }
 
-/** A file as others can read it, who know no map of its bones; its hash is null where this page cannot tell it. */
-async function fileFor({ bytes, hash }: CheckedAvatar, bones: BoneMap | undefined) {
-  if (!bones) return { file: new Blob([bytes]), hash };
-  const named = await withNamedBones(bytes, bones);
-  return { file: new Blob([named]), hash: await hashOf(named) };
-}
-
-/** A body that has come, what to call it, and as what it is told to others. */
-interface Arrived {
-  readonly avatar: Avatar;
-  readonly worn: OwnWear;
-}
-
-/** What was asked for, until it is shown, refused or given up. */
-interface Asked {
+/** An avatar that was requested, until it is shown, refused or cancelled. */
+interface Request {
   readonly turn: number;
   readonly name: string;
+  /** It is one of the page's own. */
   readonly own: boolean;
-  readonly ending: AbortController;
-  /** The file, once it has come whole; null: not yet, or it is one of ours. */
+  readonly cancellation: AbortController;
+  /** The checked file; null: not loaded yet, or one of the page's own. */
   checked: CheckedAvatar | null;
 }
 
-/** The avatar on the stage. One is shown at a time; another takes its place only when it has arrived whole. */
+/** Returns the reason of a failure without the name of its file. */
+const reasonFor = (name: string, error: unknown): string => firstLine(reasonOf(error)).replace(`${name}: `, '');
+
+/** The avatar on the stage. Another one replaces it only when it has been loaded completely. */
 export class ShownAvatar {
   readonly #options: ShownAvatarOptions;
+  readonly #loader: AvatarLoader;
   #avatar: Avatar | null = null;
   #name = labelOf(plainAvatar);
-  #worn: OwnWear = plainAvatar;
+  #worn: UserAvatar = plainAvatar;
   #seatPalette: string | null = null;
   #pending: string | null = null;
-  /** Counts what was asked for; and which of that is shown. */
-  #asked = 0;
+  /** The number of requests, and that of the request that is shown. */
+  #requested = 0;
   #shown = 0;
-  /** What is on its way and can be given up; null: nothing is. */
-  #coming: Asked | null = null;
+  /** The file that is loading; null: none. */
+  #loading: Request | null = null;
   #waiting: (WaitingForBones & { readonly checked: CheckedAvatar }) | null = null;
 
   constructor(options: ShownAvatarOptions) {
     this.#options = options;
+    this.#loader = new AvatarLoader(options);
   }
 
-  /** null: none has arrived yet. */
+  /** null: none has been loaded yet. */
   get current(): Avatar | null {
     return this.#avatar;
   }
@@ -102,180 +76,164 @@ export class ShownAvatar {
     return this.#name;
   }
 
-  /** Whether it is our own, whose colours can be chosen. */
+  /** Whether it is one of the page's own, whose colours can be chosen. */
   get own(): boolean {
     return typeof this.#worn === 'string';
   }
 
-  /** Which of our own it is; null: another. */
+  /** The page's own avatar that is shown; null: it is a file. */
   get ownBody(): OwnBody | null {
     return typeof this.#worn === 'string' ? bodyOf(this.#worn) : null;
   }
 
-  /** As what it is told to others: the same object for as long as it is shown. */
-  get worn(): OwnWear {
+  /** The avatar for other players: the same object for as long as it is shown. */
+  get worn(): UserAvatar {
     return this.#worn;
   }
 
-  /** The file of the avatar that is shown. Rejects with a sentence where it can be had no longer. */
+  /** Returns the file of the avatar. Rejects with a reason if it can no longer be read. */
   file(): Promise<ArrayBuffer> {
     return typeof this.#worn === 'string' ? fetchOwnAvatar(bodyOf(this.#worn)) : this.#worn.file.arrayBuffer();
   }
 
-  /** What became of the avatar that was asked for last, in words: on its way, or refused; null: it is shown. */
+  /** The state of the last request in words; null: it is shown. */
   get pending(): string | null {
     return this.#pending;
   }
 
-  /** Whether another is on its way that can be given up. */
-  get onItsWay(): boolean {
-    return this.#coming !== null;
+  /** Whether a file is loading, which the user can cancel. */
+  get isLoading(): boolean {
+    return this.#loading !== null;
   }
 
-  /** A file whose bones are to be told; null: none. */
+  /** A file whose bones the user must map; null: none. */
   get waiting(): WaitingForBones | null {
     return this.#waiting;
   }
 
-  /** The palette of a seat; null: the one the user chose. */
+  /** Sets the palette of a seat; null: the palette that the user chose. */
   wear(palette: string | null): void {
     this.#seatPalette = palette;
     this.recolour();
   }
 
-  /** The palette of the seat, else the one the user chose, is on our own bodies. */
+  /** Applies the palette of the seat, else the user's, to one of the page's own avatars. */
   recolour(): void {
     if (this.own) this.#avatar?.setPalette(this.#seatPalette ?? this.#options.settings.palette);
   }
 
-  /** Gives up what is on its way, or waits for its bones; what is shown stays. */
+  /** Cancels the file that is loading or waits for its bones. The shown avatar stays. */
   cancel(): void {
-    this.#coming?.ending.abort();
-    this.#coming = null;
+    this.#loading?.cancellation.abort();
+    this.#loading = null;
     this.#waiting = null;
     this.#pending = null;
     this.#options.onChange();
   }
 
   /**
-   * The body of our own that the user chose takes its place, or stays there; what is still on its way is not waited for. `bytes`: its file, where
-   * that travels already. False and a notice where it cannot be had.
+   * Shows the page's own avatar that the user chose. Requests before this are ignored when they arrive. `bytes`: its file, if the download has started
+   * already. Returns false after a notice if it fails.
    */
   openOwn(bytes?: Promise<ArrayBuffer>): Promise<boolean> {
     const { ownBody, skinTone } = this.#options.settings;
-    const label = labelOf(ownBody);
-    return this.#arrive(this.#ask(label, true), async () => ({
-      avatar: await createAvatarBetweenFrames(await parseAvatar(await (bytes ?? fetchOwnAvatar(ownBody)), label)),
-      worn: ownAvatarOf(ownBody, skinTone),
-    }));
+    const request = this.#request(labelOf(ownBody), true);
+    return this.#arrive(request, () => this.#loader.loadOwn(ownBody, skinTone, bytes));
   }
 
-  /** Loads another; what goes wrong becomes a notice, and false. Of several the one asked for last is shown. */
+  /** Shows the avatar of a file or an address. Returns false after a notice if it fails. Of several requests the last one is shown. */
   open(source: string | File): Promise<boolean> {
-    const asked = this.#ask(nameOf(source), false);
-    return this.#arrive(asked, async () => {
-      const { signal } = asked.ending;
-      const bytes = await readLimited(source, avatarFile, { onProgress: this.#progressOf(asked), signal });
-      const checked = await checkInWorker(bytes, { name: asked.name, unpacked: Object.keys(decoders) });
-      asked.checked = checked;
-      const bones = checked.hash === null ? undefined : this.#options.knownBones.of(checked.hash);
-      return this.#read(checked, asked.name, bones);
+    const request = this.#request(nameOf(source), false);
+    return this.#arrive(request, async () => {
+      const { signal } = request.cancellation;
+      request.checked = await this.#loader.check(source, { onProgress: this.#progressOf(request), signal });
+      return this.#loader.build(request.checked, request.name);
     });
   }
 
-  /** The file that waits for them has these bones. False, and what is wrong in `waiting`, where it does not. */
+  /** Maps the bones of the file that waits for them. Returns false if they do not fit; `waiting` has the reason. */
   async giveBones(bones: BoneMap): Promise<boolean> {
     const waiting = this.#waiting;
     if (!waiting) return false;
     const { name, checked } = waiting;
     try {
-      const arrived = await this.#read(checked, name, bones);
+      const loaded = await this.#loader.buildWith(checked, name, bones);
       if (this.#waiting !== waiting) {
-        arrived.avatar.dispose();
+        loaded.avatar.dispose();
         return false;
       }
-      if (checked.hash !== null) this.#options.knownBones.keep(checked.hash, bones);
-      this.#asked += 1;
-      this.#show(arrived, name, this.#asked);
+      this.#requested += 1;
+      this.#show(loaded, name, this.#requested);
       return true;
     } catch (error) {
-      const complaint = firstLine(reasonOf(error)).replace(`${name}: `, '');
-      if (this.#waiting === waiting) this.#waiting = { ...waiting, bones, complaint };
+      if (this.#waiting === waiting) this.#waiting = { ...waiting, bones, complaint: reasonFor(name, error) };
       return false;
     } finally {
       this.#options.onChange();
     }
   }
 
-  async #read(checked: CheckedAvatar, name: string, bones: BoneMap | undefined): Promise<Arrived> {
-    const avatar = await createAvatarBetweenFrames(await parseChecked(checked, name, { decoders, bones }));
-    try {
-      await this.#options.prepare(avatar.object);
-      return { avatar, worn: { name, ...(await fileFor(checked, bones)) } };
-    } catch (error) {
-      avatar.dispose();
-      throw error;
-    }
-  }
-
-  #ask(name: string, own: boolean): Asked {
-    this.#asked += 1;
-    const asked: Asked = { turn: this.#asked, name, own, ending: new AbortController(), checked: null };
-    this.#coming = own ? null : asked;
+  #request(name: string, own: boolean): Request {
+    this.#requested += 1;
+    const request: Request = { turn: this.#requested, name, own, cancellation: new AbortController(), checked: null };
+    this.#loading = own ? null : request;
     this.#waiting = null;
-    this.#tell(asked, '');
-    return asked;
+    this.#report(request, `${name} is loading.`);
+    return request;
   }
 
-  #tell({ turn, own, name }: Asked, how: string): void {
-    if (turn !== this.#asked || own) return;
-    this.#pending = `${name} is on its way${how}.`;
+  #report({ turn, own }: Request, text: string): void {
+    if (turn !== this.#requested || own) return;
+    this.#pending = text;
     this.#options.onChange();
   }
 
-  #progressOf(asked: Asked): (share: number) => void {
-    let told = 0;
+  #progressOf(request: Request): (share: number) => void {
+    const { name } = request;
+    let reported = 0;
     return (share) => {
       const percent = Math.floor(share * 20) * 5;
-      if (percent > told) this.#tell(asked, percent < 100 ? `: ${percent} %` : ': it is being looked at');
-      told = percent;
+      if (percent > reported)
+        this.#report(request, percent < 100 ? `${name} is loading: ${percent} %.` : `${name} is being checked.`);
+      reported = percent;
     };
   }
 
-  /** Shows what `load` brings unless something that was asked for later has come before it. */
-  async #arrive(asked: Asked, load: () => Promise<Arrived>): Promise<boolean> {
-    const { turn, name, own, ending } = asked;
+  /** Shows the avatar that `load` returns, unless a later request has been shown before. */
+  async #arrive(request: Request, load: () => Promise<LoadedUserAvatar>): Promise<boolean> {
+    const { turn, name, cancellation } = request;
     try {
-      const arrived = await load();
-      if (turn < this.#shown || ending.signal.aborted) {
-        arrived.avatar.dispose();
+      const loaded = await load();
+      if (turn < this.#shown || cancellation.signal.aborted) {
+        loaded.avatar.dispose();
         return false;
       }
-      this.#show(arrived, name, turn);
+      this.#show(loaded, name, turn);
       return true;
     } catch (error) {
-      if (ending.signal.aborted) return false;
-      if (error instanceof UnknownBones && asked.checked && turn === this.#asked) {
-        const { found, told } = error;
-        this.#waiting = { name, found, bones: told, complaint: null, checked: asked.checked };
-        this.#options.notices.show(
-          'error',
-          `${name} could not be shown: the names of its bones tell no body. ${howToTell}`,
-        );
-        this.#pending = `${name} waits to be told which bone is which.`;
-        return false;
-      }
-      const reason = firstLine(reasonOf(error)).replace(`${name}: `, '');
-      this.#options.notices.show('error', `${name} could not be shown: ${reason}`);
-      if (turn === this.#asked) this.#pending = own ? null : `${name} could not be shown.`;
+      if (!cancellation.signal.aborted) this.#refuse(request, error);
       return false;
     } finally {
-      if (this.#coming === asked) this.#coming = null;
+      if (this.#loading === request) this.#loading = null;
       this.#options.onChange();
     }
   }
 
-  #show({ avatar, worn }: Arrived, name: string, turn: number): void {
+  #refuse({ turn, name, own, checked }: Request, error: unknown): void {
+    const { notices } = this.#options;
+    const isNewest = turn === this.#requested;
+    if (error instanceof UnknownBones && checked && isNewest) {
+      this.#waiting = { name, found: error.found, bones: error.told, complaint: null, checked };
+      this.#pending = `${name} is waiting for its bones to be mapped.`;
+      const how = 'Map them by hand: Controls, Avatar, Bones of this file.';
+      notices.show('error', `${name} could not be shown. Its bones could not be matched to a humanoid. ${how}`);
+      return;
+    }
+    notices.show('error', `${name} could not be shown: ${reasonFor(name, error)}`);
+    if (isNewest) this.#pending = own ? null : `${name} could not be shown.`;
+  }
+
+  #show({ avatar, worn }: LoadedUserAvatar, name: string, turn: number): void {
     const { scene, settings, body } = this.#options;
     this.#avatar?.dispose();
     this.#avatar = avatar;
@@ -283,7 +241,7 @@ export class ShownAvatar {
     this.#worn = worn;
     this.#shown = turn;
     this.#waiting = null;
-    if (turn === this.#asked) this.#pending = null;
+    if (turn === this.#requested) this.#pending = null;
     scene.add(avatar.object);
     this.recolour();
     if (typeof worn === 'string') avatar.setSkinTone(skinToneOf(worn));

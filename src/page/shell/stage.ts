@@ -19,10 +19,10 @@ const mirrorAside = { x: 1.95, z: -0.1, turned: -1.3 };
 const outOfSight = 100;
 /** Longest step of a camera that follows [s]: a page that was asleep does not leap. */
 const longestStep = 0.1;
-/** A pelvis hangs at this share of the eyes' height, where no body says better. */
+/** The height of the pelvis as a share of the eye height, without a body. */
 const pelvisShare = 0.58;
 
-/** One picture: who is in it and who sees it. */
+/** One picture: its people and its viewer. */
 export interface Shot {
   readonly time: number;
   /** null: the head is not seen. */
@@ -30,7 +30,7 @@ export interface Shot {
   /** null: not loaded yet. */
   readonly avatar: Avatar | null;
   readonly inSession: boolean;
-  /** How far right of the body the middle of what is looked at lies [m]. */
+  /** The distance of the middle of what is looked at to the right of the body [m]. */
   readonly aside: number;
   /** The person that a camera without a body of its own looks at; null: there is a body. */
   readonly watched: Watched | null;
@@ -77,7 +77,7 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
     studio,
     view,
     vignette,
-    caption: captions.say,
+    caption: captions.setText,
     placeMirror(side) {
       const { x, z, turned } = mirrorAside;
       const sign = side === 'right' ? 1 : -1;

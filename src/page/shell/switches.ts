@@ -15,7 +15,7 @@ export interface Switches {
   readonly avatar: string | null;
   readonly quality: Quality | null;
   readonly replay: string | null;
-  /** Addresses of the files of one motion, and how it is to be looked at; null: none is asked for. */
+  /** The addresses of the files of one motion, and how it is shown; null: none is requested. */
   readonly mocap: ({ readonly addresses: readonly string[] } & Outlook) | null;
   readonly view: ViewName | null;
   /** Whether the controls are open; null: as they were left. */
@@ -26,11 +26,11 @@ export interface Switches {
   readonly seed: number | null;
   /** The length of a round [s]; null: the default of the game. */
   readonly seconds: number | null;
-  /** A study and who takes part in it (null: to be asked); null: no study. */
+  /** A study and its participant (null: the page asks); null: no study. */
   readonly study: { readonly study: string; readonly participant: string | null } | null;
   /** The room on the server; null: a room in this page. */
   readonly room: string | null;
-  /** Watches, from a camera of its own. */
+  /** The user watches, with a free camera. */
   readonly spectate: boolean;
   /** Whether bots take free seats; null: in a room of one's own they do. */
   readonly bots: boolean | null;
@@ -86,12 +86,12 @@ const takes: Readonly<Record<keyof typeof schema.entries, string>> = {
   view: oneOf(viewNames),
   play: oneOf(placeNames),
   seconds: 'a whole number from 1 to 3600',
-  room: 'small letters, digits and hyphens, 32 at most, the first no hyphen',
+  room: 'lower-case letters, digits and hyphens, up to 32, not starting with a hyphen',
   bots: 'on or off',
   name: 'a name of 1 to 40 characters',
   balls: 'a whole number from 1 to 20',
   seed: 'a whole number from 0 to 999999999',
-  study: 'the id of a study: small letters, digits and hyphens',
+  study: 'the id of a study: lower-case letters, digits and hyphens',
   participant: 'a code such as P01',
 };
 
@@ -102,11 +102,11 @@ function oneOf(values: readonly string[]): string {
 /** A sentence about a value that its switch does not take. */
 function complaintOf(key: keyof typeof takes, value: string): string {
   const shown = value.length > 40 ? `${value.slice(0, 40)}…` : value;
-  const said =
+  const problem =
     value === ''
-      ? `The address says ${key}= and no value`
-      : `The address says ${key}=${shown}, which this page does not know`;
-  return `${said}: ${key} takes ${takes[key]}.`;
+      ? `The address has ${key}= without a value`
+      : `The address has ${key}=${shown}, which is not a valid value`;
+  return `${problem}: ${key} takes ${takes[key]}.`;
 }
 
 function mocapOf({ mocap, clip, at, beside, truth }: v.InferOutput<typeof schema>): Switches['mocap'] {

@@ -11,7 +11,7 @@ export function wakeSound(sound: ActivitySound, wanted: boolean, notices: Pick<N
   const giveUp = () => waiting.abort();
   sound.setMuted(!wanted);
   if (!wanted) return giveUp;
-  const silent = (error: unknown) => notices.show('info', `There is no sound: ${firstLine(reasonOf(error))}`);
+  const silent = (error: unknown) => notices.show('info', `Sound could not be started: ${firstLine(reasonOf(error))}`);
   const wake = () => {
     // The browser reports whether the touch counted: not every key does, and a finger counts when it is lifted.
     if (navigator.userActivation?.hasBeenActive === false) return;

@@ -53,7 +53,7 @@ export class Lights {
     scene.add(this.#blob, this.#key, this.#key.target, this.#rim, this.#front, this.#fill);
   }
 
-  /** Light and shadow go along with the person who stands at (x, z) [m], floor frame. */
+  /** Moves light and shadow to the person at (x, z) [m], floor frame. */
   follow(x: number, z: number): void {
     this.#blob.position.x = x;
     this.#blob.position.z = z;

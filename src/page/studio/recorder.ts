@@ -12,30 +12,30 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 /** Frames kept at most: a quarter of an hour at 120 Hz, some 50 MB, with a device's body 100. Longer recordings stop by themselves. */
 const most = 108_000;
 
-/** What a new recording says of itself. */
+/** The header of a new recording. */
 export interface RecordingSource {
   readonly device: string;
   readonly rateHz: number;
   readonly calibration: Calibration;
 }
 
-/** Keeps tracked frames and plays them back; one recording at hand at a time. Times are seconds of the caller's clock. */
+/** Keeps tracked frames and replays them, one recording at a time. Times are seconds of the caller's clock. */
 export class Recorder {
   #mode: 'idle' | 'recording' | 'replaying' = 'idle';
   #loop = true;
-  /** The recording at hand. */
+  /** The current recording. */
   #recording: Replayable | null = null;
   #name: string | null = null;
   /** The frames of the recording in progress. */
   #frames: TrackingFrame[] = [];
   #about: Omit<Replayable, 'frames'> = { device: '', rateHz: 60, calibration: null };
-  /** When the replay's newest frame was asked for; null: none was yet. */
+  /** The time of the last request for a frame of the replay; null: none yet. */
   #sampledAt: number | null = null;
   #seconds = 0;
   #paused = false;
-  /** Recordings made so far. */
+  /** The number of recordings made. */
   #count = 0;
-  /** Recordings asked for so far, and which of them is at hand or being made. */
+  /** The number of requests for a recording, and that of the current one. */
   #asked = 0;
   #newest = 0;
   readonly #onEnd: () => void;
@@ -54,7 +54,7 @@ export class Recorder {
     return this.#mode === 'replaying' ? (this.#recording?.calibration ?? null) : null;
   }
 
-  /** The recording at hand; null: none. */
+  /** The current recording; null: none. */
   get recording(): Replayable | null {
     return this.#recording;
   }
@@ -63,7 +63,7 @@ export class Recorder {
     return this.#loop;
   }
 
-  /** Whether the replay stands still. */
+  /** Whether the replay is paused. */
   get paused(): boolean {
     return this.#paused;
   }
@@ -82,7 +82,7 @@ export class Recorder {
     return this.#mode === 'recording' ? this.#frames.length : (this.#recording?.frames.length ?? 0);
   }
 
-  /** null: no recording at hand. */
+  /** The name of the current recording; null: none. */
   get name(): string | null {
     return this.#name;
   }
@@ -91,7 +91,7 @@ export class Recorder {
     this.#loop = loop;
   }
 
-  /** A new recording; the one at hand is forgotten. */
+  /** Starts a new recording, which replaces the current one. */
   record(source: RecordingSource): void {
     this.stop();
     this.#newest = this.ask();
@@ -140,7 +140,7 @@ export class Recorder {
     this.#onEnd();
   }
 
-  /** Plays the recording at hand from its beginning; nothing happens without one. */
+  /** Replays the current recording from its start. Does nothing without one. */
   replay(): void {
     if (!this.#recording) return;
     this.stop();
@@ -164,12 +164,12 @@ export class Recorder {
     return { ...sampleRecording(recording, first.time + this.#seconds), time };
   }
 
-  /** The replay stands still, or goes on. */
+  /** Pauses or resumes the replay. */
   setPaused(on: boolean): void {
     this.#paused = on && this.#mode === 'replaying';
   }
 
-  /** Replays the recording at hand from this second on, or stands there where the replay is paused. */
+  /** Replays the current recording from this second on, or shows this second if the replay is paused. */
   seek(seconds: number): void {
     if (this.#mode !== 'replaying') this.replay();
     if (this.#mode === 'replaying') this.#seconds = Math.max(0, Math.min(this.duration, seconds));
@@ -190,17 +190,17 @@ export class Recorder {
     return this.#asked;
   }
 
-  /** Takes a recording; the one at hand is forgotten. Throws a sentence while another is being made, and where a newer wish has brought one. */
+  /** Takes a recording, which replaces the current one. Throws while another is being recorded, and if a later request has been met. */
   take(name: string, recording: Replayable, asked = this.ask()): void {
-    if (this.#mode === 'recording') throw new Error('a recording is being made; stop it first');
-    if (asked < this.#newest) throw new Error('a newer recording is at hand');
+    if (this.#mode === 'recording') throw new Error('a recording is in progress; stop it first');
+    if (asked < this.#newest) throw new Error('a newer recording was opened');
     this.stop();
     this.#newest = asked;
     this.#recording = recording;
     this.#name = name;
   }
 
-  /** The file of the recording at hand; null without one. */
+  /** Returns the file of the current recording, or null without one. */
   file(): { readonly name: string; readonly text: string } | null {
     return this.#recording && this.#name ? { name: this.#name, text: writeRecording(this.#recording) } : null;
   }

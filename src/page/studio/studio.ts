@@ -29,7 +29,7 @@ const levelSquare = (size: number) => new PlaneGeometry(size, size).rotateX(-Mat
 /** Everything around the people: a floor, a sky, light. The floor is y = 0 of the floor frame. */
 export interface Studio {
   readonly scene: Scene;
-  /** Moves shadow and light along with the person who stands at (x, z) [m], floor frame. */
+  /** Moves shadow and light to the person at (x, z) [m], floor frame. */
   follow(x: number, z: number): void;
   /** Shows or hides the mark on the floor of the studio where to stand. */
   setMarkVisible(visible: boolean): void;
@@ -99,7 +99,7 @@ function createGrid(): Mesh {
   return grid;
 }
 
-/** Lambert is matt anyway, and compiles in a third of the time where shaders are compiled for a processor. */
+/** Creates the floor. Lambert is matt, and compiles in a third of the time where shaders are compiled for a processor. */
 function createFloor(): Mesh {
   const floor = new Mesh(levelSquare(2 * floorRadius), new MeshLambertMaterial({ color: ground }));
   floor.receiveShadow = true;

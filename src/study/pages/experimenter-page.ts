@@ -1,7 +1,7 @@
 import 'threepoint-ui/styles/document.css';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { element, pageElement } from 'threepoint-ui/element';
-import { sentence } from 'threepoint-ui/phrases';
+import { sentence } from 'threepoint-ui/phrase-parts';
 import { type ExperimenterClient, ServerRefusal } from '../client/study-client';
 import type { StudyPlan } from '../model/plan/plan';
 import type { StudyInfo } from '../model/progress/study-api';

@@ -1,5 +1,5 @@
 import { button, element } from 'threepoint-ui/element';
-import { leavePlan } from 'threepoint-ui/left-plan';
+import { storePreviewPlan } from 'threepoint-ui/preview-plan';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { type StudyPlan, studyTitle } from '../model/plan/plan';
 import { remarksOn } from '../model/plan/plan-remarks';
@@ -98,7 +98,7 @@ function studyHead(study: OpenStudy, actions: StudyActions): readonly Node[] {
 /** To every screen of the plan as participants see it. */
 function previewLink(plan: StudyPlan): HTMLElement {
   const link = element('a', { href: './preview.html' }, 'Preview');
-  link.addEventListener('click', () => leavePlan(plan));
+  link.addEventListener('click', () => storePreviewPlan(plan));
   return link;
 }
 

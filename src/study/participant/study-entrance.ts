@@ -1,4 +1,4 @@
-import { sentence } from 'threepoint-ui/phrases';
+import { sentence } from 'threepoint-ui/phrase-parts';
 import { NoStudyServer, ServerRefusal } from '../client/study-client';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../model/phrases/phrases';
 import { inLanguage } from '../model/phrases/words';

@@ -36,7 +36,7 @@ test('a catch is told for a moment, and not once more at the same second of the 
     return catches.children.filter(({ visible }) => visible).length;
   };
   words(40, 140);
-  view.hear([{ type: 'caught', ball: 0, player: 0, at: 40, score: 1 }], []);
+  view.playEvents([{ type: 'caught', ball: 0, player: 0, at: 40, score: 1 }], []);
   expect([words(40.5, 140.5), words(60, 160)]).toEqual([1, 0]);
   expect([words(0, 200), words(40.5, 240.5)]).toEqual([0, 0]);
 });

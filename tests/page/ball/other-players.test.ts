@@ -3,7 +3,10 @@ import { describe, expect, it } from 'vitest';
 
 const seated = (seat: number, change: Partial<Seated> = {}): Seated => ({
   ...{ seat, name: `Player ${seat}`, role: 'Right thrower' },
-  ...{ voice: 'open', link: 'connected', silenced: false, hidden: false },
+  voice: 'open',
+  link: 'connected',
+  silenced: false,
+  hidden: false,
   ...change,
 });
 
@@ -19,14 +22,14 @@ describe('the other players', () => {
     expect(names(null)).toEqual(['Player 0', 'free']);
   });
 
-  it('are said to be heard, muted by themselves, muted or hidden by the user, or not connected', () => {
-    expect(listed({})?.said).toBe('can be heard');
-    expect(listed({ voice: 'muted' })?.said).toBe('muted');
-    expect(listed({ silenced: true })?.said).toBe('muted by you');
-    expect(listed({ silenced: true, hidden: true })?.said).toBe('hidden');
-    expect(listed({ link: 'connecting' })?.said).toBe('connecting …');
-    expect(listed({ link: 'lost' })?.said).toBe('connection lost');
-    expect(listed({ voice: 'none', link: 'none' })?.said).toBe('');
+  it('are status to be heard, muted by themselves, muted or hidden by the user, or not connected', () => {
+    expect(listed({})?.status).toBe('can be heard');
+    expect(listed({ voice: 'muted' })?.status).toBe('muted');
+    expect(listed({ silenced: true })?.status).toBe('muted by you');
+    expect(listed({ silenced: true, hidden: true })?.status).toBe('hidden');
+    expect(listed({ link: 'connecting' })?.status).toBe('connecting …');
+    expect(listed({ link: 'lost' })?.status).toBe('connection lost');
+    expect(listed({ voice: 'none', link: 'none' })?.status).toBe('');
   });
 
   it('can be muted where they have a voice here, and not while they are hidden', () => {
@@ -37,8 +40,8 @@ describe('the other players', () => {
   });
 
   it('can be hidden, and nothing else, by a user who hears no one', () => {
-    expect(listed({}, false)).toMatchObject({ said: '', muting: 'none', hidden: false });
-    expect(listed({ hidden: true }, false)).toMatchObject({ said: 'hidden', muting: 'none', hidden: true });
+    expect(listed({}, false)).toMatchObject({ status: '', muting: 'none', hidden: false });
+    expect(listed({ hidden: true }, false)).toMatchObject({ status: 'hidden', muting: 'none', hidden: true });
   });
 
   it('have buttons that say what a press does', () => {

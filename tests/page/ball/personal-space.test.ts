@@ -1,7 +1,7 @@
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { identity } from 'threepoint/core/math/quat';
 import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { shownToEyes } from 'threepoint-page/ball/personal-space';
+import { proximityFade } from 'threepoint-page/ball/personal-space';
 import { describe, expect, test } from 'vitest';
 
 const tracked = (position: Vec3) => ({ position, orientation: identity, tracking: 'tracked' as const });
@@ -13,7 +13,7 @@ const standing = (hand: Vec3 | null = null): AvatarPose => ({
 });
 /** Their floor lies two metres ahead, turned to face the viewer. */
 const ahead = { position: vec3(0, 0, -2), orientation: { x: 0, y: 1, z: 0, w: 0 } };
-const shown = (eyes: Vec3, pose = standing()) => shownToEyes(eyes, pose, ahead);
+const shown = (eyes: Vec3, pose = standing()) => proximityFade(eyes, pose, ahead);
 
 describe('personal space', () => {
   test('others are whole from half a metre on and gone at 0.2 m, wherever their floor lies', () => {

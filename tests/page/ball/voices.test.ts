@@ -68,7 +68,7 @@ describe('a microphone', () => {
       answers[0]?.();
       await joined;
       expect(device.questions).toHaveLength(0);
-      expect(voices.probe()).toMatchObject({ said: null });
+      expect(voices.probe()).toMatchObject({ message: null });
     },
   );
 
@@ -84,7 +84,7 @@ describe('a microphone', () => {
       await joined;
       expect(device.live).toBe(0);
       expect(voices.state.phase).toBe('off');
-      expect(voices.probe()).toMatchObject({ said: null });
+      expect(voices.probe()).toMatchObject({ message: null });
     },
   );
 

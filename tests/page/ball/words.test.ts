@@ -2,6 +2,8 @@ import { identity } from 'threepoint/core/math/quat';
 import { vec3 } from 'threepoint/core/math/vec3';
 import type { BallEvent, BallPlace, BallState } from 'threepoint-games/ball/ball-state';
 import { ballRules } from 'threepoint-games/ball/rules';
+import { cueCaption, eventCaption } from 'threepoint-page/ball/ball-captions';
+import { eventHaptics } from 'threepoint-page/ball/ball-haptics';
 import {
   catchesOf,
   lineOfEvent,
@@ -13,9 +15,7 @@ import {
   waitingFor,
   waitingLine,
 } from 'threepoint-page/ball/board-drawing';
-import { cueCaption, eventCaption } from 'threepoint-page/ball/captions';
-import { eventHaptics } from 'threepoint-page/ball/haptics';
-import { createMatchClock } from 'threepoint-page/ball/match-clock';
+import { createMatchClock } from 'threepoint-page/ball/displayed-clock';
 import { labelScale } from 'threepoint-page/ball/name-labels';
 import { createSettling, settlingSeconds } from 'threepoint-page/scene/boards/sheet';
 import { describe, expect, it } from 'vitest';
@@ -60,10 +60,10 @@ describe('the board', () => {
     expect(told(false, true, true)).toBe('Waiting for you: press Ready.');
     expect(told(false, false, false)).toBe('Waiting for you, Max (bot) and cal: press Ready.');
     expect(told(true, false, false)).toBe('Waiting for Max (bot) and cal.');
-    expect(told(true, true, true)).toBe('The match begins in a moment.');
+    expect(told(true, true, true)).toBe('The match starts in a moment.');
     const over = { ...withReady(false, true, true), phase: 'over' as const, end: 'balls' as const };
     expect(waitingFor(standing(all, over))).toBe('Waiting for you: press Play again.');
-    expect(waitingFor({ ...standing(all, over), acting: true })).toBe('The match begins in a moment.');
+    expect(waitingFor({ ...standing(all, over), acting: true })).toBe('The match starts in a moment.');
     expect(waitingFor(standing(all, { ...over, phase: 'running' }))).toBeNull();
     const throwers = standing([all[0]!, all[1]!, null], over);
     expect(waitingFor(throwers)).toBe('Waiting for a basket holder.');
@@ -120,7 +120,7 @@ describe('captions', () => {
 
   it('say why a deed was refused, only to the player who did it', () => {
     const refused = (player: number): BallEvent => ({ type: 'refused', player, sequence: 1, reason: 'taken' });
-    expect(eventCaption(refused(0), null, hearing)).toBe('Another player has that ball');
+    expect(eventCaption(refused(0), null, hearing)).toBe('Another player holds that ball');
     expect(eventCaption(refused(1), null, hearing)).toBe(null);
   });
 

@@ -104,15 +104,15 @@ describe('files of one motion', () => {
       map: 'map.json',
       others: [],
     });
-    expect(() => pairFiles(['map.json'])).toThrow('map.json: a map of a skeleton without motion');
+    expect(() => pairFiles(['map.json'])).toThrow('map.json: a skeleton map without motion');
   });
 
   test('are named where one is missing', () => {
     expect(() => pairFiles(['clips/01_02.amc'])).toThrow(
-      '01_02.amc: a motion without its skeleton; open its .asf together with it',
+      '01_02.amc: a motion without its skeleton; open it together with its .asf',
     );
     expect(() => pairFiles([new File([], '01.asf')])).toThrow(
-      '01.asf: a skeleton without motion; open its .amc together with it',
+      '01.asf: a skeleton without motion; open it together with its .amc',
     );
   });
 

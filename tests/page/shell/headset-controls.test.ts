@@ -81,7 +81,13 @@ function headset() {
   });
   const [menu] = controls.objects;
   return {
-    ...{ controls, study, done, hands, pointers, menu, settings },
+    controls,
+    study,
+    done,
+    hands,
+    pointers,
+    menu,
+    settings,
     measure(next: CalibrationStep | null) {
       step = next;
       controls.show();
@@ -221,7 +227,7 @@ describe('the buttons of the menu', () => {
     seat: 1,
     name: 'Ben',
     role: 'Right thrower',
-    said: 'muted',
+    status: 'muted',
     silenced: false,
     hidden: false,
     muting: 'offered',

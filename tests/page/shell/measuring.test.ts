@@ -54,19 +54,29 @@ function page({ actor = false, emulator = null as Emulator | null } = {}) {
   const headset = { worn: false, emulator, tracking: null };
   const body = { wearerCalibration: defaultCalibration };
   const measuring = new Measuring({
-    ...{ settings, headset, body, recorder },
-    wearer: { calibrateForGood: (calibration) => void remembered.push(calibration) },
+    settings,
+    headset,
+    body,
+    recorder,
+    userCalibration: { calibrateForGood: (calibration) => void remembered.push(calibration) },
     notices: { show: (_, text) => void told.push(text) },
   });
   const source = new TrackingSource({
-    ...{ settings, headset, body, recorder },
+    settings,
+    headset,
+    body,
+    recorder,
     actor: createActor(),
     activities: { current: null, act: () => null },
     study: { idle: false },
   });
   let now = 0;
   return {
-    ...{ measuring, told, remembered, recorder, settings },
+    measuring,
+    told,
+    remembered,
+    recorder,
+    settings,
     /** So many seconds of the page at 60 frames a second. */
     pass(seconds: number) {
       for (let frame = 0; frame < 60 * seconds; frame++) {
@@ -88,7 +98,7 @@ describe('calibrating at a desk', () => {
     const { measuring, told } = page();
     measuring.start();
     expect(measuring.step).toBeNull();
-    expect(told).toEqual([expect.stringContaining('enter VR first')]);
+    expect(told).toEqual([expect.stringContaining('Enter VR first')]);
   });
 
   test('begins where the user moves the emulated headset, and not where the actor does', () => {
@@ -110,7 +120,7 @@ describe('calibrating at a desk', () => {
     pass(8);
     expect(remembered).toEqual([]);
     expect(measuring.step).toBeNull();
-    expect(told).toEqual([expect.stringContaining('stop the replay first')]);
+    expect(told).toEqual([expect.stringContaining('Stop the replay first')]);
   });
 
   test('ends with a sentence where a replay, or the actor, takes over while it measures', () => {
@@ -121,7 +131,7 @@ describe('calibrating at a desk', () => {
     interrupted.pass(8);
     expect(interrupted.remembered).toEqual([]);
     expect(interrupted.measuring.step).toBeNull();
-    expect(interrupted.told).toEqual([expect.stringContaining('stop the replay first')]);
+    expect(interrupted.told).toEqual([expect.stringContaining('Stop the replay first')]);
     const left = page({ emulator: emulatedHeadset });
     left.measuring.start();
     left.pass(2);

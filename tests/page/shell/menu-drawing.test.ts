@@ -13,8 +13,17 @@ function paper() {
   const texts: { readonly text: string; readonly size: number; readonly y: number }[] = [];
   const boxes: { readonly fill: string; readonly at: readonly number[] }[] = [];
   const context = {
-    ...{ font: '', fillStyle: '', textAlign: '', textBaseline: '', globalAlpha: 1, lineWidth: 1, strokeStyle: '' },
-    ...{ beginPath: () => undefined, roundRect: () => undefined, fill: () => undefined, stroke: () => undefined },
+    font: '',
+    fillStyle: '',
+    textAlign: '',
+    textBaseline: '',
+    globalAlpha: 1,
+    lineWidth: 1,
+    strokeStyle: '',
+    beginPath: () => undefined,
+    roundRect: () => undefined,
+    fill: () => undefined,
+    stroke: () => undefined,
     measureText: (text: string) => ({ width: text.length * 0.5 * sizeOf(context.font) }),
     fillText: (text: string, _: number, y: number) => void texts.push({ text, size: sizeOf(context.font), y }),
     fillRect: (...at: readonly number[]) => void boxes.push({ fill: context.fillStyle, at }),

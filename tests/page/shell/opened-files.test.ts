@@ -89,7 +89,7 @@ describe('a dropped file', () => {
     expect(notices).toEqual([
       {
         level: 'error',
-        text: 'walk.json could not be replayed: more than 100 MB; a recording may have that at most',
+        text: 'walk.json could not be replayed: larger than 100 MB, the limit for a recording',
       },
     ]);
     expect(asked.bytes).toBe(false);
@@ -125,7 +125,7 @@ describe('a dropped file', () => {
     await page.open(recordingFile());
     recorder.observe(frameAt(2));
     expect(notices).toEqual([
-      { level: 'error', text: 'walk.json could not be replayed: a recording is being made; stop it first' },
+      { level: 'error', text: 'walk.json could not be replayed: a recording is in progress; stop it first' },
     ]);
     recorder.stop();
     expect([recorder.name, recorder.duration]).toEqual(['recording-1.json', 1]);
@@ -142,7 +142,7 @@ describe('a dropped file', () => {
     await slow;
     expect([recorder.name, recorder.mode]).toEqual(['quick.json', 'replaying']);
     expect(notices).toEqual([
-      { level: 'error', text: 'slow.json could not be replayed: a newer recording is at hand' },
+      { level: 'error', text: 'slow.json could not be replayed: a newer recording was opened' },
     ]);
   });
 

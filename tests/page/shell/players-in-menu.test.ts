@@ -17,14 +17,14 @@ const player = (seat: number, change: Partial<OtherPlayer> = {}): OtherPlayer =>
   seat,
   name: `Player ${seat}`,
   role: 'Right thrower',
-  said: 'can be heard',
+  status: 'can be heard',
   silenced: false,
   hidden: false,
   muting: 'offered',
   ...change,
 });
 const ben = player(0, { name: 'Ben' });
-const bot = player(2, { name: 'Kim (bot)', said: '', muting: 'none' });
+const bot = player(2, { name: 'Kim (bot)', status: '', muting: 'none' });
 const menuActions = {} as VrMenuActions;
 
 /** Records every press. */
@@ -102,8 +102,17 @@ describe('the other players in the headset', () => {
   test('are written above their buttons, with role and voice, no wider than the sheet', () => {
     const texts: { text: string; y: number; most: number | undefined }[] = [];
     const context = {
-      ...{ font: '', fillStyle: '', textAlign: '', textBaseline: '', globalAlpha: 1, lineWidth: 1, strokeStyle: '' },
-      ...{ beginPath: () => undefined, roundRect: () => undefined, fill: () => undefined, stroke: () => undefined },
+      font: '',
+      fillStyle: '',
+      textAlign: '',
+      textBaseline: '',
+      globalAlpha: 1,
+      lineWidth: 1,
+      strokeStyle: '',
+      beginPath: () => undefined,
+      roundRect: () => undefined,
+      fill: () => undefined,
+      stroke: () => undefined,
       fillText: (text: string, _: number, y: number, most?: number) => void texts.push({ text, y, most }),
     } as unknown as CanvasRenderingContext2D;
     const long = player(1, { name: 'W'.repeat(longestName) });

@@ -124,7 +124,7 @@ describe('what the page remembers', () => {
       store.remember({ sound: false });
       expect(store.preferences).toEqual({ mirror: false, sound: false });
       expect(told).toEqual([
-        'This browser lets the page keep nothing: calibration and settings last for this visit only.',
+        'This browser does not let the page store anything, so calibration and settings are lost when you close it.',
       ]);
     }
   });

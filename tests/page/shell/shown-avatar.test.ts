@@ -83,7 +83,7 @@ describe('of files that are asked for one after the other', () => {
     const letGo = checkFilesHere('first.glb');
     const { avatar } = wardrobe();
     const first = avatar.open(unknownNames('first.glb'));
-    await expect.poll(() => avatar.pending).toContain('being looked at');
+    await expect.poll(() => avatar.pending).toContain('being checked');
     expect(await avatar.openOwn(bytes())).toBe(true);
     letGo('first.glb');
     expect(await first).toBe(false);
@@ -95,7 +95,7 @@ describe('of files that are asked for one after the other', () => {
     const letGo = checkFilesHere('first.glb');
     const { avatar } = wardrobe();
     const first = avatar.open(unknownNames('first.glb'));
-    await expect.poll(() => avatar.pending).toContain('being looked at');
+    await expect.poll(() => avatar.pending).toContain('being checked');
     avatar.cancel();
     expect(await avatar.open(unknownNames('second.glb'))).toBe(false);
     expect(avatar.waiting?.name).toBe('second.glb');

@@ -74,12 +74,12 @@ describe('the address of the page', () => {
     const asked =
       '?replay=&avatar=&seconds=x&balls=99&seed=-1&room=Our%20Room&study=..&participant=me&actor=maybe&view=top';
     const { switches, complaints } = readSwitches(asked);
-    expect(complaints).toContain('The address says replay= and no value: replay takes the address of a recording.');
+    expect(complaints).toContain('The address has replay= without a value: replay takes the address of a recording.');
     expect(complaints).toContain(
-      'The address says seconds=x, which this page does not know: seconds takes a whole number from 1 to 3600.',
+      'The address has seconds=x, which is not a valid value: seconds takes a whole number from 1 to 3600.',
     );
     expect(complaints).toContain(
-      'The address says balls=99, which this page does not know: balls takes a whole number from 1 to 20.',
+      'The address has balls=99, which is not a valid value: balls takes a whole number from 1 to 20.',
     );
     expect(complaints).toHaveLength(10);
     for (const complaint of complaints) expect(complaint).not.toMatch(/[/^\\>(){}|"]/);

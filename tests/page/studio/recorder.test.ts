@@ -101,7 +101,7 @@ describe('the recorder', () => {
     for (const time of [1, 2]) recorder.observe(frameAt(time));
     recorder.stop();
     const other = recorded(0, 1).recording!;
-    expect(() => recorder.take('slow.json', other, asked)).toThrow('a newer recording is at hand');
+    expect(() => recorder.take('slow.json', other, asked)).toThrow('a newer recording was opened');
     expect(recorder.name).toBe('recording-1.json');
     recorder.take('new.json', other, recorder.ask());
     expect(recorder.name).toBe('new.json');

@@ -122,11 +122,11 @@ describe('a map of bones that is given', () => {
   const found = ['spih', 'enips', 'daeh'];
 
   test.each([
-    ['hips: spih', /^The text is no JSON \(/],
-    ['["spih"]', /^The text is no map of bones/],
-    ['{"hip": "spih"}', /^The text says “hip”: no bone is called so\.$/],
+    ['hips: spih', /^The text is not JSON \(/],
+    ['["spih"]', /^The text is not a map of bones/],
+    ['{"hip": "spih"}', /^The text says “hip”: there is no bone of this name\.$/],
     ['{"hips": 3}', /^The text says “hips”: expected the name of a bone of the file\.$/],
-    ['{"hips": "Bottom"}', /^The text says hips is “Bottom”, which is not in this file\.$/],
+    ['{"hips": "Bottom"}', /^The text maps hips to “Bottom”, which is not in this file\.$/],
   ])('%s: is answered with a sentence', (text, sentence) => {
     expect(bonesIn(text, found)).toEqual({ complaint: expect.stringMatching(sentence) });
   });
@@ -142,9 +142,9 @@ describe('a map of bones that is given', () => {
   test('is not enough without a bone that a body needs, or with one bone for two', () => {
     const { leftHand: _, spine: __, ...less } = bones;
     expect(boneComplaint(bones)).toBeNull();
-    expect(boneComplaint(less)).toBe('Still to be said: spine, left hand.');
+    expect(boneComplaint(less)).toBe('Still missing: spine, left hand.');
     expect(boneComplaint({ ...bones, leftHand: backwards('rightHand') })).toBe(
-      '“dnaHthgir” is said to be both leftHand and rightHand.',
+      '“dnaHthgir” is mapped to both leftHand and rightHand.',
     );
   });
 

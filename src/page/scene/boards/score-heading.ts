@@ -9,7 +9,7 @@ export interface ScoreHeading {
   readonly running: boolean;
 }
 
-/** The clock is lit for so long before the bell [s]. */
+/** The clock is highlighted for this time before the bell [s]. */
 const lastSeconds = 10;
 const width = 1024;
 /** The height of the line below the heading [pixels]; the game's own content starts below it. */
@@ -41,7 +41,7 @@ export function paintScoreHeading(
     context.fill();
   }
   context.fillStyle = late ? ink.accentInk : ink.text;
-  // Three figures have no more room than two.
+  // Three digits must fit into the space of two.
   const long = seconds >= 100;
   context.font = `800 ${long ? 132 : 170}px ${signFont}`;
   context.fillText(`${seconds}`, 660, 270);

@@ -32,10 +32,10 @@ export interface SheetContent<Id extends string> {
   paint(context: CanvasRenderingContext2D, hovered: Id | null): void;
 }
 
-/** A sheet in the world that is read and pressed, facing +Z of its own frame. */
+/** A sheet in the world with buttons, facing +Z of its own frame. */
 export interface Sheet<Id extends string> {
   readonly mesh: Mesh;
-  /** Once a frame; null hides it. `time` [s]: on any clock that goes on. */
+  /** Once per frame; null hides it. `time` [s]: on any monotonic clock. */
   show(content: SheetContent<Id> | null, time: number): void;
   /**
    * The button that a ray meets, and how far away [m, floor frame; unit direction]; null: none, or no sheet has been there for
@@ -62,10 +62,10 @@ export function buttonUnder<Id extends string>(
   return found?.id ?? null;
 }
 
-/** What has just come takes no press for so long [s]: it was meant for what was there before. */
+/** A new sheet takes no press for this time [s]: the press was meant for what was there before. */
 export const settlingSeconds = 0.5;
 
-/** Whether something that is shown has been there for long enough to be pressed. Times [s] on any clock that goes on. */
+/** Decides whether something has been shown for long enough to be pressed. Times [s] on any monotonic clock. */
 export function createSettling() {
   let cameAt: number | null = null;
   let now = 0;

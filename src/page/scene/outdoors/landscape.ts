@@ -82,7 +82,7 @@ function foliage(geometry: BufferGeometry, color: Color, low: number, high: numb
   });
 }
 
-/** A ball whose corners are pushed in and out, alike where faces meet. */
+/** Returns a ball with displaced corners, equal where faces meet. */
 function lump(radius: number, detail: number, random: () => number): BufferGeometry {
   const geometry = new IcosahedronGeometry(radius, detail);
   const position = geometry.getAttribute('position');

@@ -12,7 +12,7 @@ export interface GroundPaint {
   readonly paint: string;
 }
 
-/** A flat ground at y = 0 of the arena frame, painted by what is said of each place. */
+/** Creates flat ground at y = 0 of the arena frame, coloured by a shader. */
 export function createPaintedGround(
   noise: Texture,
   { colors, declarations, paint }: GroundPaint,

@@ -49,7 +49,7 @@ export function createSky(noise: Texture, towardsSun: Vector3, quality: Quality)
         #include <colorspace_fragment>
       }`,
   });
-  // What lies further below the horizon is ground.
+  // Ground covers everything further below the horizon.
   const sky = new Mesh(new SphereGeometry(40, 32, 12, 0, 2 * Math.PI, 0, 0.56 * Math.PI), material);
   sky.name = 'sky';
   sky.renderOrder = -2;

@@ -16,7 +16,7 @@ export interface SoundStage {
   open(): Promise<AudioContext>;
   /** null while the audio rests: it would keep everything and play it at once later. */
   readonly player: Player | null;
-  listen(head: Pose<'floor'>): void;
+  setListener(head: Pose<'floor'>): void;
   /** 0 silent to 1. */
   setVolume(volume: number): void;
   setMuted(on: boolean): void;
@@ -78,7 +78,7 @@ function createPlayer(context: AudioContext, recipes: Recipes) {
     start(name, at, delay);
   }
 
-  /** Starts one that goes along with something for so long [s]: where that is so many seconds from now, floor frame. */
+  /** Starts a sound that moves for this time [s]. `placeAfter`: its position after a number of seconds, floor frame. */
   function playAlong(name: string, seconds: number, placeAfter: (after: number) => Vec3): AudioBufferSourceNode {
     const { source, panner } = start(name, placeAfter(0), 0);
     for (let step = 1; step <= 4; step++) {
@@ -146,7 +146,7 @@ export function createSoundStage(
       await (await awaken()).warm();
     },
     open: async () => (await awaken()).context,
-    listen(head) {
+    setListener(head) {
       if (player) placeListener(player.context, head);
     },
     setVolume(next) {

@@ -11,7 +11,7 @@ const loud = -15;
 const window = 1024;
 /** The window for tools [samples]: a third of a second, longer than a syllable. */
 const longWindow = 16_384;
-/** A level falls by half in so long [s], so that a mark does not flicker between syllables. */
+/** The half-life of a falling level [s], which keeps a mark from flickering between syllables. */
 const fallHalfLife = 0.06;
 
 /** Returns the root mean square of an analyser's current signal [1: full scale]. */

@@ -13,7 +13,7 @@ import type { Settings, SettingsWriter } from '../settings';
 import type { ShownAvatar } from '../shown-avatar';
 import type { Stage } from '../stage';
 import type { Switches } from '../switches';
-import type { Wearer } from '../wearer';
+import type { UserCalibration } from '../user-calibration';
 
 /** The parts of the page that its controls show and act on. */
 export interface ControlledParts {
@@ -32,7 +32,7 @@ export interface ControlledParts {
   readonly headset: Headset;
   readonly avatar: ShownAvatar;
   readonly activities: Activities;
-  readonly wearer: Wearer;
+  readonly userCalibration: UserCalibration;
   readonly study: Pick<PageStudy, 'run'>;
   readonly server: ServerPresence;
   readonly mocap: Pick<PageMocap, 'open' | 'show' | 'covers'>;

@@ -69,7 +69,7 @@ export class Controls {
     this.#inHeadset.show();
   }
 
-  /** The headset is on: the menu is there, and the panel out of the way; or off again. */
+  /** The headset was put on or taken off: shows the menu and hides the panel, or the reverse. */
   setWorn(worn: boolean): void {
     this.#inHeadset.setWorn(worn);
     if (worn) this.#panelOpenBefore = this.#desktop.panelOpen;

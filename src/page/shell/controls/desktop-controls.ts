@@ -85,7 +85,7 @@ export class DesktopControls {
       view: stage.view.view,
       avatarName: avatar.current ? avatar.name : 'None yet',
       avatarPending: avatar.pending,
-      avatarOnItsWay: avatar.onItsWay || avatar.waiting !== null,
+      avatarOnItsWay: avatar.isLoading || avatar.waiting !== null,
       waitingForBones: avatar.waiting,
       ownAvatarOffered: !avatar.own || avatar.pending !== null || avatar.current === null,
       ownBody: avatar.ownBody,

@@ -9,7 +9,7 @@ import { VrMenu } from '../vr-menu/vr-menu';
 import type { ControlledParts } from './controlled-parts';
 import type { Measuring } from './measuring';
 
-/** How much larger the menu in the headset is for a user who wants larger text. */
+/** The scale of the menu in the headset for a user who wants larger text. */
 const largerMenu = 1.3;
 
 export interface HeadsetControlsOptions extends Pick<ControlledParts, 'settings' | 'writer' | 'notices' | 'study'> {

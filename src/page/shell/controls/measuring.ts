@@ -12,7 +12,7 @@ import type { Recorder } from '../../studio/recorder';
 import { Emitter } from '../emitter';
 import type { Headset } from '../headset';
 import type { Settings } from '../settings';
-import type { Wearer } from '../wearer';
+import type { UserCalibration } from '../user-calibration';
 
 export interface MeasuringOptions {
   readonly body: Pick<BodySolver, 'wearerCalibration'>;
@@ -20,7 +20,7 @@ export interface MeasuringOptions {
   readonly settings: Pick<Settings, 'actor'>;
   readonly recorder: Pick<Recorder, 'mode'>;
   readonly notices: Pick<Notices, 'show'>;
-  readonly wearer: Pick<Wearer, 'calibrateForGood'>;
+  readonly userCalibration: Pick<UserCalibration, 'calibrateForGood'>;
 }
 
 /** The guided calibration of this page: a dialog on the desktop, the menu in the headset. */
@@ -33,7 +33,7 @@ export class Measuring {
   #step: CalibrationStep | null = null;
 
   constructor(options: MeasuringOptions) {
-    const { body, headset, wearer } = options;
+    const { body, headset, userCalibration } = options;
     this.#options = options;
     this.#dialog = createCalibrationDialog(
       () => this.cancel(),
@@ -43,7 +43,7 @@ export class Measuring {
       onStep: (step) => this.#show(step),
       // Three points do not determine the length of a forearm: a typed one stays.
       onMeasured: (calibration) =>
-        wearer.calibrateForGood(withForearm(calibration, body.wearerCalibration.forearm), 'measured'),
+        userCalibration.calibrateForGood(withForearm(calibration, body.wearerCalibration.forearm), 'measured'),
       closesItself: () => headset.worn,
     });
   }
@@ -53,7 +53,7 @@ export class Measuring {
     return this.#step;
   }
 
-  /** Measures the wearer, or says what is missing for that. */
+  /** Measures the user, or reports what is missing. */
   start(): void {
     const missing = this.#missing();
     if (missing) this.#options.notices.show('info', missing);
@@ -85,9 +85,9 @@ export class Measuring {
     if (headset.worn) return null;
     // The actor moves, or no one does.
     if (settings.actor || !headset.emulator)
-      return 'This measures the wearer of the headset: enter VR first, or type your measures.';
+      return 'Calibration measures the user of the headset. Enter VR first, or type your measurements.';
     if (recorder.mode === 'replaying')
-      return 'This measures you, not the person in a recording: stop the replay first, or type your measures.';
+      return 'Calibration measures you, not the person in a recording. Stop the replay first, or type your measurements.';
     return null;
   }
 

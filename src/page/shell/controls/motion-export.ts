@@ -19,7 +19,7 @@ export interface MotionExportOptions {
   onChange(): void;
 }
 
-/** Makes files for other programs of the recording at hand, one at a time; code for it comes when it is asked for. */
+/** Exports the current recording to files for other programs, one at a time. Its code is loaded on first use. */
 export class MotionExport {
   readonly #options: MotionExportOptions;
   #state: ExportState | null = null;
@@ -39,7 +39,7 @@ export class MotionExport {
     this.#giveUp.abort();
   }
 
-  /** Begins with the recording at hand as the chosen method draws it, unless another file is being made. Never rejects: faults become notices. */
+  /** Exports the current recording with the chosen method, unless an export is in progress. Never rejects: faults become notices. */
   async begin(choice: ExportChoice): Promise<void> {
     const { recorder, body, notices } = this.#options;
     const { recording, name } = recorder;

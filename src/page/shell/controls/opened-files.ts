@@ -84,7 +84,7 @@ export class OpenedFiles {
     }
   }
 
-  /** The recording at hand, from its beginning. */
+  /** Replays the current recording from its start. */
   replay(): void {
     const { recorder, body, onChange } = this.#options;
     recorder.replay();

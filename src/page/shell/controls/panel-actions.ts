@@ -13,7 +13,7 @@ export interface PanelActionsOptions extends ControlledParts {
   readonly measuring: Pick<Measuring, 'start'>;
 }
 
-function bodyActions({ store, writer, body, notices, wearer, measuring }: PanelActionsOptions): BodyActions {
+function bodyActions({ store, writer, body, notices, userCalibration, measuring }: PanelActionsOptions): BodyActions {
   return {
     chooseEstimator(name) {
       store.remember({ estimator: name });
@@ -31,9 +31,9 @@ function bodyActions({ store, writer, body, notices, wearer, measuring }: PanelA
       };
       const complaint = calibrationComplaint(calibration);
       if (complaint) notices.show('warning', complaint);
-      else wearer.calibrateForGood(calibration, 'by hand');
+      else userCalibration.calibrateForGood(calibration, 'by hand');
     },
-    resetCalibration: () => wearer.resetCalibration(),
+    resetCalibration: () => userCalibration.resetCalibration(),
     setDeviceBody: (deviceBody) => writer.change({ deviceBody }),
   };
 }
@@ -134,7 +134,7 @@ export function createPanelActions(options: PanelActionsOptions): PanelActions {
     ...avatarActions(options),
     ...recordingActions(options),
     ...viewActions(options),
-    recentre: () => options.wearer.recentre(),
+    recentre: () => options.userCalibration.recentre(),
     exitVr: () => options.headset.exit(),
     keepPanel: (panel) => options.writer.keep({ panel }),
   };

@@ -3,14 +3,14 @@ import type { Stage } from '../stage';
 
 /** The window width up to which the controls lie below the picture instead of beside it [CSS pixels]. */
 const narrowest = 760;
-/** What the panel covers, with the gaps beside it [CSS pixels]. */
+/** The width that the panel covers, with its margins [CSS pixels]. */
 const panelWidth = 352;
 /** The share of a narrow window's height that the panel covers. */
 const panelShare = 0.48;
 /** Between the body and the button that enters VR [CSS pixels]. */
 const besideEnter = 8;
 
-/** A window in which the panel has no place beside the picture. */
+/** Whether the window is too narrow for the panel beside the picture. */
 export const isNarrow = (): boolean => window.innerWidth <= narrowest;
 
 export interface WindowLayoutOptions {
@@ -22,7 +22,7 @@ export interface WindowLayoutOptions {
   card(): DOMRect | null;
 }
 
-/** Controls cover a part of the window: the body stands in the middle of the rest. */
+/** Centres the body in the part of the window that the controls leave free. */
 export class WindowLayout {
   readonly #options: WindowLayoutOptions;
   readonly #enter = pageElement('enter', HTMLElement);

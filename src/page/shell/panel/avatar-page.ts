@@ -19,7 +19,7 @@ export interface PaletteChoice {
 function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions) {
   const name = element('p', { class: 'avatar-name' });
   const pending = createRunningLine({ class: 'hint' });
-  const own = button('Back to ours', () => actions.showOwnAvatar());
+  const own = button('Back to the page’s avatar', () => actions.showOwnAvatar());
   const cancel = button('Cancel loading', () => actions.cancelAvatar());
   const bodies = bodyLabels.map((body) => ({
     name: body.name,
@@ -110,7 +110,7 @@ function otherAvatars(actions: AvatarActions): HTMLElement {
   );
 }
 
-/** Who sees whose avatar. */
+/** Which avatars players show to each other. */
 function createSight(actions: AvatarActions) {
   const share = toggle('Others see my avatar', (on) => actions.setShareAvatar(on));
   const plain = toggle('Show all others as mannequins', (on) => actions.setPlainOthers(on));
@@ -118,12 +118,12 @@ function createSight(actions: AvatarActions) {
     node: element(
       'section',
       {},
-      element('h2', {}, 'In rooms with others'),
+      element('h2', {}, 'In shared rooms'),
       share.node,
       element(
         'p',
         { class: 'hint' },
-        'A file of 20 MB at most: the server keeps it for the people of the room until you leave. In a study all wear the same.',
+        'The file may have up to 20 MB. The server keeps it for the people in the room until you leave. In a study all avatars are alike.',
       ),
       plain.node,
     ),

@@ -34,18 +34,19 @@ function createEstimators(actions: Pick<BodyActions, 'chooseEstimator'>) {
         input.checked = name === estimator;
         input.disabled = reason !== undefined;
         node.classList.toggle('unavailable', reason !== undefined);
-        const missing = name === 'device' && bodyComplaint !== null ? `Learned draws: ${bodyComplaint}.` : null;
+        const missing =
+          name === 'device' && bodyComplaint !== null ? `Learned is used instead: ${bodyComplaint}.` : null;
         about.textContent = reason ?? missing ?? estimatorTexts[name].text;
       }
     },
   };
 }
 
-/** Whether the headset is asked for its own body. */
+/** Whether the headset's body tracking is used. */
 function createDeviceBody(actions: Pick<BodyActions, 'setDeviceBody'>) {
-  const ask = toggle('Ask the headset for its body', (on) => actions.setDeviceBody(on));
+  const ask = toggle('Use the headset’s body tracking', (on) => actions.setDeviceBody(on));
   const about =
-    'From the next time VR is entered, for this visit. Off at first: headset browsers have crashed when asked.';
+    'Applies when you next enter VR, until you close the page. It is off by default because headset browsers have crashed.';
   return {
     node: element('section', {}, ask.node, element('p', { class: 'hint' }, about)),
     show({ deviceBody }: PanelState) {
@@ -117,7 +118,7 @@ function createMeasures(ranges: MeasureRanges, actions: BodyActions) {
   };
 }
 
-/** What the body is estimated by, and whose it is. */
+/** The estimator and the measurements of the body. */
 export function createBodyPage(ranges: MeasureRanges, actions: BodyActions): PanelPage {
   const estimators = createEstimators(actions);
   const deviceBody = createDeviceBody(actions);

@@ -44,7 +44,7 @@ export function bonesIn(text: string, found: readonly string[]): BoneMap | { rea
     value = JSON.parse(text);
   } catch (error) {
     if (!(error instanceof SyntaxError)) throw error;
-    return { complaint: `The text is no JSON (${error.message}): it begins as {"hips": "…", "spine": "…"}.` };
+    return { complaint: `The text is not JSON (${error.message}). Write it like {"hips": "…", "spine": "…"}.` };
   }
   const read = v.safeParse(boneMap, Array.isArray(value) ? null : value);
   if (!read.success) {
@@ -53,23 +53,23 @@ export function bonesIn(text: string, found: readonly string[]): BoneMap | { rea
     return {
       complaint:
         where === null
-          ? 'The text is no map of bones: it begins as {"hips": "…", "spine": "…"}.'
+          ? 'The text is not a map of bones. Write it like {"hips": "…", "spine": "…"}.'
           : `The text says “${where}”: ${issue.message}.`,
     };
   }
   const bones = read.output as BoneMap;
   const strange = Object.entries(bones).find(([, called]) => !found.includes(called));
-  return strange ? { complaint: `The text says ${strange[0]} is “${strange[1]}”, which is not in this file.` } : bones;
+  return strange ? { complaint: `The text maps ${strange[0]} to “${strange[1]}”, which is not in this file.` } : bones;
 }
 
 /** A sentence about a map with which no body can be moved; null: one can. */
 export function boneComplaint(bones: BoneMap): string | null {
   const missing = listed.filter(({ bone }) => isNeeded(bone) && !bones[bone]).map(({ label }) => label.toLowerCase());
-  if (missing.length > 0) return `Still to be said: ${missing.join(', ')}.`;
+  if (missing.length > 0) return `Still missing: ${missing.join(', ')}.`;
   const seen = new Map<string, string>();
   for (const [bone, called] of Object.entries(bones)) {
     const other = seen.get(called);
-    if (other) return `“${called}” is said to be both ${other} and ${bone}.`;
+    if (other) return `“${called}” is mapped to both ${other} and ${bone}.`;
     seen.set(called, bone);
   }
   return null;
@@ -80,12 +80,8 @@ const asText = (text: HTMLTextAreaElement): HTMLElement =>
   element(
     'details',
     {},
-    element('summary', {}, 'As text, fingers and toes too'),
-    element(
-      'p',
-      { class: 'hint' },
-      'JSON, VRM’s name of a bone and the file’s. What stands here counts before the lists.',
-    ),
+    element('summary', {}, 'As text, including fingers and toes'),
+    element('p', { class: 'hint' }, 'JSON that maps VRM’s name of a bone to the file’s. It overrides the lists.'),
     text,
   );
 
@@ -102,11 +98,11 @@ export function createBonesForm(give: (bones: BoneMap) => void) {
   const text = element('textarea', {
     rows: 4,
     spellcheck: 'false',
-    'aria-label': 'The same as text: JSON, bones by their VRM names',
+    'aria-label': 'Bone map as text: JSON, by VRM names',
     placeholder: '{"leftIndexProximal": "…"}',
   });
   let found: readonly string[] = [];
-  /** What the page said of the bones that were given last. */
+  /** The page's last complaint about given bones. */
   let told: string | null = null;
 
   function submit(): void {
@@ -142,7 +138,7 @@ export function createBonesForm(give: (bones: BoneMap) => void) {
       select.value = waiting.bones[bone] ?? '';
     }
     text.value = '';
-    hint.textContent = `${waiting.name} has ${found.length} bones, and their names tell no body. Say which is which; it is remembered for this file.`;
+    hint.textContent = `The ${found.length} bones of ${waiting.name} could not be matched to a humanoid. Map them by hand. The page remembers the map for this file.`;
   }
 
   return {

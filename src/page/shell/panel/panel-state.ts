@@ -11,7 +11,7 @@ export interface RecorderState {
   readonly seconds: number;
   readonly duration: number;
   readonly loop: boolean;
-  /** Name of the recording at hand; null: none. */
+  /** The name of the current recording; null: none. */
   readonly name: string | null;
 }
 
@@ -28,7 +28,7 @@ export interface ExportState {
   readonly secondsLeft: number | null;
 }
 
-/** Everything the panel shows; it keeps no state of its own. */
+/** Everything that the panel shows. The panel itself has no state. */
 export interface PanelState {
   readonly estimator: EstimatorName;
   /** The reason why an estimator is unavailable; absent: it is available. */
@@ -45,7 +45,7 @@ export interface PanelState {
   readonly avatarPending: string | null;
   /** Another avatar than ours is shown, or was wanted. */
   readonly ownAvatarOffered: boolean;
-  /** Whether an avatar is on its way that can be given up. */
+  /** Whether an avatar is loading, which the user can cancel. */
   readonly avatarOnItsWay: boolean;
   /** A file whose bones the user must map; null: none. */
   readonly waitingForBones: WaitingForBones | null;
@@ -70,9 +70,9 @@ export interface PanelState {
   /** null: nothing is being made. */
   readonly exporting: ExportState | null;
   readonly inSession: boolean;
-  /** Whether the next session asks the headset for its own body. */
+  /** Whether the next session uses the headset's body tracking. */
   readonly deviceBody: boolean;
-  /** Why the body of the headset that is worn is not there; null: it is, or none is worn. */
+  /** Why the worn headset tracks no body; null: it does, or no headset is worn. */
   readonly bodyComplaint: string | null;
 }
 

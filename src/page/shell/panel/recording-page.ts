@@ -14,7 +14,7 @@ export function recorderText({ mode, name, seconds: passed, duration }: Recorder
 }
 
 const about =
-  'Keeps what is tracked, in full precision, on this device; any recording replays through any estimator. Motion capture (BVH, ASF with AMC, VRM Animation) is shown with the truth beside it.';
+  'Records tracking in full precision on this device. Every estimator can replay every recording. Motion capture (BVH, ASF with AMC, VRM Animation) is shown with its ground truth.';
 
 function createRecorderSection(actions: RecordingActions) {
   const record = button('Record', () => actions.record(), { class: 'record' });
@@ -65,10 +65,10 @@ function createRecorderSection(actions: RecordingActions) {
 
 const exportChoices: readonly (readonly [ExportChoice, label: string, title: string])[] = [
   ['bvh', 'BVH', 'For Blender, MotionBuilder and others, in metres'],
-  ['bvh-cm', 'BVH in cm', 'The same in centimetres'],
+  ['bvh-cm', 'BVH in cm', 'The same file in centimetres'],
   ['vrma', 'VRM Animation', 'A .vrma, for any VRM avatar'],
-  ['glb', 'Avatar (GLB)', 'The avatar that is shown, moving'],
-  ['csv', 'Table (CSV)', 'Where every joint is [m], a row for each frame'],
+  ['glb', 'Avatar (GLB)', 'The current avatar, animated'],
+  ['csv', 'Table (CSV)', 'The position of every joint [m], a row per frame'],
 ];
 
 /** How far a file is, in words. */
@@ -94,7 +94,7 @@ function createExportSection(actions: RecordingActions) {
       element(
         'p',
         { class: 'hint' },
-        'The recording at hand with the body that the chosen method draws, fingers too; legs are not measured.',
+        'Exports the current recording with the body that the chosen method estimates, including fingers. Legs are not measured.',
       ),
       row,
       text,
@@ -110,7 +110,7 @@ function createExportSection(actions: RecordingActions) {
   };
 }
 
-/** Who or what moves the body where no headset is worn. */
+/** Chooses what moves the body while no headset is worn. */
 function createMovers(actions: RecordingActions) {
   const actor = toggle('Actor moves the body', (on) => actions.setActor(on));
   const emulatorPanel = toggle('Emulator controls', (on) => actions.setEmulatorPanel(on));

@@ -37,7 +37,7 @@ const keysSection = (on: HTMLElement): HTMLElement =>
     ),
   );
 
-/** From where the body is seen, and what is seen beside it. */
+/** The camera, and what it shows in addition to the body. */
 export function createViewPage(actions: ViewActions): PanelPage {
   const views = viewNames.map((view) => ({
     view,

@@ -21,9 +21,9 @@ export interface VrMenuState {
   readonly unavailable: Partial<Readonly<Record<EstimatorName, string>>>;
   readonly calibration: CalibrationStep | null;
   readonly overlay: boolean;
-  /** The device was asked for its own body. */
+  /** The headset's body tracking is used. */
   readonly deviceBody: boolean;
-  /** Which of our bodies is worn, or would be in place of another avatar. */
+  /** The page's own avatar that is worn, or would be instead of another one. */
   readonly ownBody: OwnBody;
   /** The skin tone of a human avatar; undefined: the avatar's own. */
   readonly skinTone: SkinTone | undefined;
@@ -31,7 +31,7 @@ export interface VrMenuState {
   readonly places: readonly { readonly name: string; readonly title: string }[];
   /** The part of the current activity; null: the user is at the mirror. */
   readonly activity: Pick<ActivityMenu, 'entries' | 'sheet'> | null;
-  /** A sentence to be read in the headset; null: none. */
+  /** A sentence at the bottom of the menu; null: none. */
   readonly notice: string | null;
 }
 

@@ -1,6 +1,6 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { button, element, pageElement } from 'threepoint-ui/element';
-import { leftPlan } from 'threepoint-ui/left-plan';
+import { loadPreviewPlan } from 'threepoint-ui/preview-plan';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { withdrawalLink } from '../../client/study-link';
 import { languagesOf, participantsOf, type StudyPlan, studyTitle } from '../../model/plan/plan';
@@ -39,7 +39,7 @@ class PreviewPage {
     });
     document.addEventListener('keydown', (event) => this.#key(event));
     const address = new URLSearchParams(location.search).get('plan');
-    const left = leftPlan();
+    const left = loadPreviewPlan();
     if (address !== null) await this.#read(address);
     else if (left !== null) this.#take(planFrom(left, 'the study of the experimenter’s page'));
     else this.#render();

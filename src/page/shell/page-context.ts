@@ -5,7 +5,7 @@ import { createSettings, type Settings, SettingsWriter } from './settings';
 import { readSwitches, type Switches } from './switches';
 
 /** What a visit begins with: what the address asks for, and what this browser remembers. */
-export interface Visit {
+export interface PageContext {
   readonly switches: Switches;
   readonly store: PreferenceStore;
   readonly settings: Settings;
@@ -15,7 +15,7 @@ export interface Visit {
 }
 
 /** Reads address and storage; what they say that this page does not understand becomes a notice. */
-export function beginVisit(notices: Notices): Visit {
+export function readPageContext(notices: Notices): PageContext {
   const { switches, complaints } = readSwitches(location.search);
   const store = createPreferenceStore(browserStorage(), (sentence) => notices.show('warning', sentence));
   for (const complaint of [...complaints, store.complaint]) if (complaint) notices.show('warning', complaint);

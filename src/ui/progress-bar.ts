@@ -1,6 +1,6 @@
 import { pageElement } from './element';
 
-/** What has to be there before the first body stands on the floor, and its share of the waiting. */
+/** Something that must load before the first body is drawn, and its share of the progress. */
 export interface LoadingStep {
   readonly name: string;
   readonly weight: number;
@@ -9,13 +9,13 @@ export interface LoadingStep {
 export interface Progress {
   /** How far a step is, 0 to 1; never goes back. */
   report(step: string, part: number): void;
-  /** The first body is on the screen: what is still loading goes on as a thin bar above it. */
+  /** The first body is drawn: further loading is shown as a thin bar above the picture. */
   showBody(): void;
-  /** Everything asked for is there, or known not to come: the bar goes. */
+  /** Everything has been loaded, or has failed: hides the bar. */
   finish(): void;
 }
 
-/** The bar that is there from the first paint (index.html) until everything has arrived. */
+/** The bar that index.html shows from the first paint until everything has been loaded. */
 export function createProgress(steps: readonly LoadingStep[]): Progress {
   const region = pageElement('progress', HTMLDivElement);
   const text = pageElement('progress-text', HTMLParagraphElement);

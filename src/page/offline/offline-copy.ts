@@ -1,8 +1,8 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { pageFolder } from 'threepoint-ui/page-folder';
 
-/** What this browser has of the page for a visit without a network: nothing yet, a copy on its way, a whole copy; or why it keeps none. */
-export type KeptState = 'nothing' | 'coming' | 'whole' | { readonly refused: string };
+/** This browser's copy of the page for use without a network: none, loading, complete, or the reason why there is none. */
+export type OfflineCopyState = 'nothing' | 'coming' | 'whole' | { readonly refused: string };
 
 /** Resolves when the worker has its files, or never will. */
 function settled(worker: ServiceWorker): Promise<void> {
@@ -18,20 +18,17 @@ function settled(worker: ServiceWorker): Promise<void> {
 }
 
 /** The copy of the page that this browser keeps, so that the next visit needs no network. */
-export class KeptPage {
-  #state: KeptState = 'nothing';
+export class OfflineCopy {
+  #state: OfflineCopyState = 'nothing';
 
-  get state(): KeptState {
+  get state(): OfflineCopyState {
     return this.#state;
   }
 
-  /**
-   * Brings the copy, or a newer one beside it. A browser that keeps nothing (no secure context, a private window, full storage, a policy)
-   * leaves the page as it is. Never rejects.
-   */
+  /** Stores a copy of the page, or a newer one. A browser that stores nothing (no secure context, a private window, full storage, a policy) changes nothing. Never rejects. */
   async keep(workers: ServiceWorkerContainer | undefined): Promise<void> {
     if (!workers) {
-      this.#state = { refused: 'this browser offers no service workers here' };
+      this.#state = { refused: 'this browser does not support service workers here' };
       return;
     }
     this.#state = 'coming';

@@ -2,7 +2,7 @@ import fc from 'fast-check';
 import { type BufferAttribute, Mesh } from 'three';
 import { distance, vec3 } from 'threepoint/core/math/vec3';
 import { braceHeight, maximumDraw } from 'threepoint-games/archery/bow';
-import { createBow } from 'threepoint-page/archery/bow';
+import { createBow } from 'threepoint-page/archery/bow-model';
 import { stringBow } from 'threepoint-page/archery/limb-shape';
 import { describe, expect, it } from 'vitest';
 import { fromEulerYxz } from '../../threepoint/core/euler-angles';

@@ -2,19 +2,19 @@ import { element } from './element';
 
 /** How the ball game is played, a sentence a line; `balls` and `seconds` of a match. */
 export const ballRulesText = (balls: number, seconds: number): readonly string[] => [
-  'Two players throw, the third holds the basket, 5 m away. Bots take the places that are free.',
+  'Two players throw, the third holds the basket, 5 m away. Bots take free places.',
   `${balls} balls, ${Math.round(seconds)} seconds, a point for every ball that lands in the basket.`,
-  'Throw: take a ball from the rack (trigger, grip or pinch), swing and let go. Dropped balls go back to the rack.',
+  'Throw: take a ball from the rack (trigger, grip or pinch), swing and release. Dropped balls return to the rack.',
   'Catch: the basket hangs between both hands, or at one, and opens where the thumbs point.',
-  'Stay within 1.2 m of your mark: throws count from there.',
-  'A match begins when every player has pressed Ready.',
+  'Stay within 1.2 m of your mark: only throws from there count.',
+  'A match starts when every player has pressed Ready.',
 ];
 
 /** How archery is played, a sentence a line. */
 export const archeryRulesText: readonly string[] = [
-  'Five arrows, four targets from 4.5 to 10.5 m: 5, 10, 15 and 20 points, each target once. 70 seconds from the first arrow on.',
-  'Hold the bow in one hand. With the other press the trigger (or pinch) at the string, draw, and let go.',
-  'Stay on the deck: arrows count from there.',
+  'Five arrows, four targets from 4.5 to 10.5 m: 5, 10, 15 and 20 points, each target once. 70 seconds from the first arrow.',
+  'Hold the bow in one hand. With the other hand press the trigger (or pinch) at the string, draw, and release.',
+  'Stay on the deck: only arrows from there count.',
 ];
 
 /** Rules as a list. */

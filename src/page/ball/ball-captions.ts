@@ -6,7 +6,7 @@ import { directionOf } from '../scene/directions';
 import { nameOf, type Person } from './board-drawing';
 
 /** The listener, and the positions of the other players. */
-export interface Hearing {
+export interface Listener {
   /** Arena frame. */
   readonly head: Pose<'arena'>;
   /** Own player; null: a spectator. */
@@ -16,27 +16,27 @@ export interface Hearing {
   readonly seconds: number;
 }
 
-const whoIs = ({ people, me }: Hearing, player: number): string => {
+const whoIs = ({ people, me }: Listener, player: number): string => {
   const person = people[player];
   return player === me ? 'You' : person ? nameOf(person) : 'A player';
 };
 
 const refusals: Partial<Readonly<Record<Refusal, string>>> = {
-  taken: 'Another player has that ball',
+  taken: 'Another player holds that ball',
   reach: 'Too far away',
-  zone: 'Step back to your mark: throws count from there',
+  zone: 'Step back to your mark: only throws from there count',
   time: 'Too late: time is up',
   speed: 'That was faster than an arm can throw',
 };
 
 /** What an event sounds like, in words and, where it has a place, with its direction; null: nothing. */
-export function eventCaption(event: BallEvent, at: Vec3 | null, hearing: Hearing): string | null {
-  const where = at ? `, ${directionOf(hearing.head, at)}` : '';
+export function eventCaption(event: BallEvent, at: Vec3 | null, listener: Listener): string | null {
+  const where = at ? `, ${directionOf(listener.head, at)}` : '';
   switch (event.type) {
     case 'started':
-      return `Whistle: ${Math.round(hearing.seconds)} seconds`;
+      return `Whistle: ${Math.round(listener.seconds)} seconds`;
     case 'thrown':
-      return event.player === hearing.me ? null : `${whoIs(hearing, event.player)} throws${where}`;
+      return event.player === listener.me ? null : `${whoIs(listener, event.player)} throws${where}`;
     case 'caught':
       return `Caught: ${event.score} ${event.score === 1 ? 'point' : 'points'}`;
     case 'bounced':
@@ -44,19 +44,19 @@ export function eventCaption(event: BallEvent, at: Vec3 | null, hearing: Hearing
     case 'missed':
       return `The ball lands on the floor${where}`;
     case 'joined':
-      return event.player === hearing.me ? null : `${whoIs(hearing, event.player)} joins`;
+      return event.player === listener.me ? null : `${whoIs(listener, event.player)} joins`;
     case 'left':
-      return event.player === hearing.me ? null : `${whoIs(hearing, event.player)} leaves`;
+      return event.player === listener.me ? null : `${whoIs(listener, event.player)} leaves`;
     case 'ended':
       return `Bell: ${event.end === 'time' ? 'time is up' : 'all balls are thrown'}, ${event.score} ${event.score === 1 ? 'point' : 'points'}`;
     case 'refused':
-      return event.player === hearing.me ? (refusals[event.reason] ?? null) : null;
+      return event.player === listener.me ? (refusals[event.reason] ?? null) : null;
     default:
       return null;
   }
 }
 
-/** What one's own hands sound like, in words; null: nothing that an event does not say too. */
+/** Captions a cue of the user's hands; null: an event has a caption for it. */
 export function cueCaption({ type, side }: BallCue): string | null {
   switch (type) {
     case 'grabbed':

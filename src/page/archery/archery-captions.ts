@@ -71,7 +71,7 @@ export function cueCaption({ type, side }: BowCue): string | null {
     case 'cancelled':
       return 'Arrow back in the quiver';
     case 'lost':
-      return `The ${side} hand is out of sight: the arrow waits`;
+      return `The ${side} hand is not tracked: the arrow waits`;
     case 'resumed':
       return `The ${side} hand is back`;
     case 'near-string':

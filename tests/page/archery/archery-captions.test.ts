@@ -2,8 +2,8 @@ import { fromAxisAngle, identity } from 'threepoint/core/math/quat';
 import { up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { Arrow, Landing, Target } from 'threepoint-games/archery/archery-state';
 import { archeryRules } from 'threepoint-games/archery/rules';
-import { eventCaption } from 'threepoint-page/archery/captions';
-import { createSounds } from 'threepoint-page/archery/sounds';
+import { eventCaption } from 'threepoint-page/archery/archery-captions';
+import { createSounds } from 'threepoint-page/archery/archery-sounds';
 import { directionOf } from 'threepoint-page/scene/directions';
 import { describe, expect, it } from 'vitest';
 
@@ -76,8 +76,8 @@ describe('sounds before the browser allows any', () => {
     const state = archeryRules.start([], 1);
     const cue = (type: 'creak' | 'nocked') =>
       ({ type, side: 'left', position: vec3(0, 1.4, -0.6), draw: 0.2 }) as const;
-    sounds.hear(state, [], [cue('nocked'), cue('creak'), cue('creak')]);
-    sounds.hear(state, [{ type: 'started' }], [cue('creak')]);
+    sounds.playEvents(state, [], [cue('nocked'), cue('creak'), cue('creak')]);
+    sounds.playEvents(state, [{ type: 'started' }], [cue('creak')]);
     expect(captions).toEqual(['Arrow nocked', 'The bow creaks', 'The clock runs: 70 seconds']);
   });
 
@@ -88,8 +88,8 @@ describe('sounds before the browser allows any', () => {
       onCaption: (text) => captions.push(text),
     });
     // One metre behind the deck of a range that runs along the floor's −X.
-    sounds.listen({ position: vec3(3, 1.6, 0), orientation: fromAxisAngle(up, Math.PI / 2) });
-    sounds.hear(archeryRules.start([], 1), [{ type: 'left-zone' }], []);
+    sounds.setListener({ position: vec3(3, 1.6, 0), orientation: fromAxisAngle(up, Math.PI / 2) });
+    sounds.playEvents(archeryRules.start([], 1), [{ type: 'left-zone' }], []);
     expect(captions).toEqual(['You left the deck: it is ahead']);
   });
 });

@@ -1,7 +1,7 @@
 import type { BallState } from 'threepoint-games/ball/ball-state';
 import { ballSecondsLeft } from 'threepoint-games/ball/state-readings';
 
-/** The clock of matches as it is shown: after the end of one it stands at what was left. */
+/** The displayed clock of a match. After its end it stays at the time that was left. */
 export function createMatchClock() {
   let secondsLeft = 0;
   return {

@@ -13,18 +13,18 @@ import {
   type Recipes,
   type SoundStage,
 } from '../scene/sound/sound-stage';
-import { bell, chime, click, warning, whoosh } from '../scene/sound/synthesis';
-import { cueCaption, eventCaption } from './captions';
-import { creak, earth, rattle, thud, twang } from './synthesis';
+import { bell, chime, click, warning, whoosh } from '../scene/sound/sound-synthesis';
+import { cueCaption, eventCaption } from './archery-captions';
+import { creak, earth, rattle, thud, twang } from './archery-synthesis';
 
 /** Plays the sounds of archery from where they happen, with captions. */
 export interface Sounds {
   /** The stage that plays the sounds. It must be unlocked; captions work without it. */
   readonly stage: AudibleStage;
   /** Plays and captions what happened in this frame; cues are in the floor frame, events in the arena frame. */
-  hear(state: ArcheryState, events: readonly ArcheryEvent[], cues: readonly BowCue[]): void;
+  playEvents(state: ArcheryState, events: readonly ArcheryEvent[], cues: readonly BowCue[]): void;
   /** Sets the pose of the listener's head, floor frame. */
-  listen(head: Pose<'floor'>): void;
+  setListener(head: Pose<'floor'>): void;
   dispose(): void;
 }
 
@@ -77,7 +77,7 @@ class RangeSounds implements Sounds {
   /** The sound of each arrow in the air. */
   readonly #flying = new Map<number, AudioBufferSourceNode>();
   #head: Pose<'floor'> = { position: vec3(0, 1.6, 0), orientation: { x: 0, y: 0, z: 0, w: 1 } };
-  /** The bow's creaking was said in this draw. */
+  /** The creaking of the bow was captioned in this draw. */
   #creaked = false;
 
   constructor({ floorFromArena, onCaption, createContext }: SoundsOptions) {
@@ -87,7 +87,7 @@ class RangeSounds implements Sounds {
     this.stage = createSoundStage(recipes, createContext);
   }
 
-  hear({ targets, options }: ArcheryState, events: readonly ArcheryEvent[], cues: readonly BowCue[]): void {
+  playEvents({ targets, options }: ArcheryState, events: readonly ArcheryEvent[], cues: readonly BowCue[]): void {
     const playing = this.stage.player;
     for (const cue of cues) {
       this.#captionCue(cue);
@@ -101,9 +101,9 @@ class RangeSounds implements Sounds {
     }
   }
 
-  listen(head: Pose<'floor'>): void {
+  setListener(head: Pose<'floor'>): void {
     this.#head = head;
-    this.stage.listen(head);
+    this.stage.setListener(head);
   }
 
   dispose(): void {
@@ -114,7 +114,7 @@ class RangeSounds implements Sounds {
     return transformPoint(this.#floorFromArena, point);
   }
 
-  /** A bow creaks many times in a draw; it is said once. */
+  /** Captions a cue. A bow creaks many times in a draw; one caption is enough. */
   #captionCue(cue: BowCue): void {
     if (cue.type === 'creak' && this.#creaked) return;
     if (cue.type === 'creak') this.#creaked = true;

@@ -14,23 +14,23 @@ import {
   type Recipes,
   type SoundStage,
 } from '../scene/sound/sound-stage';
-import { bell, chime, click, warning, whoosh } from '../scene/sound/synthesis';
+import { bell, chime, click, warning, whoosh } from '../scene/sound/sound-synthesis';
+import { cueCaption, eventCaption, type Listener } from './ball-captions';
+import { bounce, caughtInWicker, knock, tick, whistle } from './ball-synthesis';
 import type { Person } from './board-drawing';
-import { cueCaption, eventCaption, type Hearing } from './captions';
-import { bounce, caughtInWicker, knock, tick, whistle } from './synthesis';
 
 /** Plays the sounds of the ball game from where they happen, with captions. */
 export interface BallSounds {
   /** The stage that plays the sounds. It must be unlocked; captions work without it. */
   readonly stage: AudibleStage;
-  hear(heard: Heard): void;
+  playEvents(played: Played): void;
   /** Sets the pose of the listener's head, floor frame. */
-  listen(head: Pose<'floor'>, floorFromArena: Transform<'floor', 'arena'>): void;
+  setListener(head: Pose<'floor'>, floorFromArena: Transform<'floor', 'arena'>): void;
   dispose(): void;
 }
 
 /** One frame of a match for the ears. */
-export interface Heard {
+export interface Played {
   readonly state: BallState;
   /** Seconds of the match. */
   readonly time: number;
@@ -101,26 +101,26 @@ class CourtSounds implements BallSounds {
     this.stage = createSoundStage(recipes, createContext);
   }
 
-  hear(heard: Heard): void {
+  playEvents(played: Played): void {
     const playing = this.stage.player;
-    const { state, events, cues, people, me, palms } = heard;
+    const { state, events, cues, people, me, palms } = played;
     const head = transformPose(invertTransform(this.#floorFromArena), this.#head);
-    const hearing: Hearing = { head, me, people, seconds: state.options.seconds };
+    const listener: Listener = { head, me, people, seconds: state.options.seconds };
     for (const cue of cues) {
       this.#caption(cueCaption(cue));
       if (playing) this.#playCue(cue, palms, playing);
     }
     for (const event of events) {
-      this.#caption(eventCaption(event, placeOf(event, state), hearing));
-      if (playing) this.#playEvent(event, heard, playing);
+      this.#caption(eventCaption(event, placeOf(event, state), listener));
+      if (playing) this.#playEvent(event, played, playing);
     }
     this.#tick(state, playing);
   }
 
-  listen(head: Pose<'floor'>, floorFromArena: Transform<'floor', 'arena'>): void {
+  setListener(head: Pose<'floor'>, floorFromArena: Transform<'floor', 'arena'>): void {
     this.#head = head;
     this.#floorFromArena = floorFromArena;
-    this.stage.listen(head);
+    this.stage.setListener(head);
   }
 
   dispose(): void {
@@ -142,14 +142,14 @@ class CourtSounds implements BallSounds {
     this.#ticked = left;
   }
 
-  #playCue({ type, side }: BallCue, palms: Heard['palms'], { play }: Player): void {
+  #playCue({ type, side }: BallCue, palms: Played['palms'], { play }: Player): void {
     const at = palms[side];
     if (!at) return;
     if (type === 'grabbed' || type === 'dropped') play('click', this.#inFloor(at));
     else if (type === 'slipped') play('warning', this.#inFloor(at));
   }
 
-  #playEvent(event: BallEvent, { state, me }: Heard, playing: Player): void {
+  #playEvent(event: BallEvent, { state, me }: Played, playing: Player): void {
     const { play } = playing;
     const at = placeOf(event, state);
     switch (event.type) {

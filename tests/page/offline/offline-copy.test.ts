@@ -1,4 +1,4 @@
-import { KeptPage } from 'threepoint-page/offline/kept-page';
+import { OfflineCopy } from 'threepoint-page/offline/offline-copy';
 import { beforeEach, expect, test, vi } from 'vitest';
 
 beforeEach(() => {
@@ -12,23 +12,23 @@ const browserWith = (offered: Partial<Record<keyof ServiceWorkerContainer, unkno
   offered as unknown as ServiceWorkerContainer;
 
 test('a browser without service workers keeps nothing, and the page hears no exception', async () => {
-  const kept = new KeptPage();
+  const kept = new OfflineCopy();
   await kept.keep(undefined);
-  expect(kept.state).toEqual({ refused: expect.stringContaining('no service workers') });
+  expect(kept.state).toEqual({ refused: expect.stringContaining('does not support service workers') });
 });
 
 test.each([
   ['refuses the service worker', () => Promise.reject(new DOMException('The operation is insecure.', 'SecurityError'))],
   ['gives none although it seems to', () => Promise.resolve(undefined)],
 ])('a browser that %s keeps nothing, and the page hears no exception', async (_, register) => {
-  const kept = new KeptPage();
+  const kept = new OfflineCopy();
   await kept.keep(browserWith({ register }));
   expect(kept.state).toHaveProperty('refused');
 });
 
 test('the page asks for the worker of its own folder', async () => {
   const register = vi.fn(() => Promise.resolve({ active: {}, installing: null }));
-  const kept = new KeptPage();
+  const kept = new OfflineCopy();
   await kept.keep(browserWith({ register }));
   expect(register).toHaveBeenCalledWith('https://a.example/threepoint/sw.js');
   expect(kept.state).toBe('whole');
@@ -36,7 +36,7 @@ test('the page asks for the worker of its own folder', async () => {
 
 test('a copy whose files could not be stored is none', async () => {
   const worker = Object.assign(new EventTarget(), { state: 'installing' });
-  const kept = new KeptPage();
+  const kept = new OfflineCopy();
   const done = kept.keep(browserWith({ register: async () => ({ active: null, installing: worker }) }));
   await Promise.resolve();
   expect(kept.state).toBe('coming');

@@ -12,7 +12,7 @@ const sourceTexts: Partial<Readonly<Record<CalibrationSource, string>>> = {
   'stood-taller': 'corrected, because you stood taller',
 };
 
-export interface WearerOptions {
+export interface UserCalibrationOptions {
   readonly body: Pick<BodySolver, 'calibrate' | 'discontinuity'>;
   readonly headset: Pick<Headset, 'worn' | 'recentre'>;
   readonly view: Pick<DesktopView, 'recentre'>;
@@ -22,10 +22,10 @@ export interface WearerOptions {
 }
 
 /** The user of the page: where their measures come from, in words, whether those last, and where they stand. */
-export class Wearer {
-  readonly #options: WearerOptions;
+export class UserCalibration {
+  readonly #options: UserCalibrationOptions;
 
-  constructor(options: WearerOptions) {
+  constructor(options: UserCalibrationOptions) {
     this.#options = options;
   }
 
@@ -66,7 +66,7 @@ export class Wearer {
     const centimetres = Math.round(100 * difference);
     this.#options.notices.show(
       'info',
-      `You stand ${centimetres} cm taller than your calibration says: you may want to calibrate again.`,
+      `You stand ${centimetres} cm taller than your calibration. You may want to calibrate again.`,
     );
   }
 

@@ -1,5 +1,5 @@
-import { creak, earth, rattle, thud, twang } from 'threepoint-page/archery/synthesis';
-import { bell, chime, click, warning, whoosh } from 'threepoint-page/scene/sound/synthesis';
+import { creak, earth, rattle, thud, twang } from 'threepoint-page/archery/archery-synthesis';
+import { bell, chime, click, warning, whoosh } from 'threepoint-page/scene/sound/sound-synthesis';
 import { describe, expect, it } from 'vitest';
 
 const rate = 48000;

@@ -1,0 +1,137 @@
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { createEstimator } from 'threepoint/core/estimation/estimators';
+import { zero } from 'threepoint/core/math/vec3';
+import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
+import type { BallCue, BallGestures, BallPulse } from 'threepoint-games/ball/gestures';
+import type { Performed } from 'threepoint-games/ball/player-postures';
+import { holderStation } from 'threepoint-games/ball/stations';
+import {
+  type BallSteering,
+  createSteeredHolder,
+  createSteeredThrower,
+  type SteeredPlayer,
+} from 'threepoint-games/ball/steered-players';
+import type { BallBot } from 'threepoint-games/ball/thrower-motion';
+import type { Launch } from 'threepoint-games/ballistics';
+import { actorFor, bodyAt, type CourtSight, momentsUntil, moveOnce, performedAt, play, stationOf } from './ball-bots';
+
+const idle: BallSteering = {
+  ray: { origin: zero, direction: { x: 0, y: 0, z: -1 } },
+  pressed: false,
+  cancelled: false,
+};
+
+interface CurrentPlayer {
+  readonly station: number;
+  readonly eyeHeight: number;
+  /** The situation in which the player was created. Another one needs another player. */
+  readonly since: 'mouse' | 'ready' | 'later';
+  readonly bot: BallBot | SteeredPlayer;
+}
+
+const none: readonly never[] = [];
+
+export interface SimulatedPlayerOptions {
+  /** The mouse's target, floor frame of the user; null or absent: a bot plays. */
+  steering?(): BallSteering | null;
+  readonly seed: number;
+}
+
+/** The player on the user's seat while no person wears a headset: a bot, or a body that follows the mouse. */
+export class SimulatedPlayer {
+  readonly #options: SimulatedPlayerOptions;
+  readonly #sight: CourtSight;
+  /** Solves the bodies of moments between two pictures. */
+  readonly #between;
+  #calibration: Calibration;
+  #current: CurrentPlayer | null = null;
+  #steering: BallSteering | null = null;
+  #actedAt: number | null = null;
+  #cues: readonly BallCue[] = none;
+  #haptics: readonly BallPulse[] = none;
+
+  constructor(options: SimulatedPlayerOptions, calibration: Calibration, sight: CourtSight) {
+    this.#options = options;
+    this.#sight = sight;
+    this.#calibration = calibration;
+    this.#between = createEstimator('ik', calibration);
+  }
+
+  /** The flight of the ball that the mouse aims, arena frame; null: it aims none. */
+  get aim(): Launch | null {
+    return this.#steering && this.#current && 'aim' in this.#current.bot ? this.#current.bot.aim : null;
+  }
+
+  calibrate(calibration: Calibration): void {
+    this.#calibration = calibration;
+    this.#between.calibrate(calibration);
+    this.#current = null;
+  }
+
+  /**
+   * Returns the player's input at a time [s], or null without a seat. `catchUp`: also plays the moments between two slow pictures, which no device
+   * could.
+   */
+  act(line: BallConnection, gestures: BallGestures, time: number, catchUp: boolean): Performed | null {
+    const view = line.room;
+    if (!view?.match || view.mySeat === null) return null;
+    this.#steering = this.#options.steering?.() ?? null;
+    const { bot, replaced } = this.#player(view, view.mySeat);
+    if (replaced) {
+      // The move from the previous hands to these is not a throw.
+      const { frame, buttons } = performedAt(bot, time, view.match, view.mySeat, this.#sight);
+      play(line, gestures, { ...frame, suspended: true }, buttons);
+      this.#actedAt = time;
+    }
+    if (catchUp) this.#catchUp(line, gestures, bot, time);
+    return performedAt(bot, time, line.room?.match ?? view.match, view.mySeat, this.#sight);
+  }
+
+  /** Returns cues and haptics of the moments between two pictures, once. */
+  takeMissed(): { readonly cues: readonly BallCue[]; readonly haptics: readonly BallPulse[] } {
+    const missed = { cues: this.#cues, haptics: this.#haptics };
+    this.#cues = none;
+    this.#haptics = none;
+    return missed;
+  }
+
+  /** Replaces the player for another station, another body or another source of input. A running match keeps its player of the same source. */
+  #player(view: BallRoomView, seat: number): { readonly bot: CurrentPlayer['bot']; readonly replaced: boolean } {
+    const current = this.#current;
+    const { eyeHeight } = this.#calibration;
+    const station = stationOf(view, seat);
+    const phase = view.match?.phase;
+    const since = this.#steering ? 'mouse' : phase === 'ready' ? 'ready' : 'later';
+    const replaced = current !== null && 'aim' in current.bot !== (this.#steering !== null);
+    const same = current?.station === station && current.eyeHeight === eyeHeight && current.since === since;
+    if (current && (same || (!replaced && phase === 'running'))) return { bot: current.bot, replaced };
+    const bot = this.#steering
+      ? this.#steered(station)
+      : actorFor(station, this.#calibration, this.#options.seed + seat);
+    this.#current = { station, eyeHeight, since, bot };
+    return { bot, replaced };
+  }
+
+  #steered(station: number): SteeredPlayer {
+    const create = station === holderStation ? createSteeredHolder : createSteeredThrower;
+    return create(bodyAt(station, this.#calibration), () => this.#steering ?? idle);
+  }
+
+  /** Plays the moments before the current picture. */
+  #catchUp(line: BallConnection, gestures: BallGestures, actor: BallBot, time: number): void {
+    const moments = momentsUntil(time, this.#actedAt);
+    this.#actedAt = time;
+    const mover = { line, gestures, actor, estimator: this.#between };
+    for (let i = 0; i < moments.length - 1; i++) {
+      const done = moveOnce(mover, moments[i]!, this.#sight);
+      this.#cues = joined(this.#cues, done?.cues);
+      this.#haptics = joined(this.#haptics, done?.haptics);
+    }
+  }
+}
+
+/** Joins two lists, without a copy if one is empty. */
+export function joined<T>(a: readonly T[], b: readonly T[] = none): readonly T[] {
+  if (a.length === 0) return b;
+  return b.length === 0 ? a : [...a, ...b];
+}

@@ -1,0 +1,94 @@
+import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
+import { decoders } from 'threepoint/avatar/decoders/decoders';
+import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
+import { checkInWorker } from 'threepoint/avatar/file/check-in-worker';
+import { hashOf } from 'threepoint/avatar/file/file-hash';
+import { avatarLimits } from 'threepoint/avatar/file/inspect-avatar';
+import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
+import { withNamedBones } from 'threepoint/avatar/humanoid/name-bones';
+import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
+import { labelOf } from 'threepoint/avatar/own-bodies';
+import { type OwnBody, ownAvatarOf, type SkinTone } from 'threepoint/core/body/avatar-ref';
+import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
+import { pageFolder } from 'threepoint-ui/page-folder';
+import type { UserAvatar } from '../activity/activity-context';
+import type { KnownBones } from './known-bones';
+
+export const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megabytes };
+
+/** Downloads one of the page's own avatars. `onProgress` is called with the share [0, 1] that has arrived. */
+export const fetchOwnAvatar = (name: OwnBody, onProgress?: (share: number) => void): Promise<ArrayBuffer> =>
+  readLimited(`${pageFolder()}/avatars/${name}.vrm`, avatarFile, onProgress && { onProgress });
+
+/** An avatar, and the reference by which other players see it. */
+export interface LoadedUserAvatar {
+  readonly avatar: Avatar;
+  readonly worn: UserAvatar;
+}
+
+export interface AvatarLoaderOptions {
+  /** The bone maps that users gave for files. */
+  readonly knownBones: Pick<KnownBones, 'of' | 'keep'>;
+  /** Uploads an avatar to the graphics device before it is shown. */
+  prepare(object: Avatar['object']): Promise<void>;
+}
+
+/** Returns the file for other players, who have no map of its bones. Its hash is null if this page cannot compute it. */
+async function fileFor({ bytes, hash }: CheckedAvatar, bones: BoneMap | undefined) {
+  if (!bones) return { file: new Blob([bytes]), hash };
+  const named = await withNamedBones(bytes, bones);
+  return { file: new Blob([named]), hash: await hashOf(named) };
+}
+
+/** Loads avatars from files, addresses and the page's own folder. */
+export class AvatarLoader {
+  readonly #options: AvatarLoaderOptions;
+
+  constructor(options: AvatarLoaderOptions) {
+    this.#options = options;
+  }
+
+  /** Loads one of the page's own avatars. `bytes`: its file, if the download has started already. */
+  async loadOwn(
+    body: OwnBody,
+    skinTone: SkinTone | undefined,
+    bytes: Promise<ArrayBuffer> = fetchOwnAvatar(body),
+  ): Promise<LoadedUserAvatar> {
+    return {
+      avatar: await createAvatarBetweenFrames(await parseAvatar(await bytes, labelOf(body))),
+      worn: ownAvatarOf(body, skinTone),
+    };
+  }
+
+  /** Reads a file and checks it in a worker. */
+  async check(
+    source: string | File,
+    options: { readonly onProgress: (share: number) => void; readonly signal: AbortSignal },
+  ): Promise<CheckedAvatar> {
+    const bytes = await readLimited(source, avatarFile, options);
+    return checkInWorker(bytes, { name: nameOf(source), unpacked: Object.keys(decoders) });
+  }
+
+  /** Builds the avatar of a checked file with the bones that the user gave for it before. Rejects with UnknownBones if they are unknown. */
+  build(checked: CheckedAvatar, name: string): Promise<LoadedUserAvatar> {
+    return this.#build(checked, name, checked.hash === null ? undefined : this.#options.knownBones.of(checked.hash));
+  }
+
+  /** Builds the avatar of a checked file with these bones, and stores them for the file. */
+  async buildWith(checked: CheckedAvatar, name: string, bones: BoneMap): Promise<LoadedUserAvatar> {
+    const loaded = await this.#build(checked, name, bones);
+    if (checked.hash !== null) this.#options.knownBones.keep(checked.hash, bones);
+    return loaded;
+  }
+
+  async #build(checked: CheckedAvatar, name: string, bones: BoneMap | undefined): Promise<LoadedUserAvatar> {
+    const avatar = await createAvatarBetweenFrames(await parseChecked(checked, name, { decoders, bones }));
+    try {
+      await this.#options.prepare(avatar.object);
+      return { avatar, worn: { name, ...(await fileFor(checked, bones)) } };
+    } catch (error) {
+      avatar.dispose();
+      throw error;
+    }
+  }
+}

@@ -1,0 +1,62 @@
+import { BodySolver, type BodySolverOptions, type CalibrationSource } from 'threepoint/api/body-solver';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { firstLine } from 'threepoint/core/errors/reasons';
+import { createPageClock, type PageClock } from 'threepoint/core/tracking/page-clock';
+import type { Notices } from 'threepoint-ui/notices';
+import { Emitter } from './emitter';
+import { estimatorTexts } from './estimator-texts';
+import type { FrameTiming } from './frame-timing';
+import { createNetworkLoader } from './network-loading';
+import type { PageContext } from './page-context';
+import type { PageLoading } from './page-loading';
+
+/** The user's body, its networks and clock, and the events that other parts of the page listen to. */
+export interface PageBody {
+  readonly body: BodySolver;
+  readonly networks: BodySolverOptions['networks'];
+  readonly clock: PageClock;
+  readonly calibrated: Emitter<[calibration: Calibration, source: CalibrationSource]>;
+  /** The user is taller than their calibration by this much [m]. */
+  readonly outgrown: Emitter<[difference: number]>;
+  readonly jumped: Emitter;
+}
+
+export interface PageBodyOptions {
+  readonly context: PageContext;
+  readonly notices: Notices;
+  readonly loading: PageLoading;
+  readonly timing: FrameTiming;
+}
+
+/** Creates the body that head and hands move. */
+export function createPageBody({ context, notices, loading, timing }: PageBodyOptions): PageBody {
+  const { switches, store, changes } = context;
+  const clock = createPageClock(() => performance.now());
+  const calibrated: PageBody['calibrated'] = new Emitter();
+  const outgrown: PageBody['outgrown'] = new Emitter();
+  const jumped = new Emitter();
+  const networks = createNetworkLoader({ provider: switches.executionProvider, notices, loading });
+  const body = new BodySolver({
+    estimator: 'ik',
+    calibration: store.preferences.calibration ?? 'auto',
+    // A study measures its participants itself.
+    autoGrow: switches.study === null,
+    networks,
+    clock,
+    profiler: timing,
+    events: {
+      calibrated: calibrated.emit,
+      heightmismatch: outgrown.emit,
+      discontinuity: jumped.emit,
+      changed: changes.emit,
+      fallback(name, reason) {
+        const { label } = estimatorTexts[name];
+        notices.show(
+          'warning',
+          `${label} could not be used, so inverse kinematics takes over. Reason: ${firstLine(reason)}`,
+        );
+      },
+    },
+  });
+  return { body, networks, clock, calibrated, outgrown, jumped };
+}
