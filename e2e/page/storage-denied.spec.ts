@@ -60,7 +60,7 @@ test('a browser that stores nothing shows the page, plays with others and takes 
     await expect.poll(async () => (await recordsOf(origin, 'denied')).length).toBe(1);
     await page.getByRole('button', { name: 'I have noted it' }).click();
     await expect(page.getByLabel(/Age/)).toBeVisible();
-    await expect(page.getByText('This browser lets the page keep nothing')).toBeVisible();
+    await expect(page.getByText('This browser does not let the page store anything')).toBeVisible();
   });
   measured('storage-denied', { 'pages that failed': '0 of 3' });
 });

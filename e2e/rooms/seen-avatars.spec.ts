@@ -252,7 +252,9 @@ freshTest(
         }
         tried += 1;
         await eve.putOn(file());
-        const notice = page.getByText(/The avatar of Eve could not be shown, so you see a mannequin\./).filter({ hasText: sentence });
+        const notice = page
+          .getByText(/The avatar of Eve could not be shown, so you see a mannequin\./)
+          .filter({ hasText: sentence });
         await expect(notice, what).toBeVisible({ timeout: 60_000 });
         expect(await drawnAs(page, 'Eve'), what).toBe('mannequin');
         const { frame } = await probe(page);
@@ -271,7 +273,9 @@ freshTest(
         (route) => route.fulfill(glb(good)),
       );
       await last.putOn(swapped);
-      await expect(page.getByText(/Eve is not shown.*the server sent a different file than the player announced/)).toBeVisible();
+      await expect(
+        page.getByText(/Eve is not shown.*the server sent a different file than the player announced/),
+      ).toBeVisible();
       expect(await drawnAs(page, 'Eve')).toBe('mannequin');
 
       const ann = await comes(server.origin, 'birch', 'Ann');
