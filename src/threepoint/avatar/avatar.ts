@@ -60,8 +60,6 @@ export interface Avatar {
 const averageBody: Calibration = { eyeHeight: 1.59, armSpan: 1.5 };
 /** A pause of the page moves feet no further than this [s]. */
 const longestStep = 0.25;
-/** Bodies made so far: each blinks at times of its own. */
-let made = 0;
 const upright = Object.fromEntries(jointNames.map((name) => [name, identity])) as Record<JointName, Quat>;
 
 /** What of a body takes long to make. */
@@ -137,8 +135,8 @@ class VrmAvatar implements Avatar {
     this.fingers = new Fingers(vrm);
     this.meshes = new BodyMeshes(meshes, this.rig);
     this.springs = new Springs(vrm);
-    made += 1;
-    this.face = new Face(vrm, made);
+    // The object's number differs from that of every other avatar, and so do the times at which it blinks.
+    this.face = new Face(vrm, object.id);
     this.setCalibration(averageBody);
   }
 

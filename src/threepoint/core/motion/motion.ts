@@ -95,10 +95,11 @@ export function* resampleMotion(motion: Motion, rateHz: number): Generator<numbe
   return even;
 }
 
-const a = vec3(0, 0, 0);
-const b = vec3(0, 0, 0);
-const from = quat(0, 0, 0, 1);
-const to = quat(0, 0, 0, 1);
+// Scratch of `mixFrame`: hips and one bone's rotation in the two frames that are mixed.
+const hipsBefore = vec3(0, 0, 0);
+const hipsAfter = vec3(0, 0, 0);
+const rotationBefore = quat(0, 0, 0, 1);
+const rotationAfter = quat(0, 0, 0, 1);
 
 function mixFrame(
   motion: Motion,
@@ -107,14 +108,14 @@ function mixFrame(
   share: number,
   { into, frame }: { readonly into: Motion; readonly frame: number },
 ): void {
-  const hips = lerp(hipsAt(motion, before, a), hipsAt(motion, after, b), share, a);
+  const hips = lerp(hipsAt(motion, before, hipsBefore), hipsAt(motion, after, hipsAfter), share, hipsBefore);
   into.hips.set([hips.x, hips.y, hips.z], 3 * frame);
   for (let bone = 0; bone < motion.measured; bone++) {
     const { x, y, z, w } = slerp(
-      rotationAt(motion, before, bone, from),
-      rotationAt(motion, after, bone, to),
+      rotationAt(motion, before, bone, rotationBefore),
+      rotationAt(motion, after, bone, rotationAfter),
       share,
-      from,
+      rotationBefore,
     );
     into.rotations.set([x, y, z, w], 4 * (frame * motion.measured + bone));
   }
