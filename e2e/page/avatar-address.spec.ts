@@ -30,7 +30,7 @@ const answers = {
   'large.vrm': [() => glb(new ArrayBuffer(61 * 2 ** 20)), /more than 60 MB/],
   'compressed.vrm': [
     () => glb(compressed()),
-    /compressed\.vrm could not be shown: (not valid glTF|no VRM or GLB file|cannot be read as glTF)/,
+    /compressed\.vrm could not be shown: (not valid glTF|not a VRM or GLB file|cannot be read as glTF)/,
   ],
   'plain.glb': [() => glb(plain()), /the names of its bones tell no body\. Say which is which/],
 } as const;

@@ -5,13 +5,16 @@ import type { ModelContract, PoseRegressor } from '../core/estimation/pose-regre
 import { fetchFile } from '../onnx/model-files';
 
 export interface LearnedOptions {
-  /** Where another contract (.json) lies, its weights beside it; in Node on the disk as well (`file:`). Default: the weights that the package brings, whose contract is built in. */
+  /**
+   * The address of another contract (.json) with its weights beside it; in Node also a `file:` address. Default: the
+   * package's weights, whose contract is built in.
+   */
   readonly modelUrl?: string | URL;
-  /** Share [0, 1] of the weights that has arrived. */
+  /** Called with the share [0, 1] of the weights that has arrived. */
   readonly onProgress?: (share: number) => void;
 }
 
-/** Stated where a bundler looks for files: it copies the weights and puts their address here. */
+/** The address in a form that bundlers recognise: they copy the weights and insert their address here. */
 const ownWeights = () => new URL('../../../public/models/learned.bin', import.meta.url);
 
 /**
@@ -27,8 +30,10 @@ export async function loadLearned({ modelUrl, onProgress }: LearnedOptions = {})
   return createPlainRegressor(own, await fetchFile(ownWeights().href, weightsOf(own), onProgress));
 }
 
-/** The networks of who has no runtime. */
+/** Loads the networks that need no runtime. */
 export function learnedAlone(name: NetworkName): Promise<PoseRegressor> {
   if (name === 'learned') return loadLearned();
-  return Promise.reject(new Error('the paper’s network needs a runtime: networks: onnxNetworks() of threepoint/onnx'));
+  return Promise.reject(
+    new Error('the paper’s network needs a runtime: pass networks: onnxNetworks() of threepoint/onnx'),
+  );
 }

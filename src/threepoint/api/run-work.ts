@@ -1,25 +1,25 @@
 import { secondsLeft, type Work } from '../core/motion/work';
 
-/** How far long work is. */
+/** The progress of long work. */
 export interface WorkProgress {
-  /** Share [0, 1] that is done. */
+  /** The share [0, 1] that is done. */
   readonly share: number;
-  /** Seconds that the rest will take at the pace so far; null: too little is done to say. */
+  /** The estimated time left [s]; null: too little is done for an estimate. */
   readonly secondsLeft: number | null;
 }
 
 export interface WorkOptions {
-  /** Hears how far the work is, some ten times a second. */
+  /** Called with the progress about ten times a second. */
   readonly onProgress?: ((progress: WorkProgress) => void) | undefined;
-  /** Gives the work up: what it made so far is let go, and the promise rejects with the signal's reason. */
+  /** Aborts the work: partial results are discarded, and the promise rejects with the signal's reason. */
   readonly signal?: AbortSignal | undefined;
 }
 
-/** Work goes on for so long [ms] before frames and presses have their turn. */
+/** The time slice [ms] of the work before the browser may draw and handle input. */
 const turnMs = 8;
 const tellEveryMs = 100;
 
-/** The next turn of the event loop. A message is not held back as timers are, in pages that are not looked at. */
+/** Resolves in the next turn of the event loop. Messages, unlike timers, are not throttled in background pages. */
 function nextTurn(): Promise<void> {
   return new Promise((resolve) => {
     const { port1, port2 } = new MessageChannel();
@@ -31,7 +31,7 @@ function nextTurn(): Promise<void> {
   });
 }
 
-/** Does long work in turns of a few milliseconds, so that a page goes on drawing. Rejects with what the work throws. */
+/** Runs long work in slices of a few milliseconds, so that a page keeps drawing. Rejects with what the work throws. */
 export async function runWork<Result>(work: Work<Result>, { onProgress, signal }: WorkOptions = {}): Promise<Result> {
   const begun = performance.now();
   let turnBegan = begun;
@@ -55,7 +55,7 @@ export async function runWork<Result>(work: Work<Result>, { onProgress, signal }
       turnBegan = performance.now();
     }
   } finally {
-    // The work closes what it holds open; after its end this does nothing.
+    // The work closes its open resources; after its end this has no effect.
     await work.return(undefined as Result);
   }
 }

@@ -33,7 +33,7 @@ export interface AvatarClip {
 const read = (bytes: ArrayBuffer, name: string, decoders: Decoders = {}) => {
   inspectAvatar(new Uint8Array(bytes), name, Object.keys(decoders));
   const chunks = chunksOf(new Uint8Array(bytes));
-  if (!chunks) throw new Error(`${name}: no VRM or GLB file (it does not begin as one, or is cut short)`);
+  if (!chunks) throw new Error(`${name}: not a VRM or GLB file (wrong signature, or truncated)`);
   return { description: JSON.parse(chunks.json) as AvatarDescription, binary: chunks.binary };
 };
 
@@ -42,7 +42,7 @@ const whole = (parts: readonly Uint8Array<ArrayBuffer>[]): Promise<ArrayBuffer> 
 /** What is needed of a VRM's extension to know its bones. */
 const humanoidParts = ['specVersion', 'exporterVersion', 'meta', 'humanoid', 'firstPerson'];
 
-/** The same body without surfaces and pictures, which no bone depends on and which only a browser can decode. */
+/** Returns the avatar without surfaces and pictures, which no bone depends on and only a browser can decode. */
 function bonesAlone(description: AvatarDescription): AvatarDescription {
   const bare = structuredClone(description);
   for (const field of ['images', 'textures', 'samplers', 'materials']) delete bare[field];

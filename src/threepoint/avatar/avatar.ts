@@ -47,11 +47,17 @@ export interface Avatar {
   setMouth(open: number): void;
   /** How a hand's fingers are bent from the next `apply` on; null: they are not seen, keep their bend for a while and relax. Copied. */
   setFingers(side: Side, shape: HandShape | null): void;
-  /** The hand as it is drawn [m]; null: the rig lacks a bone of a finger. The same object until the body is fitted anew. */
+  /**
+   * Returns the geometry of the drawn hand [m]; null: the rig lacks a finger bone. The object is the same until the
+   * calibration changes.
+   */
   handGeometry(side: Side): HandGeometry | null;
-  /** Where the fingers end that the rig has, as drawn, floor frame [m]; new objects: for tools. */
+  /** Returns the drawn fingertips of the rig, floor frame [m], in new objects for tools. */
   fingertips(side: Side): Readonly<Partial<Record<FingerName, Vec3>>>;
-  /** Where the joints of the bones are drawn, floor frame [m]; only bones that the rig has. The same object in every frame: copy what must stay. */
+  /**
+   * Returns the drawn joint positions of the rig's bones, floor frame [m]. The next frame overwrites the object: copy
+   * what must stay.
+   */
   jointPositions(): Readonly<Partial<Record<AvatarJoint, Vec3>>>;
   dispose(): void;
 }
@@ -81,7 +87,7 @@ function* makeAvatar({ vrm }: LoadedAvatar): Steps<Avatar> {
   const rig = new Rig(vrm);
   const arms = new ArmHelperJoints(rig);
   yield* arms.shareSkin(vrm.scene);
-  // After the skin is shared anew: what the wearer sees of meshes with a head is cut out of copies.
+  // The first-person meshes are cut from copies of meshes with a head, after the skin weights were shared.
   yield* setUpFirstPerson(vrm);
   const meshes = yield* readMeshes(vrm, rig);
   yield;
@@ -113,7 +119,7 @@ class VrmAvatar implements Avatar {
   private scale = 1;
   private lastTime: number | null = null;
   private readonly joints = makeJointPoses();
-  /** What the legs are told of a pose. */
+  /** The points of a pose that the legs follow. */
   private readonly points: { -readonly [Key in keyof GaitPoints]: GaitPoints[Key] } = {
     hips: this.joints.hips,
     head: this.joints.head,
@@ -283,5 +289,5 @@ class VrmAvatar implements Avatar {
 
 export const createAvatar = (loaded: LoadedAvatar): Avatar => atOnce(makeAvatar(loaded));
 
-/** The same while pictures go on: for a file that came while the page is in use. */
+/** Creates an avatar between frames, for a file that is opened while the page is in use. */
 export const createAvatarBetweenFrames = (loaded: LoadedAvatar): Promise<Avatar> => betweenFrames(makeAvatar(loaded));

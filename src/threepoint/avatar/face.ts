@@ -20,7 +20,7 @@ const closing = 0.07;
 const opening = 0.14;
 /** A file without VRM's expressions may have these shapes of a face (ARKit's, Ready Player Me's). */
 const lidShapes = ['eyeBlinkLeft', 'eyeBlinkRight', 'eyesClosed', 'eyeBlink_L', 'eyeBlink_R'];
-/** The same of a mouth, the one that says "ah" first: a file that has several of them is moved by one. */
+/** The names of mouth shapes, the one for "ah" first; a file with several of them is moved by the first. */
 const mouthShapes = ['viseme_aa', 'aa', 'jawOpen', 'mouthOpen', 'MouthOpen', 'A', 'あ'];
 /** Lips take half of their way in so long [s]: syllables are seen, what flickers between two readings of a level is not. */
 const mouthHalfLife = 0.03;
@@ -32,7 +32,7 @@ const widestGaze = 11;
 /** Eyes of a file without VRM turn as far as they are asked to [degrees]. */
 const eyeRange = new VRMLookAtRangeMap(30, 30);
 
-/** Where a mesh keeps how far it has taken one of its shapes. */
+/** The place where a mesh stores the weight of one of its shapes. */
 interface Shape {
   readonly influences: number[];
   readonly index: number;
@@ -128,7 +128,7 @@ function gazeOf(vrm: VRM): VRMLookAt | null {
 const inverse = quat(0, 0, 0, 1);
 const ahead = vec3(0, 0, 0);
 
-/** The face of a body: lids that blink, eyes that look where the head faces, a mouth that opens as it is told. */
+/** Animates the face of an avatar: lids blink, eyes look where the head faces, the mouth opens by `setMouth`. */
 export class Face {
   readonly #lids: Mover;
   readonly #mouth: Mover;

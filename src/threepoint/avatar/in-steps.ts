@@ -9,10 +9,10 @@ export function atOnce<Result>(steps: Steps<Result>): Result {
   }
 }
 
-/** So long steps follow each other [ms] before pictures and clicks have their turn: half of a frame at 60 Hz. */
+/** The time slice [ms] of steps before frames and clicks: half of a frame at 60 Hz. */
 const turnMs = 8;
 
-/** The same, with the page's other work between: no picture waits for it. */
+/** Runs the steps between frames, so that no frame waits for them. */
 export async function betweenFrames<Result>(steps: Steps<Result>): Promise<Result> {
   let since = performance.now();
   for (;;) {

@@ -24,7 +24,7 @@ export interface LoadedAvatar {
 }
 
 export interface ParseOptions {
-  /** Of a humanoid that is no VRM and whose names tell nothing. */
+  /** The bones of a humanoid that is not a VRM and whose names are unknown. */
   readonly bones?: BoneMap | undefined;
   /** Without them compressed files are refused. */
   readonly decoders?: Decoders;
@@ -40,7 +40,7 @@ export async function parseAvatar(
   return parseChecked({ bytes, packed, file: new Blob([bytes]) }, name, { bones, decoders });
 }
 
-/** The same from a file that `checkAvatar` has looked at. */
+/** Parses a file that has passed `checkAvatar`. */
 export async function parseChecked(
   { bytes, packed, file }: Pick<CheckedAvatar, 'bytes' | 'packed' | 'file'>,
   name: string,

@@ -100,7 +100,7 @@ class StandingMirror implements Mirror {
       this.reflectTo(0, renderer, scene, camera);
       return;
     }
-    // As three.js does at the beginning of a frame in a session.
+    // three.js does this at the start of a frame in a session.
     xr.updateCamera(camera as Parameters<typeof xr.updateCamera>[0]);
     const { cameras } = xr.getCamera();
     for (let eye = 0; eye < cameras.length && eye < eyeLayers.length; eye++) {
@@ -169,8 +169,8 @@ class StandingMirror implements Mirror {
       return reflecting;
     };
     this.reflections.push(glass.onBeforeRender);
-    // Drawn beforehand, and not in the midst of the scene: a render within a render has lights of its own, and each material is looked up
-    // anew for them.
+    // The reflection is drawn before the scene: a nested render has lights of its own, and every material would be
+    // looked up again.
     glass.onBeforeRender = () => undefined;
     this.glasses.push(glass);
     this.object.add(glass);

@@ -11,7 +11,7 @@ export interface Palette {
   readonly visor: string;
 }
 
-/** Told apart by lightness as well as by hue. */
+/** The palettes, which differ in lightness as well as in hue. */
 export const palettes: readonly Palette[] = [
   { name: 'porcelain', label: 'Porcelain', color: '#2f7de1', suit: '#c9ced6', head: '#e6e3de', visor: '#10141b' },
   { name: 'ember', label: 'Ember', color: '#e2572b', suit: '#4a4d55', head: '#d8cfc6', visor: '#15100e' },

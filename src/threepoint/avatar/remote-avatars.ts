@@ -17,11 +17,11 @@ export interface SeenPerson {
   readonly id: number;
   readonly calibration: Calibration;
   readonly avatar: AvatarRef;
-  /** Of a body of our own. */
+  /** The palette of one of the project's own bodies. */
   readonly palette: string;
   /** In their own floor's frame. */
   readonly pose: AvatarPose;
-  /** Where their floor lies in this room. */
+  /** The person's floor in this room. */
   readonly placement: Transform<'floor', 'floor'>;
   readonly fingers: Fingers;
   /** 1: live. Less: a ghost. */
@@ -30,26 +30,28 @@ export interface SeenPerson {
 
 export interface RemoteAvatarsOptions {
   /**
-   * The body for what a person has on; asked once for a file, and for one of ours with every body that is needed. Rejects where there is none: with a
-   * PassingFault it is asked again after some seconds.
+   * Loads the body of an avatar: once for a file, and for each needed copy of one of the project's own bodies. Rejects
+   * where it is unavailable; after a PassingFault it is called again some seconds later.
    */
   load(avatar: AvatarRef): Promise<LoadedAvatar>;
   /** All are to be drawn as the plain one; asked in every frame. */
   plain(): boolean;
   /** How far a person's mouth is open: 0 shut to 1; asked in every frame for each who is drawn. */
   mouthOf(id: number): number;
-  /** A person's avatar cannot be shown: the plain one stays. Told once for each avatar, and not of a fault that has passed soon. */
+  /**
+   * Called once for each avatar that cannot be shown, so that the plain one stays; not for a fault that passes soon.
+   */
   onRefused(avatar: AvatarRef, reason: unknown): void;
 }
 
-/** The bodies of other people. Those of one of ours share what the graphics device holds of it. */
+/** The bodies of other people. Copies of one body share its graphics memory. */
 export interface RemoteAvatars {
   readonly object: Group;
   /** Draws these people and no one else, at a time [s] on the clock of the frames. */
   show(people: readonly SeenPerson[], time: number): void;
-  /** Where a person's joints are drawn, floor frame of this room [m]; null: no one of this number is drawn. */
+  /** Returns a person's drawn joints, floor frame of this room [m]; null: nobody with this number is drawn. */
   jointsOf(id: number): Readonly<Record<string, Vec3>> | null;
-  /** As what a person is drawn; null: no one of this number is. */
+  /** Returns the avatar that a person is drawn as; null: nobody with this number is drawn. */
   drawnAs(id: number): AvatarRef | null;
   dispose(): void;
 }
@@ -57,7 +59,7 @@ export interface RemoteAvatars {
 interface Body {
   readonly avatar: Avatar;
   readonly of: AvatarRef;
-  /** Not one of ours. */
+  /** Whether the body is from a file and not one of the project's own. */
   readonly fromFile: boolean;
   readonly place: Group;
   readonly shadow: Mesh<PlaneGeometry, MeshBasicMaterial>;
@@ -214,7 +216,10 @@ class OthersBodies implements RemoteAvatars {
     });
   }
 
-  /** Never rejects: where it is not to be had the plain body stays; without the plain one the next frame throws why. */
+  /**
+   * Loads an avatar; never rejects: without it the plain body stays. Without the plain body the next frame throws the
+   * reason.
+   */
   async #load(avatar: AvatarRef): Promise<void> {
     try {
       const loaded = await this.#options.load(avatar);
@@ -240,7 +245,7 @@ class OthersBodies implements RemoteAvatars {
 
   #add(avatar: Avatar, of: AvatarRef): void {
     const fromFile = isAvatarHash(of);
-    // One of ours stays for as long as the others do; a file's memory is given back body by body.
+    // The project's own bodies stay as long as the others do; a file's memory is released body by body.
     if (isOwnAvatar(of)) {
       const first = this.#bodies.find((body) => isOwnAvatar(body.of) && bodyOf(body.of) === bodyOf(of));
       if (first) shareGeometry(first.avatar.object, avatar.object);

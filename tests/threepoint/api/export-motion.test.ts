@@ -61,7 +61,7 @@ describe('a recording', () => {
 
   test('is refused in a sentence where the device’s body is asked for and no frame has one', async () => {
     await expect(exportMotion(recording, { to: 'csv', estimator: 'device', networks })).rejects.toThrow(
-      'The recording has no body of its device: choose another method.',
+      'The recording has no device body. Choose another method.',
     );
     const seen = { ...recording.frames[3]!, deviceBody: new Float32Array(deviceBodySize) };
     const some = { ...recording, frames: recording.frames.with(3, seen) };
@@ -69,7 +69,7 @@ describe('a recording', () => {
   });
 
   test('is refused in a sentence where the method draws no body', async () => {
-    await expect(exportMotion(recording, { to: 'bvh', estimator: 'hands-only' })).rejects.toThrow(/draws no body/);
+    await expect(exportMotion(recording, { to: 'bvh', estimator: 'hands-only' })).rejects.toThrow(/estimates no body/);
     await expect(exportMotion(recording, { to: 'bvh', estimator: 'paper' })).rejects.toThrow(/needs a runtime/);
     await expect(exportMotion(recording, { to: 'fbx' as 'bvh', estimator: 'ik' })).rejects.toThrow(
       /“fbx” is no format/,
@@ -112,7 +112,7 @@ describe('a recording', () => {
     [
       'in inches',
       () => exportMotion(recording, { to: 'bvh', estimator: 'ik', unit: 'inch' as 'm' }),
-      /^“inch” is no unit of a BVH here: m, cm$/,
+      /^“inch” is not a unit of a BVH file. Use m or cm.$/,
     ],
   ])('%s is refused in a sentence', async (_, work, sentence) => {
     await expect(work()).rejects.toThrow(sentence);

@@ -38,7 +38,7 @@ test('a contract that is not on the disk is told in a sentence', async () => {
   );
 });
 
-test('weights that cannot be checked, as on a page without https, are refused in a sentence', async () => {
+test('weights that could not be checked, as on a page without https, are refused in a sentence', async () => {
   vi.stubGlobal('crypto', {});
-  await expect(loadLearned()).rejects.toThrow(/^learned\.bin: cannot be checked: the page is not secure/);
+  await expect(loadLearned()).rejects.toThrow(/^learned\.bin: could not be checked: the page is not secure/);
 });

@@ -1,4 +1,4 @@
-/** How embind tells apart what C++ takes and gives. */
+/** The type of a C++ argument or result in embind. */
 interface WireType {
   readonly isVoid?: boolean;
   readonly argPackAdvance: number;
@@ -102,7 +102,7 @@ function callerText(count: number, constructs: boolean, returns: boolean, packed
   ].join('');
 }
 
-/** So many bytes embind has for each packed argument. */
+/** The size [bytes] of a packed argument in embind. */
 const packedBytes = 8;
 
 /** A function by which C++ calls JavaScript; null: the text is none. */

@@ -24,7 +24,7 @@ function detectFormats(loader: KTX2Loader): void {
 
 /** three.js's loader of KTX2, whose worker is a file of our own: its own starts from a blob: address and compiles text, which our policy forbids. */
 class Ktx2InWorker extends KTX2Loader {
-  /** Of the first picture that could not be unpacked: GLTFLoader goes on without it. */
+  /** The fault of the first picture that could not be decoded: GLTFLoader continues without it. */
   fault: Error | null = null;
   readonly #worker = new AskedWorker<object, TranscodeAnswer>('KTX2', () => {
     const worker = new Worker(new URL('./ktx2-worker.ts', import.meta.url), { type: 'module' });

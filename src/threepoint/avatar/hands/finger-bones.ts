@@ -51,7 +51,7 @@ export interface RigFinger {
   readonly bones: readonly FingerBone[];
   /** The inverse of each bone's frame at rest (hand-geometry). */
   readonly fromRest: readonly [Quat, Quat, Quat];
-  /** Where the finger ends, in the frame of the node of its last bone. */
+  /** The fingertip, in the frame of the node of the last bone. */
   readonly tip: Vector3;
 }
 
@@ -149,7 +149,7 @@ function restPoints(nodes: readonly (Object3D | null)[], hand: Object3D, side: S
   else add(points[2], scale(along, lastBone * last), points[3]);
 }
 
-/** Where the skin that moves mostly with a bone lies, world frame [m]; null: there is none. */
+/** Returns the skin vertices that move mostly with a bone, world frame [m]; null: there are none. */
 function skinOf(scene: Object3D, node: Object3D | null): readonly Vector3[] | null {
   const found: Vector3[] = [];
   if (!node) return null;

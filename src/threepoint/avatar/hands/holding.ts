@@ -60,7 +60,7 @@ export class Holding {
   #eyeHeight = 1.59;
   readonly #hands: Record<Side, HandGeometry> = { left: this.#average, right: this.#average };
 
-  /** Whose hand it is that is drawn [m]; null: a rig without fingers of its own, which goes by the average hand of this eye height. */
+  /** Sets the drawn hand [m]; null: a rig without fingers, which uses the average hand of this eye height. */
   fitTo(side: Side, hand: HandGeometry | null, eyeHeight: number): void {
     if (eyeHeight !== this.#eyeHeight) {
       this.#eyeHeight = eyeHeight;
@@ -89,7 +89,7 @@ export class Holding {
     this.#close(side, 'rim', radius, tube, target);
   }
 
-  /** Where the thing lies in the frame of a left wrist. */
+  /** Moves the object into the frame of a left wrist. */
   #put(side: Side, wrist: Pose<'floor'>, at: Vec3, axis: Vec3): void {
     const middle = rotateInverse(wrist.orientation, subtract(at, wrist.position, this.#middle), this.#middle);
     const along = rotateInverse(wrist.orientation, axis, this.#axis);

@@ -10,7 +10,7 @@ export function shapeOfButtons(buttons: HandButtons, target: MutableHandShape = 
   return shapeOfClosing({ thumb: closed, index: closed, rest: closed, pinch: pressureOf(buttons, 'pinch') }, target);
 }
 
-/** The same for both hands, new. */
+/** Returns new finger shapes of both hands by their buttons. */
 export const fingersOfButtons = ({ left, right }: Buttons): Record<Side, HandShape> => ({
   left: shapeOfButtons(left),
   right: shapeOfButtons(right),

@@ -60,7 +60,7 @@ const longestWay = 0.5;
 /** Head and hips of a person do not both turn faster than this about the vertical [rad/s], nor further between two frames that lie far apart [rad]. */
 const fastestTurn = 14;
 const furthestTurn = Math.PI / 2;
-/** Time stamps that shake tell of shorter frames than there are [s]. */
+/** The shortest frame [s] that is assumed: jittering time stamps report shorter ones. */
 const shortestFrame = 1 / 60;
 
 const makeLeg = (): MutableLegPose => ({
@@ -97,7 +97,7 @@ function aimDown(direction: Vec3, towards: Vec3, target: MutableQuat): Quat {
 
 /** Two legs under a pelvis: feet stand and step as a gait network expects them to, knees follow. */
 export class LegPosture {
-  /** The same objects in every frame. */
+  /** The legs of the newest frame, in the same objects. */
   readonly legs: Readonly<Record<Side, LegPose>>;
   private readonly own = { left: makeLeg(), right: makeLeg() };
   private readonly stance = { ankleHeight: 0, legLength: 0 };
@@ -106,7 +106,7 @@ export class LegPosture {
   private lastHeadYaw = 0;
   private seconds = 0;
 
-  /** eyeHeight [m]: of the person, in whose units the gait is told. */
+  /** eyeHeight [m]: the person's, whose proportions are the unit of the gait. */
   constructor(
     private proportions: LegProportions,
     private eyeHeight: number,
@@ -116,7 +116,7 @@ export class LegPosture {
     this.legs = this.own;
   }
 
-  /** Other legs, which stand up anew. */
+  /** Sets the proportions of the legs and resets them. */
   fit(proportions: LegProportions, eyeHeight: number): void {
     this.proportions = proportions;
     this.eyeHeight = eyeHeight;
@@ -152,7 +152,7 @@ export class LegPosture {
     this.lastHipsYaw = hipsYaw;
     this.lastHeadYaw = headYaw;
     const mostTurn = Math.min(fastestTurn * Math.max(deltaSeconds, shortestFrame), furthestTurn);
-    // Of head and hips one alone may leap where its heading is hardly defined.
+    // The heading of head or hips alone may jump where it is badly defined.
     return Math.sqrt(x * x + z * z) > longestWay * this.stance.legLength || Math.min(hipsTurn, headTurn) > mostTurn;
   }
 

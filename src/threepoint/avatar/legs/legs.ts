@@ -9,7 +9,7 @@ const bonesOf = {
   right: { thigh: 'rightUpperLeg', shank: 'rightLowerLeg', foot: 'rightFoot' },
 } as const satisfies Record<Side, Record<string, AvatarJoint>>;
 
-/** Of a rig that has no legs of its own. */
+/** The legs of a rig that has none. */
 const averageLegs: LegProportions = {
   hipOffset: vec3(0.09, -0.06, 0),
   upper: 0.42,

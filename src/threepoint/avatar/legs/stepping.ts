@@ -7,14 +7,17 @@ import { type MutableVec3, setVec3, type Vec3, vec3 } from '../../core/math/vec3
 export interface Foot {
   /** Ankle [m]; its height includes the ankle's own above the sole. */
   readonly position: Vec3;
-  /** Where the toes point: yaw [rad], 0 towards −Z. */
+  /** The direction of the toes: yaw [rad], 0 towards −Z. */
   readonly yaw: number;
   /** Downward tilt of the toes [rad] while the foot is in the air. */
   readonly pitch: number;
   readonly planted: boolean;
 }
 
-/** Where a foot is expected, on average (`Gait`): place on the floor [m], yaw of the toes [rad], how surely it stands [0, 1]. */
+/**
+ * The expected foot, on average (`Gait`): place on the floor [m], yaw of the toes [rad], probability of standing [0,
+ * 1].
+ */
 export interface FootGoal {
   readonly x: number;
   readonly z: number;
@@ -38,7 +41,7 @@ interface FootState {
   yaw: number;
   pitch: number;
   planted: boolean;
-  /** Of the sole [m]. */
+  /** The height of the sole [m]. */
   height: number;
   /** How surely it stands, smoothed. */
   standing: number;
@@ -79,11 +82,11 @@ export interface SteppingParameters {
   readonly lead: number;
   readonly followHalfLife: number;
   readonly standingHalfLife: number;
-  /** Of the sole, at most [leg lengths]. */
+  /** The largest lift of the sole [leg lengths]. */
   readonly liftShare: number;
 }
 
-/** By coordinate descent on 26 people whom the gait network had not seen. */
+/** The parameters found by coordinate descent on 26 people that the gait network was not trained on. */
 export const standardStepping: SteppingParameters = {
   liftBelow: 0.52,
   plantAbove: 0.58,

@@ -2,11 +2,11 @@
 export const ownBodies = ['mannequin', 'woman', 'man', 'stout', 'child'] as const;
 export type OwnBody = (typeof ownBodies)[number];
 
-/** Of the skin, lightest first. The mannequin has none; a person of whom none is told has the one that the file has. */
+/** The skin tones, lightest first. The mannequin has none; without a tone a body keeps the one of its file. */
 export const skinTones = ['fair', 'light', 'beige', 'tan', 'brown', 'dark'] as const;
 export type SkinTone = (typeof skinTones)[number];
 
-/** A body of ours, and behind a dash its tone of skin. */
+/** The name of one of the project's own bodies, followed by a dash and its skin tone. */
 export type OwnAvatar = OwnBody | `${OwnBody}-${SkinTone}`;
 
 interface Look {

@@ -1,13 +1,13 @@
 import { sides } from '../math/side';
 import { type HandTilts, isBelievableTilt, sameTilts, steepestHandTilt } from './hand-tilt';
 
-/** What the user tells us, or two seconds of standing still reveal, about their body. */
+/** The measures of a body, entered by the user or measured while they stand still for two seconds. */
 export interface Calibration {
   /** Height [m] of the headset's origin (between the eyes) above the floor, standing upright and looking ahead. */
   readonly eyeHeight: number;
   /** Distance [m] from wrist to wrist, arms stretched out sideways. */
   readonly armSpan: number;
-  /** From elbow to wrist [m]. Absent: not told, and the part of the arm that it is of an average one. */
+  /** From elbow to wrist [m]. Absent: unknown, and estimated as an average share of the arm. */
   readonly forearm?: number | undefined;
   /**
    * How far up [rad] the headset points when its wearer looks straight ahead: it sits tilted on nearly every wearer. Absent: not
@@ -18,7 +18,7 @@ export interface Calibration {
   readonly handTilts?: HandTilts | undefined;
 }
 
-/** The steepest tilt of a headset that is believed [rad]; a wearer who seems to wear it steeper was not looking ahead. */
+/** The steepest plausible tilt of a headset [rad]; at a steeper one the wearer was not looking ahead. */
 export const steepestGazePitch = Math.PI / 12;
 
 // Height of the eyes above the floor as a share of stature: Drillis & Contini, Body Segment Parameters (1966); ANSUR II agrees
@@ -87,7 +87,7 @@ export function demandPerson(calibration: Calibration): void {
   if (complaint) throw new RangeError(complaint);
 }
 
-/** Of the body's measures. */
+/** Returns why the body's measures are implausible; null: they are plausible. */
 function bodyComplaint({ eyeHeight, armSpan, forearm }: Calibration): string | null {
   // Number: a page without types may leave one out.
   const told = (value: number) => `${Number(value).toFixed(2)} m`;
@@ -101,7 +101,7 @@ function bodyComplaint({ eyeHeight, armSpan, forearm }: Calibration): string | n
   }
   const ratio = armSpan / eyeHeight / ARM_SPAN_PER_EYE_HEIGHT;
   if (ratio < 0.72 || ratio > 1.35) {
-    return `An arm span of ${told(armSpan)} from wrist to wrist does not go with a height of ${told(statureFromEyeHeight(eyeHeight))}.`;
+    return `An arm span of ${told(armSpan)} from wrist to wrist does not match a height of ${told(statureFromEyeHeight(eyeHeight))}.`;
   }
   const forearms = forearm === undefined ? ORDINARY_FOREARM : forearm / armSpan;
   return forearms > 0.65 * ORDINARY_FOREARM && forearms < 1.35 * ORDINARY_FOREARM
@@ -109,7 +109,7 @@ function bodyComplaint({ eyeHeight, armSpan, forearm }: Calibration): string | n
     : `A forearm of ${told(forearm!)} does not go with an arm span of ${told(armSpan)} from wrist to wrist.`;
 }
 
-/** Of how headset and hands are worn. */
+/** Returns why the tilts of headset or hands are implausible; null: they are plausible. */
 function wornComplaint({ gazePitch = 0, handTilts }: Calibration): string | null {
   const told = (value: number) => `${value.toFixed(2)} rad`;
   if (!(Math.abs(gazePitch) <= steepestGazePitch)) {
@@ -146,7 +146,10 @@ export function provisionalCalibration(headHeight: number): Calibration {
 export const isSpanMeasured = ({ eyeHeight, armSpan }: Calibration): boolean =>
   Math.abs(armSpan / eyeHeight - ARM_SPAN_PER_EYE_HEIGHT) >= 1e-9;
 
-/** The same person with other eyes' height [m]: a span that was only derived from the height follows, a measured one stays. */
+/**
+ * Returns the person's calibration with another eye height [m]: a span that was derived from the height follows, a
+ * measured one stays.
+ */
 export const withEyeHeight = (calibration: Calibration, eyeHeight: number): Calibration => ({
   ...calibration,
   eyeHeight,

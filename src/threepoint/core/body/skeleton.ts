@@ -108,7 +108,7 @@ export interface ChestSpaceBody {
   readonly clavicleLength: number;
 }
 
-/** The same body as `skeletonFromCalibration`, before the standing spine's curve. */
+/** Returns the body of `skeletonFromCalibration` before the curve of the standing spine. */
 export function chestSpaceBody(calibration: Calibration): ChestSpaceBody {
   const p = proportions;
   const e = calibration.eyeHeight;

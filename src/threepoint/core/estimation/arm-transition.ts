@@ -55,15 +55,15 @@ export function copyArmDirections(from: ArmDirections, target: ArmDirections): v
   copyVec3(from.hinge, target.hinge);
 }
 
-/** Where an arm belongs in this frame, floor frame. */
+/** The target of an arm in this frame, floor frame. */
 export interface WantedArm extends ArmDirections {
   readonly shoulder: Vec3;
-  /** Where the hand is seen or will rest; the arm itself may end short of it. */
+  /** The position at which the hand is seen or will rest; the arm itself may end short of it. */
   readonly hand: Vec3;
   /** Shortest time of the way to it [s]: a hand sinks slowly to rest. 0: the hand is seen. */
   readonly minDuration: number;
   readonly bones: LimbBones;
-  /** Where an arm passes that swings all the way round, unit. */
+  /** The direction through which an arm swings all the way round, unit. */
   readonly outside: Vec3;
 }
 
@@ -79,7 +79,7 @@ export interface ArmTransition {
   speed: number;
   /** The longest path that elbow or wrist had to go since the jump [m]: it says how fast they may. */
   longestPath: number;
-  /** Where the hand belonged in the frame before, and where elbow and wrist were drawn [m]. */
+  /** The hand's target in the frame before, and the drawn elbow and wrist [m]. */
   readonly hand: MutableVec3;
   readonly elbow: MutableVec3;
   readonly wrist: MutableVec3;

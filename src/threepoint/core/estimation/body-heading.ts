@@ -4,7 +4,7 @@ import { fromAxisAngle, type MutableQuat, quat } from '../math/quat';
 import { up } from '../math/vec3';
 import type { Heading } from '../tracking/heading';
 
-/** As far [rad] as people turn their head without their body: 40°. Beyond it the body comes along. */
+/** The angle [rad] by which people turn their head without their body: 40°. Beyond it the body turns too. */
 const headTurn = 0.7;
 /** Half-life [s] of the part of the angle from body to head beyond that. */
 const followHalfLife = 0.04;
@@ -16,7 +16,7 @@ const turnSpeed = 14;
 const longestStep = 1 / 240;
 
 export interface BodyHeading {
-  /** Of the body about +Y [rad]; NaN: not known yet. */
+  /** The body's yaw about +Y [rad]; NaN: not known yet. */
   yaw: number;
 }
 

@@ -7,8 +7,8 @@ import type { PoseEstimator } from './pose-estimator';
 const framesPerStep = 8;
 
 /**
- * Leads an estimator through a recording, frame by frame, each answer of its network waited for, and tells `drawn` what it draws. Yields the
- * share [0, 1] that is done, now and then. Throws a sentence where the estimator fails.
+ * Runs an estimator over a recording frame by frame, awaiting each answer of its network, and calls `drawn` with each
+ * pose. Yields the share [0, 1] that is done at intervals. Throws a sentence where the estimator fails.
  */
 export async function* estimateRecording(
   { frames }: Pick<Replayable, 'frames'>,

@@ -64,5 +64,5 @@ export function createEstimator(
   }
   if (name === 'ik') return createIk(calibration);
   if (name === 'hands-only') return createHandsOnly(calibration);
-  throw new RangeError(`“${String(name)}” is no estimator: ${estimatorNames.join(', ')}`);
+  throw new RangeError(`“${String(name)}” is not an estimator. Use one of ${estimatorNames.join(', ')}.`);
 }

@@ -69,7 +69,7 @@ interface ArmState extends SwivelState {
   /** False before the first frame. */
   known: boolean;
   readonly rotations: ArmRotations;
-  /** As it was drawn last. */
+  /** The arm as it was drawn last. */
   readonly drawn: ArmDirections;
   readonly transition: ArmTransition;
   /** Unwrapped angle [rad] by which the hand is turned about the forearm, and how much of it the forearm takes. */
@@ -104,7 +104,7 @@ interface ArmsInput {
   readonly joints: JointPositions;
   readonly torso: TorsoPose;
   readonly bones: LimbBones;
-  /** Where IK's elbows point: for arms whose estimate says nothing. */
+  /** The directions of IK's elbows, for arms without an estimate. */
   readonly poles: Readonly<Record<Side, Vec3>>;
 }
 
@@ -129,7 +129,7 @@ const fallbackPoles: readonly [MutableVec3, MutableVec3] = [vec3(0, 0, 0), vec3(
 /** IK's pole, then the first of those. */
 const ikPoles: [Vec3, Vec3] = [fallbackPoles[0], fallbackPoles[0]];
 const estimated: Record<'shoulder' | 'elbow' | 'wrist', Vec3> = { shoulder: zero, elbow: zero, wrist: zero };
-/** Of the arm at hand. */
+/** The context of the current arm. */
 const swivelContext: Mutable<Omit<SwivelContext, 'torso'>> & { torso: TorsoPose | null } = {
   side: 'left',
   torso: null,
@@ -217,7 +217,7 @@ function bendArm(
   elbowOnCircle(circle, pole, elbow);
 }
 
-/** Where the wrist is to be: as tracked, or nearer than a place to rest as that comes near the arm's reach. */
+/** Returns the wrist's target: as tracked, or closer than a resting place that nears the arm's reach. */
 function wristTarget(
   { goal: { position }, source }: CompletedHand,
   shoulder: Vec3,

@@ -13,7 +13,10 @@ export interface GaitNetwork {
   >;
 }
 
-/** Where a foot is expected, floor frame [m], where its toes point [rad, 0 towards −Z], and how surely it stands on the floor [0, 1]. */
+/**
+ * An expected foot: floor frame [m], direction of the toes [rad, 0 towards −Z], and the probability that it stands [0,
+ * 1].
+ */
 interface ExpectedFoot {
   readonly x: number;
   readonly z: number;

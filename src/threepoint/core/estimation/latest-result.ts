@@ -14,7 +14,7 @@ export class LatestResult {
   #fault: string | null = null;
   #epoch = 0;
 
-  /** finished: hears each valid result. failed: a run went wrong, so that what earlier ones said no longer holds. */
+  /** finished: called with each valid result. failed: called when a run failed, which invalidates earlier results. */
   constructor(regressor: PoseRegressor, finished: (output: Float32Array) => void, failed: () => void) {
     this.#regressor = regressor;
     this.#outputs = regressor.contract.outputs[0]?.shape.reduce((product, size) => product * size, 1) ?? 0;

@@ -19,7 +19,7 @@ import type { IkSolution } from './solve-ik';
 
 /** What is known of how one hand stands to its forearm; directions from elbow to wrist in the frame of the hand as it is tracked. */
 interface HandTiltState {
-  /** The direction that a calibration tells, or the usual one, unit. */
+  /** The calibrated direction, or the default one, unit. */
   readonly prior: MutableVec3;
   told: boolean;
   /** Sum of observed directions times metres of travel [m], decaying by 1/e in memoryMetres. */
@@ -35,7 +35,7 @@ export interface HandTiltsState {
 
 const makeHandTiltState = (): HandTiltState => ({ prior: vec3(0, 0, 0), told: false, noticed: vec3(0, 0, 0) });
 
-/** Of a wearer of whom this is told. */
+/** Returns the state for a wearer with these calibrated tilts. */
 export function makeHandTiltsState(told: HandTilts | undefined): HandTiltsState {
   const state: HandTiltsState = {
     left: makeHandTiltState(),
@@ -47,7 +47,7 @@ export function makeHandTiltsState(told: HandTilts | undefined): HandTiltsState 
 }
 
 /**
- * Takes what another calibration tells, and begins anew from it. Nothing else makes hands forgotten: after a recentre or a pause they are held
+ * Resets the estimate to the tilts of another calibration. A recentre or a pause does not reset it: the hands are held
  * as before.
  */
 export function tellHandTilts(state: HandTiltsState, told: HandTilts | undefined): void {

@@ -21,7 +21,7 @@ import type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from '.
 import { makeIkSolution, makeThreePoints, solveIk, turnHands } from './solve-ik';
 import { makeSteadyTrackersState, resetSteadyTrackers, steadyTrackers } from './steady-trackers';
 
-/** A gap longer than this [s] is no motion: filters and memories begin anew. */
+/** The longest gap between frames [s] that counts as motion; after a longer one filters and memories are reset. */
 const longestGapSeconds = 0.5;
 
 /** The wearer's body, measured in the ways that the stages need. */
@@ -81,7 +81,7 @@ interface OwnedPose {
 export class Pipeline implements PoseEstimator {
   readonly name: EstimatorName;
   readonly source: JointSource;
-  /** Of the newest frame; for benches that look at single stages. */
+  /** The state of the newest frame; for benches that measure single stages. */
   readonly state: EstimatorState;
   readonly #headingFromFloor = makeTransform<'heading', 'floor'>();
   /** IK's poles, floor frame. */
@@ -144,7 +144,7 @@ export class Pipeline implements PoseEstimator {
     steadyTrackers(state.trackers, completed, step);
     const solved = this.#solve(frame);
     noticeHandTilts(state.tilts, solved.ik, completed, state.trackers.travel);
-    // An arm that is longer than is believed seems as far from its shoulder as one under a headset that sits too high.
+    // An underestimated arm length is indistinguishable from a raised headset.
     if (body.spanMeasured) noticeHeadsetRise(state.headset, solved, body.chestSpace.arm, rise, deltaSeconds);
     this.source.joints(solved, step, state.joints);
     const joints = limitJoints(state.limited, state.joints, completed, step);

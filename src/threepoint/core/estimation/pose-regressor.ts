@@ -16,7 +16,7 @@ export interface FlatWeights {
   readonly file: string;
   readonly bytes: number;
   readonly sha256: string;
-  /** Of each tensor its type and shape, as in `int8 192 176`, in the order in which they lie. */
+  /** The type and shape of each tensor, such as `int8 192 176`, in the order of the file. */
   readonly tensors: Readonly<Record<string, string>>;
 }
 
@@ -47,11 +47,14 @@ export interface ModelContract {
 /** A network that maps one flat feature vector to one flat output vector. */
 export interface PoseRegressor {
   readonly contract: ModelContract;
-  /** Where it runs, for the overlay: 'wasm', 'webgpu', 'plain'. */
+  /** The backend, for the overlay: 'wasm', 'webgpu' or 'plain'. */
   readonly provider: string;
   /** features: as many numbers as the input tensor has elements, not to be overwritten until it settles. Rejects when the runtime fails. One run at a time. */
   run(features: Float32Array): Promise<Float32Array>;
-  /** The same at once, so that a frame has its own answer; absent where the network runs elsewhere. The numbers are overwritten by the next run. */
+  /**
+   * Runs the network at once, so that a frame has its own answer; absent where it runs elsewhere. The next run
+   * overwrites the numbers.
+   */
   readonly runNow?: (features: Float32Array) => Float32Array;
   dispose(): Promise<void>;
 }

@@ -66,9 +66,12 @@ export interface IkSolution {
   readonly joints: MutableJointPositions;
   /** The chest frame (docs/glossary.md): by the shoulders and the chest joint. */
   readonly chest: ChestAxes;
-  /** Where each elbow points from the line between shoulder and wrist, unit. */
+  /** The direction of each elbow from the line between shoulder and wrist, unit. */
   readonly poles: Readonly<Record<Side, MutableVec3>>;
-  /** Where each forearm would point, elbow to wrist, if nothing were known of how its hand stands to it; unit, frame of the hand as it is tracked. */
+  /**
+   * The direction of each forearm, elbow to wrist, as estimated without the tilt of its hand; unit, frame of the
+   * tracked hand.
+   */
   readonly untoldForearms: Readonly<Record<Side, MutableVec3>>;
 }
 
@@ -97,7 +100,7 @@ function mirror(v: MutableVec3, sigma: number): MutableVec3 {
   return v;
 }
 
-/** What the steps of one solution tell each other, heading frame; overwritten by the next. */
+/** Intermediate results of one solution, heading frame; overwritten by the next. */
 const headJoint = vec3(0, 0, 0);
 /** Wrists from the head joint [arm lengths], their middle and the way between them. */
 const left = vec3(0, 0, 0);
@@ -236,7 +239,7 @@ function placeArm(
   writeVec3(inThorax(rotate(wrist.orientation, backward, handAxis), sigma, handAxis), handFeatures, 7);
   placeElbow(parameters.pole, sigma, poles[side], side === 'left' ? joints.leftLowerArm : joints.rightLowerArm);
 
-  // The same from the hand as it is tracked: its axes are those of the turned hand, turned back.
+  // Solves again for the tracked hand, whose axes are those of the turned hand, turned back.
   rotate(wrist.orientation, rotateInverse(turn, up, handAxis), handAxis);
   writeVec3(inThorax(handAxis, sigma, handAxis), handFeatures, 4);
   rotate(wrist.orientation, rotateInverse(turn, backward, handAxis), handAxis);

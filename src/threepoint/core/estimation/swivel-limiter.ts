@@ -29,7 +29,7 @@ const { trunkCapsule: capsule } = limits;
 
 /** An elbow circles the line from shoulder to wrist at most this fast [rad/s]; a punch's elbow does 10. */
 const swivelSpeed = 12;
-/** The same where the hand is a guess. */
+/** The highest speed of the swivel [rad/s] of a guessed hand. */
 const guessedSwivelSpeed = 5;
 /** Longest half-life [s] of the swivel angle, where its estimate says little about the side the elbow points to. */
 const swivelHalfLife = 0.35;
@@ -42,11 +42,11 @@ const [handAtShoulder, handAway] = [0.1, 0.3];
 export interface SwivelState {
   /** From the shoulder to the wrist, unit. */
   readonly axis: MutableVec3;
-  /** Where the elbow points from that line, unit. */
+  /** The direction of the elbow from that line, unit. */
   readonly pole: MutableVec3;
 }
 
-/** Where an estimated elbow points from its own arm's line, and the confidence in [0, 1] in that. */
+/** The direction of an estimated elbow from its own arm's line, and its confidence in [0, 1]. */
 export interface EstimatedPole {
   readonly direction: MutableVec3;
   confidence: number;
@@ -157,7 +157,7 @@ function nearestWithin({ low, high }: ClearRange, angle: number): number {
 const partsPerStep = 64;
 const partsPerHalfTurn = 18 * partsPerStep;
 const swivelPart = Math.PI / partsPerHalfTurn;
-/** Of whole steps from none to half a turn: most of the angles that are looked at. */
+/** The cosines of whole steps from none to half a turn, which are most of the angles in use. */
 const stepCosines = Float64Array.from({ length: 19 }, (_, step) => Math.cos(step * partsPerStep * swivelPart));
 const stepSines = Float64Array.from({ length: 19 }, (_, step) => Math.sin(step * partsPerStep * swivelPart));
 

@@ -4,7 +4,7 @@ import { type OurMotion, positionsWidth, rotationsWidth } from './our-joints';
 import type { Piece } from './person';
 import { bodyJoints, trackedJoints } from './skeleton-map';
 
-/** Where a motion leaps [frames], and what is left between leaps: pieces long enough to be motion. */
+/** Returns the frames at which a motion jumps, and the pieces between them that are long enough to be motion. */
 export function cutAtLeaps({ positions, rateHz: rate, frameCount }: OurMotion): {
   readonly cuts: readonly number[];
   readonly pieces: readonly Piece[];

@@ -6,7 +6,7 @@ export class NumpyRandom {
   #state = 0n;
   readonly #increment: bigint;
 
-  /** Of whole numbers below 2³², as many as four. */
+  /** seed: as many as four whole numbers below 2³². */
   constructor(seed: readonly number[]) {
     const [a, b, c, d] = seedWords(seed) as [bigint, bigint, bigint, bigint];
     this.#increment = ((((c << 64n) | d) << 1n) | 1n) & mask128;
@@ -87,7 +87,7 @@ function seedWords(seed: readonly number[]): bigint[] {
   return [0, 2, 4, 6].map((i) => words[i]! | (words[i + 1]! << 32n));
 }
 
-/** Where the lowest layer's tail begins, and the area of every layer. */
+/** The start of the lowest layer's tail, and the area of every layer. */
 const tailBegins = 3.6541528853610088;
 const layerArea = 0.004928673233974658;
 const layers = 256;

@@ -4,7 +4,7 @@ import { distance, dot, down, length, normalise, right, scale, subtract, up, typ
 import { shortestBone } from './mocap-rules.json';
 import type { SkeletonMap, TruthJoint } from './skeleton-map';
 
-/** Where joints rest [m], +Y up, facing −Z; those that a file lacks are not there. */
+/** The joints at rest [m], +Y up, facing −Z, without those that a file lacks. */
 export type RestPose = ReadonlyMap<TruthJoint, Vec3>;
 
 const trunk = [

@@ -6,13 +6,13 @@ import type { MotionBone } from './skeleton';
 export interface Motion {
   /** Every bone before its children, the measured ones first. */
   readonly bones: readonly MotionBone[];
-  /** Of the measured bones. */
+  /** The number of measured bones. */
   readonly measured: number;
   /** Frames per second that the device asked for; `times` are what counts. */
   readonly rateHz: number;
   /** Seconds from the first frame, rising. */
   readonly times: Float64Array;
-  /** Where the hips are [m]: x, y, z of each frame. */
+  /** The hips' positions [m]: x, y, z of each frame. */
   readonly hips: Float64Array;
   /** Rotation of each measured bone against its parent, in T-pose's axes: x, y, z, w, bone after bone, frame after frame. */
   readonly rotations: Float32Array;
@@ -27,7 +27,7 @@ export function rotationAt(motion: Motion, frame: number, bone: number, target: 
   return setQuat(target, rotations[at]!, rotations[at + 1]!, rotations[at + 2]!, rotations[at + 3]!);
 }
 
-/** Where the hips are in one frame [m]. */
+/** Returns the hips' position in one frame [m]. */
 export const hipsAt = ({ hips }: Motion, frame: number, target: MutableVec3): MutableVec3 =>
   setVec3(target, hips[3 * frame]!, hips[3 * frame + 1]!, hips[3 * frame + 2]!);
 
@@ -66,8 +66,8 @@ const mostFrames = 1_080_000;
 const framesPerStep = 64;
 
 /**
- * The same motion at an even rate [Hz], interpolated. Yields the share [0, 1] that is done. Throws a sentence where that is no rate, or the motion lasts so long at it that no file
- * could hold it.
+ * Interpolates the motion at an even rate [Hz]. Yields the share [0, 1] that is done. Throws a sentence where the rate
+ * is invalid, or the motion would have more frames than a file can hold.
  */
 export function* resampleMotion(motion: Motion, rateHz: number): Generator<number, Motion> {
   const { times, measured } = motion;

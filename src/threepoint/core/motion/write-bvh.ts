@@ -63,7 +63,7 @@ export function fileOrder(bones: readonly MotionBone[]): readonly number[] {
 }
 
 const framesPerStep = 64;
-/** Of the work, what an even rate takes. */
+/** The share of the work that resampling takes. */
 const resampling = 0.3;
 
 /**
@@ -74,7 +74,7 @@ export function* writeBvh(
   motion: Motion,
   { unit = 'm', rateHz = motion.rateHz }: BvhOptions = {},
 ): Generator<number, readonly string[]> {
-  if (unit !== 'm' && unit !== 'cm') throw new Error(`“${String(unit)}” is no unit of a BVH here: m, cm`);
+  if (unit !== 'm' && unit !== 'cm') throw new Error(`“${String(unit)}” is not a unit of a BVH file. Use m or cm.`);
   const even = yield* portionOf(resampleMotion(motion, rateHz), 0, resampling);
   const perMetre = unit === 'cm' ? 100 : 1;
   const digits = unit === 'cm' ? 4 : 6;

@@ -35,7 +35,7 @@ interface Key {
   readonly time: number;
   readonly left: HandKey;
   readonly right: HandKey;
-  /** Of the head: pitch up and yaw to the left [degrees] against the trunk. */
+  /** The head's pitch up and yaw to the left [degrees] against the trunk. */
   readonly pitch?: number;
   readonly look?: number;
   /** Yaw of the whole body to the left [degrees], and how low the head is: 1 standing. */

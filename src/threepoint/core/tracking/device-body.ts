@@ -17,7 +17,7 @@ export const deviceJointNames: readonly string[] = [
   ),
 ];
 
-/** Where a device places its wearer's joints: x, y, z of each of `deviceJointNames` [m], floor frame, finite. */
+/** The joints that a device reports: x, y, z of each of `deviceJointNames` [m], floor frame, finite. */
 export type DeviceBody = Float32Array;
 
 /** Numbers of a DeviceBody. */
@@ -42,10 +42,10 @@ const places = {
   rightHand: named('right-hand-wrist'),
 } as const satisfies Partial<Record<JointName, number>>;
 
-/** A joint of ours that devices have too. */
+/** A joint of the skeleton that devices report too. */
 export type SharedJoint = keyof typeof places;
 
-/** Where the device has this joint [m], floor frame. */
+/** Returns the device's position of this joint [m], floor frame. */
 export function deviceJoint(body: DeviceBody, joint: SharedJoint, target: MutableVec3): MutableVec3 {
   const at = places[joint];
   return setVec3(target, body[at]!, body[at + 1]!, body[at + 2]!);

@@ -57,7 +57,7 @@ export type GuidedCalibration =
   | {
       readonly kind: 'failed';
       readonly fault: CalibrationFault;
-      /** In English, for whom the fault has no words of its own. */
+      /** An English sentence, for pages that have no text for the fault. */
       readonly reason: string;
     };
 
@@ -94,8 +94,8 @@ const HAND_SWAY = 0.05;
 const SEEN = 0.7;
 // 30° up or down.
 const STEEPEST_GAZE = 0.5;
-// The arms of those we trained on measure 0.33 to 0.38 eye heights from shoulder to wrist; an elbow bent by 76° leaves 0.28,
-// and so does a floor that is half a metre too low: the two cannot be told apart, and neither is measured.
+// The arms of the training data measure 0.33 to 0.38 eye heights from shoulder to wrist. An elbow bent by 76° leaves
+// 0.28, and so does a floor that is half a metre too low: the two are indistinguishable, and neither is measured.
 const SHORTEST_ARM = 0.28;
 const LONGEST_ARM = 0.46;
 /** The middle of what they measure; a longer arm than the second says that the wearer sits, or that the floor is too high. */
@@ -171,7 +171,7 @@ function measureBody(wrists: readonly MeasuredWrist[], headHeight: number): Meas
   let eyeHeight = headHeight;
   let arms = reaches(eyeHeight);
   if (arms && Math.min(...arms) > SEATED_ARM * headHeight) {
-    // Seated, or above a floor that is not where it should be: then the arms tell how tall the wearer is.
+    // For a seated wearer, or a floor at the wrong height, the height is estimated from the arms.
     for (let i = 0; i < 8 && arms; i++) {
       eyeHeight = mean(arms) / ORDINARY_ARM;
       arms = reaches(eyeHeight);
@@ -215,7 +215,7 @@ function reachOf(side: Side, wrist: Vec3, headHeight: number, eyeHeight: number)
   return arm && length(arm);
 }
 
-/** The same arm from its shoulder to the wrist. */
+/** Returns the arm from its shoulder to the wrist. */
 function armTo(side: Side, wrist: Vec3, headHeight: number, eyeHeight: number): Vec3 | null {
   const shoulder = add(restShoulder(side, eyeHeight), vec3(0, headHeight - eyeHeight, 0));
   const arm = subtract(wrist, shoulder);

@@ -11,7 +11,10 @@ import { fromAxisAngle, rotate } from '../math/quat';
 import { right, zero } from '../math/vec3';
 import type { TrackingFrame } from './tracking-frame';
 
-/** Notices a wearer who stands taller than the calibration says. Smaller tells nothing: people crouch, slouch and sit. */
+/**
+ * Detects a wearer who stands taller than the calibration. A lower headset shows nothing: people crouch, slouch and
+ * sit.
+ */
 interface HeightWatch {
   /**
    * Once a frame, with the calibration in force: the same, grown, in the frame that proves it too small; else null. Another
@@ -26,11 +29,14 @@ interface HeightWatch {
 const provingSeconds = 1.25;
 /** [m] by which eyes rise and sink in that time while a person stands or walks. */
 const calmRange = 0.04;
-/** As a part of the eye height: shoes, and a headset that was put on anew. */
+/** The ignored excess as a share of the eye height: shoes, and a headset that sits differently. */
 const deadZone = 0.02;
-/** The same once something grew: what was measured is wrong then, and a wearer who straightens up is followed. */
+/**
+ * The ignored excess once the calibration has grown: the measured one was wrong, and a wearer who straightens up is
+ * followed.
+ */
 const grownDeadZone = 0.005;
-/** As a part of the eye height that was measured: a wearer who rises further stands on something. */
+/** The largest growth as a share of the measured eye height: a wearer who rises further stands on something. */
 const mostGrowth = 0.08;
 /** A longer one [s] between two frames hides what happened in it. */
 const longestGap = 0.5;
@@ -57,7 +63,7 @@ export function createHeightWatch(): HeightWatch {
   function take(calibration: Calibration): void {
     current = calibration;
     measured = calibration.eyeHeight;
-    // Of a wearer who has the average body, sitting since the headset was put on, no height is known that would say so.
+    // The height of a wearer with the default body is unknown if they have been sitting: any height is possible.
     highest = calibration === defaultCalibration ? eyeHeightRange.max : measured * (1 + mostGrowth);
     const { eyesInHead } = skeletonFromCalibration(calibration);
     eyesInHeadset = rotate(fromAxisAngle(right, -(calibration.gazePitch ?? 0)), eyesInHead);

@@ -1,8 +1,8 @@
 /** A frame that comes later than this after the one before it [s] follows a pause, of which no more than this counts. */
 export const longestStep = 0.5;
-/** Of the first frames, until one has told how long they are [s]. */
+/** The assumed length of the first frames [s], until one was measured. */
 const usualStep = 1 / 60;
-/** No device draws more often [s]: a time stamp that is less ahead does not tell how long the frame was. */
+/** The shortest frame of any device [s]: a smaller step of the time stamp does not measure a frame. */
 const shortestStep = 1 / 1000;
 
 /**
@@ -27,7 +27,7 @@ export interface PageClock {
 
 /** `read`: the page's running time [ms], on any clock that mostly goes on (`performance.now`). */
 export function createPageClock(read: () => number): PageClock {
-  /** Of the newest frame: its time here, what the device said, and what `read` did then. */
+  /** The newest frame: its time by this clock, its time stamp, and the value of `read`. */
   let time = 0;
   let stamp: number | null = null;
   let readAt = read();
@@ -69,7 +69,7 @@ export function createPageClock(read: () => number): PageClock {
   };
 }
 
-/** The same clock, which goes on from where it was when it is set back. Asked often: what passes between two questions may be lost. */
+/** Returns a clock that continues when `read` is set back. Call it often: time between two calls may be lost. */
 export function neverBack(read: () => number): () => number {
   let setBack = 0;
   let last = Number.NEGATIVE_INFINITY;

@@ -11,7 +11,7 @@ import type { TrackingFrame } from './tracking-frame';
 /** Frames in the order of their times: an array, or what makes each one when it is asked for. */
 export interface TrackingFrames extends Iterable<TrackingFrame> {
   readonly length: number;
-  /** As an array's: from 0, or below 0 from the end. */
+  /** Returns the frame at an index, below 0 from the end, as an array does. */
   at(index: number): TrackingFrame | undefined;
 }
 
@@ -60,7 +60,10 @@ const bodyNumbers = (body: DeviceBody): readonly number[] => Array.from(body, (v
 /** The text of a recording file: JSON with one frame per line. */
 export const writeRecording = (recording: Replayable): string => cutRecording(recording, Number.POSITIVE_INFINITY).text;
 
-/** The same with as many frames from the first on as fit into so many bytes of UTF-8, and how many they are; at least one. */
+/**
+ * Returns a recording file with as many of the first frames as fit into `mostBytes` bytes of UTF-8, at least one, and
+ * their number.
+ */
 export function cutRecording(
   { device, rateHz, calibration, frames }: Replayable,
   mostBytes: number,
@@ -84,7 +87,7 @@ export function cutRecording(
   const bodyJoints = { bodyJoints: deviceJointNames };
   const end = '\n]}\n';
   const lines: string[] = [];
-  // Of what stands here the device's name alone is more than ASCII: three bytes for each of its characters at most.
+  // Only the device's name may contain other characters than ASCII: at most three bytes each.
   let bytes = top(bodyJoints).length + 2 * device.length + end.length;
   for (const frame of frames) {
     const written = line(frame);
@@ -99,15 +102,15 @@ export function cutRecording(
 /** The recording in the text of a file; throws a sentence that says which line or frame is wrong, and why. */
 export function parseRecording(text: string): Recording {
   const file = parseJson(text);
-  if (!isRecord(file) || file.format !== format) throw new Error('This is no recording of threepoint.');
+  if (!isRecord(file) || file.format !== format) throw new Error('This file is not a threepoint recording.');
   const written = file.version;
   if (!isFiniteNumber(written) || !Number.isInteger(written) || written < 1 || written > version) {
     throw new Error(`The recording has version ${String(written)}; this page reads versions 1 to ${version}.`);
   }
-  if (typeof file.device !== 'string') throw new Error('The recording does not say its device.');
-  if (!isFiniteNumber(file.rateHz) || file.rateHz <= 0) throw new Error('The recording does not say its rate in Hz.');
+  if (typeof file.device !== 'string') throw new Error('The recording names no device.');
+  if (!isFiniteNumber(file.rateHz) || file.rateHz <= 0) throw new Error('The recording has no frame rate in Hz.');
   if (file.bodyJoints !== undefined && JSON.stringify(file.bodyJoints) !== JSON.stringify(deviceJointNames)) {
-    throw new Error('The recording’s body has other joints than this page knows.');
+    throw new Error('The recording’s device body has other joints than this version reads.');
   }
   if (!Array.isArray(file.frames) || file.frames.length === 0) throw new Error('The recording has no frames.');
   const frames = file.frames.map((frame, index) => parseFrame(frame, index, written));
@@ -124,7 +127,7 @@ function parseJson(text: string): unknown {
     return JSON.parse(text);
   } catch (error) {
     if (!(error instanceof SyntaxError)) throw error;
-    throw new Error(`The recording is no JSON${placeOfSyntaxError(text, error.message)}.`);
+    throw new Error(`The recording is not valid JSON${placeOfSyntaxError(text, error.message)}.`);
   }
 }
 
@@ -204,7 +207,7 @@ function parseFrame(value: unknown, index: number, written: number): TrackingFra
 
 function parsePose(value: unknown, what: string): TrackedPose {
   if (!Array.isArray(value) || value.length !== poseColumns + 1 || !value.slice(0, poseColumns).every(isFiniteNumber)) {
-    throw new Error(`${what} is not seven finite numbers and a word.`);
+    throw new Error(`${what} is not seven finite numbers and a tracking state.`);
   }
   const tracking = value[poseColumns];
   if (tracking !== 'tracked' && tracking !== 'emulated') {
@@ -213,7 +216,7 @@ function parsePose(value: unknown, what: string): TrackedPose {
   const [px, py, pz, x, y, z, w] = value as number[];
   const orientation = { x: x!, y: y!, z: z!, w: w! };
   if (Math.abs(Math.hypot(x!, y!, z!, w!) - 1) > 1e-3)
-    throw new Error(`${what} has an orientation of a length other than 1.`);
+    throw new Error(`${what} has an orientation that is not a unit quaternion.`);
   return { position: { x: px!, y: py!, z: pz! }, orientation, tracking };
 }
 

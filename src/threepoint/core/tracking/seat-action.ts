@@ -1,7 +1,7 @@
 import type { Pose } from '../math/pose';
 import type { Vec3 } from '../math/vec3';
 
-/** What becomes of a person in a seat, as a Room tells it to the rules of any game; a player is the number of a seat. */
+/** A change of a seat, which a Room passes to the rules of any game; a player is the number of a seat. */
 export type SeatAction =
   | { readonly type: 'join'; readonly player: number }
   | { readonly type: 'leave'; readonly player: number }

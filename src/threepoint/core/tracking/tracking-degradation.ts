@@ -95,7 +95,7 @@ export class TrackingDegradation {
   readonly #ring = Array.from({ length: kept }, () => new KeptFrame());
   #newest = 0;
   #count = 0;
-  /** Of the generator, see `nextRandom`; in an array, which holds whole numbers of 32 bits without boxes. */
+  /** The seed of the generator, see `nextRandom`; an Int32Array holds 32-bit integers without boxes. */
   readonly #seed = new Int32Array(1);
   /** For three axes of a position and three of a rotation. */
   readonly #normals = new Float64Array(6);

@@ -94,7 +94,7 @@ describe('a damaged ASF is refused in a sentence', () => {
   test('a million bones', () => {
     const many = Array.from({ length: 1e6 }, (_, i) => `begin\nname b${i}\ndirection 0 1 0\nlength 1\nend\n`).join('');
     expect(() => prepare(acclaim, skeletonName, (all) => all.replace(':hierarchy', `${many}:hierarchy`))).toThrow(
-      /more than 2000 bones: no person's skeleton/,
+      /more than 2000 bones: not a human skeleton/,
     );
   });
 });
