@@ -256,7 +256,7 @@ export class ShownAvatar {
     } catch (error) {
       if (ending.signal.aborted) return false;
       if (error instanceof UnknownBones && asked.checked && turn === this.#asked) {
-        const { found, told } = error;
+        const { found, matched: told } = error;
         this.#waiting = { name, found, bones: told, complaint: null, checked: asked.checked };
         this.#options.notices.show(
           'error',

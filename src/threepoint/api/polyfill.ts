@@ -223,13 +223,13 @@ const asXRPose = ({ position, orientation }: Place): XRPose => ({
 });
 
 /** Returns the session's options with the body as an optional feature, and the floor that an estimate needs. */
-function wishes(init: XRSessionInit): XRSessionInit {
+function sessionOptions(init: XRSessionInit): XRSessionInit {
   const required = (init.requiredFeatures ?? []).filter((name) => name !== feature);
   const optional = new Set([...(init.optionalFeatures ?? []), feature, 'local-floor']);
   return { ...init, requiredFeatures: required, optionalFeatures: [...optional] };
 }
 
-const asks = ({ requiredFeatures = [], optionalFeatures = [] }: XRSessionInit): boolean =>
+const requestsBody = ({ requiredFeatures = [], optionalFeatures = [] }: XRSessionInit): boolean =>
   [...requiredFeatures, ...optionalFeatures].includes(feature);
 
 /** Replaces a property and returns the function that restores it. */
@@ -315,8 +315,8 @@ export function installBodyTracking({ onFault, ...options }: BodyTrackingOptions
     replace(xr, 'requestSession', {
       writable: true,
       async value(mode: XRSessionMode, init: XRSessionInit = {}): Promise<XRSession> {
-        if (!asks(init)) return request.call(xr, mode, init);
-        const session = await request.call(xr, mode, wishes(init));
+        if (!requestsBody(init)) return request.call(xr, mode, init);
+        const session = await request.call(xr, mode, sessionOptions(init));
         const enabled = session.enabledFeatures ?? [];
         if (enabled.includes(feature) && 'XRBody' in globalThis) return session;
         const emulated = new SessionBody(session, body, originals, jointNames);

@@ -38,7 +38,7 @@ export class ReplayedBody {
   readonly #body: Pick<BodySolver, 'update' | 'warmUp' | 'discontinuity' | 'pose' | 'estimator'>;
   readonly #replay: MovingReplay;
   /** The time for which replays were paused since the last one began [s]. */
-  #stood = 0;
+  #pausedSeconds = 0;
   /** The time of the newest frame, by the page's clock [s]. */
   #time = Number.NaN;
   /** The moment and the method that are drawn. */
@@ -73,12 +73,12 @@ export class ReplayedBody {
 
   /** Forgets the replay that moved the body. */
   stop(): void {
-    this.#stood = 0;
+    this.#pausedSeconds = 0;
     this.#moment.recording = null;
   }
 
   #stand(frame: TrackingFrame, standIn: Calibration | null): AvatarPose | null {
-    if (this.#moment.recording) this.#stood += frame.time - this.#time;
+    if (this.#moment.recording) this.#pausedSeconds += frame.time - this.#time;
     this.#time = frame.time;
     if (!this.#arrive()) return this.#body.pose;
     const dated = this.#dated(frame);
@@ -96,7 +96,7 @@ export class ReplayedBody {
 
   /** Returns the frame with its time by the body's clock. */
   #dated(frame: TrackingFrame): TrackingFrame {
-    return this.#stood === 0 ? frame : { ...frame, time: frame.time - this.#stood };
+    return this.#pausedSeconds === 0 ? frame : { ...frame, time: frame.time - this.#pausedSeconds };
   }
 
   /** Stores the replay's moment and the method; returns whether either has changed. */

@@ -17,7 +17,7 @@ export interface WorkOptions {
 
 /** The time slice [ms] of the work before the browser may draw and handle input. */
 const turnMs = 8;
-const tellEveryMs = 100;
+const reportEveryMs = 100;
 
 /** Resolves in the next turn of the event loop. Messages, unlike timers, are not throttled in background pages. */
 function nextTurn(): Promise<void> {
@@ -35,7 +35,7 @@ function nextTurn(): Promise<void> {
 export async function runWork<Result>(work: Work<Result>, { onProgress, signal }: WorkOptions = {}): Promise<Result> {
   const begun = performance.now();
   let turnBegan = begun;
-  let told = Number.NEGATIVE_INFINITY;
+  let reportedAt = Number.NEGATIVE_INFINITY;
   try {
     for (;;) {
       signal?.throwIfAborted();
@@ -46,8 +46,8 @@ export async function runWork<Result>(work: Work<Result>, { onProgress, signal }
         return step.value;
       }
       const now = performance.now();
-      if (now - told >= tellEveryMs) {
-        told = now;
+      if (now - reportedAt >= reportEveryMs) {
+        reportedAt = now;
         onProgress?.({ share: step.value, secondsLeft: secondsLeft(step.value, (now - begun) / 1000) });
       }
       if (now - turnBegan < turnMs) continue;

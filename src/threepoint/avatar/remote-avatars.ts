@@ -85,7 +85,7 @@ interface Refusal {
   readonly attempts: number;
   /** When it is asked for again [s]; Infinity: never. */
   readonly again: number;
-  readonly told: boolean;
+  readonly reported: boolean;
 }
 
 /** The second body draws from the first one's memory on the graphics device: only bones and colours are its own. */
@@ -237,10 +237,10 @@ class OthersBodies implements RemoteAvatars {
     const before = this.#refused.get(avatar);
     const passes = error instanceof PassingFault;
     const attempts = (before?.attempts ?? 0) + 1;
-    const tells = !before?.told && (!passes || attempts >= patientAttempts);
+    const reports = !before?.reported && (!passes || attempts >= patientAttempts);
     const again = passes ? this.#now + againSeconds : Number.POSITIVE_INFINITY;
-    this.#refused.set(avatar, { attempts, again, told: tells || before?.told === true });
-    if (tells && !this.#disposed) this.#options.onRefused(avatar, error);
+    this.#refused.set(avatar, { attempts, again, reported: reports || before?.reported === true });
+    if (reports && !this.#disposed) this.#options.onRefused(avatar, error);
   }
 
   #add(avatar: Avatar, of: AvatarRef): void {

@@ -76,11 +76,11 @@ export class SessionRegressor implements PoseRegressor {
     if (this.#disposed) await opened.release();
     this.#demand();
     this.#session = opened;
-    void this.#tell(device, error);
+    void this.#reportLoss(device, error);
     return opened;
   }
 
-  async #tell(device: InferenceSession, error: unknown): Promise<void> {
+  async #reportLoss(device: InferenceSession, error: unknown): Promise<void> {
     const loss = await lossOf(device);
     if (this.#disposed) return;
     const what =

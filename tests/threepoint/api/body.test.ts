@@ -18,7 +18,9 @@ const standing = (time: number, eyeHeight: number): TrackingFrame => ({
 
 describe('a body', () => {
   test('by an estimator that there is none of is refused in a sentence', () => {
-    expect(() => new Body({ estimator: 'Learned' as 'learned' })).toThrow('“Learned” is not an estimator. Use one of hands-only, ik');
+    expect(() => new Body({ estimator: 'Learned' as 'learned' })).toThrow(
+      '“Learned” is not an estimator. Use one of hands-only, ik',
+    );
   });
 
   test('follows three points: its wrists lie on the hands, by the network that was chosen', async () => {

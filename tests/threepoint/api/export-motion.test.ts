@@ -72,7 +72,7 @@ describe('a recording', () => {
     await expect(exportMotion(recording, { to: 'bvh', estimator: 'hands-only' })).rejects.toThrow(/estimates no body/);
     await expect(exportMotion(recording, { to: 'bvh', estimator: 'paper' })).rejects.toThrow(/needs a runtime/);
     await expect(exportMotion(recording, { to: 'fbx' as 'bvh', estimator: 'ik' })).rejects.toThrow(
-      /“fbx” is no format/,
+      /“fbx” is not a motion format/,
     );
   });
 

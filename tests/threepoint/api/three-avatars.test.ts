@@ -60,7 +60,9 @@ describe('an avatar', () => {
   test.each(Object.entries({ loadAvatar, avatarMotion }))(
     'that has not arrived whole is refused by %s',
     async (_, take) => {
-      await expect(take(mannequin().slice(0, -4))).rejects.toThrow(/^the avatar: not a VRM or GLB file \(.*truncated\)$/);
+      await expect(take(mannequin().slice(0, -4))).rejects.toThrow(
+        /^the avatar: not a VRM or GLB file \(.*truncated\)$/,
+      );
     },
   );
 });

@@ -263,6 +263,8 @@ describe('files that are no avatar', () => {
       json.extensionsUsed = [];
       for (const [index, node] of json.nodes.entries()) node.name = `paw ${index}`;
     });
-    await expect(parseAvatar(dog, 'dog.glb')).rejects.toThrow(/^dog\.glb: its bones could not be matched to a humanoid/);
+    await expect(parseAvatar(dog, 'dog.glb')).rejects.toThrow(
+      /^dog\.glb: its bones could not be matched to a humanoid/,
+    );
   });
 });

@@ -104,7 +104,7 @@ const jointPrefix = {
   little: 'pinky-finger',
 };
 
-/** Where the skin of a tracked finger ends. */
+/** Returns the end of a tracked finger's skin. */
 function trackedEnd(hand: RecordedHand, side: Side, finger: FingerName): Vec3 {
   const { position, orientation, radius } = jointAt(hand, `${jointPrefix[finger]}-tip`, side, wrists[side]);
   return addScaled(position, rotate(orientation, vec3(0, 0, -1)), radius);

@@ -240,7 +240,7 @@ describe('a compressed body', () => {
   });
 });
 
-/** As the page opens files, with the check that its worker runs. */
+/** Opens a file with the check that the page's worker runs. */
 const checked = (bytes: ArrayBuffer) => checkAvatar(bytes, { name: 'person.vrm', unpacked: [] });
 const opened = async (bytes: ArrayBuffer) => parseChecked(await checked(bytes), 'person.vrm');
 

@@ -53,7 +53,10 @@ export const packedColours: readonly (readonly Colour[])[] = [
 
 const ofText = (lines: readonly string[]) => new Uint8Array(Buffer.from(lines.join(''), 'base64'));
 
-/** These colours as Basis Universal's encoder packs them, which code of ours cannot: ETC1S, whose blocks share codebooks (BasisLZ). */
+/**
+ * These colours packed by Basis Universal's encoder, which the project's own code cannot do: ETC1S, whose blocks share
+ * codebooks (BasisLZ).
+ */
 export const etc1sPicture = ofText([
   'q0tUWCAyMLsNChoKAAAAAAEAAAAMAAAADAAAAAAAAAAAAAAAAQAAAAEAAAABAAAAaAAAACwAAACUAAAAJAAAALgAAAAAAAAAkQAAAAAAAABJAQ',
   'AAAAAAAAMAAAAAAAAAAAAAAAAAAAAsAAAAAAAAAAIAKACjAQIAAwMAAAgAAAAAAAAAAAA/AAAAAAAAAAAA/////x8AAABLVFh3cml0ZXIAQmFz',
@@ -62,7 +65,7 @@ export const etc1sPicture = ofText([
   'ZDE=',
 ]);
 
-/** The same as UASTC in a frame of Zstandard. */
+/** These colours as UASTC in a frame of Zstandard. */
 export const zstdPicture = ofText([
   'q0tUWCAyMLsNChoKAAAAAAEAAAAMAAAADAAAAAAAAAAAAAAAAQAAAAEAAAACAAAAaAAAACwAAACUAAAAJAAAAAAAAAAAAAAAAAAAAAAAAAC4AA',
   'AAAAAAAEAAAAAAAAAAkAAAAAAAAAAsAAAAAAAAAAIAKACmAQIAAwMAABAAAAAAAAAAAAB/AAAAAAAAAAAA/////x8AAABLVFh3cml0ZXIAQmFz',

@@ -35,7 +35,7 @@ function memory(): Pick<Storage, 'getItem' | 'setItem'> {
   return { getItem: (key) => items.get(key) ?? null, setItem: (key, value) => void items.set(key, value) };
 }
 
-/** Where the joints are of a body that stands as the built-in actor does. */
+/** Returns the joints of a body that stands as the built-in actor does. */
 function posed(loaded: LoadedAvatar) {
   const avatar = createAvatar(loaded);
   avatar.setCalibration(defaultCalibration);
@@ -62,10 +62,10 @@ describe('a file whose bones’ names tell no body', () => {
     const unknown = await refusalOf(builtRig({ nameOf: backwards }));
     expect(unknown.found).toContain('spih');
     expect(unknown.found).toContain('dnaHtfel');
-    expect(unknown.told).toEqual({});
+    expect(unknown.matched).toEqual({});
     const oneHanded = await refusalOf(builtRig({ nameOf: (bone) => (bone === 'leftHand' ? 'hook' : bone) }));
     expect(oneHanded.message).toBe('person.glb: its humanoid has no leftHand');
-    expect(oneHanded.told).toMatchObject({ hips: 'hips', rightHand: 'rightHand' });
+    expect(oneHanded.matched).toMatchObject({ hips: 'hips', rightHand: 'rightHand' });
     expect(oneHanded.found).toContain('hook');
   });
 

@@ -1,4 +1,5 @@
-// Run by ktx2.test.ts in a Node that compiles no text, as a page under our policy: tells the pixels of a picture that the Basis transcoder unpacks.
+// Run by ktx2.test.ts in a Node process that compiles no text, as a page under our policy. Prints the pixels of a
+// picture that the Basis transcoder unpacks.
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { runInThisContext } from 'node:vm';

@@ -23,7 +23,7 @@ function session(provider: InferenceSession['provider'], answer: number | Error)
   return { opened, lose, released: () => released };
 }
 
-/** A network on a graphics device that fails, and a session on WebAssembly that opens when it is told to. */
+/** Returns a network on a graphics device that fails, and a session on WebAssembly that opens on demand. */
 function failing(message = 'no memory is left') {
   const device = session('webgpu', new Error(message));
   const wasm = session('wasm', 7);

@@ -10,7 +10,7 @@ afterEach(() => {
   vi.useRealTimers();
 });
 
-/** A browser's worker that answers as it is told; whether it still lives. */
+/** A browser's worker with scripted answers; it records whether it still runs. */
 class ToldWorker extends EventTarget {
   readonly #answer: (question: Question) => object;
   lives = true;

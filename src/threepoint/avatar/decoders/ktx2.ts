@@ -3,7 +3,7 @@ import basisAddress from 'three/examples/jsm/libs/basis/basis_transcoder.wasm?ur
 import type { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { KTX2Loader } from 'three/examples/jsm/loaders/KTX2Loader.js';
 import { reasonOf } from '../../core/errors/reasons';
-import { AskedWorker } from './asked-worker';
+import { WorkerClient } from './worker-client';
 
 /** What three.js's worker answers; without `data`: why not. */
 interface TranscodeAnswer {
@@ -26,7 +26,7 @@ function detectFormats(loader: KTX2Loader): void {
 class Ktx2InWorker extends KTX2Loader {
   /** The fault of the first picture that could not be decoded: GLTFLoader continues without it. */
   fault: Error | null = null;
-  readonly #worker = new AskedWorker<object, TranscodeAnswer>('KTX2', () => {
+  readonly #worker = new WorkerClient<object, TranscodeAnswer>('KTX2', () => {
     const worker = new Worker(new URL('./ktx2-worker.ts', import.meta.url), { type: 'module' });
     worker.postMessage({ type: 'init', config: this.workerConfig, transcoderBinary: this.transcoderBinary });
     return worker;
@@ -37,7 +37,7 @@ class Ktx2InWorker extends KTX2Loader {
     detectFormats(this);
     this.workerPool = {
       postMessage: async (question: object, transfer: Transferable[]) => {
-        const data = await this.#worker.ask(question, transfer);
+        const data = await this.#worker.request(question, transfer);
         if (data.type === 'error') throw new Error(`KTX2: ${reasonOf(data.error)}`);
         return { data };
       },

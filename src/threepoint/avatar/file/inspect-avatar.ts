@@ -119,7 +119,8 @@ export function inspectAvatar(
   limits: AvatarLimits = avatarLimits,
 ): readonly string[] {
   const limit = (what: string, has: number, may: number) => {
-    if (!(has <= may)) throw new Error(`${name}: ${told(has)} ${what}; an avatar may have ${told(may)} at most`);
+    if (!(has <= may))
+      throw new Error(`${name}: ${shownNumber(has)} ${what}; an avatar may have ${shownNumber(may)} at most`);
   };
   limit('MB', bytes.length / 2 ** 20, limits.megabytes);
   if (isFbx(bytes, name)) throw new Error(`${name}: ${fbxAdvice}`);
@@ -192,4 +193,5 @@ export function inspectAvatar(
   return unpacked.filter((extension) => extensionsUsed.includes(extension) || extensionsRequired.includes(extension));
 }
 
-const told = (value: number): string => (value < 100 ? String(Number(value.toFixed(1))) : String(Math.round(value)));
+const shownNumber = (value: number): string =>
+  value < 100 ? String(Number(value.toFixed(1))) : String(Math.round(value));

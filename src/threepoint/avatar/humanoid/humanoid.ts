@@ -58,10 +58,10 @@ function knownBones(scene: Group, name: string): { readonly bones: BoneMap; read
   if (choice.bones.hips !== undefined) return choice;
   const found = [...(joints.size > 0 ? joints : all).keys()];
   if (found.length === 0) throw new Error(`${name}: no humanoid in the file: it has no bones`);
-  const told =
+  const shownFound =
     found.slice(0, shownNames).join(', ') + (found.length > shownNames ? ` and ${found.length - shownNames} more` : '');
   throw new UnknownBones(
-    `${name}: its bones could not be matched to a humanoid (found: ${told}; known: ${knownNamings.join('; ')}). Map them by hand: loadAvatar(source, {bones: {hips: '…', …}})`,
+    `${name}: its bones could not be matched to a humanoid (found: ${shownFound}; known: ${knownNamings.join('; ')}). Map them by hand: loadAvatar(source, {bones: {hips: '…', …}})`,
     found,
   );
 }

@@ -5,11 +5,11 @@ export class UnknownBones extends Error {
   /** What the file calls its bones; of those that carry no skin, all its nodes. */
   readonly found: readonly string[];
   /** The bones that were matched by their names. */
-  readonly told: BoneMap;
+  readonly matched: BoneMap;
 
   constructor(message: string, found: readonly string[], told: BoneMap = {}) {
     super(message);
     this.found = found;
-    this.told = told;
+    this.matched = told;
   }
 }

@@ -1,5 +1,5 @@
 import { sides } from '../math/side';
-import { type HandTilts, isBelievableTilt, sameTilts, steepestHandTilt } from './hand-tilt';
+import { type HandTilts, isBelievableTilt as isPlausibleTilt, sameTilts, steepestHandTilt } from './hand-tilt';
 
 /** The measures of a body, entered by the user or measured while they stand still for two seconds. */
 export interface Calibration {
@@ -90,35 +90,35 @@ export function demandPerson(calibration: Calibration): void {
 /** Returns why the body's measures are implausible; null: they are plausible. */
 function bodyComplaint({ eyeHeight, armSpan, forearm }: Calibration): string | null {
   // Number: a page without types may leave one out.
-  const told = (value: number) => `${Number(value).toFixed(2)} m`;
+  const metres = (value: number) => `${Number(value).toFixed(2)} m`;
   // Written so that NaN is refused too.
   if (!(eyeHeight >= eyeHeightRange.min && eyeHeight <= eyeHeightRange.max)) {
-    const stature = told(statureFromEyeHeight(eyeHeight));
-    return `A height of ${stature} is outside ${told(statureRange.min)} to ${told(statureRange.max)}.`;
+    const stature = metres(statureFromEyeHeight(eyeHeight));
+    return `A height of ${stature} is outside ${metres(statureRange.min)} to ${metres(statureRange.max)}.`;
   }
   if (!(armSpan >= armSpanRange.min && armSpan <= armSpanRange.max)) {
-    return `An arm span of ${told(armSpan)} is outside ${told(armSpanRange.min)} to ${told(armSpanRange.max)}.`;
+    return `An arm span of ${metres(armSpan)} is outside ${metres(armSpanRange.min)} to ${metres(armSpanRange.max)}.`;
   }
   const ratio = armSpan / eyeHeight / ARM_SPAN_PER_EYE_HEIGHT;
   if (ratio < 0.72 || ratio > 1.35) {
-    return `An arm span of ${told(armSpan)} from wrist to wrist does not match a height of ${told(statureFromEyeHeight(eyeHeight))}.`;
+    return `An arm span of ${metres(armSpan)} from wrist to wrist does not match a height of ${metres(statureFromEyeHeight(eyeHeight))}.`;
   }
   const forearms = forearm === undefined ? ORDINARY_FOREARM : forearm / armSpan;
   return forearms > 0.65 * ORDINARY_FOREARM && forearms < 1.35 * ORDINARY_FOREARM
     ? null
-    : `A forearm of ${told(forearm!)} does not go with an arm span of ${told(armSpan)} from wrist to wrist.`;
+    : `A forearm of ${metres(forearm!)} does not match an arm span of ${metres(armSpan)} from wrist to wrist.`;
 }
 
 /** Returns why the tilts of headset or hands are implausible; null: they are plausible. */
 function wornComplaint({ gazePitch = 0, handTilts }: Calibration): string | null {
-  const told = (value: number) => `${value.toFixed(2)} rad`;
+  const radians = (value: number) => `${value.toFixed(2)} rad`;
   if (!(Math.abs(gazePitch) <= steepestGazePitch)) {
-    return `A headset’s tilt of ${told(gazePitch)} is beyond ${told(steepestGazePitch)}.`;
+    return `A headset’s tilt of ${radians(gazePitch)} exceeds ${radians(steepestGazePitch)}.`;
   }
   for (const side of sides) {
     const tilt = handTilts?.[side];
-    if (tilt && !isBelievableTilt(tilt)) {
-      return `A ${side} hand’s tilt of ${told(Math.hypot(tilt.pitch, tilt.yaw))} is beyond ${told(steepestHandTilt)}.`;
+    if (tilt && !isPlausibleTilt(tilt)) {
+      return `A ${side} hand’s tilt of ${radians(Math.hypot(tilt.pitch, tilt.yaw))} exceeds ${radians(steepestHandTilt)}.`;
     }
   }
   return null;
@@ -126,8 +126,8 @@ function wornComplaint({ gazePitch = 0, handTilts }: Calibration): string | null
 
 /** These measures and this forearm [m], where such an arm can have it. */
 export function withForearm(calibration: Calibration, forearm: number | undefined): Calibration {
-  const told = { ...calibration, forearm };
-  return forearm !== undefined && calibrationComplaint(told) === null ? told : calibration;
+  const extended = { ...calibration, forearm };
+  return forearm !== undefined && calibrationComplaint(extended) === null ? extended : calibration;
 }
 
 // Below it the person sits or the floor is wrong; a child that low needs the guided calibration.

@@ -31,7 +31,7 @@ export function createDeviceSource(otherwise: JointSource): JointSource {
   const shares = mapJoints(() => 0);
   let known = false;
 
-  function believed(joint: EstimatedJoint, { deviceBody, completed }: SolvedFrame): boolean {
+  function isPlausible(joint: EstimatedJoint, { deviceBody, completed }: SolvedFrame): boolean {
     if (!deviceBody || !isNear(deviceBody, 'head', completed.headJoint, strayHead)) return false;
     const hand = armOf[joint];
     return hand === undefined || isNear(deviceBody, hand, completed[hand].position, strayWrist);
@@ -52,7 +52,7 @@ export function createDeviceSource(otherwise: JointSource): JointSource {
       for (let index = 0; index < estimatedJoints.length; index++) {
         const joint = estimatedJoints[index]!;
         const difference = differences[joint];
-        const sees = believed(joint, solved);
+        const sees = isPlausible(joint, solved);
         if (sees && solved.deviceBody) {
           subtract(deviceJoint(solved.deviceBody, joint, place), target[joint], place);
           rotateInverse(orientation, place, difference);

@@ -21,7 +21,7 @@ import type { IkSolution } from './solve-ik';
 interface HandTiltState {
   /** The calibrated direction, or the default one, unit. */
   readonly prior: MutableVec3;
-  told: boolean;
+  calibrated: boolean;
   /** Sum of observed directions times metres of travel [m], decaying by 1/e in memoryMetres. */
   readonly noticed: MutableVec3;
 }
@@ -33,16 +33,16 @@ export interface HandTiltsState {
   readonly turns: Readonly<Record<Side, MutableQuat>>;
 }
 
-const makeHandTiltState = (): HandTiltState => ({ prior: vec3(0, 0, 0), told: false, noticed: vec3(0, 0, 0) });
+const makeHandTiltState = (): HandTiltState => ({ prior: vec3(0, 0, 0), calibrated: false, noticed: vec3(0, 0, 0) });
 
 /** Returns the state for a wearer with these calibrated tilts. */
-export function makeHandTiltsState(told: HandTilts | undefined): HandTiltsState {
+export function makeHandTiltsState(calibrated: HandTilts | undefined): HandTiltsState {
   const state: HandTiltsState = {
     left: makeHandTiltState(),
     right: makeHandTiltState(),
     turns: { left: quat(0, 0, 0, 1), right: quat(0, 0, 0, 1) },
   };
-  tellHandTilts(state, told);
+  resetHandTilts(state, calibrated);
   return state;
 }
 
@@ -50,12 +50,12 @@ export function makeHandTiltsState(told: HandTilts | undefined): HandTiltsState 
  * Resets the estimate to the tilts of another calibration. A recentre or a pause does not reset it: the hands are held
  * as before.
  */
-export function tellHandTilts(state: HandTiltsState, told: HandTilts | undefined): void {
+export function resetHandTilts(state: HandTiltsState, calibrated: HandTilts | undefined): void {
   for (const side of sides) {
     const hand = state[side];
-    const tilt = told?.[side];
+    const tilt = calibrated?.[side];
     rotate(turnOfTilt(tilt ?? usualHandTilt(side)), forward, hand.prior);
-    hand.told = tilt !== undefined;
+    hand.calibrated = tilt !== undefined;
     setVec3(hand.noticed, 0, 0, 0);
     turnAfter(state, side);
   }
@@ -67,7 +67,7 @@ const direction = vec3(0, 0, 0);
  * Weight of the prior, as the metres of observed travel it equals. A measured tilt's shrinks with the square of doubtAngle/angle once
  * prior and observations differ by more than doubtAngle; the usual tilt's is constant.
  */
-function priorMetres({ prior, told, noticed }: HandTiltState): number {
+function priorMetres({ prior, calibrated: told, noticed }: HandTiltState): number {
   if (!told) return usualMetres;
   const angle = Math.atan2(length(cross(prior, noticed, direction)), dot(prior, noticed));
   return angle > doubtAngle ? calibratedMetres * (doubtAngle / angle) ** 2 : calibratedMetres;
@@ -86,7 +86,7 @@ function turnAfter(state: HandTiltsState, side: Side): void {
  */
 export function noticeHandTilts(
   state: HandTiltsState,
-  { untoldForearms }: IkSolution,
+  { untiltedForearms: untoldForearms }: IkSolution,
   { leftHand, rightHand }: Pick<CompletedFrame, 'leftHand' | 'rightHand'>,
   travel: Readonly<Record<Side, number>>,
 ): void {

@@ -19,7 +19,7 @@ export const makeHeadsetRiseState = (): HeadsetRiseState => ({
 });
 
 /** Another calibration: what was noticed of the last one's wearer holds no more. */
-export function forgetHeadsetRise(state: HeadsetRiseState): void {
+export function resetHeadsetRise(state: HeadsetRiseState): void {
   state.reach.left = usualReach;
   state.reach.right = usualReach;
   state.rise = 0;

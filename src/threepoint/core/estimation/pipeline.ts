@@ -15,8 +15,8 @@ import { HeadsetMountCorrection } from './headset-mount-correction';
 import { makeJoints } from './joint-positions';
 import type { JointSource, SolvedFrame } from './joint-source';
 import { limitJoints, makeLimitJointsState, resetLimitJoints } from './limit-joints';
-import { makeHandTiltsState, noticeHandTilts, tellHandTilts } from './notice-hand-tilts';
-import { forgetHeadsetRise, makeHeadsetRiseState, noticeHeadsetRise } from './notice-headset-rise';
+import { makeHandTiltsState, noticeHandTilts, resetHandTilts } from './notice-hand-tilts';
+import { makeHeadsetRiseState, noticeHeadsetRise, resetHeadsetRise } from './notice-headset-rise';
 import type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from './pose-estimator';
 import { makeIkSolution, makeThreePoints, solveIk, turnHands } from './solve-ik';
 import { makeSteadyTrackersState, resetSteadyTrackers, steadyTrackers } from './steady-trackers';
@@ -112,8 +112,8 @@ export class Pipeline implements PoseEstimator {
   calibrate(calibration: Calibration): void {
     this.#headset.calibrate(calibration);
     this.#body = measure(calibration);
-    tellHandTilts(this.state.tilts, calibration.handTilts);
-    forgetHeadsetRise(this.state.headset);
+    resetHandTilts(this.state.tilts, calibration.handTilts);
+    resetHeadsetRise(this.state.headset);
     this.source.calibrate(this.#body.chestSpace);
   }
 

@@ -72,14 +72,14 @@ export interface IkSolution {
    * The direction of each forearm, elbow to wrist, as estimated without the tilt of its hand; unit, frame of the
    * tracked hand.
    */
-  readonly untoldForearms: Readonly<Record<Side, MutableVec3>>;
+  readonly untiltedForearms: Readonly<Record<Side, MutableVec3>>;
 }
 
 export const makeIkSolution = (): IkSolution => ({
   joints: makeJoints(),
   chest: makeChestAxes(),
   poles: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
-  untoldForearms: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
+  untiltedForearms: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
 });
 
 const { ik: bounds } = limits;
@@ -131,10 +131,10 @@ const restShoulder = vec3(0, 0, 0);
 const clavicle = vec3(0, 0, 0);
 // Scratch of `placeArm`.
 const handAxis = vec3(0, 0, 0);
-const untoldForearm = vec3(0, 0, 0);
+const untiltedForearm = vec3(0, 0, 0);
 const circle = makeElbowCircle();
-const untoldPole = vec3(0, 0, 0);
-const untoldElbow = vec3(0, 0, 0);
+const untiltedPole = vec3(0, 0, 0);
+const untiltedElbow = vec3(0, 0, 0);
 const fallbackPoles: readonly [MutableVec3, MutableVec3] = [vec3(0, 0, 0), vec3(0, 0, 0)];
 
 /**
@@ -222,7 +222,7 @@ function placeArm(
   wrist: Pose<'heading'>,
   turn: Quat,
   body: ChestSpaceBody,
-  { joints, poles, untoldForearms }: IkSolution,
+  { joints, poles, untiltedForearms: untoldForearms }: IkSolution,
 ): void {
   const sigma = sideSign(side);
   const shoulder = side === 'left' ? joints.leftUpperArm : joints.rightUpperArm;
@@ -244,9 +244,9 @@ function placeArm(
   writeVec3(inThorax(handAxis, sigma, handAxis), handFeatures, 4);
   rotate(wrist.orientation, rotateInverse(turn, backward, handAxis), handAxis);
   writeVec3(inThorax(handAxis, sigma, handAxis), handFeatures, 7);
-  placeElbow(parameters.untoldPole, sigma, untoldPole, untoldElbow);
-  normalise(subtract(wrist.position, untoldElbow, untoldForearm), circle.axis, untoldForearm);
-  rotate(turn, rotateInverse(wrist.orientation, untoldForearm, untoldForearm), untoldForearms[side]);
+  placeElbow(parameters.untoldPole, sigma, untiltedPole, untiltedElbow);
+  normalise(subtract(wrist.position, untiltedElbow, untiltedForearm), circle.axis, untiltedForearm);
+  rotate(turn, rotateInverse(wrist.orientation, untiltedForearm, untiltedForearm), untoldForearms[side]);
 }
 
 /** The elbow on its circle, and its pole, by these weights of the hand's features. */

@@ -24,7 +24,7 @@ export type TrackedPose = Pose<'floor'> & { readonly tracking: 'tracked' | 'emul
 export const isTracked = (pose: TrackedPose | null | undefined): pose is TrackedPose => pose?.tracking === 'tracked';
 
 /** Returns the pose where the device sees it, null where it is lost or only guessed. */
-export const seenPose = (pose: TrackedPose | null): TrackedPose | null => (isTracked(pose) ? pose : null);
+export const trackedOrNull = (pose: TrackedPose | null): TrackedPose | null => (isTracked(pose) ? pose : null);
 
 /** A pose that its owner overwrites: an optional last argument `target`, as with `MutableVec3`. */
 export interface MutablePose<F extends Frame> extends Pose<F> {
@@ -102,12 +102,12 @@ export function transformPose<To extends Frame, From extends Frame>(
 }
 
 /** Returns the pose in To where the device sees it, null where it is lost or only guessed. */
-export function transformSeen<To extends Frame>(
+export function transformTracked<To extends Frame>(
   t: Transform<To, 'floor'>,
   pose: TrackedPose | null,
   target?: MutablePose<To>,
 ): MutablePose<To> | null {
-  const seen = seenPose(pose);
+  const seen = trackedOrNull(pose);
   return seen && transformPose(t, seen, target);
 }
 

@@ -2,7 +2,7 @@ import { type Calibration, calibrationComplaint, steepestGazePitch } from '../bo
 import { type HandTilts, handTiltOf, isBelievableTilt } from '../body/hand-tilt';
 import { sideSign, skeletonFromCalibration } from '../body/skeleton';
 import { clamp } from '../math/damper';
-import { type Pose, transformSeen } from '../math/pose';
+import { type Pose, transformTracked } from '../math/pose';
 import { rotate, rotateInverse } from '../math/quat';
 import { type Side, sides } from '../math/side';
 import { add, addScaled, distance, forward, length, normalise, scale, subtract, type Vec3, vec3 } from '../math/vec3';
@@ -79,8 +79,8 @@ function sampleOf({ head, leftHand, rightHand }: TrackingFrame): Sample {
   return {
     head: head.position,
     gaze: rotate(head.orientation, forward).y,
-    left: transformSeen(fromFloor, leftHand),
-    right: transformSeen(fromFloor, rightHand),
+    left: transformTracked(fromFloor, leftHand),
+    right: transformTracked(fromFloor, rightHand),
   };
 }
 

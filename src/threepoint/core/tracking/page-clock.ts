@@ -31,7 +31,7 @@ export function createPageClock(read: () => number): PageClock {
   let time = 0;
   let stamp: number | null = null;
   let readAt = read();
-  let told = 0;
+  let newest = 0;
   let step = usualStep;
   let paused = false;
   let leftOut = 0;
@@ -51,8 +51,8 @@ export function createPageClock(read: () => number): PageClock {
       }
       stamp = timestampMs;
       readAt = read();
-      time = Math.max(time, told);
-      told = time;
+      time = Math.max(time, newest);
+      newest = time;
       return time;
     },
     get paused() {
@@ -63,8 +63,8 @@ export function createPageClock(read: () => number): PageClock {
     },
     now() {
       const since = Math.min(longestStep, Math.max(0, (read() - readAt) / 1000));
-      told = Math.max(told, (stamp === null ? readAt / 1000 : time) + since);
-      return told;
+      newest = Math.max(newest, (stamp === null ? readAt / 1000 : time) + since);
+      return newest;
     },
   };
 }

@@ -104,7 +104,7 @@ const largestOf = (places: readonly Vec3[]): number =>
   Math.max(...places.slice(1).map((place, i) => distance(place, places[i]!)));
 
 const largestStep = (frames: readonly Hands[]): number => largestOf(frames.map(({ rightHand }) => rightHand.position));
-/** Of wrist and elbow. */
+/** Returns the largest step of wrist and elbow. */
 const largestDrawnStep = (arms: readonly Arm[]): number =>
   Math.max(largestOf(arms.map(({ wrist }) => wrist)), largestOf(arms.map(({ elbow }) => elbow)));
 

@@ -18,7 +18,7 @@ const straight = { pitch: 0, yaw: 0 };
 /** Until the second frame nothing has been noticed. */
 const framesAsTold = 2;
 
-/** The frame as devices tell it whose hands stand at these tilts to the forearms. */
+/** Returns the frame of a device whose hands have these tilts to the forearms. */
 const worn = (frame: TrackingFrame, left: typeof straight, right: typeof straight): TrackingFrame => {
   const turned = (hand: TrackingFrame['leftHand'], by: typeof straight) =>
     hand && { ...hand, orientation: multiply(hand.orientation, conjugate(turnOfTilt(by))) };

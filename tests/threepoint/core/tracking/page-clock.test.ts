@@ -4,7 +4,7 @@ import { describe, expect, test } from 'vitest';
 
 const frameMs = 1000 / 72;
 
-/** The times of these time stamps [ms], each told when `read` says `readOf` of it. */
+/** Returns the times of these time stamps [ms], each passed when `read` returns `readOf` of it. */
 function timesOf(
   stamps: readonly number[],
   readOf: (stamp: number, index: number) => number = (stamp) => stamp,

@@ -223,7 +223,7 @@ describe('sampling', () => {
       fc.property(times, number(-5, 105), (unsorted, time) => {
         const sorted = unsorted.toSorted((a, b) => a - b);
         const frames = sorted.map((at) => ({ ...some.frames[0]!, time: at }));
-        // Interpolated between its neighbours, the head's place tells which they were.
+        // The head's position identifies the neighbours that were interpolated.
         const placed = frames.map((frame, i) => ({
           ...frame,
           head: { ...frame.head, position: { x: i, y: 0, z: 0 } },
