@@ -21,13 +21,13 @@ interface HeightWatch {
    * object is another calibration, unless it is the one that was returned.
    */
   observe(frame: TrackingFrame, calibration: Calibration): Calibration | null;
-  /** Forgets how high the headset was: the floor lies elsewhere, or another person wears it. */
+  /** Discards the observed height: the floor lies elsewhere, or another person wears the headset. */
   reset(): void;
 }
 
-/** Seconds at a height that prove it: longer than anybody jumps. */
+/** The time [s] at a height that proves it: longer than anybody jumps. */
 const provingSeconds = 1.25;
-/** [m] by which eyes rise and sink in that time while a person stands or walks. */
+/** The range [m] within which eyes rise and sink in that time while a person stands or walks. */
 const calmRange = 0.04;
 /** The ignored excess as a share of the eye height: shoes, and a headset that sits differently. */
 const deadZone = 0.02;
@@ -38,10 +38,10 @@ const deadZone = 0.02;
 const grownDeadZone = 0.005;
 /** The largest growth as a share of the measured eye height: a wearer who rises further stands on something. */
 const mostGrowth = 0.08;
-/** A longer one [s] between two frames hides what happened in it. */
+/** The longest gap between two frames [s] without an unobserved motion. */
 const longestGap = 0.5;
 
-/** Eyes that stay within `calmRange`: from when to when [s], how low and how high [m]. */
+/** A period in which the eyes stayed within `calmRange`: start and end [s], lowest and highest [m]. */
 interface CalmStand {
   readonly since: number;
   readonly until: number;
@@ -51,12 +51,12 @@ interface CalmStand {
 
 export function createHeightWatch(): HeightWatch {
   let current: Calibration | null = null;
-  /** The eye height [m] before anything grew, and the one above which a wearer stands on something. */
+  /** The eye height [m] before any growth, and the highest plausible one: above it a wearer stands on something. */
   let measured = 0;
   let highest = 0;
   /** From the skull's pivot to the eyes, in the frame of a headset whose wearer looks straight ahead. */
   let eyesInHeadset = zero;
-  /** How far [m] they are above that pivot then. */
+  /** The height [m] of the eyes above that pivot then. */
   let levelRise = 0;
   let stand: CalmStand | null = null;
 
@@ -71,7 +71,7 @@ export function createHeightWatch(): HeightWatch {
     stand = null;
   }
 
-  /** How high [m] the eyes would be if the head were level: looking up lifts a headset and makes no one taller. */
+  /** Returns the height [m] of the eyes with a level head: looking up lifts a headset and makes no one taller. */
   function levelHeight({ position, orientation }: TrackingFrame['head']): number {
     return position.y - rotate(orientation, eyesInHeadset).y + levelRise;
   }
@@ -97,7 +97,7 @@ export function createHeightWatch(): HeightWatch {
   };
 }
 
-/** The stand with one more frame; one that begins with it, where the head moved or was not seen for a while. */
+/** Returns the period with one more frame, or a new one where the head moved or was not seen. */
 function prolonged(stand: CalmStand | null, time: number, height: number): CalmStand {
   const begun: CalmStand = { since: time, until: time, lowest: height, highest: height };
   if (!stand || time < stand.until || time - stand.until > longestGap) return begun;

@@ -1,4 +1,4 @@
-/** A frame that comes later than this after the one before it [s] follows a pause, of which no more than this counts. */
+/** The longest step of the clock [s]: a longer gap between frames is a pause, of which only this much counts. */
 export const longestStep = 0.5;
 /** The assumed length of the first frames [s], until one was measured. */
 const usualStep = 1 / 60;
@@ -19,13 +19,13 @@ export interface PageClock {
   tick(timestampMs: number): number;
   /** Whether the newest frame follows a pause. */
   readonly paused: boolean;
-  /** What was left out of all pauses so far [s]. */
+  /** The time that was left out of all pauses so far [s]. */
   readonly leftOut: number;
-  /** The time between two frames, for what comes from elsewhere. */
+  /** Returns the time between two frames, for events from elsewhere. */
   now(): number;
 }
 
-/** `read`: the page's running time [ms], on any clock that mostly goes on (`performance.now`). */
+/** Creates a page clock. `read`: the page's running time [ms], on any mostly monotonic clock (`performance.now`). */
 export function createPageClock(read: () => number): PageClock {
   /** The newest frame: its time by this clock, its time stamp, and the value of `read`. */
   let time = 0;
@@ -39,7 +39,7 @@ export function createPageClock(read: () => number): PageClock {
   return {
     tick(dated) {
       const timestampMs = Number.isFinite(dated) ? dated : read();
-      // Devices that round their time stamps date frames alike too, but a whole frame apart.
+      // Devices that round their time stamps repeat them too, but a whole frame later.
       if (timestampMs === stamp && Math.abs(read() - readAt) < 500 * step) return time;
       if (stamp === null) time = timestampMs / 1000;
       else {
