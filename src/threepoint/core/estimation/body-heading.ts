@@ -10,9 +10,9 @@ const headTurn = 0.7;
 const followHalfLife = 0.04;
 /** Half-life [s] of the part within: a person who keeps looking to one side stands that way. */
 const settleHalfLife = 0.6;
-/** A body turns at most this fast [rad/s]; a pirouette does 12. */
+/** The highest speed of a turning body [rad/s]; a pirouette reaches 12. */
 const turnSpeed = 14;
-/** Integrated in steps of at most this [s], so that every frame rate gives the same. */
+/** The longest integration step [s], so that every frame rate gives the same result. */
 const longestStep = 1 / 240;
 
 export interface BodyHeading {

@@ -3,7 +3,7 @@ import type { Replayable } from '../tracking/recording';
 import type { TrackingFrame } from '../tracking/tracking-frame';
 import type { PoseEstimator } from './pose-estimator';
 
-/** Frames between two looks at who waits. */
+/** The number of frames between two yields. */
 const framesPerStep = 8;
 
 /**

@@ -5,7 +5,7 @@ import { addScaled, forward, scale, up, type Vec3, vec3, writeVec3 } from '../ma
 import { yawOf } from '../tracking/heading';
 import { FeatureWindow } from './features';
 
-/** What a drawn body has of a person whose legs no tracker sees, floor frame [m]. */
+/** The points of a drawn body that a gait is estimated from, floor frame [m]. */
 export interface GaitPoints {
   readonly hips: Pose<'floor'>;
   readonly head: Pose<'floor'>;
@@ -67,7 +67,7 @@ export class GaitFeatures {
     for (let age = 0; age < gaitAges.length; age++) this.#writeAge(age, hips.position, eyeHeight);
   }
 
-  /** Forgets earlier frames: the person was moved. */
+  /** Resets the history: the person was moved. */
   reset(): void {
     this.#window.clear();
   }
@@ -84,7 +84,7 @@ export class GaitFeatures {
     this.#writeFromHips(to + 13, from + rightAt, origin, eyeHeight, to + 10);
   }
 
-  /** mirrorTo: where the mirrored person has this point. */
+  /** mirrorTo: the index of the mirrored person's point. */
   #writeFromHips(to: number, from: number, origin: Vec3, eyeHeight: number, mirrorTo = to): void {
     const { values, mirrored } = this;
     const samples = this.#samples;

@@ -17,7 +17,7 @@ import type { CompletedFrame } from './complete-hands';
 import { calibratedMetres, doubtAngle, memoryMetres, usualMetres } from './hand-tilts.json';
 import type { IkSolution } from './solve-ik';
 
-/** What is known of how one hand stands to its forearm; directions from elbow to wrist in the frame of the hand as it is tracked. */
+/** The estimated tilt of one hand to its forearm; directions from elbow to wrist in the frame of the tracked hand. */
 interface HandTiltState {
   /** The calibrated direction, or the default one, unit. */
   readonly prior: MutableVec3;
@@ -29,7 +29,7 @@ interface HandTiltState {
 export interface HandTiltsState {
   readonly left: HandTiltState;
   readonly right: HandTiltState;
-  /** What each hand is turned by in its own frame so that its −Z continues the forearm. */
+  /** The turn of each hand in its own frame after which its −Z continues the forearm. */
   readonly turns: Readonly<Record<Side, MutableQuat>>;
 }
 

@@ -35,7 +35,7 @@ function measure(calibration: Calibration) {
   };
 }
 
-/** Everything that is remembered of one wearer, stage by stage; a stage writes its own part alone. */
+/** The state of all stages for one wearer; each stage writes its own part only. */
 function makeEstimatorState({ handTilts }: Calibration) {
   const hands = makeCompleteHandsState();
   const trackers = makeSteadyTrackersState();
@@ -53,7 +53,7 @@ function makeEstimatorState({ handTilts }: Calibration) {
       ik: makeIkSolution(),
       deviceBody: null as DeviceBody | null,
     } satisfies SolvedFrame,
-    /** The six joints of the third stage, floor frame. */
+    /** The six joints of stage 3, floor frame. */
     joints: makeJoints(),
     limited: makeLimitJointsState(),
     torso: makeFitTorsoState(),
@@ -63,10 +63,10 @@ function makeEstimatorState({ handTilts }: Calibration) {
 
 export type EstimatorState = ReturnType<typeof makeEstimatorState>;
 
-/** Before the first frame. */
+/** The head before the first frame. */
 const noHead: TrackedPose = { ...makePose<'floor'>(), tracking: 'emulated' };
 
-/** What `update` returns, overwritten by the next. */
+/** The result of `update`, overwritten by the next. */
 interface OwnedPose {
   head: TrackedPose;
   leftHand: TrackedPose | null;
@@ -94,7 +94,7 @@ export class Pipeline implements PoseEstimator {
 
   readonly #frameByFrame: boolean;
 
-  /** frameByFrame: no filter and no limit of speed holds anything back, for benches that measure what these cost. */
+  /** frameByFrame: without filters and speed limits, for benches that measure their cost. */
   constructor(name: EstimatorName, calibration: Calibration, source: JointSource, frameByFrame = false) {
     this.name = name;
     this.#frameByFrame = frameByFrame;
@@ -161,7 +161,10 @@ export class Pipeline implements PoseEstimator {
     return this.#estimate;
   }
 
-  /** Seconds since the last frame; 0 for the first, which a pause, or a time that runs backwards or is no number, makes it again. */
+  /**
+   * Returns the time [s] since the last frame; 0 for the first frame and after a reset by a pause, a time that runs
+   * backwards or an invalid time.
+   */
   #elapsed(time: number): number {
     const elapsed = time - this.#lastTime;
     const continues = elapsed >= 0 && elapsed <= longestGapSeconds;

@@ -27,18 +27,21 @@ import limits from './kinematic-limits.json';
 
 const { trunkCapsule: capsule } = limits;
 
-/** An elbow circles the line from shoulder to wrist at most this fast [rad/s]; a punch's elbow does 10. */
+/** The highest speed of an elbow about the line from shoulder to wrist [rad/s]; a punch reaches 10. */
 const swivelSpeed = 12;
 /** The highest speed of the swivel [rad/s] of a guessed hand. */
 const guessedSwivelSpeed = 5;
-/** Longest half-life [s] of the swivel angle, where its estimate says little about the side the elbow points to. */
+/** The longest half-life [s] of the swivel angle, where its estimate is uncertain about the side of the elbow. */
 const swivelHalfLife = 0.35;
-/** An estimated elbow nearer to the arm's line than this [m] says little: the arm is nearly straight. */
+/**
+ * The distance [m] of an estimated elbow from the arm's line below which its direction is uncertain: the arm is nearly
+ * straight.
+ */
 const definedPole = 0.04;
 /** Confidence in the arm's axis rises from 0 to 1 between these wrist distances from the shoulder [arm lengths]. */
 const [handAtShoulder, handAway] = [0.1, 0.3];
 
-/** What an elbow remembers, so that it does not flip: chest frame. */
+/** The state of an elbow that keeps it from flipping, chest frame. */
 export interface SwivelState {
   /** From the shoulder to the wrist, unit. */
   readonly axis: MutableVec3;
@@ -76,7 +79,7 @@ export interface SwivelContext {
   readonly torso: TorsoPose;
   /** Upper arm and forearm together [m]. */
   readonly armLength: number;
-  /** In the hand, in [0, 1]: elbows of guesses turn slower. */
+  /** The confidence in the hand, in [0, 1]: elbows of guessed hands turn slower. */
   readonly confidence: number;
   readonly deltaSeconds: number;
 }
