@@ -25,27 +25,39 @@ import { OwnTrunk } from './rig/own-trunk';
 import { type AvatarJoint, Rig } from './rig/rig';
 import { Springs } from './rig/springs';
 
-/** A body on the screen. Poses are in the floor frame; so is `object`, which stays where it is put: at the floor's origin. */
+/**
+ * A drawn body. Poses are in the floor frame; `object` stays at the floor's origin.
+ *
+ * @example
+ * const avatar = await loadAvatar('/avatars/me.vrm');
+ * avatar.setCalibration(calibration);
+ * avatar.setPose(pose, time);
+ */
 export interface Avatar {
   readonly object: Object3D;
-  /** How high its head reaches when it stands upright [m]. */
+  /** The height of the head's top when the body stands upright [m]. */
   readonly height: number;
-  /** Scales the rig to this body, limb by limb, not by its own proportions. May be called again at any time. */
+  /** Scales the rig limb by limb to these measures, not by its own proportions. May be called at any time. */
   setCalibration(calibration: Calibration): void;
-  /** Bends the body to a pose; time [s] on the clock of the tracking frames. */
+  /** Bends the body to a pose. time: [s], on the clock of the tracking frames. */
   setPose(pose: AvatarPose, time: number): void;
-  /** Hides the own head from the own eyes; mirrors and others still see it. */
+  /** Hides the own head from the wearer's eyes; mirrors and other people still see it. */
   setFirstPerson(on: boolean): void;
   setUpperBodyOnly(on: boolean): void;
-  /** Recolours the materials of our mannequin; other avatars keep their own. Unknown names change nothing. */
+  /** Recolours the materials of the mannequin; other avatars keep theirs. Unknown names change nothing. */
   setPalette(name: string): void;
-  /** Recolours the skin of our people; null: it stays as it is. */
+  /** Recolours the skin of the project's own people; null: unchanged. */
   setSkinTone(tone: SkinTone | null): void;
-  /** 1: solid. Less: a ghost that things behind it shine through. */
+  /** Sets the opacity: 1 is solid, less a ghost that objects behind it shine through. */
   setOpacity(opacity: number): void;
-  /** How far the mouth is open from the next `apply` on: 0 shut to 1; a body without a shape for it keeps it shut. */
+  /**
+   * Sets the opening of the mouth from the next `setPose` on: 0 shut to 1. A body without a shape for it keeps it shut.
+   */
   setMouth(open: number): void;
-  /** How a hand's fingers are bent from the next `apply` on; null: they are not seen, keep their bend for a while and relax. Copied. */
+  /**
+   * Sets the bend of a hand's fingers from the next `setPose` on; the shape is copied. null: not seen, they keep their
+   * bend for a while and relax.
+   */
   setFingers(side: Side, shape: HandShape | null): void;
   /**
    * Returns the geometry of the drawn hand [m]; null: the rig lacks a finger bone. The object is the same until the
@@ -62,7 +74,7 @@ export interface Avatar {
   dispose(): void;
 }
 
-/** A body that is no one's yet. */
+/** The calibration of a body that was not fitted yet. */
 const averageBody: Calibration = { eyeHeight: 1.59, armSpan: 1.5 };
 /** A pause of the page moves feet no further than this [s]. */
 const longestStep = 0.25;

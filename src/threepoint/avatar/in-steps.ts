@@ -1,7 +1,7 @@
-/** Work in steps of a millisecond or so, between which other work may be done. */
+/** Work in steps of about a millisecond, between which other work may run. */
 export type Steps<Result> = Generator<undefined, Result>;
 
-/** All steps one after the other. */
+/** Runs all steps one after the other. */
 export function atOnce<Result>(steps: Steps<Result>): Result {
   for (;;) {
     const step = steps.next();

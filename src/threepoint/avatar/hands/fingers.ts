@@ -10,7 +10,7 @@ import type { Vec3 } from '../../core/math/vec3';
 import { ofSide, type RigFinger, type RigHand, readHand } from './finger-bones';
 
 const frames = makeFingerFrames();
-/** How each bone of a finger has turned since the rest pose. */
+/** The rotations of a finger's bones since the rest pose. */
 const turned = makeFingerFrames();
 const against = quat(0, 0, 0, 1);
 const carried = quat(0, 0, 0, 1);
@@ -22,9 +22,9 @@ class HandFingers {
   readonly #memory = new FingerMemory();
   readonly #seen = makeHandShape();
   #isSeen = false;
-  /** What is drawn: on a rig of other proportions a pinch takes other angles. */
+  /** The drawn shape: on a rig of other proportions a pinch takes other angles. */
   readonly #shown = makeHandShape();
-  /** What the bones were bent to last. */
+  /** The shape that the bones were bent to last. */
   readonly #bent = makeHandShape();
   #begun = false;
 
@@ -97,12 +97,12 @@ export class Fingers {
     this.update(0);
   }
 
-  /** What is seen of a hand from now on; null: nothing. Copied. */
+  /** Sets the tracked shape of a hand from now on; null: none. The shape is copied. */
   set(side: Side, shape: HandShape | null): void {
     this.#hands[side].set(shape);
   }
 
-  /** Bends the bones, so long after the last time [s]. */
+  /** Bends the bones. deltaSeconds: since the last call. */
   update(deltaSeconds: number): void {
     for (const side of sides) this.#hands[side].update(deltaSeconds);
   }

@@ -33,7 +33,7 @@ function makeHeld(): Held {
   return held;
 }
 
-/** A thing that has moved less than this in its hand is held as it was [m; of the unit axis]. */
+/** The motion of an object in its hand below which the fingers stay as they are [m; of the unit axis]. */
 const still = 4e-4;
 const stillAxis = 0.004;
 
@@ -51,7 +51,7 @@ interface Rim extends Ball {
   readonly tube: number;
 }
 
-/** Closes hands round what they hold. All poses and places are of one frame. */
+/** Closes hands round the objects that they hold. All poses are in one frame. */
 export class Holding {
   readonly #held = { left: makeHeld(), right: makeHeld() };
   readonly #middle = vec3(0, 0, 0);

@@ -2,7 +2,7 @@ import { type HandShape, type MutableHandShape, makeHandShape, shapeOfClosing } 
 import { type Buttons, type HandButtons, pressureOf } from '../../core/input/button-presses';
 import type { Side } from '../../core/math/side';
 
-/** The fingers of a hand of which only its buttons are known: a built-in player's, a mouse's. */
+/** Returns the fingers of a hand whose buttons alone are known: a built-in player's, or a mouse's. */
 export function shapeOfButtons(buttons: HandButtons, target: MutableHandShape = makeHandShape()): MutableHandShape {
   const trigger = pressureOf(buttons, 'trigger');
   const grip = pressureOf(buttons, 'grip');

@@ -25,7 +25,7 @@ import {
 import { yawOf } from '../../core/tracking/heading';
 import { createStepping, type Foot, type Stepping } from './stepping';
 
-/** What legs need of a body that stands, facing −Z [m]. */
+/** The proportions of the legs of a body that stands facing −Z [m]. */
 export interface LegProportions {
   /** The right hip joint from the hips' own, level with the floor. */
   readonly hipOffset: Vec3;
@@ -53,11 +53,14 @@ interface MutableLegPose extends LegPose {
   readonly foot: MutableQuat;
 }
 
-/** A leg is never quite straight [share of its length]: a knee that snaps straight is seen. */
+/** The smallest bend of a leg [share of its length]: a knee that snaps straight is visible. */
 const longestReach = 0.999;
-/** Hips go no further in one frame, in leg lengths. */
+/** The largest way of the hips in one frame [leg lengths]. */
 const longestWay = 0.5;
-/** Head and hips of a person do not both turn faster than this about the vertical [rad/s], nor further between two frames that lie far apart [rad]. */
+/**
+ * The fastest turn about the vertical of both head and hips [rad/s], and the largest between two frames that lie far
+ * apart [rad].
+ */
 const fastestTurn = 14;
 const furthestTurn = Math.PI / 2;
 /** The shortest frame [s] that is assumed: jittering time stamps report shorter ones. */
@@ -123,7 +126,7 @@ export class LegPosture {
     this.standUp();
   }
 
-  /** Stands or steps under the hips of a body, floor frame. */
+  /** Advances by one frame under the hips of a body, floor frame. */
   update(points: GaitPoints, deltaSeconds: number): void {
     const { stance, proportions, gait } = this;
     const { hips } = points;
@@ -140,7 +143,10 @@ export class LegPosture {
     this.place('right', hips.position, feet.right);
   }
 
-  /** Whether a body jumped since the frame before, as one that the device or the wearer moves or turns: feet come along at once. */
+  /**
+   * Returns whether the body jumped since the frame before, because the device or the wearer moved or turned it: the
+   * feet follow at once.
+   */
   private wasCarried({ hips, head }: GaitPoints, hipsYaw: number, deltaSeconds: number): boolean {
     const { lastHips, lastHipsYaw, lastHeadYaw } = this;
     const headYaw = yawOf(head.orientation);
