@@ -126,7 +126,7 @@ describe('a recording', () => {
     expect(rows.slice(2, 5).map((row) => row.split(',').slice(1, 3).join())).toEqual(['1,1', '0,1', '1,1']);
   });
 
-  test('without measures is of a person as tall as its first frame tells', async () => {
+  test('without measures is of a person as tall as its first frame shows', async () => {
     const { parts } = await exportMotion({ ...recording, calibration: null }, { to: 'csv', estimator: 'ik' });
     const [header, row] = textOf(parts).split('\n');
     const at = header!.split(',').indexOf('head_y');
@@ -135,7 +135,7 @@ describe('a recording', () => {
 });
 
 describe('a long export', () => {
-  test('tells how far it is, and how long the rest takes', async () => {
+  test('reports how far it is, and how long the rest takes', async () => {
     const told: number[] = [];
     const left: (number | null)[] = [];
     await exportMotion(recordingOf(20), {

@@ -32,7 +32,7 @@ test('another contract may lie on the disk of a program of Node, its weights bes
   expect(shares.at(-1)).toBe(1);
 });
 
-test('a contract that is not on the disk is told in a sentence', async () => {
+test('a contract that is not on the disk is reported in a sentence', async () => {
   await expect(loadLearned({ modelUrl: new URL('gone.json', models) })).rejects.toThrow(
     /^gone\.json: could not be read \(ENOENT/,
   );

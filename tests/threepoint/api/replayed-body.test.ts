@@ -125,7 +125,7 @@ describe('a replay that stands still', () => {
   });
 });
 
-test('a replay that begins anew is drawn without a way from its end', async () => {
+test('a replay that restarts is drawn without a way from its end', async () => {
   const { recorder, body, draw } = await replaying('ik');
   recorder.setLoop(true);
   draw(1);

@@ -144,7 +144,7 @@ describe('recorded hands on a rig of the wearer’s size', () => {
   });
 });
 
-test('fingertips are told where joints are, on the floor that the page moves its wearer on', async () => {
+test('fingertips are reported where joints are, on the floor that the page moves its wearer on', async () => {
   const { avatar, show } = await wearer();
   show({ left: flatHand, right: closedHand }, 0.1);
   const there = avatar.fingertips('left').index!;

@@ -57,8 +57,8 @@ async function refusalOf(file: ArrayBuffer): Promise<UnknownBones> {
   return error;
 }
 
-describe('a file whose bones’ names tell no body', () => {
-  test('is told with what it calls them, and with those that are known', async () => {
+describe('a file whose bones match no humanoid', () => {
+  test('is reported with its names, and with those that are known', async () => {
     const unknown = await refusalOf(builtRig({ nameOf: backwards }));
     expect(unknown.found).toContain('spih');
     expect(unknown.found).toContain('dnaHtfel');
@@ -131,7 +131,7 @@ describe('a map of bones that is given', () => {
     expect(bonesIn(text, found)).toEqual({ complaint: expect.stringMatching(sentence) });
   });
 
-  test('is taken where it is one; empty text tells nothing', () => {
+  test('is taken where it is one; empty text maps nothing', () => {
     expect(bonesIn('{"hips": "spih", "leftIndexProximal": "daeh"}', found)).toEqual({
       hips: 'spih',
       leftIndexProximal: 'daeh',

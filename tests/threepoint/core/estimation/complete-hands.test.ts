@@ -221,7 +221,7 @@ describe('a hand that is lost', () => {
     }
   });
 
-  test('a guessed position is not believed', () => {
+  test('a guessed position is not used', () => {
     const guessed = (time: number) => frame(time, { ...tracked(vec3(0, 0, 0)), tracking: 'emulated' as const });
     const frames = follow(guessed, 1);
     for (const { rightHand } of frames) {
