@@ -92,7 +92,7 @@ export class BodySolver {
   readonly #height: HeightPolicy;
   #events: BodyEvents;
   readonly #clock: Pick<PageClock, 'tick' | 'paused'>;
-  readonly #timing: InferenceProfiler | null;
+  readonly #profiler: InferenceProfiler | null;
   readonly #gate = new TrackingGate({
     onChange: (point, tracked) => (tracked ? this.#events.trackingfound?.(point) : this.#events.trackinglost?.(point)),
   });
@@ -110,17 +110,17 @@ export class BodySolver {
     const request = this.#request;
     this.#request = null;
     if (!request) return;
-    this.#timing?.resume();
+    this.#profiler?.resume();
     void request.ask();
-    this.#timing?.mark('features');
+    this.#profiler?.mark('features');
   };
 
   /** Throws a RangeError where the calibration is not human or the estimator is unknown. */
   constructor(options: BodySolverOptions) {
-    const { estimator = 'learned', calibration = 'auto', networks, profiler: timing = null } = options;
+    const { estimator = 'learned', calibration = 'auto', networks, profiler = null } = options;
     this.#events = options.events ?? {};
     this.#clock = options.clock ?? createPageClock(() => performance.now());
-    this.#timing = timing;
+    this.#profiler = profiler;
     this.#given = calibration !== 'auto';
     this.#wearer = calibration === 'auto' ? defaultCalibration : copyChecked(calibration);
     this.#calibration = this.#wearer;
@@ -128,7 +128,7 @@ export class BodySolver {
       estimator,
       calibration: this.#calibration,
       create: createEstimator,
-      load: timing ? async (name) => profiled(await networks(name), timing) : networks,
+      load: profiler ? async (name) => profiled(await networks(name), profiler) : networks,
       onChange: () => this.#events.changed?.(),
       onFault: (name, reason) => this.#events.fallback?.(name, reason),
     });

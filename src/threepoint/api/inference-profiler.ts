@@ -15,7 +15,7 @@ export interface InferenceProfiler {
 }
 
 /** Returns the regressor with profiled runs. A run within a frame belongs to that frame and is not profiled. */
-export function profiled(regressor: PoseRegressor, timing: InferenceProfiler): PoseRegressor {
+export function profiled(regressor: PoseRegressor, profiler: InferenceProfiler): PoseRegressor {
   return {
     contract: regressor.contract,
     // The provider changes when a graphics device is lost.
@@ -23,9 +23,9 @@ export function profiled(regressor: PoseRegressor, timing: InferenceProfiler): P
       return regressor.provider;
     },
     run(features) {
-      timing.mark('features');
+      profiler.mark('features');
       const running = regressor.run(features);
-      timing.mark('inference');
+      profiler.mark('inference');
       return running;
     },
     ...(regressor.runNow && { runNow: (features: Float32Array) => regressor.runNow!(features) }),
