@@ -30,7 +30,7 @@ const answers = {
   'large.vrm': [() => glb(new ArrayBuffer(61 * 2 ** 20)), /larger than 60 MB/],
   'compressed.vrm': [
     () => glb(compressed()),
-    /compressed\.vrm could not be shown: (not valid glTF|no VRM or GLB file|cannot be read as glTF)/,
+    /compressed\.vrm could not be shown: (not valid glTF|not a VRM or GLB file|cannot be read as glTF)/,
   ],
   'plain.glb': [() => glb(plain()), /Its bones could not be matched to a humanoid\. Map them by hand/],
 } as const;

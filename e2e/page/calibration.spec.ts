@@ -55,7 +55,7 @@ test('by hand: a forearm divides the arm, outlasts a guided calibration and a re
   expect(await forearm.evaluate((input: HTMLInputElement) => input.validity.valid)).toBe(false);
   await forearm.fill('38');
   await page.keyboard.press('Tab');
-  await expect(page.getByText(/A forearm of 0\.38 m does not go with an arm span of/)).toBeVisible();
+  await expect(page.getByText(/A forearm of 0\.38 m does not match an arm span of/)).toBeVisible();
   expect(await told()).toBeUndefined();
   await forearm.fill('25');
   await page.keyboard.press('Tab');

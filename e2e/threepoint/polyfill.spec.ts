@@ -5,7 +5,7 @@ import { sourceResolution } from '../../scripts/source-condition.mjs';
 
 /** The page's script in one piece. */
 async function bundled(): Promise<string> {
-  const input = fileURLToPath(new URL('polyfill-page.ts', import.meta.url));
+  const input = fileURLToPath(new URL('../polyfill-page.ts', import.meta.url));
   const build = await rolldown({ input, platform: 'browser', resolve: sourceResolution('browser') });
   const { output } = await build.generate({ format: 'esm', codeSplitting: false });
   await build.close();

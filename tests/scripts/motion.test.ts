@@ -49,7 +49,7 @@ describe('npm run motion', () => {
   test.each([
     ['an unknown format', { to: 'fbx' }, /--to: “fbx” is none of bvh, csv, vrma, glb/],
     ['an unknown method', { to: 'bvh', estimator: 'magic' }, /--estimator: “magic” is none of/],
-    ['a method without a body', { to: 'bvh', estimator: 'hands-only' }, /draws no body/],
+    ['a method without a body', { to: 'bvh', estimator: 'hands-only' }, /estimates no body/],
     ['an unknown unit', { to: 'bvh', unit: 'ft' }, /--unit: “ft” is none of m, cm/],
     ['no rate', { to: 'bvh', rate: 'often' }, /--rate: “often” is no rate/],
     ['an avatar where none is wanted', { to: 'bvh', avatar: 'me.vrm' }, /--avatar is for --to glb alone/],
@@ -64,7 +64,7 @@ describe('npm run motion', () => {
   test('refuses a damaged recording with the line', async () => {
     const { folder, file } = folderWith(1);
     writeFileSync(file, recorded(1).slice(0, 3000));
-    await expect(exportFile({ file, to: 'bvh' })).rejects.toThrow(/^mine.json: The recording is no JSON/);
+    await expect(exportFile({ file, to: 'bvh' })).rejects.toThrow(/^mine.json: The recording is not valid JSON/);
     expect(readdirSync(folder)).toEqual(['mine.json']);
   });
 

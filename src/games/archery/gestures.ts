@@ -10,9 +10,9 @@ import {
 import {
   copyPose,
   makePose,
-  seenPose,
   type TrackedPose,
   type Transform,
+  trackedOrNull,
   transformPoint,
 } from 'threepoint/core/math/pose';
 import { identity, rotate } from 'threepoint/core/math/quat';
@@ -217,7 +217,7 @@ class BowGestures implements ArcheryGestures {
   }
 
   #look(side: Side, tracked: TrackedPose | null): void {
-    const hand = seenPose(tracked);
+    const hand = trackedOrNull(tracked);
     this.#hands[side] = hand;
     this.#pressed[side] = this.#presses.follow(side, this.#buttons[side], hand !== null);
   }

@@ -11,9 +11,9 @@ import {
   type MutablePose,
   makePose,
   makeTransform,
-  seenPose,
   type TrackedPose,
   type Transform,
+  trackedOrNull,
   transformPoint,
   transformPose,
 } from 'threepoint/core/math/pose';
@@ -163,8 +163,8 @@ class PlayerGestures implements BallGestures {
     const { player, state, arenaFromFloor } = this.now;
     const paused = frame.time - this.lastTime > longestPause;
     this.lastTime = frame.time;
-    const left = seenPose(frame.leftHand);
-    const right = seenPose(frame.rightHand);
+    const left = trackedOrNull(frame.leftHand);
+    const right = trackedOrNull(frame.rightHand);
     this.pose.left = left && transformPose(arenaFromFloor, left, this.hands.left.pose);
     this.pose.right = right && transformPose(arenaFromFloor, right, this.hands.right.pose);
     const playing = state.players[player]?.role === 'thrower' && state.phase === 'running';

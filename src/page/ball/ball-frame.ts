@@ -10,7 +10,7 @@ import {
   type TrackedPose,
   type Transform,
   transformPoint,
-  transformSeen,
+  transformTracked,
 } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
 import { length, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
@@ -246,8 +246,8 @@ export class CourtPeople {
   ): Opening | null {
     if (!isInZone(transformPoint(arenaFromFloor, head.position, this.head), station)) return null;
     return basketInHands(
-      transformSeen(arenaFromFloor, leftHand, this.left),
-      transformSeen(arenaFromFloor, rightHand, this.right),
+      transformTracked(arenaFromFloor, leftHand, this.left),
+      transformTracked(arenaFromFloor, rightHand, this.right),
     );
   }
 

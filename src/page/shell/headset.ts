@@ -224,7 +224,8 @@ export class Headset {
     const { renderer, quality } = this.#options;
     giveFramesToEvents(xr);
     await renderer.xr.setSession(xr);
-    if (!renderer.xr.getReferenceSpace()) throw new Error('the headset offers no floor to stand on (local-floor)');
+    if (!renderer.xr.getReferenceSpace())
+      throw new Error('the headset provides no floor-level reference space (local-floor)');
     if (this.#emulator) easeEmulatedPicture(renderer, quality);
     return roomOf(xr);
   }

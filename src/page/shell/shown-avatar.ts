@@ -223,7 +223,7 @@ export class ShownAvatar {
     const { notices } = this.#options;
     const isNewest = turn === this.#requested;
     if (error instanceof UnknownBones && checked && isNewest) {
-      this.#waiting = { name, found: error.found, bones: error.told, complaint: null, checked };
+      this.#waiting = { name, found: error.found, bones: error.matched, complaint: null, checked };
       this.#pending = `${name} is waiting for its bones to be mapped.`;
       const how = 'Map them by hand: Controls, Avatar, Bones of this file.';
       notices.show('error', `${name} could not be shown. Its bones could not be matched to a humanoid. ${how}`);

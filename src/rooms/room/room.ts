@@ -1,5 +1,5 @@
 import { type AvatarRef, plainAvatar } from 'threepoint/core/body/avatar-ref';
-import { transformPoint, transformSeen } from 'threepoint/core/math/pose';
+import { transformPoint, transformTracked } from 'threepoint/core/math/pose';
 import { type ClientMessage, type Joining, packSeatInfo, protocolVersion } from '../protocol/messages';
 import { decodePoints, makePoints } from '../protocol/pose-codec';
 import type { PointsPacket } from '../protocol/pose-packet';
@@ -268,8 +268,8 @@ export class Room<Game extends HostedGame> {
       player,
       at: packetTime - this.#match.matchStart,
       head: transformPoint(arenaFromFloor, head.position),
-      left: transformSeen(arenaFromFloor, leftHand),
-      right: transformSeen(arenaFromFloor, rightHand),
+      left: transformTracked(arenaFromFloor, leftHand),
+      right: transformTracked(arenaFromFloor, rightHand),
     });
   }
 

@@ -121,7 +121,7 @@ export class AvatarRoutes {
     });
     if (at < length) throw new HttpError(400, 'the body has no end');
     if (hash.digest('base64url') !== expected) throw new HttpError(422, 'the file is not the one that its name says');
-    if (!isGlb(bytes)) throw new HttpError(422, 'this is no VRM or GLB file');
+    if (!isGlb(bytes)) throw new HttpError(422, 'this is not a VRM or GLB file');
     return bytes;
   }
 

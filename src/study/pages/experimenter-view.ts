@@ -1,6 +1,6 @@
 import { button, element } from 'threepoint-ui/element';
-import { storePreviewPlan } from 'threepoint-ui/preview-plan';
 import { pageFolder } from 'threepoint-ui/page-folder';
+import { storePreviewPlan } from 'threepoint-ui/preview-plan';
 import { type StudyPlan, studyTitle } from '../model/plan/plan';
 import { remarksOn } from '../model/plan/plan-remarks';
 import type { ParticipantState, Receipt, StudyInfo } from '../model/progress/study-api';

@@ -1,13 +1,15 @@
-/** What is done after frames. */
+/** Runs tasks after animation frames. */
 export interface AfterFrame {
-  /** Runs this task once the browser is done with this animation frame, before timers and mostly before the next frame. */
+  /**
+   * Runs the task once the browser has finished this animation frame, before timers and mostly before the next frame.
+   */
   afterwards(task: () => void): void;
-  /** Drops what still waits, and listens no longer: an open port keeps a process of Node running. */
+  /** Drops pending tasks and closes the port: an open port keeps a Node process running. */
   close(): void;
 }
 
 export function createAfterFrame(): AfterFrame {
-  // A message is the earliest task that a page can ask for; timers are held back.
+  // A message is the earliest task that a page can schedule; timers are throttled.
   const { port1, port2 } = new MessageChannel();
   const waiting: (() => void)[] = [];
   port1.onmessage = () => waiting.shift()?.();

@@ -14,89 +14,113 @@ import { type InferenceProfiler, profiled } from './inference-profiler';
 export type { TrackedPoint } from '../core/tracking/tracking-gate';
 
 /**
- * Where a body's measures come from: told by the page, the height at which a session began, a wearer who stood up taller, a stand-in who
- * moves the body instead of the wearer (or the wearer again), or nowhere yet.
+ * The origin of a body's measures: given by the page, the headset's height at the start of a session, a wearer who
+ * stood up taller, a change between the wearer and a stand-in, or the default.
  */
 export type CalibrationSource = 'given' | 'headset' | 'stood-taller' | 'stand-in' | 'default';
 
-/** What a page may want to know of a body; each is called within one of the body's methods, never its constructor, or when a network has loaded. */
+/**
+ * Callbacks of a body. Each is called from within one of the body's methods, or when a network has loaded; never from
+ * the constructor.
+ */
 export interface BodyEvents {
-  /** Other measures of who moves the body, from the next frame on. */
+  /** The measures in force have changed, from the next frame on. */
   calibrated?(calibration: Calibration, source: CalibrationSource): void;
-  /** The wearer stands this much taller [m] than the measures that were given, which stay. Once for each calibration. */
+  /**
+   * The wearer stands `difference` [m] taller than the given measures, which stay in force. Called once for each
+   * calibration.
+   */
   heightmismatch?(difference: number): void;
-  /** This estimator's network is not to be had, and why: inverse kinematics draws instead; with 'device' where the device reports no body. */
+  /**
+   * The estimator's network failed or could not be loaded, or 'device' is selected and the device reports no body:
+   * inverse kinematics draws instead.
+   */
   fallback?(estimator: EstimatorName, reason: string): void;
-  /** `estimator`, `provider` or `unavailable` is another. */
+  /** `estimator`, `provider` or `unavailable` has changed. */
   changed?(): void;
-  /** The body begins anew where it is next: nothing may be drawn, sent or scored on the way there. */
+  /** The body was reset and continues elsewhere: nothing may be drawn, sent or scored on the way there. */
   discontinuity?(): void;
-  /** No longer tracked: the body of a head that is not seen stands still; the arm of a hand that is not, or only guessed, sinks to rest. */
+  /**
+   * The point is no longer tracked. Without a head the body keeps its pose; the arm of a lost or guessed hand sinks to
+   * rest.
+   */
   trackinglost?(point: TrackedPoint): void;
-  /** Tracked, for the first time or again. */
+  /** The point is tracked, for the first time or again. */
   trackingfound?(point: TrackedPoint): void;
 }
 
 export interface BodySolverOptions {
-  /** Default: 'learned', which is inverse kinematics until its weights have arrived. */
+  /** The estimator. Default: 'learned', replaced by inverse kinematics until its weights have loaded. */
   readonly estimator?: EstimatorName;
-  /** 'auto' (default): from the height of the headset, and grown when its wearer stands up taller. */
+  /**
+   * The wearer's measures. 'auto' (default): estimated from the headset's height, and enlarged when the wearer stands
+   * taller.
+   */
   readonly calibration?: Calibration | 'auto';
-  /** Whether a wearer may turn out taller than their measures (default): those of 'auto' grow then, of given ones `outgrown` tells. */
+  /**
+   * Whether the wearer may stand taller than the measures (default: true). Those of 'auto' grow; given ones stay, and
+   * `heightmismatch` is called.
+   */
   readonly autoGrow?: boolean;
-  /** Brings a network by name; rejects with a sentence. `onnxNetworks` of threepoint/onnx brings both. */
+  /** Loads a network by name; rejects with a sentence. `onnxNetworks` of threepoint/onnx loads both. */
   readonly networks: (name: NetworkName) => Promise<PoseRegressor>;
-  /** The time of `frame`, for pages that share one clock. Default: a clock of the body's own. */
+  /** The clock of `tick`, for pages that share one. Default: a clock of the body. */
   readonly clock?: Pick<PageClock, 'tick' | 'paused'>;
-  /** Told what is done after a frame, where frame times are measured. */
+  /** Measures the work that follows a frame. */
   readonly profiler?: InferenceProfiler;
   readonly events?: BodyEvents;
 }
 
-/** A copy, which a page that goes on changing its own object does not change. Throws where these are no person's measures. */
+/** Returns a copy that the page cannot change. Throws a RangeError where the measures are not human. */
 function copyChecked(calibration: Calibration): Calibration {
   demandPerson(calibration);
   return { ...calibration };
 }
 
 /**
- * One wearer's body from three tracked points: estimator, fallback to inverse kinematics, a height that settles, points that are lost and found.
- * A frame is `frame`, then `update`. Told where its networks come from, it has the code of none in it; Body brings the learned one along.
+ * Solves the body of one wearer from three tracked points. It selects the estimator, falls back to inverse kinematics,
+ * estimates the wearer's height and reports lost points. Each frame is one call of `tick` and one of `update`. It
+ * contains no network: `networks` loads them. `Body` adds the learned network.
+ *
+ * @example
+ * const body = new BodySolver({ networks: onnxNetworks({ modelUrl: (name) => `/models/${name}.json` }) });
+ * const time = body.tick(timestampMs);
+ * const pose = body.update({ time, head, leftHand, rightHand: null });
  */
 export class BodySolver {
   readonly #choice: EstimatorChoice;
   readonly #height: HeightPolicy;
   #events: BodyEvents;
   readonly #clock: Pick<PageClock, 'tick' | 'paused'>;
-  readonly #timing: InferenceProfiler | null;
+  readonly #profiler: InferenceProfiler | null;
   readonly #gate = new TrackingGate({
     onChange: (point, tracked) => (tracked ? this.#events.trackingfound?.(point) : this.#events.trackinglost?.(point)),
   });
   #afterFrame: AfterFrame | null = null;
-  /** In force: the wearer's, or those of a stand-in. */
+  /** The measures in force: the wearer's, or a stand-in's. */
   #calibration: Calibration;
   #wearer: Calibration;
   #given: boolean;
-  /** Whether another than the wearer moved the body in the newest frame. */
+  /** Whether a stand-in moved the body in the newest frame. */
   #standsIn = false;
   #pose: AvatarPose | null = null;
-  /** The newest frame's question to a network that answers later. */
+  /** The newest frame's request to a network that answers later. */
   #request: InferenceRequest | null = null;
   readonly #askNow = () => {
     const request = this.#request;
     this.#request = null;
     if (!request) return;
-    this.#timing?.resume();
+    this.#profiler?.resume();
     void request.ask();
-    this.#timing?.mark('features');
+    this.#profiler?.mark('features');
   };
 
-  /** Throws a RangeError where the calibration is no person's, or there is no estimator of this name. */
+  /** Throws a RangeError where the calibration is not human or the estimator is unknown. */
   constructor(options: BodySolverOptions) {
-    const { estimator = 'learned', calibration = 'auto', networks, profiler: timing = null } = options;
+    const { estimator = 'learned', calibration = 'auto', networks, profiler = null } = options;
     this.#events = options.events ?? {};
     this.#clock = options.clock ?? createPageClock(() => performance.now());
-    this.#timing = timing;
+    this.#profiler = profiler;
     this.#given = calibration !== 'auto';
     this.#wearer = calibration === 'auto' ? defaultCalibration : copyChecked(calibration);
     this.#calibration = this.#wearer;
@@ -104,7 +128,7 @@ export class BodySolver {
       estimator,
       calibration: this.#calibration,
       create: createEstimator,
-      load: timing ? async (name) => profiled(await networks(name), timing) : networks,
+      load: profiler ? async (name) => profiled(await networks(name), profiler) : networks,
       onChange: () => this.#events.changed?.(),
       onFault: (name, reason) => this.#events.fallback?.(name, reason),
     });
@@ -113,54 +137,60 @@ export class BodySolver {
       calibrated: () => this.#given,
       autoGrow: options.autoGrow ?? true,
       onMeasured: (measured, source) => this.#measure(measured, source),
-      onTooSmall: (difference) => this.#events.heightmismatch?.(difference),
+      onMismatch: (difference) => this.#events.heightmismatch?.(difference),
     });
   }
 
-  /** Of the newest frame, floor frame [m]; overwritten by the next: `copyAvatarPose` keeps one. null before the first. */
+  /**
+   * The pose of the newest frame, floor frame [m]; null before the first. The next frame overwrites it: keep it with
+   * `copyAvatarPose`.
+   */
   get pose(): AvatarPose | null {
     return this.#pose;
   }
 
-  /** Of who moves the body now: the wearer, or a stand-in. */
+  /** The measures in force: the wearer's, or a stand-in's. */
   get calibration(): Calibration {
     return this.#calibration;
   }
 
-  /** The wearer's, also while a stand-in moves the body. */
+  /** The wearer's measures, also while a stand-in moves the body. */
   get wearerCalibration(): Calibration {
     return this.#wearer;
   }
 
-  /** What draws now: inverse kinematics while a network loads, and where it fails. */
+  /** The estimator that draws now: 'ik' while a network loads, and where it fails. */
   get estimator(): EstimatorName {
     return this.#choice.current.name;
   }
 
-  /** What was chosen, which may still be loading. */
+  /** The selected estimator, which may still be loading. */
   get wanted(): EstimatorName {
     return this.#choice.wanted;
   }
 
-  /** What cannot be had, and why. */
+  /** The estimators that are unavailable, each with the reason. */
   get unavailable(): Partial<Readonly<Record<EstimatorName, string>>> {
     return this.#choice.unavailable;
   }
 
-  /** Where the network of the estimator runs: 'plain', 'wasm', 'webgpu'; null: it has none. */
+  /** The backend of the estimator's network: 'plain', 'wasm' or 'webgpu'; null: it has no network. */
   get provider(): string | null {
     return this.#choice.regressor?.provider ?? null;
   }
 
   /**
-   * Resolves when this estimator draws, or when `fallback` told why it cannot; rejects with a RangeError where there is none of this name, else only
-   * with what an event's listener throws.
+   * Selects the estimator. Resolves when it draws, or after `fallback` was called because it cannot. Rejects with a
+   * RangeError where no estimator has this name, or with what a callback throws.
    */
   setEstimator(estimator: EstimatorName): Promise<void> {
     return this.#choice.setEstimator(estimator);
   }
 
-  /** Measures of the wearer [m], or 'auto', which forgets what was known of them. Throws a RangeError where they are no person's. */
+  /**
+   * Sets the wearer's measures [m]; 'auto' discards them and estimates new ones. Throws a RangeError where they are not
+   * human.
+   */
   calibrate(calibration: Calibration | 'auto'): void {
     const given = calibration !== 'auto';
     const measures = given ? this.#own(calibration) : defaultCalibration;
@@ -169,15 +199,15 @@ export class BodySolver {
     this.#measure(measures, given ? 'given' : 'default');
   }
 
-  /** A headset was put on: its height is taken anew. */
+  /** Starts a session: a headset was put on, and the wearer's height is estimated again. */
   startSession(): void {
     this.#height.startSession();
     this.discontinuity();
   }
 
-  /** The floor lies elsewhere from one frame to the next (recentre, teleport, pause): nothing may be drawn on the way. */
+  /** Resets the body because the floor lies elsewhere from the next frame on (recentre, teleport, pause). */
   discontinuity(): void {
-    // A question that still waits is about a frame from before.
+    // A pending request belongs to a frame of the past.
     this.#request = null;
     this.#choice.reset();
     this.#height.reset();
@@ -185,8 +215,8 @@ export class BodySolver {
   }
 
   /**
-   * Begins an animation frame that the browser dates `timestampMs`: its time [s], which never goes back and leaps half a second at most, for
-   * the frame of tracking that follows. After a pause the body has jumped.
+   * Starts an animation frame with the browser's time stamp `timestampMs`. Returns the time [s] of its tracking frame,
+   * which never goes back and advances by half a second at most. A pause is a discontinuity.
    */
   tick(timestampMs: number): number {
     const time = this.#clock.tick(timestampMs);
@@ -195,11 +225,11 @@ export class BodySolver {
   }
 
   /**
-   * One frame of tracking [m, s], floor frame; null: the head is not seen, and the pose stays. A point with a number that is not finite counts as
-   * not seen, a time that is none as no time since the frame before. `standIn`: the measures of another who moves the body in this frame, as an
-   * actor or a recording does; theirs are in force then, and nothing is learnt of the wearer. Returns the body's pose, null before the first
-   * frame. Never waits, never returns NaN; throws a RangeError where a stand-in's measures are no person's, else only what an event's listener
-   * throws.
+   * Solves one tracking frame, floor frame [m, s]. Returns the body's pose; null before the first frame. Without a head
+   * (null) the pose stays as it is. A point with a number that is not finite counts as lost; an invalid time counts as
+   * that of the frame before. `standIn`: the measures of someone else who moves the body in this frame, such as an
+   * actor or a recording; they are in force then, and nothing is estimated about the wearer. Never waits and never
+   * returns NaN. Throws a RangeError where a stand-in's measures are not human, or what a callback throws.
    */
   update(tracked: TrackingFrame | null, standIn: Calibration | null = null): AvatarPose | null {
     const frame = this.#gate.admit(tracked);
@@ -217,9 +247,9 @@ export class BodySolver {
   }
 
   /**
-   * Draws a moment as if the body had come there moving: these frames of tracking lead up to it, floor frame, times rising. Each answer of a
-   * network is waited for; with one that answers at once `pose` is the moment's when this returns, else when it resolves. Nothing comes of it
-   * where the body jumps meanwhile, or another method is chosen.
+   * Draws the last of these frames with the estimator's state after all of them: floor frame, rising times. Awaits each
+   * answer of the network. With a network that answers at once, `pose` is set when this returns, else when it resolves.
+   * Has no effect if a discontinuity happens or another estimator is selected meanwhile.
    */
   warmUp(frames: Iterable<TrackingFrame>): Promise<void> {
     return this.#choice.warmUp(admittedFrames(frames), (pose) => {
@@ -227,7 +257,7 @@ export class BodySolver {
     });
   }
 
-  /** Nothing is told from now on; resolves when every network is let go that was loaded for this body. */
+  /** Removes all callbacks. Resolves when every network that was loaded for this body is released. */
   dispose(): Promise<void> {
     this.#events = {};
     this.#request = null;
@@ -235,31 +265,33 @@ export class BodySolver {
     return this.#choice.dispose();
   }
 
-  /** Forgets which points were seen, without a word: another session begins. */
+  /** Ends the session: every point counts as not tracked, without a call of `trackinglost`. */
   endSession(): void {
     this.#gate.reset();
   }
 
-  /** Measures that a page gives, apart from its own object, unless it had them of this body. */
+  /** Returns a copy of the measures of a page, or the measures themselves where the body returned them before. */
   #own(calibration: Calibration): Calibration {
     const known = calibration === this.#calibration || calibration === this.#wearer;
     return known ? calibration : copyChecked(calibration);
   }
 
-  /** Whether they moved it in the frame before; a page may write the measures of a stand-in out in every frame. */
+  /**
+   * Returns whether the same person moved the body in the frame before; a page may pass equal measures as a new object.
+   */
   #isMovedBy(standIn: Calibration | null): boolean {
     if (standIn === null) return !this.#standsIn;
     return this.#standsIn && sameCalibration(standIn, this.#calibration);
   }
 
-  /** Another moves the body from this frame on: with their measures, and without a way from the one to the other. */
+  /** Lets a stand-in, or the wearer again, move the body from this frame on. */
   #handOver(standIn: Calibration | null): void {
     this.#standsIn = standIn !== null;
     this.discontinuity();
     this.#fit(standIn ?? this.#wearer, 'stand-in');
   }
 
-  /** Other measures of the wearer; they wait while one with measures of their own stands in. */
+  /** Sets the wearer's measures; they come into force when no stand-in moves the body. */
   #measure(calibration: Calibration, source: CalibrationSource): void {
     const inForce = this.#calibration === this.#wearer;
     this.#wearer = calibration;
@@ -273,7 +305,7 @@ export class BodySolver {
     this.#events.calibrated?.(calibration, source);
   }
 
-  /** Asks a network that answers later once the picture is on its way; a newer frame's question takes the place of one that still waits. */
+  /** Sends the request to the network after the frame; a newer request replaces a pending one. */
   #askLater(request: InferenceRequest): void {
     const waits = this.#request !== null;
     this.#request = request;

@@ -4,13 +4,23 @@ import { BodySolver, type BodySolverOptions } from './body-solver';
 import { learnedAlone } from './load-learned';
 
 export interface BodyOptions extends Partial<BodySolverOptions> {
-  /** Default: the learned one without a runtime. `onnxNetworks` of threepoint/onnx brings both. */
+  /**
+   * Loads a network by name. Default: the learned network without a runtime. `onnxNetworks` of threepoint/onnx loads
+   * both.
+   */
   readonly networks?: (name: NetworkName) => Promise<PoseRegressor>;
 }
 
-/** A body with the learned network without a runtime. Knows no renderer; BodyTracker of threepoint/three is this with a session and an avatar. */
+/**
+ * A BodySolver with the learned network, without a runtime or a renderer. BodyTracker of threepoint/three adds a
+ * session and an avatar.
+ *
+ * @example
+ * const body = new Body({ calibration: { eyeHeight: 1.6, armSpan: 1.51 } });
+ * const pose = body.update({ time, head, leftHand, rightHand });
+ */
 export class Body extends BodySolver {
-  /** Throws a RangeError where the calibration is no person's. */
+  /** Throws a RangeError where the calibration is not human or the estimator is unknown. */
   constructor(options: BodyOptions = {}) {
     super({ ...options, networks: options.networks ?? learnedAlone });
   }

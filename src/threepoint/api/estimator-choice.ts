@@ -7,19 +7,22 @@ import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 
 export interface EstimatorChoiceOptions {
-  /** What is wanted first; nothing is told of it before this has been made. */
+  /** The estimator to start with; no callback is called before the constructor has returned. */
   readonly estimator: EstimatorName;
   readonly calibration: Calibration;
   create(name: EstimatorName, calibration: Calibration, regressor?: PoseRegressor): PoseEstimator;
-  /** Rejects with a sentence that names the file and what is wrong with it. */
+  /** Loads a network; rejects with a sentence that names the file and its fault. */
   load(name: NetworkName): Promise<PoseRegressor>;
-  /** Another estimator draws from now on, or one has become unavailable. */
+  /** Called when another estimator draws, or when one has become unavailable. */
   onChange(): void;
-  /** This network is not to be had: inverse kinematics draws instead. */
+  /** Called when a network is unavailable: inverse kinematics draws instead. */
   onFault(name: NetworkName, reason: string): void;
 }
 
-/** Which estimator draws. There is always one: until a network is loaded, or when it fails, it is inverse kinematics. */
+/**
+ * Selects the estimator that draws: the wanted one, or inverse kinematics until its network has loaded and when it
+ * fails.
+ */
 export class EstimatorChoice {
   readonly #options: EstimatorChoiceOptions;
   readonly #loading = new Map<NetworkName, Promise<PoseRegressor>>();
@@ -29,7 +32,7 @@ export class EstimatorChoice {
   #current: PoseEstimator;
   #regressor: PoseRegressor | null = null;
   #disposed = false;
-  /** How often what draws has changed or forgotten. */
+  /** The number of changes and resets of the estimator so far. */
   #changes = 0;
 
   constructor(options: EstimatorChoiceOptions) {
@@ -45,7 +48,7 @@ export class EstimatorChoice {
     return this.#current;
   }
 
-  /** What the user wants, which may still be loading. */
+  /** The selected estimator, which may still be loading. */
   get wanted(): EstimatorName {
     return this.#wanted;
   }
@@ -60,8 +63,8 @@ export class EstimatorChoice {
   }
 
   /**
-   * Resolves when this estimator draws, or when it turned out that it cannot. Rejects with a RangeError where there is none of this name, and changes
-   * nothing; else only with what a listener throws.
+   * Selects the estimator. Resolves when it draws, or when it has turned out to be unavailable. Rejects with a
+   * RangeError, without any change, where no estimator has this name; else only with what a callback throws.
    */
   async setEstimator(name: EstimatorName): Promise<void> {
     if (this.#disposed || this.#unavailable[name] !== undefined) return;
@@ -80,19 +83,19 @@ export class EstimatorChoice {
     if (this.#unavailable[needed] === undefined) {
       try {
         network = await this.#network(needed);
-        // What a page brings may be another method's: then it cannot be had, which is no matter of who chose it.
+        // A page may supply the network of another estimator: this one is unavailable then, whoever selected it.
         this.#make(needed, network);
       } catch (error) {
         this.#giveUp(needed, error);
       }
     }
-    // While it loaded, the user may have thought of something else, or it may have failed at its first run.
+    // Meanwhile the user may have selected another estimator, or the network may have failed.
     if (this.#disposed || this.#wanted !== name) return;
     this.#drawWith(name, this.#unavailable[needed] === undefined ? network : null);
     this.#options.onChange();
   }
 
-  /** For every estimator from the next frame on. */
+  /** Sets the measures for every estimator, from the next frame on. */
   calibrate(calibration: Calibration): void {
     this.#calibration = calibration;
     this.#changes += 1;
@@ -105,8 +108,9 @@ export class EstimatorChoice {
   }
 
   /**
-   * An estimator of the current method lives through these frames, each answer of its network waited for, and draws from then on; `then` hears
-   * what it draws of the last. Not where another draws by then, or everything was forgotten.
+   * Runs a new estimator of the current method over these frames, awaiting each answer of its network, and draws with
+   * it from then on. Calls `then` with the pose of the last frame. Has no effect if the estimator was changed or reset
+   * meanwhile.
    */
   async warmUp(frames: Iterable<TrackingFrame>, then: (pose: AvatarPose) => void): Promise<void> {
     this.#changes += 1;
@@ -115,7 +119,7 @@ export class EstimatorChoice {
     let lived: AvatarPose | null = null;
     for (const frame of frames) {
       const { pose, request } = living.update(frame);
-      // What answers within its frame is not waited for: such a method has lived through all of them at once.
+      // A network that answers within its frame is not awaited: all frames are processed at once.
       if (request) await request.ask();
       if (this.#changes !== begun) return;
       lived = pose;
@@ -125,14 +129,17 @@ export class EstimatorChoice {
     then(lived);
   }
 
-  /** Gives up on a network that has failed while running; call it now and then. */
+  /** Replaces an estimator whose network has failed in the newest frame. */
   check(): void {
     const fault = this.#current.fault();
     const network = networkOf(this.#current.name);
     if (fault !== null && network !== null) this.#giveUp(network, fault);
   }
 
-  /** Lets every network go that was loaded, and those that still arrive; rejects where one cannot be. Nothing is told from then on. */
+  /**
+   * Releases every network that was loaded or is still loading; rejects where one cannot be released. No callback is
+   * called afterwards.
+   */
   async dispose(): Promise<void> {
     this.#disposed = true;
     this.#changes += 1;
@@ -149,7 +156,7 @@ export class EstimatorChoice {
     return network ? create(name, this.#calibration, network) : create(name, this.#calibration);
   }
 
-  /** What draws so already goes on: it has noticed how the hands are held. */
+  /** Keeps the current estimator where method and network are the same, with its estimate of how the hands are held. */
   #drawWith(name: EstimatorName, network: PoseRegressor | null): void {
     if (this.#current.name === name && this.#regressor === network) return;
     this.#current = this.#make(name, network);
@@ -157,7 +164,10 @@ export class EstimatorChoice {
     this.#regressor = network;
   }
 
-  /** What draws with this network goes on without where it can; else, and where the network was wanted next, inverse kinematics does. */
+  /**
+   * Replaces what draws with a failed network: by the same method where it works without one, else by inverse
+   * kinematics.
+   */
   #giveUp(network: NetworkName, error: unknown): void {
     if (this.#disposed || this.#unavailable[network] !== undefined) return;
     const reason = reasonOf(error);
@@ -179,7 +189,7 @@ export class EstimatorChoice {
     return started;
   }
 
-  /** Rejects also with what is thrown at once. */
+  /** Loads a network; exceptions become rejections. */
   #load(name: NetworkName): Promise<PoseRegressor> {
     try {
       return this.#options.load(name);

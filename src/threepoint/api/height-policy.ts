@@ -3,55 +3,61 @@ import { isTracked } from '../core/math/pose';
 import { createHeightWatch } from '../core/tracking/height-watch';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 
-/** Seconds after the first tracked frame, or the first after a guessed one, a loss or a pause, from which a headset's height says something about its wearer. */
+/** The time [s] for which a head must be tracked without a gap before its height is used. */
 const settleSeconds = 0.7;
 
 export interface HeightPolicyOptions {
-  /** The measures in force. */
+  /** Returns the measures in force. */
   calibration(): Calibration;
-  /** Whether the wearer has calibrated: what they measured stays, and they are told where it is too small. */
+  /** Returns whether the wearer has calibrated: these measures stay, and a mismatch is reported. */
   calibrated(): boolean;
-  /** Whether a wearer may turn out to be taller than their measures. */
+  /** Whether the wearer may stand taller than the measures. */
   readonly autoGrow: boolean;
-  /** Other measures of a wearer who never calibrated: as high as the headset hangs, or grown because they stood up taller. */
+  /**
+   * Called with new measures of a wearer who has not calibrated: from the headset's height, or because they stood up
+   * taller.
+   */
   onMeasured(calibration: Calibration, source: 'headset' | 'stood-taller'): void;
-  /** A wearer who calibrated stands this much taller than their calibration says [m]. Told once for each calibration. */
-  onTooSmall(difference: number): void;
+  /**
+   * Called when a calibrated wearer stands `difference` [m] taller than their calibration; once for each calibration.
+   */
+  onMismatch(difference: number): void;
 }
 
 /**
- * How tall the wearer of a headset is taken to be. Without a calibration they are as tall as the headset hangs high in the first frame after
- * `settleSeconds` of tracking, calm or not, and grow when they stand up straight; with one they are told where it is too small.
+ * Estimates the wearer's height. Without a calibration it is the headset's height in the first frame after
+ * `settleSeconds` of tracking, and grows when the wearer stands up straight. With a calibration that is too small, the
+ * mismatch is reported.
  */
 export class HeightPolicy {
   readonly #options: HeightPolicyOptions;
   readonly #watch = createHeightWatch();
-  /** Since when the head is tracked [s]; null: it was not yet, or is guessed or not seen; 'done' once the height of the headset was taken. */
+  /** The time [s] since which the head is tracked; null: it is not; 'done' once the headset's height was used. */
   #settledSince: number | 'done' | null = null;
-  /** The calibration that its wearer has been told is too small. */
-  #toldTooSmall: Calibration | null = null;
+  /** The calibration whose mismatch was reported. */
+  #reportedMismatch: Calibration | null = null;
 
   constructor(options: HeightPolicyOptions) {
     this.#options = options;
   }
 
-  /** The headset was put on: its height is taken once more. */
+  /** Uses the headset's height once more: it was put on. */
   startSession(): void {
     this.#settledSince = null;
   }
 
-  /** The head is not seen: how long it was tracked before says nothing of what comes. */
+  /** Restarts the settling time: the head is not seen. */
   lose(): void {
     if (this.#settledSince !== 'done') this.#settledSince = null;
   }
 
-  /** The floor lies elsewhere, or another person may wear the headset. */
+  /** Restarts the observation: the floor lies elsewhere, or another person may wear the headset. */
   reset(): void {
     this.lose();
     this.#watch.reset();
   }
 
-  /** Every frame in which the wearer's head is seen. */
+  /** Observes a frame in which the wearer's head is seen. */
   observe(frame: TrackingFrame): void {
     if (!this.#options.calibrated()) this.#settle(frame);
     if (this.#options.autoGrow) this.#grow(frame);
@@ -71,14 +77,14 @@ export class HeightPolicy {
 
   #grow(frame: TrackingFrame): void {
     const calibration = this.#options.calibration();
-    if (calibration === this.#toldTooSmall) return;
+    if (calibration === this.#reportedMismatch) return;
     const grown = this.#watch.observe(frame, calibration);
     if (!grown) return;
     if (!this.#options.calibrated()) {
       this.#options.onMeasured(grown, 'stood-taller');
       return;
     }
-    this.#toldTooSmall = calibration;
-    this.#options.onTooSmall(grown.eyeHeight - calibration.eyeHeight);
+    this.#reportedMismatch = calibration;
+    this.#options.onMismatch(grown.eyeHeight - calibration.eyeHeight);
   }
 }

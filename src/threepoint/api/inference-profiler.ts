@@ -1,25 +1,31 @@
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
 
-/** Hears what a body does on this thread once a frame is over. Each part is the time since the mark before it, or since `resume`. */
+/**
+ * Measures what a body does on this thread after a frame. Each part is the time since the mark before it, or since
+ * `resume`.
+ */
 export interface InferenceProfiler {
-  /** Work begins that a frame left for later. */
+  /** Marks the start of work that a frame deferred. */
   resume(): void;
-  /** features: until the network is asked. inference: what it takes before it first waits; what runs elsewhere is no cost of this thread. */
+  /**
+   * Marks the end of a part. features: until the network is called. inference: until the call first waits; work
+   * elsewhere costs this thread nothing.
+   */
   mark(part: 'features' | 'inference'): void;
 }
 
-/** The same regressor, with its runs told. One that answers within the frame is part of that frame and not told. */
-export function profiled(regressor: PoseRegressor, timing: InferenceProfiler): PoseRegressor {
+/** Returns the regressor with profiled runs. A run within a frame belongs to that frame and is not profiled. */
+export function profiled(regressor: PoseRegressor, profiler: InferenceProfiler): PoseRegressor {
   return {
     contract: regressor.contract,
-    // Live: it changes with a graphics device that is lost.
+    // The provider changes when a graphics device is lost.
     get provider() {
       return regressor.provider;
     },
     run(features) {
-      timing.mark('features');
+      profiler.mark('features');
       const running = regressor.run(features);
-      timing.mark('inference');
+      profiler.mark('inference');
       return running;
     },
     ...(regressor.runNow && { runNow: (features: Float32Array) => regressor.runNow!(features) }),

@@ -10,7 +10,7 @@ export interface LearnedOptions {
    * package brings.
    */
   readonly modelUrl?: string | URL;
-  /** Share [0, 1] of the weights that has arrived. */
+  /** Called with the share [0, 1] of the weights that has arrived. */
   readonly onProgress?: (share: number) => void;
 }
 
@@ -27,8 +27,10 @@ export async function loadLearned({ modelUrl, onProgress }: LearnedOptions = {})
   return createPlainRegressor(own, await readOwnWeights(weightsOf(own), onProgress));
 }
 
-/** The networks of who has no runtime. */
+/** Loads the networks that need no runtime. */
 export function learnedAlone(name: NetworkName): Promise<PoseRegressor> {
   if (name === 'learned') return loadLearned();
-  return Promise.reject(new Error('the paper’s network needs a runtime: networks: onnxNetworks() of threepoint/onnx'));
+  return Promise.reject(
+    new Error('the paper’s network needs a runtime: pass networks: onnxNetworks() of threepoint/onnx'),
+  );
 }

@@ -14,15 +14,15 @@ import { admittedFrames, TrackingGate } from '../core/tracking/tracking-gate';
 import { type MotionFormat, motionFormats } from './motion-formats';
 import { runWork, type WorkOptions } from './run-work';
 
-/** A file that was made, in memory: `new Blob(parts, {type})` or written one after the other. */
+/** An exported file in memory: `new Blob(parts, {type})`, or written part by part. */
 export interface MotionFile {
-  /** What its name should end in, without the dot. */
+  /** The file name's extension, without the dot. */
   readonly extension: string;
   readonly type: string;
   readonly parts: readonly (string | Uint8Array<ArrayBuffer>)[];
 }
 
-/** Makes files of one kind of motions; `avatarClip` of threepoint/three makes another. */
+/** Writes motions as files of one format; `avatarMotion` of threepoint/three returns another writer. */
 export interface MotionWriter {
   readonly extension: string;
   readonly type: string;
@@ -31,11 +31,11 @@ export interface MotionWriter {
 
 export interface MotionExportOptions extends WorkOptions, BvhOptions {
   readonly to: MotionFormat | MotionWriter;
-  /** The method that draws the body between the points; default: 'learned'. */
+  /** The estimator of the body between the points; default: 'learned'. */
   readonly estimator?: EstimatorName;
-  /** Brings the networks, as of a BodySolver. What it brings is let go in the end. */
+  /** Loads the networks, as of a BodySolver. They are released at the end. */
   readonly networks: (name: NetworkName) => Promise<PoseRegressor>;
-  /** Whose body; default: as the recording says, else by the height of its first frame. */
+  /** The person's measures; default: the recording's, else from the height of its first frame. */
   readonly calibration?: Calibration | undefined;
 }
 
@@ -44,19 +44,19 @@ function writerOf({ to, ...options }: MotionExportOptions): MotionWriter {
   if (to === 'bvh') return { extension: 'bvh', type: 'text/plain', write: (motion) => writeBvh(motion, options) };
   if (to === 'csv') return { extension: 'csv', type: 'text/csv', write: writeCsv };
   if (to === 'vrma') return { extension: 'vrma', type: 'model/gltf-binary', write: writeVrma };
-  throw new Error(`“${String(to)}” is no format of motion: ${motionFormats.join(', ')}`);
+  throw new Error(`“${String(to)}” is not a motion format. Use one of ${motionFormats.join(', ')}.`);
 }
 
-/** Of all work, what estimating takes; the rest is writing. */
+/** The share of the work that is spent on estimating; the rest is writing. */
 const estimating = 0.7;
 
-/** Throws a sentence where no frame has a body of its device: another method would draw all of them. */
+/** Throws a sentence where no frame has a device body: another method would draw all of them. */
 function* demandBody({ frames }: Replayable): Generator<number, void> {
   for (const { deviceBody } of frames) {
     if (deviceBody) return;
     yield 0;
   }
-  throw new Error('The recording has no body of its device: choose another method.');
+  throw new Error('The recording has no device body. Choose another method.');
 }
 
 /** The admitted frames of a recording, which a program may have made itself; frames without a head are left out. */
@@ -67,7 +67,7 @@ class AdmittedRecording implements TrackingFrames {
     this.#frames = frames;
   }
 
-  /** At most. */
+  /** The largest possible number of frames. */
   get length(): number {
     return this.#frames.length;
   }
@@ -76,7 +76,7 @@ class AdmittedRecording implements TrackingFrames {
     return this.#frames.at(index);
   }
 
-  /** Throws a sentence where times do not rise, or no frame has a head. */
+  /** Yields the admitted frames. Throws a sentence where times do not rise, or no frame has a head. */
   *[Symbol.iterator](): Generator<TrackingFrame> {
     const gate = new TrackingGate();
     let number = 0;
@@ -94,7 +94,7 @@ class AdmittedRecording implements TrackingFrames {
   }
 }
 
-/** Whose body an export draws. Throws a RangeError where their measures are no person's. */
+/** Returns the measures for an export. Throws a RangeError where they are not human. */
 function personOf({ calibration, frames }: Replayable, given: Calibration | undefined): Calibration {
   const person = given ?? calibration;
   if (!person) {
@@ -119,7 +119,7 @@ async function* exportWork(
   return yield* partOf(writer.write(motion), estimating, 1);
 }
 
-/** The network that is on its way; rejects as soon as the work is given up, and lets go what comes after that. */
+/** Returns the loading network. Rejects as soon as the work is aborted, and releases a network that arrives later. */
 async function unlessGivenUp(loading: Promise<PoseRegressor>, signal: AbortSignal | undefined): Promise<PoseRegressor> {
   if (!signal) return loading;
   let giveUp = (): void => undefined;
@@ -138,9 +138,10 @@ async function unlessGivenUp(loading: Promise<PoseRegressor>, signal: AbortSigna
 }
 
 /**
- * A file of what a method draws of a recording, with fingers: BVH, a table of joints (CSV), VRM Animation, or what a writer makes. Rejects with a
- * sentence where the method draws no body or fails, no network comes, the measures are no person's, times do not rise, or the device's body is asked
- * for that no frame has; with the signal's reason where it is given up.
+ * Exports the motion that an estimator draws of a recording, with fingers: as BVH, a table of joints (CSV), VRM
+ * Animation, or the format of a writer. Rejects with a sentence where the method estimates no body or fails, no network
+ * loads, the measures are not human, times do not rise, or 'device' is chosen and no frame has a device body; with the
+ * signal's reason where it is aborted.
  */
 export async function exportMotionWith(recording: Replayable, options: MotionExportOptions): Promise<MotionFile> {
   const { estimator = 'learned', networks } = options;

@@ -7,21 +7,37 @@ import type { ExecutionProvider, WasmPaths } from '../onnx/session';
 export type { ExecutionProvider, WasmPaths } from '../onnx/session';
 
 export interface OnnxOptions {
-  /** Where a network's contract (.json) lies, its .onnx file beside it: the package's folder models/, served by the page. */
+  /**
+   * Returns the address of a network's contract (.json), with its .onnx file beside it: the package's folder models/,
+   * served by the page.
+   */
   readonly modelUrl: (name: NetworkName) => string | URL;
-  /** 'wasm' (default), or 'webgpu', which gives way to 'wasm' where it cannot be had. */
+  /** The backend: 'wasm' (default), or 'webgpu' with 'wasm' as the fallback. */
   readonly provider?: ExecutionProvider;
-  /** Where onnxruntime-web's .wasm and .mjs files are served, as its `env.wasm.wasmPaths`. Default: where a bundler puts them. */
+  /**
+   * The address of onnxruntime-web's .wasm and .mjs files, as its `env.wasm.wasmPaths`. Default: where a bundler puts
+   * them.
+   */
   readonly wasmPaths?: WasmPaths;
-  /** A worker that runs threepoint/onnx-worker; without one WebAssembly runs on the page's thread, after the frame. */
+  /**
+   * Creates a worker that runs threepoint/onnx-worker; without it WebAssembly runs on the page's thread, after the
+   * frame.
+   */
   readonly createWorker?: () => Worker;
-  /** Share [0, 1] of a network's file that has arrived. */
+  /** Called with the share [0, 1] of a network's file that has arrived. */
   readonly onProgress?: (share: number) => void;
-  /** Why WebGPU was left for WebAssembly. */
+  /** Called with the reason when WebAssembly replaces WebGPU. */
   readonly onProviderFallback?: (reason: string) => void;
 }
 
-/** For `networks` of a Body or BodyTracker: brings the networks by onnxruntime-web. What it brings answers one frame later. */
+/**
+ * Returns a loader of networks by onnxruntime-web, for `networks` of a Body or BodyTracker. Its networks answer one
+ * frame later.
+ *
+ * @example
+ * const networks = onnxNetworks({ modelUrl: (name) => `/models/${name}.json`, wasmPaths: '/ort/' });
+ * const body = new Body({ estimator: 'paper', networks });
+ */
 export function onnxNetworks({ modelUrl, ...options }: OnnxOptions): (name: NetworkName) => Promise<PoseRegressor> {
   return (name) => loadRegressor(String(modelUrl(name)), options);
 }

@@ -7,30 +7,36 @@ import { TrackedSession } from '../xr/tracked-session';
 import { Body, type BodyOptions } from './body';
 
 export interface BodyTrackingOptions extends Omit<BodyOptions, 'events' | 'clock' | 'timing'> {
-  /** Hears why a session has no body: no floor, or the wanted method is not to be had (inverse kinematics draws then). */
+  /**
+   * Called with the reason when a session has no body: it has no floor, or the estimator is unavailable (inverse
+   * kinematics draws then).
+   */
   readonly onFault?: (reason: string) => void;
 }
 
-/** One joint of an emulated body, in place of an XRBodySpace: `instanceof XRSpace`, and understood by the frame's `getPose` and `fillPoses`. */
+/**
+ * A joint of an emulated body, in place of an XRBodySpace: an `instanceof XRSpace` that the frame's `getPose` and
+ * `fillPoses` accept.
+ */
 export interface EmulatedBodySpace extends XRSpace {
   readonly jointName: string;
 }
 
-/** In place of an XRBody: the 83 joints by name, in the specification's order. */
+/** An emulated body in place of an XRBody: the 83 joints by name, in the specification's order. */
 export interface EmulatedBody extends ReadonlyMap<string, EmulatedBodySpace> {
-  /** Estimated from three points: no device has seen these joints. */
+  /** Marks joints that are estimated from three points and that no device has tracked. */
   readonly emulated: true;
 }
 
 const feature = 'body-tracking';
 
 type Place = Pose<'floor'>;
-/** Coordinates in the floor frame from those in any space: which one is not told by its type. */
+/** Transforms coordinates of any space into the floor frame; the type does not name the space. */
 type FloorFrom = Transform<'floor', 'floor'>;
 
 const matrixSize = 16;
 
-/** Column by column, as WebXR has it. */
+/** Writes a column-major matrix, as WebXR does. */
 function writeMatrix({ position, orientation: { x, y, z, w } }: Place, target: Float32Array, at: number): void {
   target[at] = 1 - 2 * (y * y + z * z);
   target[at + 1] = 2 * (x * y + z * w);
@@ -52,13 +58,13 @@ function writeMatrix({ position, orientation: { x, y, z, w } }: Place, target: F
 
 type FillPoses = (spaces: Iterable<XRSpace>, base: XRSpace, transforms: Float32Array) => boolean;
 
-/** What a page calls, as the browser made it. */
+/** The browser's own functions. */
 interface Originals {
   readonly getPose: XRFrame['getPose'];
   readonly fillPoses: FillPoses | undefined;
 }
 
-/** The specification's list spells one joint otherwise than its fellows; pages ask for it by either name. */
+/** The second spelling of a joint whose name in the specification is irregular; pages use both. */
 const otherSpellings: Readonly<Record<string, string>> = {
   'left-hand-middle-phalanx-metacarpal': 'left-hand-middle-metacarpal',
 };
@@ -79,7 +85,7 @@ class JointSpaces extends Map<string, EmulatedBodySpace> implements EmulatedBody
   }
 }
 
-/** The body of one session: one estimate for each of its frames, made when it is asked for. */
+/** The body of one session: estimates one pose for each frame that asks for it. */
 class SessionBody {
   readonly spaces: EmulatedBody;
   readonly #session: XRSession;
@@ -89,13 +95,13 @@ class SessionBody {
   #tracked: TrackedSession | null = null;
   #poser: XRBodyPoser | null = null;
   #poserOf: object | null = null;
-  /** When the frame at hand began [ms], and of which the joints are. */
+  /** The time stamp [ms] of the current frame, and of the frame that `#joints` belongs to. */
   #frameMs = Number.NaN;
   #estimatedMs = Number.NaN;
   #lastTime = Number.POSITIVE_INFINITY;
-  /** null before the session's first frame that saw the head. */
+  /** The newest joints; null before the session's first frame with a head. */
   #joints: XRBodyJoints | null = null;
-  /** Where the floor lies in the base that was asked for last, and in which frame; null: not known. */
+  /** The floor in the base of the newest request, and the frame of that request; null: unknown. */
   readonly #baseFromFloor = makePose<'floor'>();
   #known: FloorFrom | null = null;
   #knownIn: { frame: XRFrame | null; frameMs: number; base: XRSpace | null } = {
@@ -119,7 +125,7 @@ class SessionBody {
     this.#floor = floor;
     this.#tracked = new TrackedSession({
       session: this.#session,
-      // The page draws where it likes: estimates are in the floor's space.
+      // Estimates are in the floor's space, whichever one the page draws in.
       drawing: { getReferenceSpace: () => floor, setReferenceSpace: () => undefined },
       onStart: () => this.#body.startSession(),
       onDiscontinuity: () => this.#body.discontinuity(),
@@ -141,14 +147,16 @@ class SessionBody {
     return 'jointName' in space && this.spaces.get(space.jointName as string) === space;
   }
 
-  /** The pose of one space in another, of which one or both are joints, overwritten by the next; null: not known. */
+  /**
+   * Returns the pose of one space in another where at least one is a joint; null: unknown. The next call overwrites it.
+   */
   pose(frame: XRFrame, space: XRSpace, base: XRSpace): Place | null {
     const inFloor = this.#locate(frame, space);
     const baseFromFloor = inFloor && this.#findBase(frame, base);
     return baseFromFloor && transformPose<'floor', 'floor'>(baseFromFloor, inFloor, this.#inBase);
   }
 
-  /** The matrices of all spaces; false, and no number, where one is not known. */
+  /** Writes the matrices of all spaces. Returns false, and writes NaN, where one is unknown. */
   fill(frame: XRFrame, spaces: readonly XRSpace[], base: XRSpace, transforms: Float32Array): boolean {
     let all = true;
     for (let i = 0; i < spaces.length; i++) {
@@ -160,7 +168,7 @@ class SessionBody {
     return all;
   }
 
-  /** Floor frame. */
+  /** Returns the pose of a space, floor frame; null: unknown. */
   #locate(frame: XRFrame, space: XRSpace): Place | null {
     if (!this.#floor) return null;
     if (this.has(space)) return this.#estimate(frame)?.get(space.jointName) ?? null;
@@ -168,7 +176,7 @@ class SessionBody {
     return pose ? copyPose(pose.transform, this.#inFloor) : null;
   }
 
-  /** Pages ask for joint after joint in one base. */
+  /** Returns the floor in the base, cached: pages ask for all joints in one base. */
   #findBase(frame: XRFrame, base: XRSpace): FloorFrom | null {
     const asked = this.#knownIn;
     if (asked.frame === frame && asked.frameMs === this.#frameMs && asked.base === base) return this.#known;
@@ -194,7 +202,7 @@ class SessionBody {
     const time = this.#body.tick(this.#frameMs);
     const tracked = this.#tracked.read(frame, time);
     const pose = this.#body.update(tracked);
-    // One body serves all sessions: until this one sees the head, its pose is of the session before.
+    // One body serves all sessions: its pose belongs to the session before until this one has a head.
     if (!tracked) return this.#joints;
     const { calibration } = this.#body;
     if (this.#poserOf !== calibration) {
@@ -208,23 +216,23 @@ class SessionBody {
   }
 }
 
-/** As the frame gives poses. */
+/** Returns the pose as an XRPose. */
 const asXRPose = ({ position, orientation }: Place): XRPose => ({
   transform: new XRRigidTransform({ ...position, w: 1 }, orientation),
   emulatedPosition: true,
 });
 
-/** What a session is asked for: the body where it can be had, and the floor that an estimate needs. */
-function wishes(init: XRSessionInit): XRSessionInit {
+/** Returns the session's options with the body as an optional feature, and the floor that an estimate needs. */
+function sessionOptions(init: XRSessionInit): XRSessionInit {
   const required = (init.requiredFeatures ?? []).filter((name) => name !== feature);
   const optional = new Set([...(init.optionalFeatures ?? []), feature, 'local-floor']);
   return { ...init, requiredFeatures: required, optionalFeatures: [...optional] };
 }
 
-const asks = ({ requiredFeatures = [], optionalFeatures = [] }: XRSessionInit): boolean =>
+const requestsBody = ({ requiredFeatures = [], optionalFeatures = [] }: XRSessionInit): boolean =>
   [...requiredFeatures, ...optionalFeatures].includes(feature);
 
-/** Replaces a property until it is put back. */
+/** Replaces a property and returns the function that restores it. */
 function replace(object: object, name: string, descriptor: PropertyDescriptor): () => void {
   const before = Object.getOwnPropertyDescriptor(object, name);
   Object.defineProperty(object, name, { configurable: true, ...descriptor });
@@ -269,7 +277,7 @@ function patchFrames(bodies: WeakMap<XRSession, SessionBody>, { getPose, fillPos
   ];
 }
 
-/** Tells a session's body when each of its frames begins. */
+/** Passes the time stamp of each frame to the body of its session. */
 function patchClock(bodies: WeakMap<XRSession, SessionBody>): () => void {
   const { requestAnimationFrame } = XRSession.prototype;
   return replace(XRSession.prototype, 'requestAnimationFrame', {
@@ -284,13 +292,18 @@ function patchClock(bodies: WeakMap<XRSession, SessionBody>): () => void {
 }
 
 /**
- * From now on sessions that ask for the feature “body-tracking” have `frame.body`: the device's own, else one that is estimated from head and hands and
- * says so (`emulated`; of its poses `emulatedPosition`). Call it before the first session is asked for; where a page emulates WebXR, after that.
- * Returns what takes it back. Throws an Error where the page has no WebXR, a RangeError where the calibration is no person's.
+ * Adds `frame.body` to every session that requests the feature “body-tracking”: the device's own body, else one that is
+ * estimated from head and hands. An estimated body is marked by `emulated`, its poses by `emulatedPosition`. Call it
+ * before the first session is requested, and after a WebXR emulator was installed. Returns a function that uninstalls
+ * it. Throws an Error where the page has no WebXR, a RangeError where the calibration is not human.
+ *
+ * @example
+ * const uninstall = installBodyTracking({ onFault: console.warn });
  */
 export function installBodyTracking({ onFault, ...options }: BodyTrackingOptions = {}): () => void {
   const { xr } = navigator;
-  if (!xr) throw new Error('installBodyTracking: this page has no WebXR');
+  if (!xr)
+    throw new Error('installBodyTracking: this page has no WebXR. Call it in a browser with WebXR, on a secure page.');
   const body = new Body({ ...options, events: { fallback: (_, reason) => onFault?.(reason) } });
   const jointNames = [...new XRBodyPoser(body.calibration).names];
   const bodies = new WeakMap<XRSession, SessionBody>();
@@ -302,14 +315,16 @@ export function installBodyTracking({ onFault, ...options }: BodyTrackingOptions
     replace(xr, 'requestSession', {
       writable: true,
       async value(mode: XRSessionMode, init: XRSessionInit = {}): Promise<XRSession> {
-        if (!asks(init)) return request.call(xr, mode, init);
-        const session = await request.call(xr, mode, wishes(init));
+        if (!requestsBody(init)) return request.call(xr, mode, init);
+        const session = await request.call(xr, mode, sessionOptions(init));
         const enabled = session.enabledFeatures ?? [];
         if (enabled.includes(feature) && 'XRBody' in globalThis) return session;
         const emulated = new SessionBody(session, body, originals, jointNames);
         bodies.set(session, emulated);
         replace(session, 'enabledFeatures', { value: [...new Set([...enabled, feature])] });
-        emulated.begin().catch((error: unknown) => onFault?.(`no floor to stand on: ${reasonOf(error)}`));
+        emulated
+          .begin()
+          .catch((error: unknown) => onFault?.(`the session has no floor-level reference space: ${reasonOf(error)}`));
         return session;
       },
     }),

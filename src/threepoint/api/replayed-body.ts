@@ -7,20 +7,20 @@ import type { BodySolver } from './body-solver';
 /** A replay that may move a body. */
 export interface MovingReplay {
   readonly mode: 'idle' | 'recording' | 'replaying';
-  /** Whether it stands still. */
+  /** Whether the replay is paused. */
   readonly paused: boolean;
-  /** Where it is [s]. */
+  /** The position in the recording [s]. */
   readonly seconds: number;
-  /** null: none is at hand. */
+  /** The recording; null: none is loaded. */
   readonly recording: Replayable | null;
 }
 
-/** A body lives through so many seconds before a moment to stand in it as one that came there moving. */
+/** The time [s] before a moment for which a body is warmed up. */
 const leadSeconds = 5;
-/** Frames per second of the lead at most, however many a file has. */
+/** The highest frame rate of the warm-up [Hz], whichever one a recording has. */
 const mostHz = 60;
 
-/** Frames of a recording up to this second of it, which is dated `time` [s]. */
+/** Yields the frames of a recording up to a second of it, which gets the time `time` [s]. */
 export function* leadUpTo(recording: Replayable, seconds: number, time: number): Generator<TrackingFrame> {
   const first = recording.frames.at(0)!.time;
   const rateHz = Math.min(recording.rateHz, mostHz);
@@ -31,17 +31,17 @@ export function* leadUpTo(recording: Replayable, seconds: number, time: number):
 }
 
 /**
- * A body that a replay may move. While the replay stands still, so does the body's time: nothing that it knows of the motion fades. Where the
- * replay stands at another second, or another method draws, the body lives through the seconds before.
+ * Drives a body by a replay. While the replay is paused, the body's time stands still and its state does not fade.
+ * After a seek in a paused replay, or a change of the estimator, the body is warmed up with the seconds before.
  */
 export class ReplayedBody {
   readonly #body: Pick<BodySolver, 'update' | 'warmUp' | 'discontinuity' | 'pose' | 'estimator'>;
   readonly #replay: MovingReplay;
-  /** How long replays stood still since the last one began [s]. */
-  #stood = 0;
-  /** Of the newest frame, by the page's clock [s]. */
+  /** The time for which replays were paused since the last one began [s]. */
+  #pausedSeconds = 0;
+  /** The time of the newest frame, by the page's clock [s]. */
   #time = Number.NaN;
-  /** What the body stands in. */
+  /** The moment and the method that are drawn. */
   readonly #moment: { recording: Replayable | null; seconds: number; method: string } = {
     recording: null,
     seconds: 0,
@@ -56,7 +56,7 @@ export class ReplayedBody {
     this.#replay = replay;
   }
 
-  /** One frame of tracking, as `update` of the body. */
+  /** Solves one tracking frame; see `update` of the body. */
   update(frame: TrackingFrame | null, standIn: Calibration | null): AvatarPose | null {
     const { mode, paused } = this.#replay;
     if (!frame || mode !== 'replaying') {
@@ -73,12 +73,12 @@ export class ReplayedBody {
 
   /** Forgets the replay that moved the body. */
   stop(): void {
-    this.#stood = 0;
+    this.#pausedSeconds = 0;
     this.#moment.recording = null;
   }
 
   #stand(frame: TrackingFrame, standIn: Calibration | null): AvatarPose | null {
-    if (this.#moment.recording) this.#stood += frame.time - this.#time;
+    if (this.#moment.recording) this.#pausedSeconds += frame.time - this.#time;
     this.#time = frame.time;
     if (!this.#arrive()) return this.#body.pose;
     const dated = this.#dated(frame);
@@ -88,18 +88,18 @@ export class ReplayedBody {
     return this.#body.pose;
   }
 
-  /** Whether the same recording is at an earlier second than before: no body is drawn on the way from its end. */
+  /** Returns whether the same recording went back: nothing may be drawn on the way from its end. */
   #beginsAnew(): boolean {
     const { recording, seconds } = this.#replay;
     return recording === this.#moment.recording && seconds < this.#moment.seconds;
   }
 
-  /** The same by the body's clock. */
+  /** Returns the frame with its time by the body's clock. */
   #dated(frame: TrackingFrame): TrackingFrame {
-    return this.#stood === 0 ? frame : { ...frame, time: frame.time - this.#stood };
+    return this.#pausedSeconds === 0 ? frame : { ...frame, time: frame.time - this.#pausedSeconds };
   }
 
-  /** Notes where the replay is and what draws it; whether either is another than before. */
+  /** Stores the replay's moment and the method; returns whether either has changed. */
   #arrive(): boolean {
     const moment = this.#moment;
     const { recording, seconds } = this.#replay;

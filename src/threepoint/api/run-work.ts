@@ -1,17 +1,17 @@
 import { runInTurns, secondsLeft, type Work, type WorkHost } from '../core/motion/work';
 
-/** How far long work is. */
+/** The progress of long work. */
 export interface WorkProgress {
-  /** Share [0, 1] that is done. */
+  /** The share [0, 1] that is done. */
   readonly share: number;
-  /** Seconds that the rest will take at the pace so far; null: too little is done to say. */
+  /** The estimated time left [s]; null: too little is done for an estimate. */
   readonly secondsLeft: number | null;
 }
 
 export interface WorkOptions {
-  /** Hears how far the work is, some ten times a second. */
+  /** Called with the progress about ten times a second. */
   readonly onProgress?: ((progress: WorkProgress) => void) | undefined;
-  /** Gives the work up: what it made so far is let go, and the promise rejects with the signal's reason. */
+  /** Aborts the work: partial results are discarded, and the promise rejects with the signal's reason. */
   readonly signal?: AbortSignal | undefined;
 }
 
@@ -31,7 +31,7 @@ const host: WorkHost = {
     }),
 };
 
-/** Does long work in turns of a few milliseconds, so that a page goes on drawing. Rejects with what the work throws. */
+/** Runs long work in slices of a few milliseconds, so that a page keeps drawing. Rejects with what the work throws. */
 export async function runWork<Result>(work: Work<Result>, { onProgress, signal }: WorkOptions = {}): Promise<Result> {
   signal?.throwIfAborted();
   const begun = host.now();

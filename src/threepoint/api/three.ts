@@ -19,16 +19,23 @@ export type { Avatar } from '../avatar/avatar';
 export type { BoneMap } from '../avatar/humanoid/bone-names';
 
 export interface LoadAvatarOptions {
-  /** For a humanoid without VRM: the name of the file's node for each bone, in VRM's names. At rest it stands in a T-pose and faces +Z. */
+  /**
+   * The name of the file's node for each bone, in VRM's names, for a humanoid without VRM. At rest it stands in a
+   * T-pose and faces +Z.
+   */
   readonly bones?: BoneMap;
 }
 
-/** An address, a file, or the bytes of one. */
+/** The address of an avatar's file, the file, or its bytes. */
 export type AvatarSource = string | URL | Blob | ArrayBuffer | ArrayBufferView;
 
 /**
- * An avatar from an address, a file or its bytes: VRM 0.x or 1.0, or a humanoid GLB with a map of its bones. Rejects with a sentence that names
- * the file: not reached, no GLB, larger than `avatarLimits`, a bone missing.
+ * Loads an avatar from an address, a file or its bytes: VRM 0.x or 1.0, or a humanoid GLB with a map of its bones.
+ * Rejects with a sentence that names the file: not reachable, not a GLB, larger than `avatarLimits`, or without a
+ * needed bone.
+ *
+ * @example
+ * const avatar = await loadAvatar('/avatars/robot.glb', { bones: { hips: 'Hips', head: 'Head' } });
  */
 export async function loadAvatar(source: AvatarSource, { bones }: LoadAvatarOptions = {}): Promise<Avatar> {
   const { name, bytes } = await read(source);
@@ -36,8 +43,8 @@ export async function loadAvatar(source: AvatarSource, { bones }: LoadAvatarOpti
 }
 
 /**
- * Makes GLB files of an avatar that moves, as `to` of `exportMotion`: all that is in its file stays, bones turn as the person's, and steps are as
- * long as its own legs make them. Rejects as `loadAvatar`.
+ * Returns a writer of animated GLB files for `to` of `exportMotion`. The avatar's file is kept, its bones turn as the
+ * person's, and its steps fit the length of its legs. Rejects as `loadAvatar` does.
  */
 export async function avatarMotion(source: AvatarSource, { bones }: LoadAvatarOptions = {}): Promise<MotionWriter> {
   const [{ avatarClip }, { name, bytes }] = await Promise.all([import('../avatar/avatar-clip'), read(source)]);
@@ -63,14 +70,14 @@ async function read(source: AvatarSource): Promise<{ name: string; bytes: ArrayB
 }
 
 export interface BodyTrackerOptions extends Omit<BodyOptions, 'events'> {
-  /** From `loadAvatar`; put `tracker.object` into the scene, or into what moves its cameras. */
+  /** The avatar, from `loadAvatar`. Add `tracker.object` to the scene, or to the group that moves the cameras. */
   readonly avatar: Avatar;
   /**
-   * Whether frames get the body that the device itself tracks (WebXR Body Tracking), which the estimator 'device' draws. Default: false. The page
-   * asks for it: its session has the feature 'body-tracking'.
+   * Whether frames contain the body that the device tracks (WebXR Body Tracking), which the estimator 'device' draws.
+   * Default: false. The page must request the session with the feature 'body-tracking'.
    */
   readonly deviceBody?: boolean;
-  /** Where another contract of the learned network lies (.json), its weights beside it. */
+  /** The address of another contract (.json) of the learned network, with its weights beside it. */
   readonly modelUrl?: string | URL;
 }
 
@@ -85,12 +92,20 @@ export interface BodyTrackerEvents {
 }
 
 /**
- * The wearer's own body in a page of three.js: reads head and hands of the renderer's session, estimates the body, bends the avatar.
- * Call `update` in each animation frame before drawing.
+ * Draws the wearer's body in a three.js page: reads head and hands of the renderer's session, estimates the body and
+ * poses the avatar. Call `update` in each animation frame before drawing.
+ *
+ * @example
+ * const tracker = new BodyTracker(renderer, { avatar: await loadAvatar('/avatars/me.vrm') });
+ * scene.add(tracker.object);
+ * renderer.setAnimationLoop((timeMs, frame) => {
+ *   tracker.update(timeMs, frame);
+ *   renderer.render(scene, camera);
+ * });
  */
 export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   readonly avatar: Avatar;
-  /** What is estimated, without session and avatar: what was wanted, what cannot be had, where the network runs. */
+  /** The solver of this tracker: the selected and the unavailable estimators, and the network's backend. */
   readonly body: Body;
   readonly #renderer: WebGLRenderer;
   readonly #deviceBody: boolean;
@@ -98,11 +113,11 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   /** The renderer's session and its tracking; null: there is none. */
   #session: XRSession | null = null;
   #tracked: TrackedSession | null = null;
-  /** Whether the wearer's eyes are in the head that is drawn. */
+  /** Whether the avatar's head is hidden from the wearer's eyes. */
   #firstPerson = false;
   #disposed = false;
 
-  /** Throws a RangeError where the calibration is no person's. */
+  /** Throws a RangeError where the calibration is not human or the estimator is unknown. */
   constructor(renderer: WebGLRenderer, { avatar, modelUrl, deviceBody = false, ...options }: BodyTrackerOptions) {
     super();
     this.avatar = avatar;
@@ -135,16 +150,16 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   }
 
   /**
-   * To be put into the scene, with its origin where the renderer's reference space has its own; shown while there is a pose. In it `avatar.object`
-   * lies where the floor is, wherever the page has moved its wearer.
+   * The object to add to the scene, with its origin at that of the renderer's reference space; visible while there is a
+   * pose. `avatar.object` lies in it where the floor is, wherever the page has moved its wearer.
    */
   get object(): Object3D {
     return this.#object;
   }
 
   /**
-   * Of the newest frame, floor frame [m]: the floor's space that the renderer asked the session for, or where `recentre` laid it. Overwritten by the
-   * next; null before the first tracked frame.
+   * The pose of the newest frame, floor frame [m]; null before the first. The floor is the space that the renderer
+   * requested, or where `recentre` moved it. The next frame overwrites the pose: keep it with `copyAvatarPose`.
    */
   get pose(): AvatarPose | null {
     return this.body.pose;
@@ -154,24 +169,24 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     return this.body.calibration;
   }
 
-  /** What draws now: 'ik' while a network loads, and where it fails. */
+  /** The estimator that draws now: 'ik' while a network loads, and where it fails. */
   get estimator(): EstimatorName {
     return this.body.estimator;
   }
 
-  /** Resolves when this estimator draws, or when the event `fallback` told why it cannot. */
+  /** Selects the estimator. Resolves when it draws, or after the event `fallback` because it cannot. */
   setEstimator(estimator: EstimatorName): Promise<void> {
     return this.body.setEstimator(estimator);
   }
 
-  /** The wearer's measures [m], or 'auto'. Throws a RangeError where they are no person's. */
+  /** Sets the wearer's measures [m]; 'auto' estimates them. Throws a RangeError where they are not human. */
   calibrate(calibration: Calibration | 'auto'): void {
     this.body.calibrate(calibration);
   }
 
   /**
-   * One animation frame: timeMs and frame as `setAnimationLoop` gives them. Without a session nothing moves and the avatar is hidden. Call it
-   * before any await of the frame. Throws an InvalidStateError where the frame is over.
+   * Solves and draws one animation frame, with the arguments of `setAnimationLoop`. Without a session nothing moves and
+   * the avatar is hidden. Call it before any await of the frame: throws an InvalidStateError afterwards.
    */
   update(timeMs: number, frame: XRFrame | null | undefined): void {
     if (this.#disposed) return;
@@ -188,8 +203,8 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   }
 
   /**
-   * The same from head and wrists that the page has itself, floor frame [m, s]: of another device of the wearer's, or of a stand-in with these
-   * measures (an actor, a recording).
+   * Solves and draws a tracking frame of the page, floor frame [m, s]: from another device of the wearer, or from a
+   * stand-in with these measures (an actor, a recording).
    */
   updateFrom(frame: TrackingFrame | null, standIn: Calibration | null = null): void {
     if (this.#disposed) return;
@@ -197,14 +212,19 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     this.#apply(frame, standIn);
   }
 
-  /** The wearer stands at the floor's origin from now on and looks along −Z; the renderer's reference space moves along. */
+  /**
+   * Moves the floor's origin under the wearer, its −Z to where they look; the renderer's reference space moves along.
+   */
   recentre(): void {
     if (this.#disposed) return;
     if (this.#tracked) this.#tracked.recentre();
     else this.body.discontinuity();
   }
 
-  /** Ends what it listens to and takes the avatar apart; no frame changes anything from then on. Resolves when every network is let go that was loaded for it. */
+  /**
+   * Removes the listeners and disposes of the avatar; later frames have no effect. Resolves when every network that was
+   * loaded for this body is released.
+   */
   dispose(): Promise<void> {
     this.#disposed = true;
     this.#leave();
@@ -223,7 +243,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     this.#object.visible = true;
   }
 
-  /** Follows the renderer's session; the tracking of the one before is over. */
+  /** Follows the renderer's session and ends the tracking of the one before. */
   #attend(): void {
     const session = this.#renderer.xr.getSession();
     if (session === this.#session) return;
@@ -253,7 +273,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     this.#object.visible = false;
   }
 
-  /** Told where it changes: a page may have its own way. */
+  /** Sets the first-person view only where it changes: a page may control it as well. */
   #setFirstPerson(on: boolean): void {
     if (on === this.#firstPerson) return;
     this.#firstPerson = on;
@@ -261,4 +281,6 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   }
 }
 
-const noWeights = new Error('modelUrl: the learned network alone runs without a runtime');
+const noWeights = new Error(
+  'modelUrl: only the learned network runs without a runtime. Pass networks: onnxNetworks() of threepoint/onnx for the others.',
+);

@@ -33,16 +33,16 @@ export interface AvatarClip {
 const read = (bytes: ArrayBuffer, name: string, decoders: Decoders = {}) => {
   inspectAvatar(new Uint8Array(bytes), name, Object.keys(decoders));
   const chunks = chunksOf(new Uint8Array(bytes));
-  if (!chunks) throw new Error(`${name}: no VRM or GLB file (it does not begin as one, or is cut short)`);
+  if (!chunks) throw new Error(`${name}: not a VRM or GLB file (wrong signature, or truncated)`);
   return { description: JSON.parse(chunks.json) as AvatarDescription, binary: chunks.binary };
 };
 
 const whole = (parts: readonly Uint8Array<ArrayBuffer>[]): Promise<ArrayBuffer> => new Blob([...parts]).arrayBuffer();
 
-/** What is needed of a VRM's extension to know its bones. */
+/** The part of a VRM's extension that names its bones. */
 const humanoidParts = ['specVersion', 'exporterVersion', 'meta', 'humanoid', 'firstPerson'];
 
-/** The same body without surfaces and pictures, which no bone depends on and which only a browser can decode. */
+/** Returns the avatar without surfaces and pictures, which no bone depends on and only a browser can decode. */
 function bonesAlone(description: AvatarDescription): AvatarDescription {
   const bare = structuredClone(description);
   for (const field of ['images', 'textures', 'samplers', 'materials']) delete bare[field];
@@ -61,7 +61,7 @@ function bonesAlone(description: AvatarDescription): AvatarDescription {
 
 /** A bone of the rig that a bone of the motion turns. */
 interface DrivenBone {
-  /** Index among the motion's bones; of the nearest bone above that the rig has; −1: there is none. */
+  /** The index among the motion's bones of the nearest bone above that the rig has; −1: there is none. */
   readonly bone: number;
   readonly above: number;
   readonly node: number;
@@ -96,7 +96,7 @@ function nodeRotation({ bone, above, before, after }: DrivenBone, { rotations }:
   return turned.premultiply(before).multiply(after);
 }
 
-/** Puts every node where the body rests: avatars that stand in other poses were brought into T-pose. */
+/** Moves every node to the body's rest: avatars in other poses were brought into T-pose. */
 function writeRest(description: AvatarDescription, nodeIndices: LoadedAvatar['nodeIndices']): void {
   for (const [{ position, quaternion, scale }, index] of nodeIndices) {
     const node = description.nodes[index];
@@ -108,7 +108,7 @@ function writeRest(description: AvatarDescription, nodeIndices: LoadedAvatar['no
   }
 }
 
-/** Takes the place [m] where hips should be into the frame of their node's parent; steps are those of a body of the rig's height. */
+/** Transforms the hips' target [m] into the frame of their node's parent; steps are scaled to the rig's height. */
 function hipsPlacer(vrm: VRM, motion: Motion): (x: number, y: number, z: number) => Vector3 {
   const hips = boneNode(vrm, 'hips')!;
   const stature = hips.getWorldPosition(new Vector3()).y / motion.bones[0]!.offset.y;

@@ -26,43 +26,59 @@ import { OwnTrunk } from './rig/own-trunk';
 import { type AvatarJoint, Rig } from './rig/rig';
 import { Springs } from './rig/springs';
 
-/** A body on the screen. Poses are in the floor frame; so is `object`, which stays where it is put: at the floor's origin. */
+/**
+ * A drawn body. Poses are in the floor frame; `object` stays at the floor's origin.
+ *
+ * @example
+ * const avatar = await loadAvatar('/avatars/me.vrm');
+ * avatar.setCalibration(calibration);
+ * avatar.setPose(pose, time);
+ */
 export interface Avatar {
   readonly object: Object3D;
-  /** How high its head reaches when it stands upright [m]. */
+  /** The height of the head's top when the body stands upright [m]. */
   readonly height: number;
-  /** Scales the rig to this body, limb by limb, not by its own proportions. May be called again at any time. */
+  /** Scales the rig limb by limb to these measures, not by its own proportions. May be called at any time. */
   setCalibration(calibration: Calibration): void;
-  /** Bends the body to a pose; time [s] on the clock of the tracking frames. */
+  /** Bends the body to a pose. time: [s], on the clock of the tracking frames. */
   setPose(pose: AvatarPose, time: number): void;
-  /** Hides the own head from the own eyes; mirrors and others still see it. */
+  /** Hides the own head from the wearer's eyes; mirrors and other people still see it. */
   setFirstPerson(on: boolean): void;
   setUpperBodyOnly(on: boolean): void;
-  /** Recolours the materials of our mannequin; other avatars keep their own. Unknown names change nothing. */
+  /** Recolours the materials of the mannequin; other avatars keep theirs. Unknown names change nothing. */
   setPalette(name: string): void;
-  /** Recolours the skin of our people; null: it stays as it is. */
+  /** Recolours the skin of the project's own people; null: unchanged. */
   setSkinTone(tone: SkinTone | null): void;
-  /** 1: solid. Less: a ghost that things behind it shine through. */
+  /** Sets the opacity: 1 is solid, less a ghost that objects behind it shine through. */
   setOpacity(opacity: number): void;
-  /** How far the mouth is open from the next `apply` on: 0 shut to 1; a body without a shape for it keeps it shut. */
+  /**
+   * Sets the opening of the mouth from the next `setPose` on: 0 shut to 1. A body without a shape for it keeps it shut.
+   */
   setMouth(open: number): void;
-  /** How a hand's fingers are bent from the next `apply` on; null: they are not seen, keep their bend for a while and relax. Copied. */
+  /**
+   * Sets the bend of a hand's fingers from the next `setPose` on; the shape is copied. null: not seen, they keep their
+   * bend for a while and relax.
+   */
   setFingers(side: Side, shape: HandShape | null): void;
-  /** The hand as it is drawn [m]; null: the rig lacks a bone of a finger. The same object until the body is fitted anew. */
+  /**
+   * Returns the geometry of the drawn hand [m]; null: the rig lacks a finger bone. The object is the same until the
+   * calibration changes.
+   */
   handGeometry(side: Side): HandGeometry | null;
-  /** Where the fingers end that the rig has, as drawn, floor frame [m]; new objects: for tools. */
+  /** Returns the drawn fingertips of the rig, floor frame [m], in new objects for tools. */
   fingertips(side: Side): Readonly<Partial<Record<FingerName, Vec3>>>;
-  /** Where the joints of the bones are drawn, floor frame [m]; only bones that the rig has. The same object in every frame: copy what must stay. */
+  /**
+   * Returns the drawn joint positions of the rig's bones, floor frame [m]. The next frame overwrites the object: copy
+   * what must stay.
+   */
   jointPositions(): Readonly<Partial<Record<AvatarJoint, Vec3>>>;
   dispose(): void;
 }
 
-/** A body that is no one's yet. */
+/** The calibration of a body that was not fitted yet. */
 const averageBody: Calibration = { eyeHeight: 1.59, armSpan: 1.5 };
 /** A pause of the page moves feet no further than this [s]. */
 const longestStep = 0.25;
-/** Bodies made so far: each blinks at times of its own. */
-let made = 0;
 const upright = Object.fromEntries(jointNames.map((name) => [name, identity])) as Record<JointName, Quat>;
 
 /** What of a body takes long to make. */
@@ -84,7 +100,7 @@ function* makeAvatar({ vrm }: LoadedAvatar): Steps<Avatar> {
   const rig = new Rig(vrm);
   const arms = new ArmHelperJoints(rig);
   yield* arms.shareSkin(vrm.scene);
-  // After the skin is shared anew: what the wearer sees of meshes with a head is cut out of copies.
+  // The first-person meshes are cut from copies of meshes with a head, after the skin weights were shared.
   yield* setUpFirstPerson(vrm);
   const meshes = yield* readMeshes(vrm, rig);
   yield;
@@ -116,7 +132,7 @@ class VrmAvatar implements Avatar {
   private scale = 1;
   private lastTime: number | null = null;
   private readonly joints = makeJointPoses();
-  /** What the legs are told of a pose. */
+  /** The points of a pose that the legs follow. */
   private readonly points: { -readonly [Key in keyof GaitPoints]: GaitPoints[Key] } = {
     hips: this.joints.hips,
     head: this.joints.head,
@@ -138,8 +154,8 @@ class VrmAvatar implements Avatar {
     this.fingers = new Fingers(vrm);
     this.meshes = new BodyMeshes(meshes, this.rig);
     this.springs = new Springs(vrm);
-    made += 1;
-    this.face = new Face(vrm, made);
+    // The object's number differs from that of every other avatar, and so do the times at which it blinks.
+    this.face = new Face(vrm, object.id);
     this.setCalibration(averageBody);
   }
 
@@ -286,5 +302,5 @@ class VrmAvatar implements Avatar {
 
 export const createAvatar = (loaded: LoadedAvatar): Avatar => finishWork(makeAvatar(loaded));
 
-/** The same while pictures go on: for a file that came while the page is in use. */
+/** Creates an avatar between frames, for a file that is opened while the page is in use. */
 export const createAvatarBetweenFrames = (loaded: LoadedAvatar): Promise<Avatar> => betweenFrames(makeAvatar(loaded));

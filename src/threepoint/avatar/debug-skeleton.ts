@@ -15,7 +15,7 @@ import type { Vec3 } from '../core/math/vec3';
 export interface DebugSkeleton {
   readonly object: Object3D;
   setVisible(visible: boolean): void;
-  /** Joints in the floor frame [m], as `Avatar.jointPositions` gives them. */
+  /** Sets the joints in the floor frame [m], as returned by `Avatar.jointPositions`. */
   show(joints: Readonly<Record<string, Vec3 | undefined>>): void;
   dispose(): void;
 }
@@ -30,7 +30,7 @@ const bonesDrawn: readonly (readonly [string, string])[] = [
 ];
 const dots = [...new Set(bonesDrawn.flat())];
 
-/** What is not there lies far below the floor [m]. */
+/** The height [m] of missing joints, far below the floor. */
 const farBelow: Vec3 = { x: 0, y: -1000, z: 0 };
 
 export function createDebugSkeleton(): DebugSkeleton {

@@ -13,32 +13,34 @@ import { nextRandom, type RandomState } from '../core/math/random';
 import { forward, vec3 } from '../core/math/vec3';
 import { boneNode } from './humanoid/humanoid';
 
-/** People blink every two to six seconds, and each blink takes a fifth of one. */
+/** The interval between two blinks, and the duration of a blink [s]. */
 const shortestPause = 2;
 const longestPause = 6;
 const closing = 0.07;
 const opening = 0.14;
-/** A file without VRM's expressions may have these shapes of a face (ARKit's, Ready Player Me's). */
+/** The names of lid shapes in files without VRM's expressions (ARKit, Ready Player Me). */
 const lidShapes = ['eyeBlinkLeft', 'eyeBlinkRight', 'eyesClosed', 'eyeBlink_L', 'eyeBlink_R'];
-/** The same of a mouth, the one that says "ah" first: a file that has several of them is moved by one. */
+/** The names of mouth shapes, the one for "ah" first; a file with several of them is moved by the first. */
 const mouthShapes = ['viseme_aa', 'aa', 'jawOpen', 'mouthOpen', 'MouthOpen', 'A', 'あ'];
-/** Lips take half of their way in so long [s]: syllables are seen, what flickers between two readings of a level is not. */
+/** The half-life [s] of the lips' motion: syllables are visible, flicker between two levels is not. */
 const mouthHalfLife = 0.03;
-/** A mouth that is less than this from where it should be is there: a face at rest costs nothing. */
+/** The smallest difference at which a mouth is moved: a face at rest costs nothing. */
 const mouthStill = 1 / 256;
 
-/** Eyes hold what they look at while the head turns, and leap to what it faces now when that is further off than this [degrees]. */
+/**
+ * The angle [degrees] up to which eyes hold their target while the head turns; beyond it they jump to where it faces.
+ */
 const widestGaze = 11;
-/** Eyes of a file without VRM turn as far as they are asked to [degrees]. */
+/** The largest turn of the eyes of a file without VRM [degrees]. */
 const eyeRange = new VRMLookAtRangeMap(30, 30);
 
-/** Where a mesh keeps how far it has taken one of its shapes. */
+/** The place where a mesh stores the weight of one of its shapes. */
 interface Shape {
   readonly influences: number[];
   readonly index: number;
 }
 
-/** The shapes of a body's meshes; `chosen`: which of those that a mesh has. */
+/** Returns the shapes of a body's meshes. `chosen`: picks among the shapes of a mesh. */
 function shapesOf(vrm: VRM, chosen: (has: (name: string) => boolean) => readonly string[]): readonly Shape[] {
   const shapes: Shape[] = [];
   vrm.scene.traverse((node) => {
@@ -51,19 +53,21 @@ function shapesOf(vrm: VRM, chosen: (has: (name: string) => boolean) => readonly
   return shapes;
 }
 
-/** Lids of a file without VRM. */
+/** The lids of a file without VRM. */
 const lidsOf = (vrm: VRM): readonly Shape[] =>
   shapesOf(vrm, (has) => {
     const named = lidShapes.filter(has);
-    // A shape for both eyes closes them twice beside one for each.
+    // A shape for both eyes would close them twice next to one for each.
     const separate = named.filter((name) => name !== 'eyesClosed');
     return separate.length > 0 ? separate : named;
   });
 
-/** Lips, teeth and jaw of a file without VRM: each mesh by the first name that it has. */
+/** The lips, teeth and jaw of a file without VRM: each mesh by the first name that it has. */
 const mouthOf = (vrm: VRM): readonly Shape[] => shapesOf(vrm, (has) => mouthShapes.filter(has).slice(0, 1));
 
-/** A part of a face that a number between 0 and 1 moves: by VRM's expression, or by the shapes of a file without one. */
+/**
+ * A part of a face that is moved by a number from 0 to 1: by VRM's expression, or by the shapes of a file without one.
+ */
 class Mover {
   readonly #vrm: VRM;
   readonly #expression: VRMExpressionPresetName;
@@ -117,7 +121,7 @@ class MouthMeshes {
   }
 }
 
-/** Eyes of a body whose rig has bones for them. */
+/** The eyes of a rig that has bones for them. */
 function gazeOf(vrm: VRM): VRMLookAt | null {
   if (vrm.lookAt) return vrm.lookAt;
   if (!boneNode(vrm, 'leftEye') || !boneNode(vrm, 'rightEye')) return null;
@@ -128,19 +132,19 @@ function gazeOf(vrm: VRM): VRMLookAt | null {
 const inverse = quat(0, 0, 0, 1);
 const ahead = vec3(0, 0, 0);
 
-/** The face of a body: lids that blink, eyes that look where the head faces, a mouth that opens as it is told. */
+/** Animates the face of an avatar: lids blink, eyes look where the head faces, the mouth opens by `setMouth`. */
 export class Face {
   readonly #lids: Mover;
   readonly #mouth: Mover;
   readonly #mouthMeshes: MouthMeshes;
   readonly #gaze: VRMLookAt | null;
-  /** How the head was turned when the eyes came to rest on what they look at. */
+  /** The head's rotation when the eyes reached their target. */
   readonly #held = quat(0, 0, 0, 1);
   #random: RandomState;
-  /** Until the next blink, below 0: since one began [s]. */
+  /** The time until the next blink [s]; below 0: since one began. */
   #until = shortestPause;
   #closed = 0;
-  /** How far the mouth is open, and how far it is to be. */
+  /** The opening of the mouth, and its target. */
   #open = 0;
   #opening = 0;
 
@@ -153,12 +157,12 @@ export class Face {
     this.#mouthMeshes = new MouthMeshes(vrm);
   }
 
-  /** How far the mouth is to be open: 0 shut to 1; no number: shut. */
+  /** Sets the target of the mouth's opening: 0 shut to 1; NaN: shut. */
   setMouth(open: number): void {
     this.#opening = open > 0 ? Math.min(open, 1) : 0;
   }
 
-  /** One frame; the head's orientation in the floor frame, which at identity faces −Z. */
+  /** Advances by one frame. The head's orientation is in the floor frame and faces −Z at identity. */
   update(head: Quat, deltaSeconds: number): void {
     if (this.#lids.there) this.#blink(deltaSeconds);
     if (this.#mouth.there) this.#speak(deltaSeconds);
@@ -189,7 +193,7 @@ export class Face {
   }
 
   #look(gaze: VRMLookAt, head: Quat, deltaSeconds: number): void {
-    // What was looked at, seen from the head as it is turned now: on the way back from its turn, never ahead of it.
+    // The target as seen from the turned head: on the way back from the turn, never ahead of it.
     rotate(multiply(conjugate(head, inverse), this.#held, inverse), forward, ahead);
     const yaw = (Math.atan2(-ahead.x, -ahead.z) * 180) / Math.PI;
     const pitch = (Math.asin(clamp(-ahead.y, -1, 1)) * 180) / Math.PI;

@@ -15,22 +15,25 @@ import { boneNode, demandBones, humanoidOf } from './humanoid/humanoid';
 import { settleRest } from './humanoid/rest-pose';
 import { betweenFrames } from './in-steps';
 
-/** A body (VRM 0.x or 1.0, or a humanoid of another kind) ready to be fitted, and what to call it. */
+/** A loaded body (VRM 0.x or 1.0, or another humanoid), ready to be fitted, and its name. */
 export interface LoadedAvatar {
   readonly name: string;
   readonly vrm: VRM;
-  /** Which node of the file an object is. */
+  /** Returns the index of an object's node in the file. */
   readonly nodeIndices: ReadonlyMap<Object3D, number>;
 }
 
 export interface ParseOptions {
-  /** Of a humanoid that is no VRM and whose names tell nothing. */
+  /** The bones of a humanoid that is not a VRM and whose names are unknown. */
   readonly bones?: BoneMap | undefined;
-  /** Without them compressed files are refused. */
+  /** The decoders; without them compressed files are refused. */
   readonly decoders?: Decoders;
 }
 
-/** A body from the bytes of a file within `avatarLimits` that is known to be valid glTF. Rejects with a sentence that names the file. */
+/**
+ * Parses the bytes of a file within `avatarLimits` that is known to be valid glTF. Rejects with a sentence that names
+ * the file.
+ */
 export async function parseAvatar(
   bytes: ArrayBuffer,
   name: string,
@@ -40,7 +43,7 @@ export async function parseAvatar(
   return parseChecked({ bytes, packed, file: new Blob([bytes]) }, name, { bones, decoders });
 }
 
-/** The same from a file that `checkAvatar` has looked at. */
+/** Parses a file that has passed `checkAvatar`. */
 export async function parseChecked(
   { bytes, packed, file }: Pick<CheckedAvatar, 'bytes' | 'packed' | 'file'>,
   name: string,
@@ -59,7 +62,7 @@ export async function parseChecked(
   const own = bones ? undefined : (gltf.userData.vrm as VRM | undefined);
   if (own) {
     demandBones(name, (bone) => boneNode(own, bone) !== null);
-    // VRM 0.x looks along −Z at rest, 1.0 along +Z: from here on all look along +Z.
+    // VRM 0.x faces −Z at rest, 1.0 faces +Z: from here on all face +Z.
     VRMUtils.rotateVRM0(own);
   } else restoreBindPose(gltf.scene);
   const vrm = own ?? humanoidOf(gltf.scene, name, bones);

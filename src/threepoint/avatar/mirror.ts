@@ -17,11 +17,11 @@ import { thirdPersonOnlyLayer } from './rig/body-meshes';
 import { seesRectangle } from './sees-rectangle';
 
 export interface MirrorOptions {
-  /** How far ahead of the floor's origin, along −Z, it stands [m]. */
+  /** The distance ahead of the floor's origin, along −Z [m]. */
   readonly distance?: number;
   readonly width?: number;
   readonly height?: number;
-  /** Pixels across the reflection's texture; a headset draws one for each eye. */
+  /** The width of the reflection's texture [pixels]; a headset draws one for each eye. */
   readonly resolution?: number;
   /** Samples per pixel of the reflection; 0 for software rendering. */
   readonly samples?: number;
@@ -31,9 +31,11 @@ export interface MirrorOptions {
 export interface Mirror {
   readonly object: Object3D;
   setVisible(visible: boolean): void;
-  /** Stands it with its middle at (x, z) [m], floor frame; turned 0 it faces +Z, positive to +X [rad]. */
+  /** Moves its middle to (x, z) [m], floor frame; turned by 0 it faces +Z, positive to +X [rad]. */
   place(x: number, z: number, turned: number): void;
-  /** Draws what it reflects of the scene to this camera, or in a session to the eyes. Call it before the scene itself is drawn. */
+  /**
+   * Draws the reflection of the scene for this camera, or in a session for the eyes. Call it before the scene is drawn.
+   */
   reflect(renderer: WebGLRenderer, scene: Scene, camera: Camera): void;
   dispose(): void;
 }
@@ -58,7 +60,7 @@ const shader = {
 
 class StandingMirror implements Mirror {
   readonly object = new Group();
-  /** One for each eye of a session; on a desktop the first alone. */
+  /** One glass for each eye of a session; on a desktop the first only. */
   private readonly glasses: Reflector[] = [];
   private readonly reflections: Reflector['onBeforeRender'][] = [];
   private readonly width: number;
@@ -100,7 +102,7 @@ class StandingMirror implements Mirror {
       this.reflectTo(0, renderer, scene, camera);
       return;
     }
-    // As three.js does at the beginning of a frame in a session.
+    // three.js does this at the start of a frame in a session.
     xr.updateCamera(camera as Parameters<typeof xr.updateCamera>[0]);
     const { cameras } = xr.getCamera();
     for (let eye = 0; eye < cameras.length && eye < eyeLayers.length; eye++) {
@@ -120,7 +122,7 @@ class StandingMirror implements Mirror {
     this.object.removeFromParent();
   }
 
-  /** What a camera sees in one of the glasses; nothing, where it does not see that glass. */
+  /** Draws a camera's view in one of the glasses, if it sees that glass. */
   private reflectTo(index: number, renderer: WebGLRenderer, scene: Scene, camera: Camera): void {
     const glass = this.glasses[index]!;
     glass.visible = true;
@@ -128,7 +130,7 @@ class StandingMirror implements Mirror {
     if (!seesRectangle(camera, glass.matrixWorld, this.width, this.height)) return;
     const target = glass.getRenderTarget();
     target.texture.colorSpace = renderer.outputColorSpace;
-    // What holds the glass lies between it and the reflecting camera; clipping it away is not exact everywhere.
+    // The mirror's back lies between the glass and the reflecting camera; clipping it away is not exact everywhere.
     this.object.visible = false;
     const { render } = renderer.info;
     const { frame } = render;
@@ -141,7 +143,7 @@ class StandingMirror implements Mirror {
       glass.material as never,
       null as never,
     );
-    // All pictures of a frame have one number: bones go to the graphics device for the first of them, not for each.
+    // All renders of a frame have one number: bones are uploaded for the first of them only.
     render.frame = frame;
     this.object.visible = true;
   }
@@ -156,7 +158,7 @@ class StandingMirror implements Mirror {
       color: 0xb6b9bb,
       shader,
     });
-    // By this three.js knows a target whose colours are encoded like a canvas's.
+    // three.js recognises by this property a target whose colours are encoded like a canvas's.
     Object.assign(glass.getRenderTarget(), { isXRRenderTarget: true });
     // In first person the own head lies on this layer alone: a mirror shows it all the same. What lies on the layers of the eyes alone
     // it does not show. The reflecting camera is a copy made on demand by a method that three's types leave out.
@@ -169,14 +171,14 @@ class StandingMirror implements Mirror {
       return reflecting;
     };
     this.reflections.push(glass.onBeforeRender);
-    // Drawn beforehand, and not in the midst of the scene: a render within a render has lights of its own, and each material is looked up
-    // anew for them.
+    // The reflection is drawn before the scene: a nested render has lights of its own, and every material would be
+    // looked up again.
     glass.onBeforeRender = () => undefined;
     this.glasses.push(glass);
     this.object.add(glass);
   }
 
-  /** Bars and back as one mesh: each mesh that is drawn leaves the collector half a kilobyte in every frame. */
+  /** Merges bars and back into one mesh: each drawn mesh allocates half a kilobyte in every frame. */
   private addFrame(): void {
     const { width, height } = this;
     const bar = (across: number, up: number, x: number, y: number): BufferGeometry =>

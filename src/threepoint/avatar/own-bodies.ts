@@ -1,6 +1,6 @@
 import type { OwnBody } from '../core/body/avatar-ref';
 
-/** Our own bodies as people call them, in the order in which they are offered. */
+/** The display names of the project's own bodies, in the order in which they are offered. */
 export const bodyLabels: readonly { readonly name: OwnBody; readonly label: string }[] = [
   { name: 'mannequin', label: 'Mannequin' },
   { name: 'woman', label: 'Woman' },

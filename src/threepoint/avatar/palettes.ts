@@ -4,14 +4,14 @@ import type { SkinTone } from '../core/body/avatar-ref';
 export interface Palette {
   readonly name: string;
   readonly label: string;
-  /** The colour that stands for the palette in menus: the accent. */
+  /** The accent colour that represents the palette in menus. */
   readonly color: string;
   readonly suit: string;
   readonly head: string;
   readonly visor: string;
 }
 
-/** Told apart by lightness as well as by hue. */
+/** The palettes, which differ in lightness as well as in hue. */
 export const palettes: readonly Palette[] = [
   { name: 'porcelain', label: 'Porcelain', color: '#2f7de1', suit: '#c9ced6', head: '#e6e3de', visor: '#10141b' },
   { name: 'ember', label: 'Ember', color: '#e2572b', suit: '#4a4d55', head: '#d8cfc6', visor: '#15100e' },
@@ -21,7 +21,7 @@ export const palettes: readonly Palette[] = [
   { name: 'ink', label: 'Ink', color: '#35b6c9', suit: '#20252e', head: '#9aa4b1', visor: '#070a0e' },
 ];
 
-/** Colours of the skin of our people (docs/avatar.md). CSS colours. */
+/** The skin colours of the project's own people (docs/avatar.md), as CSS colours. */
 export const skinColors: Readonly<Record<SkinTone, string>> = {
   fair: '#f0c9ac',
   light: '#e0ac86',

@@ -11,45 +11,47 @@ import { type Avatar, createAvatarBetweenFrames } from './avatar';
 import { createBlobShadow } from './blob-shadow';
 import type { LoadedAvatar } from './load-avatar';
 
-/** Another person as they are to be drawn in this frame. */
+/** Another person to draw in this frame. */
 export interface SeenPerson {
-  /** Who it is, for as long as they are there: the same number is the same body. */
+  /** The number of the person; the same number is the same body. */
   readonly id: number;
   readonly calibration: Calibration;
   readonly avatar: AvatarRef;
-  /** Of a body of our own. */
+  /** The palette of one of the project's own bodies. */
   readonly palette: string;
-  /** In their own floor's frame. */
+  /** The pose in the frame of the person's own floor. */
   readonly pose: AvatarPose;
-  /** Where their floor lies in this room. */
+  /** The person's floor in this room. */
   readonly placement: Transform<'floor', 'floor'>;
   readonly fingers: Fingers;
-  /** 1: live. Less: a ghost. */
+  /** The opacity. 1: live. Less: a ghost. */
   readonly opacity: number;
 }
 
 export interface RemoteAvatarsOptions {
   /**
-   * The body for what a person has on; asked once for a file, and for one of ours with every body that is needed. Rejects where there is none: with a
-   * PassingFault it is asked again after some seconds.
+   * Loads the body of an avatar: once for a file, and for each needed copy of one of the project's own bodies. Rejects
+   * where it is unavailable; after a PassingFault it is called again some seconds later.
    */
   load(avatar: AvatarRef): Promise<LoadedAvatar>;
-  /** All are to be drawn as the plain one; asked in every frame. */
+  /** Returns whether everybody is drawn as the plain body; called in every frame. */
   plain(): boolean;
-  /** How far a person's mouth is open: 0 shut to 1; asked in every frame for each who is drawn. */
+  /** Returns the opening of a person's mouth: 0 shut to 1; called in every frame for each drawn person. */
   mouthOf(id: number): number;
-  /** A person's avatar cannot be shown: the plain one stays. Told once for each avatar, and not of a fault that has passed soon. */
+  /**
+   * Called once for each avatar that cannot be shown, so that the plain one stays; not for a fault that passes soon.
+   */
   onRefused(avatar: AvatarRef, reason: unknown): void;
 }
 
-/** The bodies of other people. Those of one of ours share what the graphics device holds of it. */
+/** The bodies of other people. Copies of one body share its graphics memory. */
 export interface RemoteAvatars {
   readonly object: Group;
-  /** Draws these people and no one else, at a time [s] on the clock of the frames. */
+  /** Draws these people and nobody else, at a time [s] on the clock of the frames. */
   show(people: readonly SeenPerson[], time: number): void;
-  /** Where a person's joints are drawn, floor frame of this room [m]; null: no one of this number is drawn. */
+  /** Returns a person's drawn joints, floor frame of this room [m]; null: nobody with this number is drawn. */
   jointsOf(id: number): Readonly<Record<string, Vec3>> | null;
-  /** As what a person is drawn; null: no one of this number is. */
+  /** Returns the avatar that a person is drawn as; null: nobody with this number is drawn. */
   drawnAs(id: number): AvatarRef | null;
   dispose(): void;
 }
@@ -57,12 +59,12 @@ export interface RemoteAvatars {
 interface Body {
   readonly avatar: Avatar;
   readonly of: AvatarRef;
-  /** Not one of ours. */
+  /** Whether the body is from a file and not one of the project's own. */
   readonly fromFile: boolean;
   readonly place: Group;
   readonly shadow: Mesh<PlaneGeometry, MeshBasicMaterial>;
   id: number | null;
-  /** When it was drawn last [s]. */
+  /** The time at which it was drawn last [s]. */
   drawnAt: number;
   fitted: Calibration | null;
   palette: string;
@@ -70,23 +72,23 @@ interface Body {
   readonly placement: MutableTransform<'floor', 'floor'>;
 }
 
-/** A body from a file that no one has had on for so long [s] gives its memory back. */
+/** The time [s] after which an unused body from a file is released. */
 const keptSeconds = 20;
 
-/** What could not be had is asked for again so much later [s]. */
+/** The time [s] after which a failed load is repeated. */
 const againSeconds = 5;
-/** A fault that should have passed has not after so many attempts. */
+/** The number of attempts after which a passing fault is reported. */
 const patientAttempts = 3;
 
-/** Why an avatar is not shown. */
+/** The reason why an avatar is not shown. */
 interface Refusal {
   readonly attempts: number;
-  /** When it is asked for again [s]; Infinity: never. */
+  /** The time of the next attempt [s]; Infinity: never. */
   readonly again: number;
-  readonly told: boolean;
+  readonly reported: boolean;
 }
 
-/** The second body draws from the first one's memory on the graphics device: only bones and colours are its own. */
+/** Lets the second body draw from the first one's graphics memory: only bones and colours are its own. */
 function shareGeometry(from: Object3D, to: Object3D): void {
   const sources: Mesh[] = [];
   from.traverse((node) => {
@@ -120,13 +122,13 @@ class OthersBodies implements RemoteAvatars {
   readonly object = new Group();
   readonly #options: RemoteAvatarsOptions;
   readonly #bodies: Body[] = [];
-  /** What is being made: of our own bodies and of files, one each. */
+  /** The bodies in preparation: one of each own body and of each file. */
   readonly #making: { own: boolean; file: boolean } = { own: false, file: false };
   readonly #refused = new Map<AvatarRef, Refusal>();
   #disposed = false;
   /** The time of the newest frame [s]. */
   #now = 0;
-  /** Why the plain body could not be made; null: it could. */
+  /** The reason why the plain body could not be made; null: there is none. */
   #failed: unknown = null;
 
   constructor(options: RemoteAvatarsOptions) {
@@ -176,7 +178,7 @@ class OthersBodies implements RemoteAvatars {
     return null;
   }
 
-  /** The body of a person with this avatar on, else with the plain one; null while that is being made. */
+  /** Returns the body of a person with this avatar, or the plain one; null while that is being made. */
   #bodyFor({ id }: SeenPerson, avatar: AvatarRef, people: readonly SeenPerson[]): Body | null {
     const own = this.#bodyOf(id);
     if (own?.of === avatar) return own;
@@ -194,7 +196,7 @@ class OthersBodies implements RemoteAvatars {
     }
     if (this.#failed) throw this.#failed;
     this.#make(plainAvatar);
-    // Until the plain one is there they stay as they were.
+    // Bodies stay unchanged until the plain one is loaded.
     return own;
   }
 
@@ -214,7 +216,10 @@ class OthersBodies implements RemoteAvatars {
     });
   }
 
-  /** Never rejects: where it is not to be had the plain body stays; without the plain one the next frame throws why. */
+  /**
+   * Loads an avatar; never rejects: without it the plain body stays. Without the plain body the next frame throws the
+   * reason.
+   */
   async #load(avatar: AvatarRef): Promise<void> {
     try {
       const loaded = await this.#options.load(avatar);
@@ -232,15 +237,15 @@ class OthersBodies implements RemoteAvatars {
     const before = this.#refused.get(avatar);
     const passes = error instanceof PassingFault;
     const attempts = (before?.attempts ?? 0) + 1;
-    const tells = !before?.told && (!passes || attempts >= patientAttempts);
+    const reports = !before?.reported && (!passes || attempts >= patientAttempts);
     const again = passes ? this.#now + againSeconds : Number.POSITIVE_INFINITY;
-    this.#refused.set(avatar, { attempts, again, told: tells || before?.told === true });
-    if (tells && !this.#disposed) this.#options.onRefused(avatar, error);
+    this.#refused.set(avatar, { attempts, again, reported: reports || before?.reported === true });
+    if (reports && !this.#disposed) this.#options.onRefused(avatar, error);
   }
 
   #add(avatar: Avatar, of: AvatarRef): void {
     const fromFile = isAvatarHash(of);
-    // One of ours stays for as long as the others do; a file's memory is given back body by body.
+    // The project's own bodies stay as long as the others do; a file's memory is released body by body.
     if (isOwnAvatar(of)) {
       const first = this.#bodies.find((body) => isOwnAvatar(body.of) && bodyOf(body.of) === bodyOf(of));
       if (first) shareGeometry(first.avatar.object, avatar.object);

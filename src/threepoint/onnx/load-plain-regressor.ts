@@ -3,7 +3,7 @@ import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import { fetchContract, fetchStated, named } from './model-files';
 
 export interface PlainLoadOptions {
-  /** Share [0, 1] of the weights that has arrived. */
+  /** Called with the share [0, 1] of the weights that has arrived. */
   readonly onProgress?: (share: number) => void;
 }
 

@@ -13,15 +13,18 @@ import { SessionRegressor } from './session-regressor';
 import { createWorkerSession } from './worker-session';
 
 export interface LoadOptions {
-  /** Where to run; 'webgpu' gives way to 'wasm' when it cannot. */
+  /** The backend; 'wasm' replaces 'webgpu' where that is unavailable. */
   readonly provider?: ExecutionProvider;
-  /** The worker in which WebAssembly runs (inference-worker.ts); absent: on the thread that loads, for programs without workers. */
+  /**
+   * Creates the worker in which WebAssembly runs (inference-worker.ts); absent: it runs on this thread, for programs
+   * without workers.
+   */
   readonly createWorker?: () => Worker;
-  /** Where the runtime's own files are served; absent: where the bundler put them. */
+  /** The address of the runtime's own files; absent: where the bundler put them. */
   readonly wasmPaths?: WasmPaths;
-  /** Share [0, 1] of the model file that has arrived. */
+  /** Called with the share [0, 1] of the model file that has arrived. */
   readonly onProgress?: (share: number) => void;
-  /** Why WebGPU was left for WASM, at load or when the device fails later. */
+  /** Called with the reason when WASM replaces WebGPU, at load or when the device fails later. */
   readonly onProviderFallback?: (reason: string) => void;
 }
 
@@ -34,7 +37,7 @@ export async function loadRegressor(contractUrl: string, options: LoadOptions = 
   return startRegressor(contract, await fetchStated(contractUrl, contract, options.onProgress), options);
 }
 
-/** The same from bytes already here; for programs that read files themselves. */
+/** Starts a regressor from bytes in memory, for programs that read files themselves. */
 export async function startRegressor(
   contract: ModelContract,
   model: Uint8Array,
@@ -69,19 +72,19 @@ export async function startRegressor(
   }
 
   return new SessionRegressor(contract, await openFirst(), {
-    // WebAssembly needs nothing of a lost device, and the loaded bundle has it.
+    // WebAssembly needs no graphics device, and the loaded bundle contains it.
     open: () => open('wasm', 'webgpu').catch(() => open('wasm')),
     ...(onProviderFallback && { onTakeover: onProviderFallback }),
   });
 }
 
-/** Throws a sentence where an open session is not what the contract says of its file. */
+/** Throws a sentence where an open session does not match the contract of its file. */
 async function tryOut(session: InferenceSession, file: string, { input, inputShape, output }: ModelTensors) {
   if (!session.inputNames.includes(input) || !session.outputNames.includes(output)) {
     const has = `${session.inputNames.join(', ')} → ${session.outputNames.join(', ')}`;
     throw new Error(`${file}: has the tensors ${has}, its contract says ${input} → ${output}`);
   }
-  // The first run compiles and allocates: it must not happen in a frame of the wearer's.
+  // The first run compiles and allocates: it must not happen in a frame.
   const numbers = await session.run(new Float32Array(inputShape.reduce((a, b) => a * b, 1)));
   if (numbers.length !== outputNumbers || !numbers.every(Number.isFinite)) {
     throw new Error(`${file}: the first run gave ${numbers.length} numbers, or some that are not finite`);

@@ -39,10 +39,10 @@ const contractSchema = v.object({
   ),
 });
 
-/** x, y, z of six joints. */
+/** The numbers of six joints: x, y and z. */
 export const outputNumbers = 18;
 
-/** The contract in this JSON; anything missing or odd throws a sentence that names the file and the field. */
+/** Parses a contract from JSON; throws a sentence that names the file and the missing or invalid field. */
 export function parseContract(file: string, text: string): ModelContract {
   let json: unknown;
   try {
@@ -55,7 +55,7 @@ export function parseContract(file: string, text: string): ModelContract {
     const [issue] = result.issues;
     throw new Error(`${file}: ${v.getDotPath(issue) ?? 'the contract'}: ${issue.message}`);
   }
-  // What is absent stays absent: exact optional properties know no undefined.
+  // Absent fields stay absent: exact optional properties do not accept undefined.
   const { weights, ...contract } = result.output;
   const { name, windowSeconds } = contract;
   const expected = name === 'paper' ? 18 : learnedInputCount(windowSeconds);
@@ -73,7 +73,7 @@ export function parseContract(file: string, text: string): ModelContract {
   };
 }
 
-/** The tensors that a contract states, as a session has them. */
+/** Returns the tensors that a contract names, in the form of a session. */
 export function tensorsOf({ inputs, outputs }: ModelContract): ModelTensors {
   const [input, output] = [inputs[0]!, outputs[0]!];
   return { input: input.name, inputShape: input.shape, output: output.name };

@@ -2,15 +2,18 @@ import { reasonOf } from '../core/errors/reasons';
 import type { ModelContract } from '../core/estimation/pose-regressor';
 import { parseContract } from './model-contract';
 
-/** What a contract says of a file beside it. */
+/** The entry of a contract for a file beside it. */
 export type StatedFile = Pick<ModelContract, 'file' | 'bytes' | 'sha256'>;
 
-/** The contract at this address; rejects with a sentence that says what is wrong with which file. */
+/** Loads the contract at this address; rejects with a sentence that names the file and its fault. */
 export async function fetchContract(url: string): Promise<ModelContract> {
   return parseContract(fileName(url), new TextDecoder().decode(await download(url)));
 }
 
-/** A file of which a contract says this, its size and SHA-256 checked; rejects with a sentence. onProgress: share [0, 1] that has arrived. */
+/**
+ * Loads a file and checks its size and SHA-256 against its contract; rejects with a sentence. onProgress: share [0, 1]
+ * that has arrived.
+ */
 export async function fetchFile(
   url: string,
   stated: StatedFile,
@@ -21,31 +24,34 @@ export async function fetchFile(
   return bytes;
 }
 
-/** The same where it lies beside its contract. */
+/** Loads and checks a file beside its contract. */
 export const fetchStated = (
   contractUrl: string,
   stated: StatedFile,
   onProgress?: (share: number) => void,
 ): Promise<Uint8Array> => fetchFile(beside(contractUrl, stated.file), stated, onProgress);
 
-/** The address of a file beside another; what follows `?` belongs to the other alone. */
+/** Returns the address of a file beside another, without the other's query. */
 const beside = (url: string, file: string): string => url.replace(/[?#].*$/, '').replace(/[^/]*$/, file);
 
 const fileName = (url: string): string => url.split(/[?#]/)[0]?.split('/').at(-1) ?? url;
 
-/** The same error in a sentence that begins with the file's name. */
+/** Returns the error with a message that begins with the file's name. */
 export const named = (file: string, error: unknown): Error => {
   const text = reasonOf(error);
   return new Error(text.startsWith(file) ? text : `${file}: ${text}`);
 };
 
-/** What reads files in Node, whose `fetch` takes no `file:` address; undefined elsewhere. Asked for without an import, which bundlers for browsers would follow. */
+/**
+ * Returns Node's file system, whose `fetch` accepts no `file:` address; undefined elsewhere. It is not imported:
+ * bundlers for browsers would follow an import.
+ */
 function filesOfNode(): { readFile(url: URL): Promise<Uint8Array> } | undefined {
   const { process } = globalThis as { process?: { getBuiltinModule?(name: 'node:fs/promises'): unknown } };
   return process?.getBuiltinModule?.('node:fs/promises') as ReturnType<typeof filesOfNode>;
 }
 
-/** The whole file at this address; anything but success throws a sentence. */
+/** Loads the whole file at this address; throws a sentence where that fails. */
 async function download(url: string, onProgress?: (share: number) => void): Promise<Uint8Array> {
   const file = fileName(url);
   const onDisk = url.startsWith('file:') ? filesOfNode() : undefined;
@@ -88,9 +94,10 @@ async function download(url: string, onProgress?: (share: number) => void): Prom
 
 async function verify({ file, bytes, sha256 }: StatedFile, model: Uint8Array): Promise<void> {
   if (model.length !== bytes) throw new Error(`${file}: ${model.length} bytes long, its contract says ${bytes}`);
-  // Browsers give none to pages of another origin than https: or localhost.
+  // Browsers provide no digest to pages outside https: and localhost.
   const { subtle } = crypto as { readonly subtle?: SubtleCrypto };
-  if (!subtle) throw new Error(`${file}: cannot be checked: the page is not secure (https: or localhost)`);
+  if (!subtle)
+    throw new Error(`${file}: could not be checked: the page is not secure. Open it by https: or on localhost.`);
   const digest = new Uint8Array(await subtle.digest('SHA-256', model as Uint8Array<ArrayBuffer>));
   const hex = Array.from(digest, (byte) => byte.toString(16).padStart(2, '0')).join('');
   if (hex !== sha256) {

@@ -3,18 +3,18 @@ import type { ModelContract, PoseRegressor } from '../core/estimation/pose-regre
 import { named } from './model-files';
 import type { InferenceSession } from './session';
 
-/** What takes over from a session whose graphics device fails. */
+/** The replacement of a session whose graphics device fails. */
 export interface Takeover {
   /** Opens the network in WebAssembly. */
   open(): Promise<InferenceSession>;
-  /** Why WebGPU was left, once WebAssembly runs. */
+  /** Called with the reason for leaving WebGPU, once WebAssembly runs. */
   onTakeover?(reason: string): void;
 }
 
-/** A run of a device that is lost may fail so long [ms] before the browser says that it is. */
+/** The time [ms] by which a failed run may precede the browser's report of a lost device. */
 const lossPatienceMs = 1000;
 
-/** Why the device of this session is gone; null: it does not turn out to be. */
+/** Resolves with the reason why the session's device is lost; null: it is not. */
 async function lossOf({ lost }: InferenceSession): Promise<string | null> {
   let timer: ReturnType<typeof setTimeout> | undefined;
   const inVain = new Promise<null>((resolve) => {
@@ -27,12 +27,12 @@ async function lossOf({ lost }: InferenceSession): Promise<string | null> {
   }
 }
 
-/** A network in a session of the runtime: on a graphics device, and where that fails in WebAssembly. */
+/** Runs a network in a session of the runtime: on a graphics device, and where that fails in WebAssembly. */
 export class SessionRegressor implements PoseRegressor {
   readonly contract: ModelContract;
   readonly #takeover: Takeover;
   #session: InferenceSession;
-  /** WebAssembly, from when it is asked for. */
+  /** The WebAssembly session, once it was requested. */
   #next: Promise<InferenceSession> | null = null;
   #disposed = false;
 
@@ -64,7 +64,7 @@ export class SessionRegressor implements PoseRegressor {
     if (this.#disposed) return;
     this.#disposed = true;
     await this.#session.release();
-    // What still opens lets itself go.
+    // A session that is still opening releases itself.
     await Promise.allSettled([this.#next]);
   }
 
@@ -76,11 +76,11 @@ export class SessionRegressor implements PoseRegressor {
     if (this.#disposed) await opened.release();
     this.#demand();
     this.#session = opened;
-    void this.#tell(device, error);
+    void this.#reportLoss(device, error);
     return opened;
   }
 
-  async #tell(device: InferenceSession, error: unknown): Promise<void> {
+  async #reportLoss(device: InferenceSession, error: unknown): Promise<void> {
     const loss = await lossOf(device);
     if (this.#disposed) return;
     const what =
@@ -90,8 +90,8 @@ export class SessionRegressor implements PoseRegressor {
     this.#takeover.onTakeover?.(`${what}: WebAssembly takes over.`);
   }
 
-  /** Throws where the network was let go. */
+  /** Throws where the network was released. */
   #demand(): void {
-    if (this.#disposed) throw new Error(`${this.contract.file}: already disposed of`);
+    if (this.#disposed) throw new Error(`${this.contract.file}: used after dispose`);
   }
 }

@@ -2,23 +2,23 @@ import type { InferenceSession as OrtSession } from 'onnxruntime-web';
 
 export type ExecutionProvider = 'wasm' | 'webgpu';
 
-/** As the runtime's own `env.wasm.wasmPaths`: a folder, or the address of each file. */
+/** The runtime's `env.wasm.wasmPaths`: a folder, or the address of each file. */
 export type WasmPaths = string | { readonly wasm?: string; readonly mjs?: string };
 
 export interface SessionOptions {
-  /** Which of the runtime's bundles to load; default: the provider's own. */
+  /** The runtime's bundle to load; default: the provider's own. */
   readonly bundle?: ExecutionProvider | undefined;
   readonly wasmPaths?: WasmPaths | undefined;
 }
 
-/** What goes into a model, and what of it comes out. */
+/** The shapes of a model's input and output. */
 export interface ModelTensors {
   readonly input: string;
   readonly inputShape: readonly number[];
   readonly output: string;
 }
 
-/** The part of a GPUDevice that tells of its end. */
+/** The part of a GPUDevice that reports its loss. */
 interface GraphicsDevice {
   readonly lost: Promise<{ readonly message: string; readonly reason: string }>;
 }
@@ -28,17 +28,17 @@ export interface InferenceSession {
   readonly provider: ExecutionProvider;
   readonly inputNames: readonly string[];
   readonly outputNames: readonly string[];
-  /** Resolves with why its graphics device is gone, when it is; absent: it has none. */
+  /** Resolves with the reason when the graphics device is lost; absent: there is none. */
   readonly lost?: Promise<string>;
-  /** features: the input tensor's numbers; resolves to the output tensor's, in an array of their own. */
+  /** Runs the model. features: the input tensor's numbers. Resolves to the output tensor's numbers in a new array. */
   run(features: Float32Array): Promise<Float32Array>;
   release(): Promise<void>;
 }
 
 /**
- * Opens a model on this thread. Only what the provider needs is downloaded: WebGPU's larger bundle comes when it is asked for. That bundle
- * computes on WASM as well: where it has been loaded already, `bundle` 'webgpu' spares the download of the smaller one.
- * Rejects when the provider is not to be had or does not take the model.
+ * Opens a model on this thread. Only the files that the provider needs are downloaded. WebGPU's larger bundle computes
+ * on WASM as well: where it has been loaded, `bundle` 'webgpu' saves the download of the smaller one. Rejects when the
+ * provider is unavailable or does not accept the model.
  */
 export async function createSession(
   model: Uint8Array,
@@ -60,7 +60,7 @@ export async function createSession(
   };
   const session = await ort.InferenceSession.create(model, options);
   const lost = provider === 'webgpu' ? lossOf((await ort.env.webgpu.device) as GraphicsDevice) : null;
-  // Once for all runs; a page that asks for nothing by then hears nothing of it.
+  // One handler for all runs: a page without a pending run is not notified.
   const failed = lost?.then(fail);
   failed?.catch(() => undefined);
   let last: Promise<unknown> = Promise.resolve();
@@ -78,10 +78,10 @@ export async function createSession(
         return tensor.data as Float32Array;
       };
       if (provider === 'wasm') return start();
-      // Overlapping runs hang there.
+      // Overlapping runs hang in the runtime.
       const run = last.then(start, start);
       last = run.catch(() => undefined);
-      // What waits for a lost device waits for ever.
+      // A run on a lost device never settles.
       return failed ? Promise.race([run, failed]) : run;
     },
     release: () => session.release(),

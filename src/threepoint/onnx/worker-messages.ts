@@ -1,6 +1,6 @@
 import type { ModelTensors, WasmPaths } from './session';
 
-/** What the page asks of the worker that runs a model: to open it, then to run it. */
+/** A request of the page to the worker that runs a model: to open it, or to run it. */
 export type Question =
   | {
       readonly id: number;
@@ -10,7 +10,7 @@ export type Question =
     }
   | { readonly id: number; readonly features: Float32Array };
 
-/** The answer to the question of that number. */
+/** The answer to the request with this number. */
 export type Answer =
   | { readonly id: number; readonly inputNames: readonly string[]; readonly outputNames: readonly string[] }
   | { readonly id: number; readonly numbers: Float32Array }

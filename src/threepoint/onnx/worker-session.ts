@@ -7,9 +7,9 @@ interface Waiting {
   readonly reject: (error: Error) => void;
 }
 
-/** What is wrong with an answer to another question. */
-const astray = 'the worker for inference answers what no one asked';
-/** A worker that is silent for so long [ms], or twice as long, has died. */
+/** The fault of an answer that belongs to another request. */
+const astray = 'the inference worker sent an unexpected answer';
+/** The time [ms] of silence after which a worker counts as dead, at the latest after twice as long. */
 const patienceMs = 2500;
 
 function numbersOf(answer: Answer): Float32Array {

@@ -12,33 +12,33 @@ import { smoothingFactor } from '../core/math/damper';
 /** WebXR's standard mapping of buttons. */
 export const triggerButton = 0;
 export const squeezeButton = 1;
-/** Touchpad, stick, the two buttons of the face and the rest beside them: what lies under the thumb. */
+/** The buttons under the thumb: touchpad, stick, the two face buttons and the thumb rest. */
 const thumbButtons = [2, 3, 4, 5, 6] as const;
 
-/** A finger goes half of the way to where a button says it is in this time [s]: a touch is there or not. */
+/** The half-life [s] of a finger's way to its target: a touch is reported as on or off. */
 const halfLife = 0.035;
 
-/** Round a handle of 3.5 cm. */
+/** Fingers round a handle of 3.5 cm. */
 const heldMiddle = fingerBend(0.82, 0, 1.12, 0.62);
 const heldRing = fingerBend(0.88, -0.03, 1.14, 0.62);
 const heldLittle = fingerBend(0.92, -0.08, 1.1, 0.6);
-/** On the trigger; beside it, straight ahead. */
+/** The index finger on the trigger, and beside it, straight ahead. */
 const indexOnTrigger = fingerBend(0.5, 0.04, 0.72, 0.36);
 const indexAhead = fingerBend(0.12, 0.06, 0.1, 0.06);
 const indexPressed = fingerBend(0.8, 0.03, 1.3, 0.75);
-/** On the controller's face; stretched away from it. */
+/** The thumb on the controller's face, and stretched away from it. */
 const thumbOnFace = fingerBend(0.62, 0.3, 0.34, 0.4);
 const thumbUp = fingerBend(0.12, 0.62, -0.05, -0.1);
 
-/** The fingers of a hand that holds a controller, by what they press and touch. */
+/** Estimates the fingers of a hand that holds a controller from the buttons that it presses and touches. */
 export class ControllerFingers {
-  /** Overwritten by the next `read`. */
+  /** The newest shape; overwritten by the next `read`. */
   readonly shape: HandShape;
   readonly #shape: MutableHandShape = makeHandShape();
-  /** How far the index finger is off the trigger, and the thumb off the face: 0 on it, 1 away. */
+  /** The distance of the index finger from the trigger and of the thumb from the face: 0 on it, 1 away. */
   #pointing = 0;
   #thumbAway = 0;
-  /** Whether this controller has ever told a touch from a press. */
+  /** Whether this controller has ever reported a touch without a press. */
   #capacitive = false;
   #lastTime: number | null = null;
 
@@ -46,7 +46,7 @@ export class ControllerFingers {
     this.shape = this.#shape;
   }
 
-  /** `time` [s] on the clock of the frames. */
+  /** Returns the fingers of this frame. `time`: [s], on the clock of the frames. */
   read(gamepad: Gamepad | undefined, time: number): HandShape {
     const share = this.#lastTime === null ? 1 : smoothingFactor(halfLife, time - this.#lastTime);
     this.#lastTime = time;
@@ -59,7 +59,7 @@ export class ControllerFingers {
       this.#capacitive ||= touchesOnly(button);
     }
     this.#capacitive ||= touchesOnly(trigger);
-    // Of a controller that feels no touch nothing is known: the fingers lie on it.
+    // A controller without touch sensors reports no finger: the fingers lie on it.
     this.#pointing += ((this.#capacitive && !onTrigger ? 1 : 0) - this.#pointing) * share;
     this.#thumbAway += ((this.#capacitive && !onFace ? 1 : 0) - this.#thumbAway) * share;
     this.#bend(pressure(trigger), pressure(gamepad?.buttons[squeezeButton]));

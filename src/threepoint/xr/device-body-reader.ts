@@ -1,47 +1,52 @@
 import { reasonOf } from '../core/errors/reasons';
 import { type DeviceBody, deviceBodySize, deviceJointNames, isFiniteDeviceBody } from '../core/tracking/device-body';
 
-/** The feature of a session by which a device reports its wearer's body (WebXR Body Tracking). */
+/** The session feature of WebXR Body Tracking. */
 export const bodyFeature = 'body-tracking';
 
-/** The module's body of a frame: 83 joints by name, 84 where the device still has a root. */
+/** The body of a frame in WebXR Body Tracking: 83 joints by name, 84 on devices that still have a root. */
 interface DeviceXRBody {
   get(name: string): XRSpace | undefined;
 }
 
-/** As devices with the module have it. */
+/** The frame of devices with WebXR Body Tracking. */
 interface BodyFrame {
   readonly body?: DeviceXRBody | null;
   fillPoses?(spaces: readonly XRSpace[], base: XRSpace, transforms: Float32Array): boolean;
   getPose(space: XRSpace, base: XRSpace): XRPose | null | undefined;
 }
 
-/** Numbers of a matrix, and where in it the place begins. */
+/** The size of a matrix, and the index of its translation. */
 const matrixSize = 16;
 const placeInMatrix = 12;
 
-/** Reads the device's own body, frame by frame, in memory of its own. Never throws: what goes wrong is a sentence. */
+/**
+ * Reads the device's own body frame by frame into one buffer. Never throws: `complaint` is a sentence about the fault.
+ */
 export class DeviceBodyReader {
   readonly #joints: DeviceBody = new Float32Array(deviceBodySize);
   readonly #matrices = new Float32Array(matrixSize * deviceJointNames.length);
-  /** Whose joints `spaces` are; a session has one body. */
+  /** The body that `#spaces` belong to; a session has one body. */
   #body: DeviceXRBody | null = null;
   #spaces: readonly XRSpace[] | null = null;
   #fault: string | null = null;
   #seen = false;
 
-  /** Why there never was a body, or is none any more; null: it is there. */
+  /** The reason why there is no body; null: there is one. */
   get complaint(): string | null {
     if (this.#seen) return null;
     if (this.#fault !== null) return this.#fault;
     return this.#body === null ? 'the device reports no body' : 'the device has lost the body, or not found it yet';
   }
 
-  /** The joints [m] in the space, overwritten by the next; null: the device reports none in this frame, or not all of them. */
+  /**
+   * Returns the joints [m] in the space, overwritten by the next call; null: not all of them are reported in this
+   * frame.
+   */
   read(frame: XRFrame, space: XRReferenceSpace): DeviceBody | null {
     try {
       this.#seen = this.#fill(frame as BodyFrame, space);
-      // What went wrong in one frame is over with the next; what the body lacks is not.
+      // A fault of one frame ends with the next; a missing joint does not.
       if (this.#seen) this.#fault = null;
     } catch (error) {
       this.#seen = false;

@@ -1,8 +1,8 @@
 const inputEvents = ['select', 'selectstart', 'selectend', 'squeeze', 'squeezestart', 'squeezeend'];
 
 /**
- * Some runtimes tell of a button without the frame that it was pressed in (`frame: null`), which three's controllers do not survive. Such
- * an event is held back and told again, in the next frame and with it. Call it before anything else listens to the session.
+ * Adds frames to input events that a runtime fires without one (`frame: null`), which crash three's controllers. Such
+ * an event is stopped and fired again with the next frame. Call it before other listeners are added to the session.
  */
 export function giveFramesToEvents(session: XRSession): void {
   for (const type of inputEvents) {

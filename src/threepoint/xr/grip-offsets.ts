@@ -38,10 +38,10 @@ const fits: Readonly<Record<string, HandleFit>> = {
   'windows-mixed-reality': { ahead: 0.08, below: 0.028, lean: degrees(35) },
 };
 
-/** For profiles that are not listed: most handles follow Touch. */
+/** The fit of unlisted profiles: most handles follow Touch. */
 export const genericFit: HandleFit = { ahead: 0.08, below: 0.025, lean: degrees(45) };
 
-/** The fit of the first of an input source's profiles that is known. */
+/** Returns the fit of the first known profile of an input source. */
 export function handleFit(profiles: readonly string[]): HandleFit {
   for (const profile of profiles) {
     const fit = fits[profile];
@@ -57,7 +57,7 @@ interface HeldGrip {
   readonly position: Vec3;
 }
 
-/** What was worked out of each fit: the same in every frame. */
+/** The grips of each fit, computed once. */
 const heldGrips = new WeakMap<HandleFit, Readonly<Record<Side, HeldGrip>>>();
 
 function gripInWrist(side: Side, fit: HandleFit): HeldGrip {
@@ -82,7 +82,7 @@ function holdGrip(side: Side, { ahead, below, lean }: HandleFit): HeldGrip {
   return { orientation, inverse: conjugate(orientation), position: vec3(0, -below, -ahead) };
 }
 
-/** The wrist of a hand that holds a controller by this grip, in the grip's own frame. */
+/** Returns the wrist of a hand that holds a controller by this grip, in the grip's space. */
 export function wristFromGrip<F extends Frame>(grip: Pose<F>, side: Side, fit: HandleFit): Pose<F> {
   const held = gripInWrist(side, fit);
   const orientation = multiply(grip.orientation, held.inverse);
@@ -90,7 +90,7 @@ export function wristFromGrip<F extends Frame>(grip: Pose<F>, side: Side, fit: H
   return { orientation, position: subtract(grip.position, position, position) };
 }
 
-/** Where a controller's grip lies in a hand with this wrist: the inverse of `wristFromGrip`. */
+/** Returns a controller's grip in a hand with this wrist: the inverse of `wristFromGrip`. */
 export function gripFromWrist<F extends Frame>(wrist: Pose<F>, side: Side, fit: HandleFit): Pose<F> {
   const held = gripInWrist(side, fit);
   const position = rotate(wrist.orientation, held.position);

@@ -7,9 +7,9 @@ import type { Side } from '../core/math/side';
 import { isFiniteVec3, setVec3, vec3 } from '../core/math/vec3';
 import { toTrackedPose } from './tracked-pose';
 
-/** WebXR's hand input, of which the types know a part; not every browser has it. */
+/** WebXR's hand input, which the types describe in part and some browsers lack. */
 interface FillingFrame {
-  /** Writes a column-major 4×4 matrix for each space; false, and NaN everywhere, where any of them is not seen. */
+  /** Writes a column-major 4×4 matrix for each space; returns false, and writes NaN, where one of them is not seen. */
   readonly fillPoses?: (spaces: readonly XRSpace[], base: XRSpace, matrices: Float32Array) => boolean;
 }
 
@@ -31,7 +31,10 @@ const longFinger = (finger: FingerName, prefix: 'index' | 'middle' | 'ring' | 'p
     `${prefix}-finger-tip`,
   ]);
 
-/** The wrist comes first in the buffers, then these. The metacarpals of the long fingers lie in the palm, which is one piece. */
+/**
+ * The joints in the order of the buffers, after the wrist. The palm is rigid: the metacarpals of the long fingers are
+ * left out.
+ */
 const followed: readonly FollowedJoint[] = [
   ...jointsOf('thumb', ['thumb-metacarpal', 'thumb-phalanx-proximal', 'thumb-phalanx-distal', 'thumb-tip']),
   ...longFinger('index', 'index'),
@@ -40,9 +43,12 @@ const followed: readonly FollowedJoint[] = [
   ...longFinger('little', 'pinky'),
 ];
 
-/** Reads one tracked hand: wrist and fingers of a frame by one call of `fillPoses`, into memory of its own. */
+/** Reads wrist and fingers of one tracked hand by one call of `fillPoses` a frame, into buffers of the reader. */
 export class HandReader {
-  /** Of the last `read` that found a wrist; overwritten by the next. Fingers that were not seen kept their bend. */
+  /**
+   * The fingers of the last `read` that found a wrist; overwritten by the next. Fingers that were not seen keep their
+   * bend.
+   */
   readonly shape: HandShape;
   readonly #side: Side;
   readonly #memory = new FingerMemory();
@@ -52,7 +58,7 @@ export class HandReader {
   readonly #wrist: MutablePose<'floor'> = makePose<'floor'>();
   readonly #at = vec3(0, 0, 0);
   #hand: XRHand | null = null;
-  /** Of that hand, in the order of `#matrices`; fewer where the device lacks joints. */
+  /** The joints of `#hand` in the order of `#matrices`; fewer where the device lacks joints. */
   #spaces: XRJointSpace[] = [];
   #lastTime: number | null = null;
 
@@ -66,7 +72,7 @@ export class HandReader {
     return this.#seen.pinch;
   }
 
-  /** The wrist, floor frame; null: the hand is not seen. `time` [s] on the clock of the frames. */
+  /** Returns the wrist, floor frame; null: the hand is not seen. `time`: [s], on the clock of the frames. */
   read(frame: XRFrame, hand: XRHand, space: XRReferenceSpace, time: number): TrackedPose | null {
     if (hand !== this.#hand) this.#follow(hand);
     const filled = this.#fill(frame, space);
@@ -90,7 +96,7 @@ export class HandReader {
     }
   }
 
-  /** All joints at once; false where the device cannot, or does not see all of them. */
+  /** Reads all joints at once; returns false where the device cannot, or does not see all of them. */
   #fill(frame: XRFrame, space: XRReferenceSpace): boolean {
     const { fillPoses } = frame as FillingFrame;
     if (!fillPoses || this.#spaces.length !== 1 + followed.length) return false;
@@ -116,7 +122,7 @@ export class HandReader {
     return { position: { ...position }, orientation: { ...orientation }, tracking: 'tracked' };
   }
 
-  /** Joint by joint: the device has no `fillPoses`, or sees only some of them. */
+  /** Reads joint by joint: the device has no `fillPoses`, or sees some joints only. */
   #ask(frame: XRFrame, hand: XRHand, space: XRReferenceSpace): TrackedPose | null {
     const wristJoint = hand.get('wrist' as XRHandJoint);
     const found = wristJoint && frame.getJointPose?.(wristJoint, space);

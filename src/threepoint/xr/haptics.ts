@@ -1,13 +1,13 @@
 import type { Side } from '../core/math/side';
 
-/** A buzz for one hand: strength 0 to 1, seconds. */
+/** A vibration for one hand: strength 0 to 1, duration in seconds. */
 export interface Pulse {
   readonly side: Side;
   readonly strength: number;
   readonly seconds: number;
 }
 
-/** Buzzes what the hands hold; what cannot buzz stays silent. */
+/** Plays vibrations on the controllers; devices without an actuator stay silent. */
 export function buzz(session: XRSession, pulses: readonly Pulse[]): void {
   for (const { side, strength, seconds } of pulses) {
     for (const { handedness, gamepad } of session.inputSources) {
@@ -23,7 +23,7 @@ async function tryPulse(actuator: HapticPulser, strength: number, milliseconds: 
   try {
     await actuator.pulse?.(strength, milliseconds);
   } catch {
-    // reason: a controller that was put away rejects; a buzz that no one can feel is no fault of the page
+    // reason: a controller that was put away rejects, which is no fault of the page
   }
 }
 

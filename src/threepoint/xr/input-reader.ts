@@ -7,13 +7,13 @@ import { handleFit, wristFromGrip } from './grip-offsets';
 import { HandReader } from './hand-reader';
 import { toTrackedPose } from './tracked-pose';
 
-const pressed = (gamepad: Gamepad | undefined): HandButtons => ({
+const pressedButtons = (gamepad: Gamepad | undefined): HandButtons => ({
   ...allReleased,
   trigger: gamepad?.buttons[triggerButton]?.value ?? 0,
   grip: gamepad?.buttons[squeezeButton]?.value ?? 0,
 });
 
-const more = (a: HandButtons, b: HandButtons): HandButtons => ({
+const maximumOf = (a: HandButtons, b: HandButtons): HandButtons => ({
   trigger: Math.max(a.trigger, b.trigger),
   grip: Math.max(a.grip, b.grip),
   pinch: Math.max(a.pinch, b.pinch),
@@ -102,7 +102,7 @@ export class InputReader {
       const kind = wins || kinds[side] === 'none' ? kindOf(source) : kinds[side];
       const device = wins ? this.#deviceOf(source) : (buttons[side].device ?? this.#deviceOf(source));
       kinds[side] = kind;
-      buttons[side] = { ...more(buttons[side], this.#pressedBy(source, side)), device };
+      buttons[side] = { ...maximumOf(buttons[side], this.#pressedBy(source, side)), device };
     }
     for (const side of sides) {
       const kind = kinds[side];
@@ -134,7 +134,7 @@ export class InputReader {
 
   /** Returns the buttons of a source that was just read; a bare hand has its pinch, which its gamepad reports only at its end. */
   #pressedBy(source: XRInputSource, side: Side): HandButtons {
-    if (!source.hand) return pressed(source.gamepad);
+    if (!source.hand) return pressedButtons(source.gamepad);
     const { pinch } = this.#handReaders[side];
     return Number.isNaN(pinch) ? allReleased : { ...allReleased, pinch };
   }

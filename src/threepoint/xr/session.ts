@@ -1,17 +1,17 @@
 import { reasonOf } from '../core/errors/reasons';
 import { bodyFeature } from './device-body-reader';
 
-/** Why no headset can be worn; `reason`: as the browser says it. */
+/** The fault that prevents VR; `reason`: the browser's own message. */
 export type XrFault =
   | { readonly kind: 'insecure' | 'no-webxr' | 'no-headset' }
   | { readonly kind: 'refused'; readonly reason: string };
 
-/** What the browser offers; `sentence` tells the user why not. */
+/** The result of asking the browser for VR; `sentence` is the reason for the user. */
 export type XrSupport =
   | { readonly kind: 'device'; readonly sentence: null }
   | { readonly kind: 'none'; readonly sentence: string; readonly fault: XrFault };
 
-/** Asks the browser once; never rejects. */
+/** Asks the browser for VR; never rejects. */
 export async function describeXrSupport(): Promise<XrSupport> {
   const no = (fault: XrFault, sentence: string): XrSupport => ({ kind: 'none', sentence, fault });
   if (!window.isSecureContext) {
@@ -33,8 +33,8 @@ export async function describeXrSupport(): Promise<XrSupport> {
 }
 
 /**
- * Starts an immersive session on the floor, with hands where the device tracks them, and with its own body where that is wanted and the device has
- * one. Rejects with a sentence. Needs a click.
+ * Requests an immersive session with a floor, with hands where the device tracks them, and with the device's body where
+ * `deviceBody` is set and it has one. Rejects with a sentence. Needs a click.
  */
 export async function requestVrSession(deviceBody = false): Promise<XRSession> {
   if (!navigator.xr) throw new Error('this browser has no WebXR');
@@ -46,18 +46,19 @@ export async function requestVrSession(deviceBody = false): Promise<XRSession> {
   } catch (error) {
     const name = error instanceof DOMException ? error.name : '';
     if (name === 'NotAllowedError' || name === 'SecurityError') throw new Error('the headset refused the session');
-    if (name === 'NotSupportedError') throw new Error('the headset offers no floor to stand on (local-floor)');
+    if (name === 'NotSupportedError')
+      throw new Error('the headset provides no floor-level reference space (local-floor)');
     throw error;
   }
 }
 
-/** Sides [m] of what a boundary leaves, along the axes of the floor. */
+/** The sides [m] of the room within a boundary, along the axes of the floor. */
 export interface PlayRoom {
   readonly width: number;
   readonly depth: number;
 }
 
-/** The room of the session's boundary; null: the device has none, or does not tell. */
+/** Returns the room within the session's boundary; null: the device has none, or does not report it. */
 export async function roomOf(session: XRSession): Promise<PlayRoom | null> {
   let space: XRReferenceSpace;
   try {

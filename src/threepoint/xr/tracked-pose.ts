@@ -1,6 +1,6 @@
 import { isFinitePose, type TrackedPose } from '../core/math/pose';
 
-/** Copies the live objects of a frame; one that is no finite pose counts as not seen. */
+/** Returns a copy of a frame's live objects; null: the pose is not finite. */
 export function toTrackedPose(pose: XRPose): TrackedPose | null {
   if (!isFinitePose(pose.transform)) return null;
   const { position: p, orientation: o } = pose.transform;

@@ -119,7 +119,7 @@ describe('the recorder', () => {
 
   test('a file that is no recording leaves the one at hand', () => {
     const recorder = recorded(0, 1);
-    expect(() => recorder.open('photos.json', '{"photos": []}')).toThrow(/no recording/);
+    expect(() => recorder.open('photos.json', '{"photos": []}')).toThrow(/not a threepoint recording/);
     expect(recorder.name).toBe('recording-1.json');
   });
 

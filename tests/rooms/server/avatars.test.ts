@@ -122,10 +122,10 @@ describe('an avatar in the store', () => {
 /** What no store takes, and what is said of it. */
 const refused: readonly (readonly [string, Uint8Array, string | null, number, RegExp])[] = [
   ['a file that is another than its name says', file(), hashOf(file()), 422, /not the one that its name says/],
-  ['a picture with a script in it', Buffer.from('<svg onload="alert(1)"/>'.repeat(3)), null, 422, /no VRM or GLB/],
-  ['a web page', Buffer.from('<!doctype html><script>alert(1)</script>'), null, 422, /no VRM or GLB/],
-  ['half a body', file().subarray(0, 9000), null, 422, /no VRM or GLB/],
-  ['nothing', new Uint8Array(), null, 422, /no VRM or GLB/],
+  ['a picture with a script in it', Buffer.from('<svg onload="alert(1)"/>'.repeat(3)), null, 422, /not a VRM or GLB/],
+  ['a web page', Buffer.from('<!doctype html><script>alert(1)</script>'), null, 422, /not a VRM or GLB/],
+  ['half a body', file().subarray(0, 9000), null, 422, /not a VRM or GLB/],
+  ['nothing', new Uint8Array(), null, 422, /not a VRM or GLB/],
   ['more than 20 MB', new Uint8Array(mostAvatarBytes + 1), null, 413, /at most 20971520 bytes/],
   ['more than there is place for', new Uint8Array(9 * megabyte), null, 507, /no place/],
 ];

@@ -50,7 +50,7 @@ test('a recording that the server refuses is reported and kept, and holds up nei
   expect(first.uploadStatus).toMatchObject({
     unsent: 1,
     online: true,
-    refusal: expect.stringContaining('no JSON'),
+    refusal: expect.stringContaining('not valid JSON'),
     lockedOut: false,
   });
 });

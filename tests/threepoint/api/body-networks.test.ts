@@ -5,7 +5,7 @@ import { openPlainModel } from '../core/estimation/shipped-models';
 import { at, calibration, observed } from './observed-body';
 import { openPorts } from './open-ports';
 
-describe('a body whose network is not to be had', () => {
+describe('a body whose network is unavailable', () => {
   test('is drawn by inverse kinematics, and says why', async () => {
     const { body, told } = await observed({ networks: async () => Promise.reject(new Error('learned.bin: gone')) });
     expect(told).toEqual(['fallback learned learned.bin: gone']);

@@ -18,7 +18,9 @@ const standing = (time: number, eyeHeight: number): TrackingFrame => ({
 
 describe('a body', () => {
   test('by an estimator that there is none of is refused in a sentence', () => {
-    expect(() => new Body({ estimator: 'Learned' as 'learned' })).toThrow('“Learned” is no estimator: hands-only, ik');
+    expect(() => new Body({ estimator: 'Learned' as 'learned' })).toThrow(
+      '“Learned” is not an estimator. Use one of hands-only, ik',
+    );
   });
 
   test('follows three points: its wrists lie on the hands, by the network that was chosen', async () => {
@@ -148,7 +150,7 @@ describe('a body', () => {
     expect(body.wearerCalibration).toEqual(calibration);
   });
 
-  test('that is told not to grow does not, and says nothing of it', async () => {
+  test('with autoGrow off does not grow, and reports nothing', async () => {
     const given = await observed({ estimator: 'ik', calibration, autoGrow: false });
     const guessed = await observed({ estimator: 'ik', autoGrow: false });
     for (let frame = 0; frame < 60; frame++) guessed.body.update(standing(frame / 60, 1.6));
@@ -168,7 +170,7 @@ describe('a body', () => {
     expect(told).toEqual(['calibrated 1.59 default', 'found head', 'calibrated 1.70 headset']);
   });
 
-  test('takes measures anew with another session, and as told', async () => {
+  test('takes measures again with another session, and as given', async () => {
     const { body, told } = await observed({ estimator: 'ik' });
     for (let frame = 0; frame < 60; frame++) body.update(standing(frame / 60, 1.6));
     body.startSession();
@@ -285,7 +287,7 @@ describe('measures of a stand-in', () => {
   });
 });
 
-test('time is its own: after a pause a body begins anew, half a second on', () => {
+test('time is its own: after a pause a body is reset, half a second on', () => {
   let jumps = 0;
   const body = new Body({ estimator: 'ik', events: { discontinuity: () => (jumps += 1) } });
   const first = body.tick(5000);
@@ -296,7 +298,7 @@ test('time is its own: after a pause a body begins anew, half a second on', () =
   expect(body.tick(10) - first).toBeGreaterThan(0.52);
 });
 
-test('bodies that share a clock are at one time, and each begins anew after a pause', () => {
+test('bodies that share a clock are at one time, and each is reset after a pause', () => {
   const clock = createPageClock(() => 0);
   const jumped: string[] = [];
   const [first, second] = ['first', 'second'].map(

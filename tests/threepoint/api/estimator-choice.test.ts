@@ -120,7 +120,9 @@ describe('which estimator draws', () => {
     const { choice, changes } = choiceThat(async () => networkOn('wasm'));
     await choice.setEstimator('learned');
     const lerned = 'lerned' as EstimatorName;
-    await expect(choice.setEstimator(lerned)).rejects.toThrow('“lerned” is no estimator: hands-only, ik');
+    await expect(choice.setEstimator(lerned)).rejects.toThrow(
+      '“lerned” is not an estimator. Use one of hands-only, ik',
+    );
     expect([choice.wanted, choice.current.name]).toEqual(['learned', 'learned']);
     expect(changes).toHaveLength(1);
   });

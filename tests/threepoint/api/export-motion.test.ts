@@ -61,7 +61,7 @@ describe('a recording', () => {
 
   test('is refused in a sentence where the device’s body is asked for and no frame has one', async () => {
     await expect(exportMotion(recording, { to: 'csv', estimator: 'device', networks })).rejects.toThrow(
-      'The recording has no body of its device: choose another method.',
+      'The recording has no device body. Choose another method.',
     );
     const seen = { ...recording.frames[3]!, deviceBody: new Float32Array(deviceBodySize) };
     const some = { ...recording, frames: recording.frames.with(3, seen) };
@@ -69,10 +69,10 @@ describe('a recording', () => {
   });
 
   test('is refused in a sentence where the method draws no body', async () => {
-    await expect(exportMotion(recording, { to: 'bvh', estimator: 'hands-only' })).rejects.toThrow(/draws no body/);
+    await expect(exportMotion(recording, { to: 'bvh', estimator: 'hands-only' })).rejects.toThrow(/estimates no body/);
     await expect(exportMotion(recording, { to: 'bvh', estimator: 'paper' })).rejects.toThrow(/needs a runtime/);
     await expect(exportMotion(recording, { to: 'fbx' as 'bvh', estimator: 'ik' })).rejects.toThrow(
-      /“fbx” is no format/,
+      /“fbx” is not a motion format/,
     );
   });
 
@@ -112,7 +112,7 @@ describe('a recording', () => {
     [
       'in inches',
       () => exportMotion(recording, { to: 'bvh', estimator: 'ik', unit: 'inch' as 'm' }),
-      /^“inch” is no unit of a BVH here: m, cm$/,
+      /^“inch” is not a unit of a BVH file. Use m or cm.$/,
     ],
   ])('%s is refused in a sentence', async (_, work, sentence) => {
     await expect(work()).rejects.toThrow(sentence);
@@ -126,7 +126,7 @@ describe('a recording', () => {
     expect(rows.slice(2, 5).map((row) => row.split(',').slice(1, 3).join())).toEqual(['1,1', '0,1', '1,1']);
   });
 
-  test('without measures is of a person as tall as its first frame tells', async () => {
+  test('without measures is of a person as tall as its first frame shows', async () => {
     const { parts } = await exportMotion({ ...recording, calibration: null }, { to: 'csv', estimator: 'ik' });
     const [header, row] = textOf(parts).split('\n');
     const at = header!.split(',').indexOf('head_y');
@@ -135,7 +135,7 @@ describe('a recording', () => {
 });
 
 describe('a long export', () => {
-  test('tells how far it is, and how long the rest takes', async () => {
+  test('reports how far it is, and how long the rest takes', async () => {
     const told: number[] = [];
     const left: (number | null)[] = [];
     await exportMotion(recordingOf(20), {

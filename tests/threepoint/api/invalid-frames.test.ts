@@ -133,7 +133,7 @@ test('a time that is no number is that of the frame before; before any with one,
   expect(still?.head).toEqual(at(1).head);
 });
 
-test('a moment is relived without what is no place', async () => {
+test('a body is warmed up without invalid points', async () => {
   const { body } = await bodyBy('learned');
   const frames = Array.from({ length: rate }, (_, i) => at(i / rate));
   await body.warmUp(frames.map((frame, i) => (i % 7 === 3 ? slips[i % slips.length]![1](frame) : frame)));

@@ -32,13 +32,13 @@ test('another contract may lie on the disk of a program of Node, its weights bes
   expect(shares.at(-1)).toBe(1);
 });
 
-test('a contract that is not on the disk is told in a sentence', async () => {
+test('a contract that is not on the disk is reported in a sentence', async () => {
   await expect(loadLearned({ modelUrl: new URL('gone.json', models) })).rejects.toThrow(
     /^gone\.json: could not be read \(ENOENT/,
   );
 });
 
-test('weights that cannot be checked, as on a page without https, are refused in a sentence', async () => {
+test('weights that could not be checked, as on a page without https, are refused in a sentence', async () => {
   vi.stubGlobal('crypto', {});
-  await expect(loadLearned()).rejects.toThrow(/^learned\.bin: cannot be checked: the page is not secure/);
+  await expect(loadLearned()).rejects.toThrow(/^learned\.bin: could not be checked: the page is not secure/);
 });

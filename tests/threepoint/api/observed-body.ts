@@ -3,7 +3,7 @@ import type { Calibration } from 'threepoint/core/body/calibration';
 import { movingPerson } from '../core/estimation/moving-person';
 import { openPlainModel } from '../core/estimation/shipped-models';
 
-/** Of the wearer below. */
+/** The measures of the wearer below. */
 export const calibration: Calibration = { eyeHeight: 1.65, armSpan: 1.56 };
 /** What is tracked of a wearer who moves, by time [s]. */
 export const at = movingPerson(3, calibration, { x: 1, z: -0.5, yaw: 2 });

@@ -105,7 +105,7 @@ test('joints have no pose until the session’s first frame that sees the head, 
   expect(look(second, hipsIn)?.transform.position.x).toBeCloseTo(5, 0);
 });
 
-test('a frame asks the browser once where its floor is for all joints in one space, and anew in the next frame', async () => {
+test('a frame asks the browser once where its floor is for all joints in one space, and again in the next frame', async () => {
   headset.setHead(standing);
   const session = await begin();
   const table = headset.floor.getOffsetReferenceSpace(new XRRigidTransform({ x: 1 }, fromAxisAngle(up, 1)));

@@ -18,7 +18,7 @@ const rateHz = 60;
 const frames = Array.from({ length: 4 * rateHz }, (_, i) => at(i / rateHz));
 const moment = 2.5;
 
-/** The same network, whose answers come later, as those of a worker do. */
+/** The network with answers that come later, as a worker's do. */
 const answeringLater = ({ runNow: _, ...regressor }: PoseRegressor): PoseRegressor => regressor;
 
 /** A body that replays a moving person, frame by frame of a page at 60 Hz. */
@@ -32,7 +32,7 @@ async function replaying(method: EstimatorName, later = false) {
   const replayed = new ReplayedBody(body, recorder);
   const skeleton = skeletonFromCalibration(calibration);
   let page = 100;
-  /** So many frames of the page; where the joints are after the last. */
+  /** Draws `count` frames of the page; returns the joints after the last. */
   const draw = (count: number) => {
     let pose = body.pose;
     for (let i = 0; i < count; i++) {
@@ -125,7 +125,7 @@ describe('a replay that stands still', () => {
   });
 });
 
-test('a replay that begins anew is drawn without a way from its end', async () => {
+test('a replay that restarts is drawn without a way from its end', async () => {
   const { recorder, body, draw } = await replaying('ik');
   recorder.setLoop(true);
   draw(1);

@@ -48,7 +48,7 @@ describe('an avatar', () => {
   });
 
   test('without a map it is refused, and a map with a name that is not there too', async () => {
-    await expect(loadAvatar(foreign)).rejects.toThrow(/no humanoid in it/);
+    await expect(loadAvatar(foreign)).rejects.toThrow(/could not be matched to a humanoid/);
     await expect(loadAvatar(foreign, { bones: { ...bones, leftHand: 'Paw' } })).rejects.toThrow(
       'the avatar: bones.leftHand: no node is called “Paw”',
     );
@@ -60,7 +60,9 @@ describe('an avatar', () => {
   test.each(Object.entries({ loadAvatar, avatarMotion }))(
     'that has not arrived whole is refused by %s',
     async (_, take) => {
-      await expect(take(mannequin().slice(0, -4))).rejects.toThrow(/^the avatar: no VRM or GLB file \(.*cut short\)$/);
+      await expect(take(mannequin().slice(0, -4))).rejects.toThrow(
+        /^the avatar: not a VRM or GLB file \(.*truncated\)$/,
+      );
     },
   );
 });

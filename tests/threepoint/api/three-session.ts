@@ -7,7 +7,7 @@ import { mannequin } from '../avatar/glb';
 import { openPlainModel } from '../core/estimation/shipped-models';
 import { controller, fakeHeadset } from '../xr/fake-headset';
 
-/** Where the controllers are held at first, floor frame. */
+/** The initial controllers, floor frame. */
 export const left = { position: { x: -0.3, y: 1.2, z: -0.3 }, orientation: identity };
 export const right = { position: { x: 0.3, y: 1.2, z: -0.3 }, orientation: identity };
 
@@ -43,7 +43,7 @@ function wornHeadset() {
       const origin = new XRRigidTransform({ ...position, w: 1 }, orientation);
       xr.setReferenceSpace(headset.floor.getOffsetReferenceSpace(origin));
     },
-    /** Where the renderer has the eyes. */
+    /** Returns the eyes in the renderer's space. */
     eyes(): Vec3 {
       const { x, y, z } = headset.frame.getViewerPose(xr.getReferenceSpace())!.transform.position;
       return { x, y, z };
@@ -52,8 +52,8 @@ function wornHeadset() {
 }
 
 /**
- * A body whose wearer puts the headset on later; `told`: what its events have said. The headset stubs a global of WebXR, which the test
- * takes back.
+ * Makes a tracker whose wearer puts the headset on later; its events are recorded. The headset stubs a global of
+ * WebXR, which the test restores.
  */
 export async function begin(options: Partial<BodyTrackerOptions> = {}) {
   const headset = wornHeadset();
@@ -75,7 +75,7 @@ export async function begin(options: Partial<BodyTrackerOptions> = {}) {
       tracker.update(timeMs, headset.frame);
     }
   };
-  /** Where a point of the floor frame is drawn. */
+  /** Returns the drawn position of a point of the floor frame. */
   const drawn = (point: Vec3): Vector3 => {
     tracker.object.updateMatrixWorld(true);
     return tracker.avatar.object.localToWorld(new Vector3().copy(point));

@@ -87,7 +87,7 @@ describe('a body in a session of three.js', () => {
     },
   );
 
-  test('that comes to a wearer whom the page has raised already is as tall as they are', async () => {
+  test('that comes to a wearer the page has raised already is as tall as they are', async () => {
     const { headset, tracker, run, drawn } = await begin();
     headset.putOn();
     headset.moveFloorTo({ x: 1, y: 3, z: 0 });

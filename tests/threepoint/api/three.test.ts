@@ -106,7 +106,7 @@ describe('a body in a session of three.js', () => {
     run(40);
     const wrist = () => distance(tracker.avatar.jointPositions().leftHand!, tracker.pose!.leftHand!.position);
     expect(wrist()).toBeLessThan(0.001);
-    // Once it has told, it is believed where it only guesses: the arm sinks to rest.
+    // After it was reported as tracked, a guessed position counts as lost: the arm sinks to rest.
     headset.setInputs(controller('left', left), controller('right', right));
     run(2);
     headset.setInputs(controller('left', guessed), controller('right', right));

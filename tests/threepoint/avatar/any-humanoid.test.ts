@@ -123,7 +123,7 @@ describe('is refused with a sentence', () => {
 
   test('names that no naming has, with what was found and what to give', async () => {
     await refused({ nameOf: (bone) => `x${bone.length}${bone.at(-1)}q` }).toThrow(
-      /person\.glb: no humanoid in it .*found: x4sq, .*Mixamo.*loadAvatar: \{bones:/,
+      /person\.glb: its bones could not be matched to a humanoid .*found: x4sq, .*Mixamo.*loadAvatar\(source, \{bones:/,
     );
   });
 

@@ -16,12 +16,12 @@ const radians = (degrees: number) => (degrees * Math.PI) / 180;
 
 /** How the left arm is turned from T-pose [degrees]. */
 interface ArmTurn {
-  /** Of the whole arm about an axis of the chest. */
+  /** The swing of the whole arm about an axis of the chest. */
   readonly swing?: { readonly axis: Vec3; readonly angle: number };
-  /** Of the upper arm about itself. */
+  /** The roll of the upper arm about itself. */
   readonly upperRoll?: number;
   readonly elbow?: number;
-  /** Of the hand about the forearm; the estimators give half of it to the forearm's bone. */
+  /** The roll of the hand about the forearm; the estimators give half of it to the forearm's bone. */
   readonly roll?: number;
 }
 
@@ -95,7 +95,7 @@ async function wearer(file: ArrayBuffer) {
     return cut(avatar, (vertex) => {
       const ahead = vertex.clone().sub(from);
       const height = ahead.dot(way) / way.lengthSq() - share;
-      // Of this arm alone, and not of the hand's thumb.
+      // Only vertices of this arm count, not those of the hand's thumb.
       return ahead.addScaledVector(way, -(height + share)).length() < 0.12 ? height : null;
     });
   };

@@ -102,7 +102,7 @@ describe('an avatar with a clip', () => {
   });
 
   test('is refused in a sentence where the file is no avatar', async () => {
-    await expect(avatarClip(new ArrayBuffer(40), 'me.vrm')).rejects.toThrow(/^me.vrm: no VRM or GLB file/);
+    await expect(avatarClip(new ArrayBuffer(40), 'me.vrm')).rejects.toThrow(/^me.vrm: not a VRM or GLB file/);
     await expect(avatarClip(mannequin().slice(0, 90_000), 'me.vrm')).rejects.toThrow(/^me.vrm: /);
   });
 });

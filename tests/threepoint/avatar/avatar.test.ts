@@ -256,13 +256,15 @@ describe('our mannequin', () => {
 describe('files that are no avatar', () => {
   test('get a sentence', async () => {
     await expect(parseAvatar(new TextEncoder().encode('hello').buffer, 'notes.txt')).rejects.toThrow(
-      /^notes\.txt: no VRM or GLB file/,
+      /^notes\.txt: not a VRM or GLB file/,
     );
     const dog = changed((json) => {
       json.extensions = {};
       json.extensionsUsed = [];
       for (const [index, node] of json.nodes.entries()) node.name = `paw ${index}`;
     });
-    await expect(parseAvatar(dog, 'dog.glb')).rejects.toThrow(/^dog\.glb: no humanoid in it/);
+    await expect(parseAvatar(dog, 'dog.glb')).rejects.toThrow(
+      /^dog\.glb: its bones could not be matched to a humanoid/,
+    );
   });
 });

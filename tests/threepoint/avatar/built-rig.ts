@@ -65,7 +65,7 @@ export interface RigOptions {
   readonly armsDown?: number;
   /** Above the bones: what an exporter puts there. */
   readonly root?: Matrix4;
-  /** A scale of the root that no matrix can tell: 0. */
+  /** The scale of the root; with 0 its matrix has no rotation. */
   readonly rootScale?: number;
   /** Lengths of the bones and of the skin in the file [per metre]. */
   readonly unit?: number;
@@ -76,7 +76,7 @@ export interface RigOptions {
   readonly posed?: boolean;
 }
 
-/** Where the bones lie in the file's pose, and how they are turned. */
+/** Returns the bones in the file's pose. */
 function pose(all: readonly Joint[], armsDown: number): Map<BoneName, Matrix4> {
   const worlds = new Map<BoneName, Matrix4>();
   for (const { bone, at } of all) worlds.set(bone, new Matrix4().setPosition(at));

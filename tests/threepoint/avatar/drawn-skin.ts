@@ -17,7 +17,7 @@ type Wrists = Readonly<Record<Side, Pose<'floor'>>>;
 /** Closes a hand round something. */
 type Grasp = (holding: Holding, side: Side, wrist: Pose<'floor'>, target: MutableHandShape) => void;
 
-/** A body of ours on that person. */
+/** Loads one of the project's own bodies for that person. */
 export async function ownBody(body: string): Promise<Avatar> {
   const file = readFileSync(new URL(`../../../public/avatars/${body}.vrm`, import.meta.url));
   const bytes = file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer;

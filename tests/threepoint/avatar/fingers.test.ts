@@ -104,7 +104,7 @@ const jointPrefix = {
   little: 'pinky-finger',
 };
 
-/** Where the skin of a tracked finger ends. */
+/** Returns the end of a tracked finger's skin. */
 function trackedEnd(hand: RecordedHand, side: Side, finger: FingerName): Vec3 {
   const { position, orientation, radius } = jointAt(hand, `${jointPrefix[finger]}-tip`, side, wrists[side]);
   return addScaled(position, rotate(orientation, vec3(0, 0, -1)), radius);
@@ -144,7 +144,7 @@ describe('recorded hands on a rig of the wearer’s size', () => {
   });
 });
 
-test('fingertips are told where joints are, on the floor that the page moves its wearer on', async () => {
+test('fingertips are reported where joints are, on the floor that the page moves its wearer on', async () => {
   const { avatar, show } = await wearer();
   show({ left: flatHand, right: closedHand }, 0.1);
   const there = avatar.fingertips('left').index!;

@@ -19,7 +19,7 @@ describe('a body whose head is lost', () => {
     measured('head-lost', { 'opacity after 3 s': 0.25, 'opacity in the first frame back': 1 });
   });
 
-  test('lost again it begins anew', () => {
+  test('lost again it restarts', () => {
     const loss = createHeadLoss();
     loss.follow(0, false);
     expect(loss.follow(1, false)).toBeLessThan(0.3);

@@ -141,18 +141,18 @@ const attempts: readonly (readonly [string, () => ArrayBuffer, RegExp])[] = [
       }),
     /outside the file \(file:\/\/\/etc\/passwd\)/,
   ],
-  ['a file that is cut short', () => mannequin().slice(0, 3000), /cut short/],
-  ['a file without its last word', () => mannequin().slice(0, -4), /cut short/],
-  ['a file that is cut off within a mesh', () => mannequin().slice(0, -20_000), /cut short/],
-  ['a file of which only the description has arrived', () => descriptionOf(mannequin()), /cut short/],
-  ['a binary part that is said to be longer than the file', () => withBinaryLength(2 ** 31), /cut short/],
+  ['a file that is cut short', () => mannequin().slice(0, 3000), /truncated/],
+  ['a file without its last word', () => mannequin().slice(0, -4), /truncated/],
+  ['a file that is cut off within a mesh', () => mannequin().slice(0, -20_000), /truncated/],
+  ['a file of which only the description has arrived', () => descriptionOf(mannequin()), /truncated/],
+  ['a binary part that is said to be longer than the file', () => withBinaryLength(2 ** 31), /truncated/],
   [
     'JSON that is none',
     () =>
       changed((json) => {
         json.nodes = 'everything' as never;
       }),
-    /no VRM or GLB file/,
+    /not a VRM or GLB file/,
   ],
   [
     'a negative count',
@@ -160,7 +160,7 @@ const attempts: readonly (readonly [string, () => ArrayBuffer, RegExp])[] = [
       changed((json) => {
         first(json.accessors).count = -1;
       }),
-    /no VRM or GLB file/,
+    /not a VRM or GLB file/,
   ],
   [
     'a description without an end to its depth',
@@ -170,7 +170,7 @@ const attempts: readonly (readonly [string, () => ArrayBuffer, RegExp])[] = [
         for (let i = 0; i < 500; i++) deep = [deep];
         json.extras = deep;
       }),
-    /person\.vrm: no VRM or GLB file \(is nested deeper than 64 levels\)/,
+    /person\.vrm: not a VRM or GLB file \(is nested deeper than 64 levels\)/,
   ],
   [
     'a need for KTX2 textures',
@@ -247,7 +247,7 @@ describe('a compressed body', () => {
   });
 });
 
-/** As the page opens files, with the check that its worker runs. */
+/** Opens a file with the check that the page's worker runs. */
 const checked = (bytes: ArrayBuffer) => checkAvatar(bytes, { name: 'person.vrm', unpacked: [] });
 const opened = async (bytes: ArrayBuffer) => parseChecked(await checked(bytes), 'person.vrm');
 

@@ -35,7 +35,7 @@ function memory(): Pick<Storage, 'getItem' | 'setItem'> {
   return { getItem: (key) => items.get(key) ?? null, setItem: (key, value) => void items.set(key, value) };
 }
 
-/** Where the joints are of a body that stands as the built-in actor does. */
+/** Returns the joints of a body that stands as the built-in actor does. */
 function posed(loaded: LoadedAvatar) {
   const avatar = createAvatar(loaded);
   avatar.setCalibration(defaultCalibration);
@@ -57,15 +57,15 @@ async function refusalOf(file: ArrayBuffer): Promise<UnknownBones> {
   return error;
 }
 
-describe('a file whose bones’ names tell no body', () => {
-  test('is told with what it calls them, and with those that are known', async () => {
+describe('a file whose bones match no humanoid', () => {
+  test('is reported with its names, and with those that are known', async () => {
     const unknown = await refusalOf(builtRig({ nameOf: backwards }));
     expect(unknown.found).toContain('spih');
     expect(unknown.found).toContain('dnaHtfel');
-    expect(unknown.told).toEqual({});
+    expect(unknown.matched).toEqual({});
     const oneHanded = await refusalOf(builtRig({ nameOf: (bone) => (bone === 'leftHand' ? 'hook' : bone) }));
     expect(oneHanded.message).toBe('person.glb: its humanoid has no leftHand');
-    expect(oneHanded.told).toMatchObject({ hips: 'hips', rightHand: 'rightHand' });
+    expect(oneHanded.matched).toMatchObject({ hips: 'hips', rightHand: 'rightHand' });
     expect(oneHanded.found).toContain('hook');
   });
 
@@ -131,7 +131,7 @@ describe('a map of bones that is given', () => {
     expect(bonesIn(text, found)).toEqual({ complaint: expect.stringMatching(sentence) });
   });
 
-  test('is taken where it is one; empty text tells nothing', () => {
+  test('is taken where it is one; empty text maps nothing', () => {
     expect(bonesIn('{"hips": "spih", "leftIndexProximal": "daeh"}', found)).toEqual({
       hips: 'spih',
       leftIndexProximal: 'daeh',

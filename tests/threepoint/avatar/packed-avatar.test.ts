@@ -7,8 +7,11 @@ import { glbOf, padded, partsOf } from './glb';
 import { vroid } from './rig-namings';
 import { expectBody, wear } from './worn-body';
 
-/** The same file with the corners of its skin packed by meshopt, as exporters write it; `told`: how many it claims to be. */
-async function packed(file: ArrayBuffer, told?: number): Promise<ArrayBuffer> {
+/**
+ * Returns the file with the corners of its skin packed by meshopt, as exporters write it; `claimed`: their number in
+ * the file.
+ */
+async function packed(file: ArrayBuffer, claimed?: number): Promise<ArrayBuffer> {
   await MeshoptEncoder.ready;
   const { json, binary } = partsOf(new Uint8Array(file));
   const view = json.bufferViews[0]!;
@@ -20,7 +23,7 @@ async function packed(file: ArrayBuffer, told?: number): Promise<ArrayBuffer> {
     byteOffset: binary.length,
     byteLength: small.length,
     byteStride,
-    count: told ?? count,
+    count: claimed ?? count,
     mode: 'ATTRIBUTES',
   };
   Object.assign(view, { extensions: { EXT_meshopt_compression: extension } });

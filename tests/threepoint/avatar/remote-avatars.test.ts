@@ -103,7 +103,7 @@ describe('bodies of others', () => {
     others.dispose();
   });
 
-  test('fade to a ghost, go when no one is told of, and serve the next person', async () => {
+  test('fade to a ghost, go when no one is passed, and serve the next person', async () => {
     const others = await gathered([person(1)]);
     others.show([person(1, { opacity: 0.35 })], 11);
     const materials: MeshStandardMaterial[] = [];
@@ -156,7 +156,7 @@ describe('an avatar that could not be had', () => {
     return { others, told, show, asked: () => asked };
   }
 
-  test('for a fault that passes is shown once it can be had, and no one is told of a mannequin', async () => {
+  test('for a fault that passes is shown once it has loaded, and no mannequin is reported', async () => {
     const { others, told, show, asked } = wearing([new PassingFault('the server answers 404'), null]);
     await show(0, () => asked() === 1 && others.drawnAs(1) === plainAvatar);
     await show(4, () => asked() > 1, 100);
@@ -166,14 +166,14 @@ describe('an avatar that could not be had', () => {
     expect(told).toEqual([]);
   });
 
-  test('for a fault that does not pass soon is told of once, and asked for on and on', async () => {
+  test('for a fault that does not pass soon is reported once, and requested again and again', async () => {
     const { told, show, asked } = wearing([new PassingFault('the server answers 404')]);
     for (let attempt = 1; attempt <= 6; attempt++) await show(10 * attempt, () => asked() === attempt);
     expect(asked()).toBe(6);
     expect(told).toEqual(['the server answers 404']);
   });
 
-  test('for its own faults is told of at once and asked for no more', async () => {
+  test('for its own faults is reported at once and not requested again', async () => {
     const { others, told, show, asked } = wearing([new Error('no humanoid')]);
     await show(0, () => asked() === 1 && others.drawnAs(1) === plainAvatar);
     await show(60, () => asked() > 1, 100);

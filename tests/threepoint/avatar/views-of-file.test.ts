@@ -7,7 +7,10 @@ import { glbOf, padded } from './glb';
 
 const places = new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0.25, 0.5, -2]);
 const corners = new Uint16Array([0, 1, 2, 2, 1, 3]);
-/** Bytes of which none is like its neighbour: a view that is cut one byte beside tells others. Of no whole number of words. */
+/**
+ * Returns bytes that differ from their neighbours, so that a view that is off by one byte is noticed; their number is
+ * no multiple of a word.
+ */
 const bytesFrom = (first: number, length: number) => Uint8Array.from({ length }, (_, i) => (first + i * 7) & 255);
 const skin = bytesFrom(11, 301);
 const cloth = bytesFrom(83, 77);
@@ -73,7 +76,7 @@ function readPicture(
     .then(onLoad, onError);
 }
 
-/** What the loader makes of a file; its parser tells whether it was asked for the binary as a whole. */
+/** Returns the loader's result for a file, and whether its parser was asked for the whole binary. */
 async function loaded(file: ArrayBuffer) {
   // The loader asks the window for addresses of blobs.
   vi.stubGlobal('self', globalThis);

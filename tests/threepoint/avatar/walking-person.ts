@@ -21,7 +21,7 @@ export function standing(time: number): GaitPoints {
   };
 }
 
-/** The same person walking on the spot of a moving floor: head and hips bob, arms swing, 1 m/s towards −Z. */
+/** Returns the person walking on the spot of a moving floor: head and hips bob, arms swing, 1 m/s towards −Z. */
 export function walking(time: number): GaitPoints {
   const phase = 2 * Math.PI * 0.9 * time;
   const z = -time;

@@ -37,7 +37,7 @@ export const rotation: fc.Arbitrary<Quat> = fc
 export const smallRotation = (angle: number): fc.Arbitrary<Quat> =>
   fc.tuple(direction, evenly(-angle, angle)).map(([axis, turn]) => fromAxisAngle(axis, turn));
 
-/** Where and which way round a person stands: properties never start at the origin facing −Z. */
+/** The position and yaw of a person: properties never start at the origin facing −Z. */
 export const standpoint = fc.record({ x: evenly(-3, 3), z: evenly(-3, 3), yaw: evenly(-Math.PI, Math.PI) });
 
 export const composed = (...rotations: Quat[]): Quat => normaliseQuat(rotations.reduce((a, b) => multiply(a, b)));

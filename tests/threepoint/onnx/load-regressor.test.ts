@@ -50,7 +50,7 @@ describe('a network that is what its contract says', () => {
     expect(output).toHaveLength(18);
     expect(output.every(Number.isFinite)).toBe(true);
     await regressor.dispose();
-    await expect(regressor.run(new Float32Array(count))).rejects.toThrow(`${name}.onnx: already disposed of`);
+    await expect(regressor.run(new Float32Array(count))).rejects.toThrow(`${name}.onnx: used after dispose`);
   });
 });
 

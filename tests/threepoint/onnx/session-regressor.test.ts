@@ -23,7 +23,7 @@ function session(provider: InferenceSession['provider'], answer: number | Error)
   return { opened, lose, released: () => released };
 }
 
-/** A network on a graphics device that fails, and a session on WebAssembly that opens when it is told to. */
+/** Returns a network on a graphics device that fails, and a session on WebAssembly that opens on demand. */
 function failing(message = 'no memory is left') {
   const device = session('webgpu', new Error(message));
   const wasm = session('wasm', 7);
@@ -90,7 +90,7 @@ describe('a network that is let go while WebAssembly still opens', () => {
     await expect.poll(asked).toBe(1);
     const gone = regressor.dispose();
     arrive();
-    await expect(run).rejects.toThrow('learned.onnx: already disposed of');
+    await expect(run).rejects.toThrow('learned.onnx: used after dispose');
     await gone;
     expect([device.released(), wasm.released(), told]).toEqual([1, 1, []]);
     expect(regressor.provider).toBe('none');
@@ -100,7 +100,7 @@ describe('a network that is let go while WebAssembly still opens', () => {
     const { regressor, asked } = failing();
     const run = regressor.run(features);
     await regressor.dispose();
-    await expect(run).rejects.toThrow('learned.onnx: already disposed of');
+    await expect(run).rejects.toThrow('learned.onnx: used after dispose');
     expect(asked()).toBe(0);
   });
 });

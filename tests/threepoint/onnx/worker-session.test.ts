@@ -10,7 +10,7 @@ afterEach(() => {
   vi.useRealTimers();
 });
 
-/** A browser's worker that answers as it is told; whether it still lives. */
+/** A browser's worker with scripted answers; it records whether it still runs. */
 class ToldWorker extends EventTarget {
   readonly #answer: (question: Question) => object;
   lives = true;
@@ -37,7 +37,7 @@ const noNumbers = new Float32Array(18).fill(Number.NaN);
 describe('a worker for inference is not left running', () => {
   test.each([
     ['does not take the model', () => ({ broken: 'no such operator' }), 'learned.onnx: no such operator'],
-    ['answers its opening with numbers', () => ({ numbers: new Float32Array(18) }), /answers what no one asked/],
+    ['answers its opening with numbers', () => ({ numbers: new Float32Array(18) }), /sent an unexpected answer/],
     ['has other tensors', () => ({ ...names, inputNames: ['other'] }), /^learned\.onnx: has the tensors other/],
     [
       'fails at the run that warms it up',

@@ -10,7 +10,7 @@ import { fakeHeadset, type Seen } from './fake-headset';
 
 /** The specification's joints, as a device lists them. */
 const names = new XRBodyPoser(defaultCalibration).names;
-/** Each joint at a place of its own, which its name's rank tells. */
+/** Returns the position of a joint, which is unique by its name's rank. */
 const placeOf = (name: string) => vec3(names.indexOf(name) / 100, 1, 0.25);
 
 /** A headset that reports a body, which the test may change before each frame. */

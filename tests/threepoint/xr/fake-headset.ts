@@ -8,7 +8,7 @@ import { vi } from 'vitest';
 type Place = Pose<'floor'>;
 export type Seen = (Place & { readonly emulated?: boolean }) | null;
 
-/** A space of a device that is told where everything is: its origin in the room. */
+/** A space of a device with a scripted origin in the room. */
 class Space extends EventTarget {
   constructor(public roomFromSpace: Place) {
     super();
@@ -55,7 +55,7 @@ class Session extends EventTarget {
   visibilityState: XRVisibilityState = 'visible';
 }
 
-/** A headset as WebXR shows it, for tests: every pose is told, and may be null, emulated or no number. */
+/** A WebXR headset for tests: every pose is scripted, and may be null, emulated or not finite. */
 export function fakeHeadset() {
   vi.stubGlobal('XRRigidTransform', RigidTransform);
   const floor = new Space({ position: zero, orientation: identity });

@@ -45,7 +45,7 @@ describe('fingers of a tracked hand', () => {
     expect(asked).toEqual({ fills: 4, joints: 0 });
   });
 
-  test('are the same on a device that tells joints one by one', () => {
+  test('are the same on a device that reports joints one by one', () => {
     const whole = tracked();
     const single = tracked();
     delete (single.frame as { fillPoses?: unknown }).fillPoses;

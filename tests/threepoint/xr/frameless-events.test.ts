@@ -34,7 +34,7 @@ function headset() {
   };
 }
 
-test('a button that is told without its frame reaches three with the next one, once, in order', () => {
+test('a button event without its frame reaches three with the next one, once, in order', () => {
   const { session, listen, tell, draw, frame } = headset();
   giveFramesToEvents(session);
   const heard: string[] = [];

@@ -83,7 +83,7 @@ const mirrored = ({ position: p, orientation: o }: Place): Place => ({
   orientation: { x: o.x, y: -o.y, z: -o.z, w: o.w } satisfies Quat,
 });
 
-/** Where a joint of that hand is when its wrist is there; a right hand is the mirror image. */
+/** Returns a joint of that hand for this wrist; a right hand is the mirror image. */
 export function jointAt(
   hand: RecordedHand,
   name: string,

@@ -34,7 +34,7 @@ describe('why there is no VR', () => {
   test.each([
     ['NotAllowedError', 'the headset refused the session'],
     ['SecurityError', 'the headset refused the session'],
-    ['NotSupportedError', 'the headset offers no floor'],
+    ['NotSupportedError', 'the headset provides no floor-level reference space'],
     ['AbortError', 'the browser says no'],
   ])('a session refused with %s is a sentence', async (name, sentence) => {
     browser({ xr: { requestSession: failing(name) as unknown as XRSystem['requestSession'] } });

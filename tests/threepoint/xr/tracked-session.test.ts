@@ -50,7 +50,7 @@ describe('poses', () => {
     expect(read()).toMatchObject({ leftHand: null, rightHand: { tracking: 'tracked' } });
   });
 
-  test('of a device that never calls a point tracked are taken as seen, each point by itself, until it has told', () => {
+  test('of a device that never reports a point as tracked count as tracked, each point by itself, until it has reported it', () => {
     const { read, setInputs } = tracked();
     const guessed = { left: { ...left, emulated: true }, right: { ...right, emulated: true } };
     setInputs(controller('left', guessed.left), controller('right', guessed.right));
@@ -86,7 +86,7 @@ describe('behind a menu of the device', () => {
 });
 
 describe('which hand it is', () => {
-  test('is told by handedness, in any order, and a swap is another device on each side', () => {
+  test('is decided by handedness, in any order, and a swap is another device on each side', () => {
     const { read, setInputs, inputs } = tracked();
     setInputs(controller('right', right), controller('left', left));
     expect(read()).toMatchObject({ leftHand: {}, rightHand: {} });
@@ -115,7 +115,7 @@ describe('which hand it is', () => {
     expect(inputs.input).toBe('hands');
   });
 
-  test('is the hand itself while its pinch is told as a pointer of its own', () => {
+  test('is the hand itself while its pinch is reported as a separate pointer', () => {
     const { read, setInputs, inputs } = tracked();
     const hand = bareHand('right', right, 0.005);
     setInputs(hand);
@@ -128,7 +128,7 @@ describe('which hand it is', () => {
     expect(inputs.input).toBe('hands');
   });
 
-  test('is where it pinches, of a device that tells of nothing else', () => {
+  test('is where it pinches, of a device that reports nothing else', () => {
     const { read, setInputs, inputs } = tracked();
     setInputs({ ...controller('right', right, 1), targetRayMode: 'transient-pointer' });
     expect(read()?.rightHand).not.toBeNull();

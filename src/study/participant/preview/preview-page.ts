@@ -1,7 +1,7 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { button, element, pageElement } from 'threepoint-ui/element';
-import { loadPreviewPlan } from 'threepoint-ui/preview-plan';
 import { pageFolder } from 'threepoint-ui/page-folder';
+import { loadPreviewPlan } from 'threepoint-ui/preview-plan';
 import { withdrawalLink } from '../../client/study-link';
 import { languagesOf, participantsOf, type StudyPlan, studyTitle } from '../../model/plan/plan';
 import { durationOf } from '../../model/plan/plan-outline';

@@ -1,16 +1,16 @@
 import { BufferAttribute, BufferGeometry } from 'three';
 import type { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { avatarLimits } from '../file/inspect-avatar';
-import { AskedWorker } from './asked-worker';
 import type { Decoders } from './decoder-set';
 import type { DracoAnswer, DracoQuestion } from './draco-worker';
+import { WorkerClient } from './worker-client';
 
 const mostNumbers = avatarLimits.triangles * 3;
 
-type DracoWorker = AskedWorker<DracoQuestion, DracoAnswer>;
+type DracoWorker = WorkerClient<DracoQuestion, DracoAnswer>;
 
 async function geometryOf(worker: DracoWorker, question: DracoQuestion): Promise<BufferGeometry> {
-  const answer = await worker.ask(question);
+  const answer = await worker.request(question);
   if ('broken' in answer) throw new Error(answer.broken);
   const geometry = new BufferGeometry();
   geometry.setIndex(new BufferAttribute(answer.index, 1));
@@ -32,7 +32,7 @@ type DracoCall = [
 
 /** What GLTFLoader asks of a Draco loader, answered by a worker of our own: three.js's own starts from a blob: address, which our policy forbids. */
 function dracoInWorker() {
-  const worker: DracoWorker = new AskedWorker(
+  const worker: DracoWorker = new WorkerClient(
     'Draco',
     () => new Worker(new URL('./draco-worker.ts', import.meta.url), { type: 'module' }),
   );

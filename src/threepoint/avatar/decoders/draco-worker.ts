@@ -8,7 +8,7 @@ export interface DracoQuestion {
   readonly packed: ArrayBuffer;
   readonly ids: Readonly<Record<string, number>>;
   readonly types: Readonly<Record<string, string>>;
-  /** A mesh that holds more corners or triangles than its file tells is refused. */
+  /** The largest number of corners or triangles of a mesh, whatever its file declares. */
   readonly mostNumbers: number;
 }
 

@@ -16,7 +16,7 @@ export interface AvatarQuestion {
 /** A file that may be read. */
 export interface CheckedAvatar {
   readonly bytes: ArrayBuffer;
-  /** The same, of which parts can be read without being copied. */
+  /** The file as a Blob, of which parts can be read without a copy. */
   readonly file: Blob;
   /** Which of the extensions asked about it uses. */
   readonly packed: readonly string[];
@@ -32,7 +32,7 @@ export const checkAvatar: AvatarCheck = async (bytes, { name, unpacked, limits =
   const file = new Uint8Array(bytes);
   const packed = inspectAvatar(file, name, unpacked, limits);
   const faults = await gltfFaults(file).catch((error: unknown) => {
-    throw new Error(`${name}: it cannot be checked (${reasonOf(error)})`);
+    throw new Error(`${name}: could not be checked (${reasonOf(error)})`);
   });
   if (faults.length > 0) throw new Error(`${name}: not valid glTF (${faults[0]})`);
   return { bytes, file: new Blob([bytes]), packed, hash: await hashOf(bytes) };

@@ -11,7 +11,7 @@ const patienceMs = 20_000;
 export const checkInWorker: AvatarCheck = (bytes, { name, unpacked, limits }) => {
   const worker = new Worker(new URL('./check-worker.ts', import.meta.url), { type: 'module' });
   return new Promise<CheckedAvatar>((resolve, reject) => {
-    const timer = setTimeout(() => reject(new Error(`${name}: checking it takes too long`)), patienceMs);
+    const timer = setTimeout(() => reject(new Error(`${name}: the check took too long`)), patienceMs);
     worker.addEventListener('message', ({ data: answer }: MessageEvent<WorkerAnswer>) => {
       clearTimeout(timer);
       if ('checked' in answer) resolve(answer.checked);
@@ -19,7 +19,7 @@ export const checkInWorker: AvatarCheck = (bytes, { name, unpacked, limits }) =>
     });
     worker.addEventListener('error', ({ message }) => {
       clearTimeout(timer);
-      reject(new Error(`${name}: it cannot be checked (${message || 'the validator did not start'})`));
+      reject(new Error(`${name}: could not be checked (${message || 'the validator did not start'})`));
     });
     const question: WorkerQuestion = { bytes, name, unpacked, ...(limits && { limits }) };
     worker.postMessage(question, [bytes]);

@@ -78,7 +78,7 @@ const numbersOf: Readonly<Record<string, number>> = {
   MAT3: 9,
   MAT4: 16,
 };
-/** Of all bytes this share may be JSON. */
+/** The largest share of JSON in a file's bytes. */
 const mostJson = 0.25;
 
 /** Binary FBX begins with these words, FBX as text with any. */
@@ -121,12 +121,13 @@ export function inspectAvatar(
   limits: AvatarLimits = avatarLimits,
 ): readonly string[] {
   const limit = (what: string, has: number, may: number) => {
-    if (!(has <= may)) throw new Error(`${name}: ${told(has)} ${what}; an avatar may have ${told(may)} at most`);
+    if (!(has <= may))
+      throw new Error(`${name}: ${shownNumber(has)} ${what}; an avatar may have ${shownNumber(may)} at most`);
   };
   limit('MB', bytes.length / 2 ** 20, limits.megabytes);
   if (isFbx(bytes, name)) throw new Error(`${name}: ${fbxAdvice}`);
   const chunks = chunksOf(bytes);
-  if (!chunks) throw new Error(`${name}: no VRM or GLB file (it does not begin as one, or is cut short)`);
+  if (!chunks) throw new Error(`${name}: not a VRM or GLB file (wrong signature, or truncated)`);
   limit('MB of description', chunks.json.length / 2 ** 20, limits.megabytes * mostJson);
   let json: unknown;
   let uris: readonly string[];
@@ -134,7 +135,7 @@ export function inspectAvatar(
     json = JSON.parse(chunks.json);
     uris = urisIn(json);
   } catch (error) {
-    throw new Error(`${name}: no VRM or GLB file (${reasonOf(error)})`);
+    throw new Error(`${name}: not a VRM or GLB file (${reasonOf(error)})`);
   }
   if (uris.length > 0) {
     const shown = uris[0]!.slice(0, 60);
@@ -143,7 +144,7 @@ export function inspectAvatar(
   const parsed = v.safeParse(gltf, json);
   if (!parsed.success) {
     const [issue] = parsed.issues;
-    throw new Error(`${name}: no VRM or GLB file (${v.getDotPath(issue) ?? 'the whole'}: ${issue.message})`);
+    throw new Error(`${name}: not a VRM or GLB file (${v.getDotPath(issue) ?? 'the whole'}: ${issue.message})`);
   }
   const { extensionsRequired, extensionsUsed, nodes, meshes, accessors, skins, images, bufferViews } = parsed.output;
   const foreign = extensionsRequired.find((extension) => !readable.test(extension) && !unpacked.includes(extension));
@@ -162,7 +163,7 @@ export function inspectAvatar(
   limit('morph targets', targets, limits.morphTargets);
   const numbers = accessors.reduce((sum, { count, type }) => sum + count * (numbersOf[type] ?? 16), 0);
   limit('million numbers', numbers / 1e6, limits.millionNumbers);
-  // No number is smaller than a byte: what views unpack to is bounded as what accessors tell.
+  // A number takes at least one byte: the views' unpacked size is bounded as the accessors' is.
   const bytesUnpacked = bufferViews.reduce((sum, { extensions }) => {
     const packed = extensions.EXT_meshopt_compression ?? extensions.KHR_meshopt_compression;
     return sum + (packed ? packed.count * packed.byteStride : 0);
@@ -194,4 +195,5 @@ export function inspectAvatar(
   return unpacked.filter((extension) => extensionsUsed.includes(extension) || extensionsRequired.includes(extension));
 }
 
-const told = (value: number): string => (value < 100 ? String(Number(value.toFixed(1))) : String(Math.round(value)));
+const shownNumber = (value: number): string =>
+  value < 100 ? String(Number(value.toFixed(1))) : String(Math.round(value));

@@ -10,7 +10,7 @@ import type { Steps } from '../in-steps';
 
 type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
-/** The same numbers in an array of their own; several attributes of one buffer stay several. */
+/** Returns the numbers of an interleaved attribute in an array of its own. */
 function unravelled(attribute: InterleavedBufferAttribute): BufferAttribute {
   const { count, itemSize, normalized, offset } = attribute;
   const { array, stride } = attribute.data;

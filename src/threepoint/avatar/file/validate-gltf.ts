@@ -1,9 +1,9 @@
 import { validateBytes } from 'gltf-validator';
 
 /**
- * Faults that spoil at most the look of a surface and that exporters of avatars are known for: bounds rounded otherwise, normals
- * and weights a little off their length, a stride told where none need be (three.js reads it rightly). They pass; so do extensions the
- * validator does not know, as VRM's own.
+ * The faults that are accepted: at most a surface looks different, and known exporters of avatars make them. These are
+ * bounds that are rounded otherwise, normals and weights that are slightly off their length, and a stride where none is
+ * needed, which three.js reads correctly. Extensions that the validator does not know, such as VRM's, are accepted too.
  */
 const pardoned = [
   'ACCESSOR_MIN_MISMATCH',

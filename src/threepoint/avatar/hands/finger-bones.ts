@@ -51,13 +51,13 @@ export interface RigFinger {
   readonly bones: readonly FingerBone[];
   /** The inverse of each bone's frame at rest (hand-geometry). */
   readonly fromRest: readonly [Quat, Quat, Quat];
-  /** Where the finger ends, in the frame of the node of its last bone. */
+  /** The fingertip, in the frame of the node of the last bone. */
   readonly tip: Vector3;
 }
 
 export interface RigHand {
   readonly fingers: readonly RigFinger[];
-  /** In the rig's own metres; null: the rig lacks a bone of a finger. */
+  /** The geometry of the hand in the rig's own metres; null: the rig lacks a finger bone. */
   readonly geometry: HandGeometry | null;
 }
 
@@ -71,9 +71,9 @@ const rigFromWrist: Readonly<Record<Side, Quat>> = {
   right: fromAxes(forward, up, right),
 };
 
-/** A rig that does not say where a finger ends: its last bone against the one before [share]. */
+/** The length of the last bone of a finger without an end, as a share of the one before. */
 const lastBone = 0.8;
-/** A finger's radius where no skin says it [share of the length of its first bone]. */
+/** The radius of a finger without skin, as a share of the length of its first bone. */
 const thickness = 0.22;
 /** A finger's radius at its root against that at its tip. */
 const taper = 1.3;
@@ -118,7 +118,7 @@ function readFinger(vrm: VRM, side: Side, name: FingerName, hand: Object3D): Fou
 const world = new Vector3();
 const handAt = new Vector3();
 
-/** A place of the rig in the frame of a left wrist (hand-geometry). */
+/** Transforms a point of the rig into the frame of a left wrist (hand-geometry). */
 function placeIn(at: Vector3, hand: Object3D, side: Side, target: FingerPoints[number]): void {
   at.sub(hand.getWorldPosition(handAt));
   setVec3(target, at.z, at.y, side === 'left' ? -at.x : at.x);
@@ -131,7 +131,7 @@ function tipOf([, , , tip]: FingerPoints, nodes: readonly (Object3D | null)[], h
   return nodes.findLast((node) => node !== null)?.worldToLocal(inWorld) ?? inWorld;
 }
 
-/** Joints and tip by the bones alone; a bone that the rig lacks lies where the one before it ends. */
+/** Returns joints and tip by the bones alone; a missing bone lies at the end of the one before. */
 function restPoints(nodes: readonly (Object3D | null)[], hand: Object3D, side: Side, points: FingerPoints): void {
   const along = vec3(0, 0, -1);
   let last = 0.03;
@@ -149,7 +149,7 @@ function restPoints(nodes: readonly (Object3D | null)[], hand: Object3D, side: S
   else add(points[2], scale(along, lastBone * last), points[3]);
 }
 
-/** Where the skin that moves mostly with a bone lies, world frame [m]; null: there is none. */
+/** Returns the skin vertices that move mostly with a bone, world frame [m]; null: there are none. */
 function skinOf(scene: Object3D, node: Object3D | null): readonly Vector3[] | null {
   const found: Vector3[] = [];
   if (!node) return null;
@@ -170,7 +170,7 @@ function skinOf(scene: Object3D, node: Object3D | null): readonly Vector3[] | nu
   return found.length >= 4 ? found : null;
 }
 
-/** Puts a finger's tip into the middle of the skin's roundness there, and says its radius [m]. */
+/** Moves a finger's tip to the centre of the skin's roundness there, and returns its radius [m]. */
 function endAtSkin(skin: readonly Vector3[], hand: Object3D, side: Side, points: FingerPoints): number {
   const [, , joint, tip] = points;
   const along = normalise(subtract(tip, joint));

@@ -10,7 +10,7 @@ import type { Vec3 } from '../../core/math/vec3';
 import { ofSide, type RigFinger, type RigHand, readHand } from './finger-bones';
 
 const frames = makeFingerFrames();
-/** How each bone of a finger has turned since the rest pose. */
+/** The rotations of a finger's bones since the rest pose. */
 const turned = makeFingerFrames();
 const against = quat(0, 0, 0, 1);
 const carried = quat(0, 0, 0, 1);
@@ -22,16 +22,17 @@ class HandFingers {
   readonly #memory = new FingerMemory();
   readonly #seen = makeHandShape();
   #isSeen = false;
-  /** What is drawn: on a rig of other proportions a pinch takes other angles. */
+  /** The drawn shape: on a rig of other proportions a pinch takes other angles. */
   readonly #shown = makeHandShape();
-  /** What the bones were bent to last. */
+  /** The shape that the bones were bent to last. */
   readonly #bent = makeHandShape();
   #begun = false;
 
   constructor(vrm: VRM, side: Side) {
     this.#side = side;
     this.#rig = readHand(vrm, side);
-    // Thirty matrices that are composed anew in every picture, though fingers mostly rest; constraints of a file write rotations alone.
+    // Thirty matrices would be composed in every frame although fingers mostly rest; the constraints of a file write
+    // rotations only.
     if ((vrm.nodeConstraintManager?.constraints.size ?? 0) > 0) return;
     for (const { bones } of this.#rig.fingers) for (const { node } of bones) node.matrixAutoUpdate = false;
   }
@@ -44,7 +45,8 @@ class HandFingers {
     const found: Partial<Record<FingerName, Vec3>> = {};
     for (const { name, bones, tip } of this.#rig.fingers) {
       const at = tip.clone();
-      // Node by node: matrices of the world may be a picture old, and bones do not hear of it when what carries the rig has moved.
+      // Updates node by node: world matrices may be a frame old, and bones are not notified when the rig's parent has
+      // moved.
       for (let node: Object3D | null = bones.at(-1)?.node ?? null; node && node !== frame; node = node.parent) {
         if (node.matrixAutoUpdate) node.updateMatrix();
         at.applyMatrix4(node.matrix);
@@ -95,22 +97,25 @@ export class Fingers {
     this.update(0);
   }
 
-  /** What is seen of a hand from now on; null: nothing. Copied. */
+  /** Sets the tracked shape of a hand from now on; null: none. The shape is copied. */
   set(side: Side, shape: HandShape | null): void {
     this.#hands[side].set(shape);
   }
 
-  /** Bends the bones, so long after the last time [s]. */
+  /** Bends the bones. deltaSeconds: since the last call. */
   update(deltaSeconds: number): void {
     for (const side of sides) this.#hands[side].update(deltaSeconds);
   }
 
-  /** Where the fingers end that the rig has, as drawn, in the frame of an object that carries the rig [m]: for tools and tests, new objects. */
+  /**
+   * Returns the drawn fingertips of the rig in the frame of an object that carries it [m], in new objects for tools and
+   * tests.
+   */
   tips(side: Side, frame: Object3D): Readonly<Partial<Record<FingerName, Vec3>>> {
     return this.#hands[side].tips(frame);
   }
 
-  /** Of the rig, in its own metres; null: it lacks a bone of a finger. */
+  /** Returns the geometry of the rig's hand in its own metres; null: the rig lacks a finger bone. */
   geometry(side: Side): HandGeometry | null {
     return this.#hands[side].geometry;
   }

@@ -1,6 +1,6 @@
 import { closeRound, distanceToBall, distanceToRod, type Surface } from '../../core/body/grasp';
 import { averageHand, type HandGeometry, mirrorPoint } from '../../core/body/hand-geometry';
-import { copyHandShape, type MutableHandShape, makeHandShape } from '../../core/body/hand-shape';
+import { copyHandShape, type FingerName, type MutableHandShape, makeHandShape } from '../../core/body/hand-shape';
 import type { Pose } from '../../core/math/pose';
 import { rotateInverse } from '../../core/math/quat';
 import type { Side } from '../../core/math/side';
@@ -8,7 +8,7 @@ import { copyVec3, distance, dot, type MutableVec3, subtract, type Vec3, vec3 } 
 
 type Kind = 'nothing' | 'rod' | 'ball' | 'rim';
 
-/** A thing as it lies in one hand, frame of a left wrist; the fingers are closed anew when it has moved there. */
+/** An object in one hand, frame of a left wrist; the fingers close again when it has moved there. */
 interface Held {
   kind: Kind;
   readonly middle: MutableVec3;
@@ -16,18 +16,24 @@ interface Held {
   radius: number;
   tube: number;
   readonly shape: MutableHandShape;
+  /** The distance [m] of a point from the object. */
+  readonly surface: Surface;
 }
 
-const makeHeld = (): Held => ({
-  kind: 'nothing',
-  middle: vec3(0, 0, 0),
-  axis: vec3(0, 0, 0),
-  radius: 0,
-  tube: 0,
-  shape: makeHandShape(),
-});
+function makeHeld(): Held {
+  const held: Held = {
+    kind: 'nothing',
+    middle: vec3(0, 0, 0),
+    axis: vec3(0, 0, 0),
+    radius: 0,
+    tube: 0,
+    shape: makeHandShape(),
+    surface: (point, finger) => distanceTo(held, point, finger),
+  };
+  return held;
+}
 
-/** A thing that has moved less than this in its hand is held as it was [m; of the unit axis]. */
+/** The motion of an object in its hand below which the fingers stay as they are [m; of the unit axis]. */
 const still = 4e-4;
 const stillAxis = 0.004;
 
@@ -45,7 +51,7 @@ interface Rim extends Ball {
   readonly tube: number;
 }
 
-/** Closes hands round what they hold. All poses and places are of one frame. */
+/** Closes hands round the objects that they hold. All poses are in one frame. */
 export class Holding {
   readonly #held = { left: makeHeld(), right: makeHeld() };
   readonly #middle = vec3(0, 0, 0);
@@ -54,7 +60,7 @@ export class Holding {
   #eyeHeight = 1.59;
   readonly #hands: Record<Side, HandGeometry> = { left: this.#average, right: this.#average };
 
-  /** Whose hand it is that is drawn [m]; null: a rig without fingers of its own, which goes by the average hand of this eye height. */
+  /** Sets the drawn hand [m]; null: a rig without fingers, which uses the average hand of this eye height. */
   fitTo(side: Side, hand: HandGeometry | null, eyeHeight: number): void {
     if (eyeHeight !== this.#eyeHeight) {
       this.#eyeHeight = eyeHeight;
@@ -83,7 +89,7 @@ export class Holding {
     this.#close(side, 'rim', radius, tube, target);
   }
 
-  /** Where the thing lies in the frame of a left wrist. */
+  /** Moves the object into the frame of a left wrist. */
   #put(side: Side, wrist: Pose<'floor'>, at: Vec3, axis: Vec3): void {
     const middle = rotateInverse(wrist.orientation, subtract(at, wrist.position, this.#middle), this.#middle);
     const along = rotateInverse(wrist.orientation, axis, this.#axis);
@@ -101,24 +107,21 @@ export class Holding {
       held.tube = tube;
       copyVec3(this.#middle, held.middle);
       copyVec3(this.#axis, held.axis);
-      current = held;
-      closeRound(surfaceOfCurrent, this.#hands[side], held.shape);
+      closeRound(held.surface, this.#hands[side], held.shape);
     }
     copyHandShape(held.shape, target);
   }
 }
 
 const noAxis = vec3(0, 0, 0);
-let current = makeHeld();
-const nearest = vec3(0, 0, 0);
+const fromMiddle = vec3(0, 0, 0);
 
-/** How far a point is from the thing in `current`. */
-const surfaceOfCurrent: Surface = (point, finger) => {
-  const { kind, middle, axis, radius, tube } = current;
+/** Returns the distance [m] of a point on a finger from a held object. */
+function distanceTo({ kind, middle, axis, radius, tube }: Held, point: Vec3, finger: FingerName): number {
   if (kind === 'rod') return distanceToRod(point, middle, axis, radius);
   if (kind === 'ball') return distanceToBall(point, middle, radius);
   const fromWall = distanceToRod(point, middle, axis, radius);
   if (finger !== 'thumb') return fromWall - tube;
-  const above = dot(subtract(point, middle, nearest), axis);
+  const above = dot(subtract(point, middle, fromMiddle), axis);
   return Math.sqrt(fromWall * fromWall + above * above) - tube;
-};
+}

@@ -2,7 +2,7 @@ import { type HandShape, type MutableHandShape, makeHandShape, shapeOfClosing } 
 import { type Buttons, type HandButtons, pressureOf } from '../../core/input/button-presses';
 import type { Side } from '../../core/math/side';
 
-/** The fingers of a hand of which only its buttons are known: a built-in player's, a mouse's. */
+/** Returns the fingers of a hand whose buttons alone are known: a built-in player's, or a mouse's. */
 export function shapeOfButtons(buttons: HandButtons, target: MutableHandShape = makeHandShape()): MutableHandShape {
   const trigger = pressureOf(buttons, 'trigger');
   const grip = pressureOf(buttons, 'grip');
@@ -10,7 +10,7 @@ export function shapeOfButtons(buttons: HandButtons, target: MutableHandShape = 
   return shapeOfClosing({ thumb: closed, index: closed, rest: closed, pinch: pressureOf(buttons, 'pinch') }, target);
 }
 
-/** The same for both hands, new. */
+/** Returns new finger shapes of both hands by their buttons. */
 export const fingersOfButtons = ({ left, right }: Buttons): Record<Side, HandShape> => ({
   left: shapeOfButtons(left),
   right: shapeOfButtons(right),

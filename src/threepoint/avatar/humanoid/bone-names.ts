@@ -131,7 +131,7 @@ const namings: Readonly<Record<string, Naming>> = {
   },
 };
 
-/** The same for all writings of one name. */
+/** Returns a form that all spellings of one name share. */
 const plain = (name: string): string => name.toLowerCase().replace(/[^a-z0-9]/g, '');
 
 /** Each bone that a naming calls by name, as `plain` writes it. */

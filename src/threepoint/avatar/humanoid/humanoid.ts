@@ -43,7 +43,10 @@ function skinBones(scene: Group): Set<Object3D> {
 
 const lacks = (bones: BoneMap): string[] => neededBones.filter((bone) => bones[bone] === undefined);
 
-/** The bones that the names tell. Throws a sentence with what was found where they tell no body. */
+/**
+ * Returns the bones that are known by their names. Throws a sentence with the names that were found where they match no
+ * humanoid.
+ */
 function knownBones(scene: Group, name: string): { readonly bones: BoneMap; readonly nodes: Map<string, Object3D> } {
   const skinned = skinBones(scene);
   const joints = nodesByName(scene, (node) => skinned.has(node));
@@ -54,11 +57,11 @@ function knownBones(scene: Group, name: string): { readonly bones: BoneMap; read
   const choice = lacks(byJoints.bones).length <= lacks(byAll.bones).length ? byJoints : byAll;
   if (choice.bones.hips !== undefined) return choice;
   const found = [...(joints.size > 0 ? joints : all).keys()];
-  if (found.length === 0) throw new Error(`${name}: no humanoid in it: it has no bones`);
-  const told =
+  if (found.length === 0) throw new Error(`${name}: no humanoid in the file: it has no bones`);
+  const shownFound =
     found.slice(0, shownNames).join(', ') + (found.length > shownNames ? ` and ${found.length - shownNames} more` : '');
   throw new UnknownBones(
-    `${name}: no humanoid in it that this page knows by its bones’ names (found: ${told}; known: ${knownNamings.join('; ')}). A map of its bones can be given to loadAvatar: {bones: {hips: '…', …}}`,
+    `${name}: its bones could not be matched to a humanoid (found: ${shownFound}; known: ${knownNamings.join('; ')}). Map them by hand: loadAvatar(source, {bones: {hips: '…', …}})`,
     found,
   );
 }
@@ -80,8 +83,8 @@ function mappedBones(scene: Group, bones: BoneMap, name: string): Map<string, Ob
 }
 
 /**
- * A VRM made of a scene that is none: its bones are those that `bones` names, or else those that the names of its nodes tell. Throws a sentence
- * that names the file and the bone or the names where it is no body.
+ * Makes a VRM of a scene that is none. Its bones are those of `bones`, or those that are known by their nodes' names.
+ * Throws a sentence that names the file and the missing bone, or the names that were found.
  */
 export function humanoidOf(scene: Group, name: string, given?: BoneMap): VRM {
   const { bones, nodes } = given ? { bones: given, nodes: mappedBones(scene, given, name) } : knownBones(scene, name);

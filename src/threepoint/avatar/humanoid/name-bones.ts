@@ -12,8 +12,8 @@ const plain = (name: string): string => name.toLowerCase().replace(/[^a-z0-9]/g,
 const plainBones = new Set([...boneNames].map(plain));
 
 /**
- * The same GLB file with its bones called by VRM's names, as this map tells them: a page that reads it needs no map. Rejects where the map names
- * what is not in it, or the file is no GLB.
+ * Returns the GLB file with its bones renamed to VRM's names by this map, so that a page needs no map to read it.
+ * Rejects where the map names a missing node, or the file is not a GLB.
  */
 export async function withNamedBones(bytes: ArrayBuffer, bones: BoneMap): Promise<ArrayBuffer> {
   const chunks = chunksOf(new Uint8Array(bytes));

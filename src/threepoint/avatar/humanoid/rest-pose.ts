@@ -139,7 +139,10 @@ function stand(body: Resting): void {
   if (!(size > smallest && size < largest)) apply(new Matrix4().makeScale(usual / size, usual / size, usual / size));
 }
 
-/** The height [m] of the soles, as far as bones tell: a body without legs has its floor where one with legs would. */
+/**
+ * Returns the height [m] of the soles as far as bones show it; a body without legs has its floor where average legs
+ * would end.
+ */
 function lowest(body: Resting): number {
   const head = body.at('head')!.y;
   const feet = [body.at('leftFoot'), body.at('rightFoot')].flatMap((foot) => foot?.y ?? []);

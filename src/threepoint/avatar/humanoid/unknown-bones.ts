@@ -1,15 +1,15 @@
 import type { BoneMap } from './bone-names';
 
-/** A file with bones whose names tell no body, or not all that a body needs: a map of them can be given. */
+/** The error of a file whose bone names match no humanoid, or not all needed bones: a map of them can be given. */
 export class UnknownBones extends Error {
   /** What the file calls its bones; of those that carry no skin, all its nodes. */
   readonly found: readonly string[];
-  /** What the names tell all the same. */
-  readonly told: BoneMap;
+  /** The bones that were matched by their names. */
+  readonly matched: BoneMap;
 
   constructor(message: string, found: readonly string[], told: BoneMap = {}) {
     super(message);
     this.found = found;
-    this.told = told;
+    this.matched = told;
   }
 }

@@ -25,7 +25,7 @@ import {
 import { yawOf } from '../../core/tracking/heading';
 import { createStepping, type Foot, type Stepping } from './stepping';
 
-/** What legs need of a body that stands, facing −Z [m]. */
+/** The proportions of the legs of a body that stands facing −Z [m]. */
 export interface LegProportions {
   /** The right hip joint from the hips' own, level with the floor. */
   readonly hipOffset: Vec3;
@@ -53,14 +53,17 @@ interface MutableLegPose extends LegPose {
   readonly foot: MutableQuat;
 }
 
-/** A leg is never quite straight [share of its length]: a knee that snaps straight is seen. */
+/** The smallest bend of a leg [share of its length]: a knee that snaps straight is visible. */
 const longestReach = 0.999;
-/** Hips go no further in one frame, in leg lengths. */
+/** The largest way of the hips in one frame [leg lengths]. */
 const longestWay = 0.5;
-/** Head and hips of a person do not both turn faster than this about the vertical [rad/s], nor further between two frames that lie far apart [rad]. */
+/**
+ * The fastest turn about the vertical of both head and hips [rad/s], and the largest between two frames that lie far
+ * apart [rad].
+ */
 const fastestTurn = 14;
 const furthestTurn = Math.PI / 2;
-/** Time stamps that shake tell of shorter frames than there are [s]. */
+/** The shortest frame [s] that is assumed: jittering time stamps report shorter ones. */
 const shortestFrame = 1 / 60;
 
 const makeLeg = (): MutableLegPose => ({
@@ -97,7 +100,7 @@ function aimDown(direction: Vec3, towards: Vec3, target: MutableQuat): Quat {
 
 /** Two legs under a pelvis: feet stand and step as a gait network expects them to, knees follow. */
 export class LegPosture {
-  /** The same objects in every frame. */
+  /** The legs of the newest frame, in the same objects. */
   readonly legs: Readonly<Record<Side, LegPose>>;
   private readonly own = { left: makeLeg(), right: makeLeg() };
   private readonly stance = { ankleHeight: 0, legLength: 0 };
@@ -106,7 +109,7 @@ export class LegPosture {
   private lastHeadYaw = 0;
   private seconds = 0;
 
-  /** eyeHeight [m]: of the person, in whose units the gait is told. */
+  /** eyeHeight [m]: the person's, whose proportions are the unit of the gait. */
   constructor(
     private proportions: LegProportions,
     private eyeHeight: number,
@@ -116,14 +119,14 @@ export class LegPosture {
     this.legs = this.own;
   }
 
-  /** Other legs, which stand up anew. */
+  /** Sets the proportions of the legs and resets them. */
   fit(proportions: LegProportions, eyeHeight: number): void {
     this.proportions = proportions;
     this.eyeHeight = eyeHeight;
     this.standUp();
   }
 
-  /** Stands or steps under the hips of a body, floor frame. */
+  /** Advances by one frame under the hips of a body, floor frame. */
   update(points: GaitPoints, deltaSeconds: number): void {
     const { stance, proportions, gait } = this;
     const { hips } = points;
@@ -140,7 +143,10 @@ export class LegPosture {
     this.place('right', hips.position, feet.right);
   }
 
-  /** Whether a body jumped since the frame before, as one that the device or the wearer moves or turns: feet come along at once. */
+  /**
+   * Returns whether the body jumped since the frame before, because the device or the wearer moved or turned it: the
+   * feet follow at once.
+   */
   private wasCarried({ hips, head }: GaitPoints, hipsYaw: number, deltaSeconds: number): boolean {
     const { lastHips, lastHipsYaw, lastHeadYaw } = this;
     const headYaw = yawOf(head.orientation);
@@ -152,7 +158,7 @@ export class LegPosture {
     this.lastHipsYaw = hipsYaw;
     this.lastHeadYaw = headYaw;
     const mostTurn = Math.min(fastestTurn * Math.max(deltaSeconds, shortestFrame), furthestTurn);
-    // Of head and hips one alone may leap where its heading is hardly defined.
+    // The heading of head or hips alone may jump where it is badly defined.
     return Math.sqrt(x * x + z * z) > longestWay * this.stance.legLength || Math.min(hipsTurn, headTurn) > mostTurn;
   }
 

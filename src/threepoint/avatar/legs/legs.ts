@@ -9,7 +9,7 @@ const bonesOf = {
   right: { thigh: 'rightUpperLeg', shank: 'rightLowerLeg', foot: 'rightFoot' },
 } as const satisfies Record<Side, Record<string, AvatarJoint>>;
 
-/** Of a rig that has no legs of its own. */
+/** The legs of a rig that has none. */
 const averageLegs: LegProportions = {
   hipOffset: vec3(0.09, -0.06, 0),
   upper: 0.42,
@@ -19,7 +19,7 @@ const averageLegs: LegProportions = {
 
 const averageEyeHeight = 1.6;
 
-/** The rig's own shares of what is left below hips this high [m], on a rig scaled by `rigScale`. */
+/** Returns the rig's own proportions below hips at this height [m], on a rig scaled by `rigScale`. */
 export function legProportionsOf(rig: Rig, hipsHeight: number, rigScale: number): LegProportions {
   const hip = rig.rest('leftUpperLeg');
   const knee = rig.rest('leftLowerLeg');
@@ -28,7 +28,7 @@ export function legProportionsOf(rig: Rig, hipsHeight: number, rigScale: number)
   if (!hip || !knee || !ankle || !hips) return averageLegs;
   const downScale = hipsHeight / hips.y;
   return {
-    // The rig faces +Z, we face −Z.
+    // The rig faces +Z, poses face −Z.
     hipOffset: vec3(Math.abs(hip.x - hips.x) * rigScale, (hip.y - hips.y) * downScale, -(hip.z - hips.z) * rigScale),
     upper: hip.distanceTo(knee) * downScale,
     // The ankle keeps the foot's own size; the rest of the difference goes to the shank.
@@ -46,14 +46,17 @@ export class Legs {
     this.whole = rig.bones.has('leftFoot') && rig.bones.has('rightFoot');
   }
 
-  /** Legs for a person with eyes and hips this high [m], on a rig scaled by `rigScale`; returns the lengths of its bones. */
+  /**
+   * Fits the legs to a person with eyes and hips at these heights [m], on a rig scaled by `rigScale`; returns the
+   * lengths of its bones.
+   */
   fit(eyeHeight: number, hipsHeight: number, rigScale: number): { readonly upper: number; readonly lower: number } {
     const proportions = legProportionsOf(this.rig, hipsHeight, rigScale);
     this.posture.fit(proportions, eyeHeight);
     return proportions;
   }
 
-  /** Stands or steps under the hips of a body, floor frame. */
+  /** Advances by one frame under the hips of a body, floor frame. */
   apply(points: GaitPoints, deltaSeconds: number): void {
     if (!this.whole) return;
     this.posture.update(points, deltaSeconds);

@@ -7,14 +7,17 @@ import { type MutableVec3, setVec3, type Vec3, vec3 } from '../../core/math/vec3
 export interface Foot {
   /** Ankle [m]; its height includes the ankle's own above the sole. */
   readonly position: Vec3;
-  /** Where the toes point: yaw [rad], 0 towards −Z. */
+  /** The direction of the toes: yaw [rad], 0 towards −Z. */
   readonly yaw: number;
   /** Downward tilt of the toes [rad] while the foot is in the air. */
   readonly pitch: number;
   readonly planted: boolean;
 }
 
-/** Where a foot is expected, on average (`Gait`): place on the floor [m], yaw of the toes [rad], how surely it stands [0, 1]. */
+/**
+ * The expected foot, on average (`Gait`): place on the floor [m], yaw of the toes [rad], probability of standing [0,
+ * 1].
+ */
 export interface FootGoal {
   readonly x: number;
   readonly z: number;
@@ -38,13 +41,13 @@ interface FootState {
   yaw: number;
   pitch: number;
   planted: boolean;
-  /** Of the sole [m]. */
+  /** The height of the sole [m]. */
   height: number;
-  /** How surely it stands, smoothed. */
+  /** The smoothed probability of standing. */
   standing: number;
-  /** Since it was lifted or put down [s]. */
+  /** The time since it was lifted or put down [s]. */
   seconds: number;
-  /** It was left behind, and steps once, expected to or not. */
+  /** Whether it was left behind, and takes one step in any case. */
   leftBehind: boolean;
   goalX: number;
   goalZ: number;
@@ -53,37 +56,40 @@ interface FootState {
 }
 
 export interface Stepping {
-  /** Feet after `deltaSeconds` more with these goals; the same object in every frame. */
+  /** Advances the feet by `deltaSeconds` with these goals; returns the same object in every frame. */
   update(goals: Readonly<Record<Side, FootGoal>>, stance: Stance, deltaSeconds: number): Feet;
-  /** Feet stand where they are expected in the next frame. */
+  /** Moves the feet to their goals in the next frame. */
   reset(): void;
 }
 
-/** When feet step, and how they go. Half-lives and durations in seconds. */
+/** The parameters of a step. Half-lives and durations in seconds. */
 export interface SteppingParameters {
-  /** A foot is lifted when it stands less surely than the one, and put down when it stands more surely than the other. */
+  /** The probability of standing below which a foot is lifted, and above which it is put down. */
   readonly liftBelow: number;
   readonly plantAbove: number;
-  /** A foot is in the air, or on the floor, for so long at least. */
+  /** The shortest time of a foot in the air, or on the floor. */
   readonly shortestSwing: number;
   readonly shortestStance: number;
-  /** In the air for longer it is put down: what is expected of arms held high is a jump that never ends. */
+  /** The longest time of a foot in the air: with arms held high the estimate is a jump that never ends. */
   readonly longestSwing: number;
-  /** A foot whose goal is nearer than this, in leg lengths, has nowhere to step to. */
+  /** The distance of a goal [leg lengths] below which a foot takes no step. */
   readonly leastWay: number;
-  /** A foot is left behind when its goal is farther than this, in leg lengths, or turned by more [rad]; it then steps for so long. */
+  /**
+   * The distance of a goal [leg lengths], or its turn [rad], beyond which a foot is left behind, and the duration of
+   * its step.
+   */
   readonly farthest: number;
   readonly turnLimit: number;
   readonly ownStep: number;
-  /** A foot in the air goes to where its goal will be after so long. */
+  /** The time ahead at which a foot in the air aims for its goal. */
   readonly lead: number;
   readonly followHalfLife: number;
   readonly standingHalfLife: number;
-  /** Of the sole, at most [leg lengths]. */
+  /** The largest lift of the sole [leg lengths]. */
   readonly liftShare: number;
 }
 
-/** By coordinate descent on 26 people whom the gait network had not seen. */
+/** The parameters found by coordinate descent on 26 people that the gait network was not trained on. */
 export const standardStepping: SteppingParameters = {
   liftBelow: 0.52,
   plantAbove: 0.58,
@@ -100,13 +106,16 @@ export const standardStepping: SteppingParameters = {
   liftShare: 0.09,
 };
 
-/** A foot goes ahead when it is off the floor: it has its full speed so long after it was lifted [s]. */
+/** The time [s] in which a lifted foot reaches its full speed. */
 const takeOff = 0.12;
-/** A foot in the air is lifted by this share at least: what goes along the floor skates. */
+/** The smallest lift of a foot in the air: one that moves along the floor skates. */
 const leastLift = 0.4;
 const velocityHalfLife = 0.05;
 const liftHalfLife = 0.03;
-/** The ball of a foot lies so far ahead of the ankle, in heights of the ankle: toes tilt no further than the floor lets them. */
+/**
+ * The distance of the ball of a foot ahead of the ankle, in heights of the ankle: the floor limits the tilt of the
+ * toes.
+ */
 const ballAhead = 1.6;
 const mostTilt = 0.35;
 
@@ -125,7 +134,10 @@ const makeFoot = (): FootState => ({
   velocityZ: 0,
 });
 
-/** Feet stand where they were put until they are expected to lift, or are left behind; in the air they follow where they are expected. */
+/**
+ * Feet stand where they were put until they are expected to lift, or are left behind; in the air they follow their
+ * goals.
+ */
 class TwoFeet implements Stepping {
   private readonly feet: Readonly<Record<Side, FootState>> = { left: makeFoot(), right: makeFoot() };
   private standing = false;
@@ -212,7 +224,7 @@ function followGoal(foot: FootState, goal: FootGoal, parameters: SteppingParamet
   foot.goalZ = goal.z;
 }
 
-/** Puts a foot down where it is expected. */
+/** Puts a foot down at its goal. */
 function plant(foot: FootState, goal: FootGoal, { ankleHeight }: Stance): void {
   setVec3(foot.position, goal.x, ankleHeight, goal.z);
   foot.yaw = goal.yaw;

@@ -75,7 +75,7 @@ export function* readMeshes(
   return result;
 }
 
-/** So many corners of a head are looked at for its height: hair ends in many. */
+/** The largest number of vertices that are used for a head's height: hair has many. */
 const mostCorners = 1500;
 
 /** How high the head's skin and what hangs on it reach at rest [m], in the rig's own frame. */
@@ -187,7 +187,7 @@ export class BodyMeshes {
     }
   }
 
-  /** As the file has it: hair and glasses are transparent by themselves. */
+  /** Restores the file's own material: hair and glasses are transparent by themselves. */
   private ownLook(material: Material) {
     const { transparent, opacity } = material;
     const look = this.looks.get(material) ?? { transparent, opacity };

@@ -21,9 +21,9 @@ import type { Rig } from './rig';
 
 /** An upper arm gets no longer or shorter than this [share of its length] before the shoulder gives. */
 const armGives = 0.06;
-/** Where a neck begins that has no bone: so far up from between the shoulders to the head [share]. */
+/** The base of a missing neck bone, from between the shoulders up to the head [share]. */
 const neckShare = 0.3;
-/** Where a clavicle begins that has no bone: so far out from the neck to the shoulder [share]. */
+/** The base of a missing clavicle bone, from the neck out to the shoulder [share]. */
 const clavicleShare = 0.2;
 
 /** A vertebra of the rig: from the one below it, which is next in the rig, at rest and as long as the body wants it [m]. */
@@ -84,7 +84,7 @@ export class OwnTrunk {
   private readonly links: Link[] = [];
   private readonly neckToHead = vec3(0, 0, 0);
   private readonly shoulders = [makeShoulder('left'), makeShoulder('right')];
-  /** Where the chain of vertebrae would put the neck. */
+  /** The neck at the end of the chain of vertebrae. */
   private readonly reached = vec3(0, 0, 0);
   private readonly neckOffset = vec3(0, 0, 0);
   private topVertebra: JointName = 'hips';

@@ -27,12 +27,12 @@ export interface RigBone {
   readonly restScale: Matrix4;
   /** Stretch along the bone, in its own frame, the uniform scale of the rig, and that of the file. */
   readonly stretch: Matrix4;
-  /** Where the far end lies, in its own frame: a unit vector; and how far [m] on the rig as scaled. */
+  /** The direction to the far end in the bone's own frame, unit, and its distance [m] on the scaled rig. */
   readonly direction: Vector3;
   ownLength: number;
   /** World matrix of this frame. */
   readonly world: Matrix4;
-  /** Where it is drawn in this frame, floor frame [m]. */
+  /** The drawn position in this frame, floor frame [m]. */
   readonly drawn: MutableVec3;
 }
 
@@ -106,14 +106,14 @@ export class Rig {
     for (const { node } of this.bones.values()) node.matrixAutoUpdate = false;
   }
 
-  /** Where the rig has this joint at rest, its own frame, facing +Z; null: it has no such bone. */
+  /** Returns the joint at rest in the rig's own frame, facing +Z; null: the rig has no such bone. */
   rest(name: AvatarJoint): Vector3 | null {
     return this.bones.get(name)?.restPosition ?? null;
   }
 
   /**
-   * Scales the rig by `scale` and stretches each bone to its length [m] in `joints` (a T-pose), legs to `legs`; lengths that neither
-   * tells stay the rig's own.
+   * Scales the rig by `scale` and stretches each bone to its length [m] in `joints` (a T-pose), legs to `legs`; other
+   * lengths stay the rig's own.
    */
   fit(
     joints: Readonly<Record<JointName, { readonly position: Vec3 }>>,
@@ -155,8 +155,8 @@ export class Rig {
   }
 
   /**
-   * Puts a bone where a joint of ours is: position [m] and rotation from T-pose, floor frame; a bone the rig lacks: nothing. `seen`:
-   * whether it counts among the joints that are drawn.
+   * Moves a bone to a joint: position [m] and rotation from T-pose, floor frame. Does nothing where the rig lacks the
+   * bone. `seen`: whether it counts among the drawn joints.
    */
   place(name: AvatarJoint, at: Vec3, rotationFromRest: Quat, seen = true): void {
     const bone = this.bones.get(name);

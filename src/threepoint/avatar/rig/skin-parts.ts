@@ -5,7 +5,7 @@ import type { Steps } from '../in-steps';
 export const skinParts = ['hands', 'head', 'trunk', 'legs'] as const;
 export type SkinPart = (typeof skinParts)[number];
 
-/** So many corners are sorted in one step. */
+/** The number of corners that one step sorts. */
 const cornersAStep = 3 * 1024;
 
 /**

@@ -27,9 +27,12 @@ export interface SpreadArm {
   readonly alongLower: readonly Object3D[];
 }
 
-/** Where along a bone its skin begins to be handed on, and has been [shares of its length]: its ends are the hinges'. */
+/**
+ * The range along a bone in which its skin is handed on to the next [shares of its length]: the ends belong to the
+ * hinges.
+ */
 const handedOn = { from: 0.1, to: 0.9 };
-/** Of a vertex, as three.js and the graphics device have it. */
+/** The number of bones that move a vertex, in three.js and on the graphics device. */
 const influences = 4;
 
 /** Shares of a vertex by the bone's index in the skeleton. */
@@ -206,7 +209,7 @@ interface Weights {
   readonly weights: BufferAttribute;
 }
 
-/** So many vertices are shared anew in one step. */
+/** The number of vertices that one step processes. */
 const verticesAStep = 512;
 
 function* spreadMesh(mesh: SkinnedMesh, arms: readonly ArmIndices[]): Steps<Weights | null> {

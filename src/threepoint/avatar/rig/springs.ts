@@ -69,7 +69,10 @@ export class Springs {
     this.#rest = true;
   }
 
-  /** One frame after the bones were placed: where the head, floor frame, is in the world tells a body that is carried from one that moves. */
+  /**
+   * Advances the springs by one frame after the bones were placed. The head's place in the world, floor frame,
+   * distinguishes a carried body from a moving one.
+   */
   update(root: Object3D, position: Vec3, orientation: Quat, deltaSeconds: number): void {
     const springs = this.#vrm.springBoneManager;
     if (!springs || this.#measures.length === 0) return;

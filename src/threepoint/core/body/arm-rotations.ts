@@ -4,7 +4,7 @@ import type { Side } from '../math/side';
 import { add, cross, type MutableVec3, subtract, type Vec3, vec3 } from '../math/vec3';
 import { type Skeleton, wristFromHandBone } from './skeleton';
 
-/** Where an arm points in T-pose. */
+/** The direction of each arm in T-pose. */
 export const alongArm: Readonly<Record<Side, Vec3>> = { left: vec3(-1, 0, 0), right: vec3(1, 0, 0) };
 
 /** The elbow's hinge in T-pose: it bends forearms forward. */
@@ -26,7 +26,10 @@ export const armBoneRotation = (side: Side, direction: Vec3, hinge: Vec3, target
 export const handBoneRotation = (side: Side, wrist: Quat, target?: MutableQuat): MutableQuat =>
   multiply(wrist, wristFromHandBone[side], target);
 
-/** Where a clavicle begins [m], under a neck joint at `neck` on a thorax that is turned like `upperChest`, floor frame. */
+/**
+ * Returns the base of a clavicle [m], floor frame, under a neck joint at `neck` on a thorax with the rotation
+ * `upperChest`.
+ */
 export function clavicleRoot(
   side: Side,
   neck: Vec3,
@@ -43,8 +46,8 @@ export const clavicleRest = (side: Side, { restOffsets }: Skeleton): Vec3 =>
   side === 'left' ? restOffsets.leftUpperArm : restOffsets.rightUpperArm;
 
 /**
- * An angle [rad] about an arm's bone, unwrapped: the equal one that is nearest to `before`, so that it does not flip at a half turn; one that has
- * run away by more than 1¼ half turns begins anew as it is, in [−π, π].
+ * Returns the angle [rad] about an arm's bone that is equal to `angle` and nearest to `before`, so that it does not
+ * flip at a half turn. An angle beyond 1¼ half turns is wrapped to [−π, π].
  */
 export function unwrapTwist(angle: number, before: number): number {
   const near = unwrapAngle(angle, before);

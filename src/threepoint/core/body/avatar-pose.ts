@@ -38,7 +38,7 @@ export interface AvatarPose {
 const copyTracked = <T extends TrackedPose | null>(pose: T): T =>
   pose && { ...pose, position: copyVec3(pose.position), orientation: copyQuat(pose.orientation) };
 
-/** The same pose in objects of its own: to be kept, because estimators and playback overwrite theirs with every frame. */
+/** Returns a copy of the pose that can be kept: estimators and playback overwrite theirs with every frame. */
 export const copyAvatarPose = ({ head, leftHand, rightHand, body }: AvatarPose): AvatarPose => ({
   head: copyTracked(head),
   leftHand: copyTracked(leftHand),

@@ -1,12 +1,14 @@
-/** Bodies that every page has a file of, by name; the first is worn by those who say nothing, and by all in a study. */
+/**
+ * The bodies that every page has a file of, by name; the first is the default, and the body of everybody in a study.
+ */
 export const ownBodies = ['mannequin', 'woman', 'man', 'stout', 'child'] as const;
 export type OwnBody = (typeof ownBodies)[number];
 
-/** Of the skin, lightest first. The mannequin has none; a person of whom none is told has the one that the file has. */
+/** The skin tones, lightest first. The mannequin has none; without a tone a body keeps the one of its file. */
 export const skinTones = ['fair', 'light', 'beige', 'tan', 'brown', 'dark'] as const;
 export type SkinTone = (typeof skinTones)[number];
 
-/** A body of ours, and behind a dash its tone of skin. */
+/** The name of one of the project's own bodies, followed by a dash and its skin tone. */
 export type OwnAvatar = OwnBody | `${OwnBody}-${SkinTone}`;
 
 interface Look {
@@ -23,7 +25,7 @@ const looks: ReadonlyMap<string, Look> = new Map(
 
 export const isOwnAvatar = (name: unknown): name is OwnAvatar => typeof name === 'string' && looks.has(name);
 
-/** What this body in this tone is called; the mannequin, which has no skin, and a person of no tone by the body alone. */
+/** Returns the name of this body in this tone; the body alone where it has no skin or no tone is given. */
 export function ownAvatarOf(body: OwnBody, tone: SkinTone | undefined): OwnAvatar {
   const name = `${body}-${tone}`;
   return isOwnAvatar(name) ? name : body;
@@ -31,22 +33,22 @@ export function ownAvatarOf(body: OwnBody, tone: SkinTone | undefined): OwnAvata
 
 export const bodyOf = (avatar: OwnAvatar): OwnBody => looks.get(avatar)?.body ?? ownBodies[0];
 
-/** null: as the body's file has it. */
+/** Returns the skin tone; null: that of the body's file. */
 export const skinToneOf = (avatar: OwnAvatar): SkinTone | null => looks.get(avatar)?.tone ?? null;
 
-/** The SHA-256 of a file of no more than `mostAvatarBytes`, as base64url without padding: 43 characters, which no own avatar's name has. */
+/** The SHA-256 of an avatar's file as base64url without padding: 43 characters, unlike any name of an own avatar. */
 export type AvatarHash = string;
 
-/** What a player has on to the others: a body of our own by its name, or a file by its content. */
+/** The avatar that others see: one of the project's own bodies by its name, or a file by its content. */
 export type AvatarRef = OwnAvatar | AvatarHash;
 
 export const plainAvatar: OwnBody = ownBodies[0];
 
-/** How the SHA-256 of a file is written. */
+/** The form of a file's SHA-256. */
 export const avatarHash = /^[\w-]{43}$/;
 
-/** An avatar that is seen by others has a file of this size at most [bytes]. */
+/** The largest file of an avatar that others see [bytes]. */
 export const mostAvatarBytes = 20 * 2 ** 20;
 
-/** Whether this is the content of a file, and no name. */
+/** Returns whether this is the hash of a file, and not a name. */
 export const isAvatarHash = (avatar: AvatarRef): avatar is AvatarHash => avatarHash.test(avatar);

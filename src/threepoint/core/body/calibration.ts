@@ -1,32 +1,33 @@
 import { sides } from '../math/side';
-import { type HandTilts, isBelievableTilt, sameTilts, steepestHandTilt } from './hand-tilt';
+import { type HandTilts, isBelievableTilt as isPlausibleTilt, sameTilts, steepestHandTilt } from './hand-tilt';
 
-/** What the user tells us, or two seconds of standing still reveal, about their body. */
+/** The measures of a body, entered by the user or measured while they stand still for two seconds. */
 export interface Calibration {
   /** Height [m] of the headset's origin (between the eyes) above the floor, standing upright and looking ahead. */
   readonly eyeHeight: number;
   /** Distance [m] from wrist to wrist, arms stretched out sideways. */
   readonly armSpan: number;
-  /** From elbow to wrist [m]. Absent: not told, and the part of the arm that it is of an average one. */
+  /** From elbow to wrist [m]. Absent: unknown, and estimated as an average share of the arm. */
   readonly forearm?: number | undefined;
   /**
    * How far up [rad] the headset points when its wearer looks straight ahead: it sits tilted on nearly every wearer. Absent: not
    * measured, and taken for level.
    */
   readonly gazePitch?: number | undefined;
-  /** How each hand stands to its forearm. Absent: not measured, and the hand's frame is taken as the device gives it. */
+  /** The tilt of each hand to its forearm. Absent: not measured, and the device's hand frame is used unchanged. */
   readonly handTilts?: HandTilts | undefined;
 }
 
-/** The steepest tilt of a headset that is believed [rad]; a wearer who seems to wear it steeper was not looking ahead. */
+/** The steepest plausible tilt of a headset [rad]; at a steeper one the wearer was not looking ahead. */
 export const steepestGazePitch = Math.PI / 12;
 
 // Height of the eyes above the floor as a share of stature: Drillis & Contini, Body Segment Parameters (1966); ANSUR II agrees
 // within 1 %.
 const EYE_HEIGHT_PER_STATURE = 0.936;
 
-// The arms and shoulders of the people we trained on, bone by bone, add up to 0.945 eye heights from wrist to wrist. A tape
-// between the wrists finds less, because shoulders give; but an arm a little too long bends its elbow, one too short misses the hand.
+// The arms and shoulders of the training data, bone by bone, add up to 0.945 eye heights from wrist to wrist. A tape
+// between the wrists finds less, because shoulders give. An arm that is a little too long bends its elbow; one that is
+// too short misses the hand.
 const ARM_SPAN_PER_EYE_HEIGHT = 0.945;
 
 // The forearm of an average arm, as a share of the span.
@@ -35,13 +36,13 @@ const ORDINARY_FOREARM = 0.185;
 // Fingertip span equals stature within 3 % on average (Drillis & Contini; ANSUR II).
 const ARM_SPAN_PER_FINGERTIP_SPAN = ARM_SPAN_PER_EYE_HEIGHT * EYE_HEIGHT_PER_STATURE;
 
-/** Eye height [m] of a person of this stature [m] without shoes. */
+/** Returns the eye height [m] of a person of this stature [m] without shoes. */
 export const eyeHeightFromStature = (stature: number): number => stature * EYE_HEIGHT_PER_STATURE;
 
 /** The inverse of `eyeHeightFromStature`. */
 export const statureFromEyeHeight = (eyeHeight: number): number => eyeHeight / EYE_HEIGHT_PER_STATURE;
 
-/** Wrist to wrist [m] of a person who measures this much [m] from fingertip to fingertip. */
+/** Returns the span from wrist to wrist [m] of a person with this fingertip span [m]. */
 export const armSpanFromFingertipSpan = (fingertipSpan: number): number => fingertipSpan * ARM_SPAN_PER_FINGERTIP_SPAN;
 
 /** The inverse of `armSpanFromFingertipSpan`. */
@@ -53,7 +54,7 @@ export interface MeasureRange {
   readonly max: number;
 }
 
-/** People from small children to giants; anything outside is a slip of the hand or a floor at the wrong height. */
+/** The ranges from small children to giants; other values are typing errors, or a floor at the wrong height. */
 export const statureRange: MeasureRange = { min: 1, max: 2.3 };
 export const eyeHeightRange: MeasureRange = {
   min: eyeHeightFromStature(statureRange.min),
@@ -63,71 +64,71 @@ export const armSpanRange: MeasureRange = { min: 0.65, max: 2.25 };
 
 export const forearmRange: MeasureRange = { min: 0.1, max: 0.4 };
 
-/** An adult of 1.70 m. */
+/** The default body: an adult of 1.70 m. */
 export const defaultCalibration: Calibration = {
   eyeHeight: eyeHeightFromStature(1.7),
   armSpan: armSpanFromFingertipSpan(1.7),
 };
 
-/** Whether two people have the same body. */
+/** Returns whether two calibrations have the same body. */
 export const sameMeasures = (a: Calibration, b: Calibration): boolean =>
   a.eyeHeight === b.eyeHeight && a.armSpan === b.armSpan && a.forearm === b.forearm;
 
-/** Whether all that two calibrations say is the same, also of how headset and hands are worn. */
+/** Returns whether two calibrations are equal, including the tilts of headset and hands. */
 export const sameCalibration = (a: Calibration, b: Calibration): boolean =>
   sameMeasures(a, b) && a.gazePitch === b.gazePitch && sameTilts(a.handTilts, b.handTilts);
 
-/** Why these numbers are no person's, in a sentence; null where they can be. */
+/** Returns a sentence about the implausible measure of a calibration; null: it is plausible. */
 export const calibrationComplaint = (calibration: Calibration): string | null =>
   bodyComplaint(calibration) ?? wornComplaint(calibration);
 
-/** Throws a RangeError where these are no person's measures. */
+/** Throws a RangeError with the sentence of `calibrationComplaint` where the measures are not human. */
 export function demandPerson(calibration: Calibration): void {
   const complaint = calibrationComplaint(calibration);
   if (complaint) throw new RangeError(complaint);
 }
 
-/** Of the body's measures. */
+/** Returns why the body's measures are implausible; null: they are plausible. */
 function bodyComplaint({ eyeHeight, armSpan, forearm }: Calibration): string | null {
-  // Number: a page without types may leave one out.
-  const told = (value: number) => `${Number(value).toFixed(2)} m`;
-  // Written so that NaN is refused too.
+  // `Number` also handles measures that a page without types leaves out.
+  const metres = (value: number) => `${Number(value).toFixed(2)} m`;
+  // The comparisons are negated so that NaN is refused too.
   if (!(eyeHeight >= eyeHeightRange.min && eyeHeight <= eyeHeightRange.max)) {
-    const stature = told(statureFromEyeHeight(eyeHeight));
-    return `A height of ${stature} is outside ${told(statureRange.min)} to ${told(statureRange.max)}.`;
+    const stature = metres(statureFromEyeHeight(eyeHeight));
+    return `A height of ${stature} is outside ${metres(statureRange.min)} to ${metres(statureRange.max)}.`;
   }
   if (!(armSpan >= armSpanRange.min && armSpan <= armSpanRange.max)) {
-    return `An arm span of ${told(armSpan)} is outside ${told(armSpanRange.min)} to ${told(armSpanRange.max)}.`;
+    return `An arm span of ${metres(armSpan)} is outside ${metres(armSpanRange.min)} to ${metres(armSpanRange.max)}.`;
   }
   const ratio = armSpan / eyeHeight / ARM_SPAN_PER_EYE_HEIGHT;
   if (ratio < 0.72 || ratio > 1.35) {
-    return `An arm span of ${told(armSpan)} from wrist to wrist does not go with a height of ${told(statureFromEyeHeight(eyeHeight))}.`;
+    return `An arm span of ${metres(armSpan)} from wrist to wrist does not match a height of ${metres(statureFromEyeHeight(eyeHeight))}.`;
   }
   const forearms = forearm === undefined ? ORDINARY_FOREARM : forearm / armSpan;
   return forearms > 0.65 * ORDINARY_FOREARM && forearms < 1.35 * ORDINARY_FOREARM
     ? null
-    : `A forearm of ${told(forearm!)} does not go with an arm span of ${told(armSpan)} from wrist to wrist.`;
+    : `A forearm of ${metres(forearm!)} does not match an arm span of ${metres(armSpan)} from wrist to wrist.`;
 }
 
-/** Of how headset and hands are worn. */
+/** Returns why the tilts of headset or hands are implausible; null: they are plausible. */
 function wornComplaint({ gazePitch = 0, handTilts }: Calibration): string | null {
-  const told = (value: number) => `${value.toFixed(2)} rad`;
+  const radians = (value: number) => `${value.toFixed(2)} rad`;
   if (!(Math.abs(gazePitch) <= steepestGazePitch)) {
-    return `A headset’s tilt of ${told(gazePitch)} is beyond ${told(steepestGazePitch)}.`;
+    return `A headset’s tilt of ${radians(gazePitch)} exceeds ${radians(steepestGazePitch)}.`;
   }
   for (const side of sides) {
     const tilt = handTilts?.[side];
-    if (tilt && !isBelievableTilt(tilt)) {
-      return `A ${side} hand’s tilt of ${told(Math.hypot(tilt.pitch, tilt.yaw))} is beyond ${told(steepestHandTilt)}.`;
+    if (tilt && !isPlausibleTilt(tilt)) {
+      return `A ${side} hand’s tilt of ${radians(Math.hypot(tilt.pitch, tilt.yaw))} exceeds ${radians(steepestHandTilt)}.`;
     }
   }
   return null;
 }
 
-/** These measures and this forearm [m], where such an arm can have it. */
+/** Returns the calibration with this forearm [m]; unchanged where the arm cannot have it. */
 export function withForearm(calibration: Calibration, forearm: number | undefined): Calibration {
-  const told = { ...calibration, forearm };
-  return forearm !== undefined && calibrationComplaint(told) === null ? told : calibration;
+  const extended = { ...calibration, forearm };
+  return forearm !== undefined && calibrationComplaint(extended) === null ? extended : calibration;
 }
 
 // Below it the person sits or the floor is wrong; a child that low needs the guided calibration.
@@ -142,11 +143,14 @@ export function provisionalCalibration(headHeight: number): Calibration {
   return { eyeHeight: headHeight, armSpan: headHeight * ARM_SPAN_PER_EYE_HEIGHT };
 }
 
-/** Whether the span was measured, or only derived from the eye height. */
+/** Returns whether the span was measured, and not derived from the eye height. */
 export const isSpanMeasured = ({ eyeHeight, armSpan }: Calibration): boolean =>
   Math.abs(armSpan / eyeHeight - ARM_SPAN_PER_EYE_HEIGHT) >= 1e-9;
 
-/** The same person with other eyes' height [m]: a span that was only derived from the height follows, a measured one stays. */
+/**
+ * Returns the person's calibration with another eye height [m]: a span that was derived from the height follows, a
+ * measured one stays.
+ */
 export const withEyeHeight = (calibration: Calibration, eyeHeight: number): Calibration => ({
   ...calibration,
   eyeHeight,

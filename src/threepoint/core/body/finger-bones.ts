@@ -7,6 +7,6 @@ export const fingerBones = (finger: string): readonly [string, string, string] =
     ? ['ThumbMetacarpal', 'ThumbProximal', 'ThumbDistal']
     : [`${finger}Proximal`, `${finger}Intermediate`, `${finger}Distal`];
 
-/** The same with the side. */
+/** Returns the names of a finger's bones with their side. */
 export const fingerBonesOf = (side: Side, finger: FingerName): readonly string[] =>
   fingerBones(finger[0]!.toUpperCase() + finger.slice(1)).map((bone) => `${side}${bone}`);

@@ -15,7 +15,10 @@ export const makeJointPoses = (): MutableJointPoses =>
     MutablePose<'floor'>
   >;
 
-/** Where every joint is, floor frame: the skeleton's offsets turned by the pose's rotations, parents first. */
+/**
+ * Returns the position of every joint, floor frame: the skeleton's offsets turned by the pose's rotations, parents
+ * first.
+ */
 export function forwardKinematics(
   skeleton: Skeleton,
   pose: UpperBodyPose,

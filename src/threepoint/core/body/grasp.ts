@@ -17,11 +17,11 @@ export type Surface = (point: Vec3, finger: FingerName) => number;
 
 const relative = vec3(0, 0, 0);
 
-/** Of a ball. */
+/** Returns the distance [m] of a point from a ball. */
 export const distanceToBall = (point: Vec3, centre: Vec3, radius: number): number =>
   length(subtract(point, centre, relative)) - radius;
 
-/** Of an endless round rod along a unit axis. */
+/** Returns the distance [m] of a point from an endless round rod along a unit axis. */
 export function distanceToRod(point: Vec3, middle: Vec3, axis: Vec3, radius: number): number {
   subtract(point, middle, relative);
   const along = dot(relative, axis);

@@ -29,7 +29,7 @@ export interface FingerGeometry {
   readonly root: Vec3;
   /** From joint to joint, and from the last one to the middle of the tip's roundness [m]. */
   readonly lengths: readonly [number, number, number];
-  /** Of the finger at its tip, and at its root [m]. */
+  /** The radius of the finger at its tip, and at its root [m]. */
   readonly tipRadius: number;
   readonly rootRadius: number;
 }
@@ -87,7 +87,7 @@ const rolls = {
 const direction = vec3(0, 0, 0);
 const turn = quat(0, 0, 0, 1);
 
-/** Where the first bone of a finger points, unit. */
+/** Returns the direction of a finger's first bone, unit. */
 const firstDirection = ({ knuckle, spread }: FingerBend, target: MutableVec3): MutableVec3 =>
   setVec3(target, Math.sin(spread), -Math.cos(spread) * Math.sin(knuckle), -Math.cos(spread) * Math.cos(knuckle));
 
@@ -114,7 +114,7 @@ function firstFrame(name: FingerName, bend: FingerBend, target: MutableQuat): Mu
 const frames = makeFingerFrames();
 const along = vec3(0, 0, 0);
 
-/** Where the joints and the tip of a bent finger are [m]. */
+/** Returns the joints and the tip of a bent finger [m]. */
 export function fingerPoints(
   name: FingerName,
   { root, lengths }: FingerGeometry,
@@ -181,7 +181,7 @@ export function averageHand(eyeHeight: number): HandGeometry {
   return handOf(proportions, fingerOf);
 }
 
-/** The same hand so much larger. */
+/** Returns the hand scaled by `size`. */
 export function scaledHand(hand: HandGeometry, size: number): HandGeometry {
   const fingerOf = ({ root, lengths, tipRadius, rootRadius }: FingerGeometry): FingerGeometry => ({
     root: scale(root, size),

@@ -11,9 +11,9 @@ export type FingerName = (typeof fingerNames)[number];
  * The two bones beyond are bent against the one before, about an axis that the first bone carries along.
  */
 export interface FingerBend {
-  /** Of the first bone towards the palm, from the direction of the knuckles. */
+  /** The bend of the first bone towards the palm, from the direction of the knuckles. */
   readonly knuckle: number;
-  /** Of the first bone towards the thumb's side. */
+  /** The bend of the first bone towards the thumb's side. */
   readonly spread: number;
   readonly middle: number;
   readonly end: number;
@@ -30,7 +30,7 @@ export type Fingers = Readonly<Record<Side, HandShape | null>>;
 
 export const unknownFingers: Fingers = { left: null, right: null };
 
-/** The same fingers in objects of their own: to be kept. */
+/** Returns a copy of the fingers that can be kept. */
 export const copyFingers = ({ left, right }: Fingers): Fingers => ({
   left: left && copyHandShape(left),
   right: right && copyHandShape(right),

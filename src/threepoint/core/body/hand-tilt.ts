@@ -5,15 +5,16 @@ import proportions from './body-proportions.json' with { type: 'json' };
 import limits from './limb-limits.json' with { type: 'json' };
 
 /**
- * Where a forearm, elbow to wrist, points in the frame of its hand, arm and wrist straight: how far up of −Z (pitch) and to the left of it
- * (yaw) [rad], the rotation vector (pitch, yaw, 0) that takes −Z there. Controllers are held, and hands drawn by devices, each in its own way.
+ * The direction of a forearm, elbow to wrist, in the frame of its hand with arm and wrist straight: pitch above −Z and
+ * yaw to its left [rad], as the rotation vector (pitch, yaw, 0) that turns −Z to it. People hold controllers, and
+ * devices draw hands, in different ways.
  */
 export interface HandTilt {
   readonly pitch: number;
   readonly yaw: number;
 }
 
-/** Of each hand that was measured. */
+/** The tilts of the hands that were measured. */
 export type HandTilts = { readonly [Hand in Side]?: HandTilt | undefined };
 
 const sameTilt = (a: HandTilt | undefined, b: HandTilt | undefined): boolean =>
@@ -23,7 +24,7 @@ const sameTilt = (a: HandTilt | undefined, b: HandTilt | undefined): boolean =>
 export const sameTilts = (a: HandTilts | undefined, b: HandTilts | undefined): boolean =>
   sameTilt(a?.left, b?.left) && sameTilt(a?.right, b?.right);
 
-/** That of the average person's hand, of whom nothing is known. */
+/** Returns the default tilt, used until the user is calibrated. */
 export function usualHandTilt(side: Side): HandTilt {
   const [pitch, yaw] = proportions.handTilt as [number, number];
   // A left hand is a right one's mirror image.
@@ -49,6 +50,6 @@ export function turnOfTilt({ pitch, yaw }: HandTilt): MutableQuat {
   return angle < 1e-12 ? quat(0, 0, 0, 1) : fromAxisAngle(vec3(pitch / angle, yaw / angle, 0), angle);
 }
 
-/** The same of a forearm in this direction [unit, hand frame], held to the steepest tilt that a hand has. */
+/** Returns the turn to a forearm in this direction [unit, hand frame], limited to the steepest plausible tilt. */
 export const turnToForearm = (direction: Vec3, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat =>
   limitAngle(rotationBetween(forward, direction, target), steepestHandTilt, target);

@@ -26,7 +26,7 @@ export const wristFromHandBone: Readonly<Record<Side, Quat>> = {
   right: fromAxisAngle(up, Math.PI / 2),
 };
 
-/** Shoulder to wrist [m], at least `shortestArm` eye heights however small the span. */
+/** Returns the length from shoulder to wrist [m], at least `shortestArm` eye heights. */
 export function armLength({ eyeHeight, armSpan }: Calibration): number {
   const shoulders = 2 * (proportions.clavicleRoot + proportions.clavicle[0]!) * eyeHeight;
   return Math.max((armSpan - shoulders) / 2, shortestArm * eyeHeight);
@@ -44,7 +44,7 @@ export function armBones(calibration: Calibration): LimbBones {
   return { upper: arm - lower, lower };
 }
 
-/** Upper arm and forearm of this side of a skeleton [m]. */
+/** Returns the lengths of upper arm and forearm of this side [m]. */
 export function armBonesOf(
   { restOffsets }: Skeleton,
   side: Side,
@@ -61,7 +61,10 @@ const leanForward = (angle: number, v: Vec3): Vec3 => {
   return vec3(v.x, c * v.y + s * v.z, c * v.z - s * v.y);
 };
 
-/** The average body of this eye height and span (docs/estimation.md); identity rotations are an upright person in T-pose. */
+/**
+ * Returns the average body of this eye height and span (docs/estimation.md); identity rotations are an upright person
+ * in T-pose.
+ */
 export function skeletonFromCalibration(calibration: Calibration): Skeleton {
   const p = proportions;
   const e = calibration.eyeHeight;
@@ -108,7 +111,7 @@ export interface ChestSpaceBody {
   readonly clavicleLength: number;
 }
 
-/** The same body as `skeletonFromCalibration`, before the standing spine's curve. */
+/** Returns the body of `skeletonFromCalibration` before the curve of the standing spine. */
 export function chestSpaceBody(calibration: Calibration): ChestSpaceBody {
   const p = proportions;
   const e = calibration.eyeHeight;

@@ -1,2 +1,4 @@
-/** What may go well when it is tried again after a while: a network that was lost, a server that does not have it yet. */
+/**
+ * A fault that may pass, so that a later attempt may succeed: a lost network, or a server that lacks the file for now.
+ */
 export class PassingFault extends Error {}

@@ -16,23 +16,23 @@ import {
 } from '../math/vec3';
 import { advanceArc, alongArc, type DirectionArc, directionArc, makeDirectionArc, retargetArc } from './direction-arc';
 
-/** A transition takes so long [s] at least. */
+/** The shortest transition [s]. */
 const shortestSeconds = 0.2;
 /**
  * Elbow and wrist go at most this fast [m/s] beyond what the hand itself moves, 3.75 cm in a frame at 60 Hz; an arm that has further to go
  * than it gets by `hurrySeconds` so, all the way round, goes evenly as fast as it must.
  */
 const fastest = 2.25;
-/** The share of the shortest time in which they get up to speed, and down from it. */
+/** The share of the shortest time that acceleration and deceleration take. */
 const ramp = 0.2;
 /**
  * Catch-up window [s since the jump] of an arm whose hand is tracked: the minimum progress along the arcs ramps from 0 to 1, so a moving
  * goal is reached by the end. Longest measured transition: 0.7 s.
  */
 const [hurrySeconds, longestSeconds] = [0.7, 0.9];
-/** An arm that bends less than this [sine of the angle] has no plane of its own to bend in. */
+/** The smallest bend [sine of the angle] of an arm that defines the plane it bends in. */
 const allButStraight = 0.1;
-/** A path is measured in so many steps, and a share of it found to a sixty-fourth of one. */
+/** The number of steps in which a path is measured; a share of it is found to a sixty-fourth of one. */
 const pathSteps = 8;
 const shareHalvings = 6;
 
@@ -55,15 +55,15 @@ export function copyArmDirections(from: ArmDirections, target: ArmDirections): v
   copyVec3(from.hinge, target.hinge);
 }
 
-/** Where an arm belongs in this frame, floor frame. */
+/** The target of an arm in this frame, floor frame. */
 export interface WantedArm extends ArmDirections {
   readonly shoulder: Vec3;
-  /** Where the hand is seen or will rest; the arm itself may end short of it. */
+  /** The position at which the hand is seen or will rest; the arm itself may end short of it. */
   readonly hand: Vec3;
   /** Shortest time of the way to it [s]: a hand sinks slowly to rest. 0: the hand is seen. */
   readonly minDuration: number;
   readonly bones: LimbBones;
-  /** Where an arm passes that swings all the way round, unit. */
+  /** The direction through which an arm swings all the way round, unit. */
   readonly outside: Vec3;
 }
 
@@ -73,13 +73,13 @@ export interface WantedArm extends ArmDirections {
  * and what the hand itself moves allow. Bones turn in the room's axes: a body that turns about flings no arm.
  */
 export interface ArmTransition {
-  /** Since the jump [s]; NaN: there is no transition. */
+  /** The time since the jump [s]; NaN: there is no transition. */
   age: number;
-  /** Beyond what the hand itself moves [m/s]. */
+  /** The speed beyond the hand's own motion [m/s]. */
   speed: number;
-  /** The longest path that elbow or wrist had to go since the jump [m]: it says how fast they may. */
+  /** The longest path of elbow or wrist since the jump [m], which limits their speed. */
   longestPath: number;
-  /** Where the hand belonged in the frame before, and where elbow and wrist were drawn [m]. */
+  /** The hand's target in the frame before, and the drawn elbow and wrist [m]. */
   readonly hand: MutableVec3;
   readonly elbow: MutableVec3;
   readonly wrist: MutableVec3;
@@ -119,7 +119,7 @@ function placeAt({ upperArm, forearm }: ArmTransition, drawn: ArmDirections, wan
   placeJoints(bone, unbent, wanted);
 }
 
-/** How far [m] elbow or wrist travel on the arcs, whichever goes further. */
+/** Returns the longer path [m] of elbow and wrist on the arcs. */
 function pathLength(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm): number {
   let metres = 0;
   for (let step = 0; step <= pathSteps; step++) {
@@ -131,7 +131,7 @@ function pathLength(transition: ArmTransition, drawn: ArmDirections, wanted: Wan
   return metres;
 }
 
-/** How far [m] elbow or wrist at a share of the arcs are from where they were drawn, whichever is further. */
+/** Returns the larger distance [m] of elbow and wrist at a share of the arcs from where they were drawn. */
 function distanceAt(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm, share: number): number {
   placeAt(transition, drawn, wanted, share);
   return Math.max(distance(elbow, transition.elbow), distance(wrist, transition.wrist));
@@ -163,7 +163,7 @@ function shareWithin(transition: ArmTransition, drawn: ArmDirections, wanted: Wa
   return share;
 }
 
-/** Begins a transition from the arm that was drawn to the one that belongs there. */
+/** Starts a transition from the drawn arm to its target. */
 export function startTransition(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm): void {
   directionArc(drawn.upperArm, wanted.upperArm, wanted.outside, transition.upperArm);
   directionArc(drawn.forearm, wanted.forearm, wanted.outside, transition.forearm);
@@ -173,7 +173,7 @@ export function startTransition(transition: ArmTransition, drawn: ArmDirections,
   remember(transition, drawn, wanted);
 }
 
-/** Notes where the hand belongs in this frame and where elbow and wrist are drawn. */
+/** Stores the hand's target in this frame, and the drawn elbow and wrist. */
 function remember(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm): void {
   copyVec3(wanted.hand, transition.hand);
   placeJoints(drawn.upperArm, drawn.forearm, wanted);
@@ -181,7 +181,9 @@ function remember(transition: ArmTransition, drawn: ArmDirections, wanted: Wante
   copyVec3(wrist, transition.wrist);
 }
 
-/** How far [m] elbow and wrist may go in this frame: up to the speed evenly, evenly down to a stand, and along with the hand. */
+/**
+ * Returns the path [m] of elbow and wrist in this frame: accelerating and decelerating evenly, and along with the hand.
+ */
 function stepOf(transition: ArmTransition, toGo: number, wanted: WantedArm, deltaSeconds: number): number {
   const { hand } = transition;
   const seconds = Math.max(shortestSeconds, wanted.minDuration);

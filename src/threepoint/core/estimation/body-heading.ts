@@ -4,19 +4,19 @@ import { fromAxisAngle, type MutableQuat, quat } from '../math/quat';
 import { up } from '../math/vec3';
 import type { Heading } from '../tracking/heading';
 
-/** As far [rad] as people turn their head without their body: 40°. Beyond it the body comes along. */
+/** The angle [rad] by which people turn their head without their body: 40°. Beyond it the body turns too. */
 const headTurn = 0.7;
 /** Half-life [s] of the part of the angle from body to head beyond that. */
 const followHalfLife = 0.04;
 /** Half-life [s] of the part within: a person who keeps looking to one side stands that way. */
 const settleHalfLife = 0.6;
-/** A body turns at most this fast [rad/s]; a pirouette does 12. */
+/** The highest speed of a turning body [rad/s]; a pirouette reaches 12. */
 const turnSpeed = 14;
-/** Integrated in steps of at most this [s], so that every frame rate gives the same. */
+/** The longest integration step [s], so that every frame rate gives the same result. */
 const longestStep = 1 / 240;
 
 export interface BodyHeading {
-  /** Of the body about +Y [rad]; NaN: not known yet. */
+  /** The body's yaw about +Y [rad]; NaN: not known yet. */
   yaw: number;
 }
 

@@ -15,7 +15,7 @@ import {
 } from '../math/vec3';
 import type { ChestAxes, IkSolution, ThreePoints } from './solve-ik';
 
-/** Numbers of one frame in the chest frame; their order is in docs/estimation.md. */
+/** The number of features of a frame in the chest frame; their order is in docs/estimation.md. */
 export const chestFeatureCount = 38;
 
 /** A vector of the heading frame along the chest's axes. */

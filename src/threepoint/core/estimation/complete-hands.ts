@@ -55,13 +55,13 @@ export const confidenceSeconds = 0.3;
 /** A hand seen again this far [m] from its guess, or further, gets confidence 0; less far, in proportion. */
 const doubtfulReturn = 0.1;
 
-/** Where a hand is taken to be, floor frame: as it is seen, else a guess that moves slowly. */
+/** An assumed hand, floor frame: the tracked one, else an estimate that moves slowly. */
 export interface CompletedHand extends MutablePose<'floor'> {
   /** tracked: seen in this frame. held: lost a moment ago. sinking: on its way to rest beside the hip, or there. */
   source: 'tracked' | 'held' | 'sinking';
   /** In [0, 1]. 1: the hand is there. 0: a guess. */
   confidence: number;
-  /** Where its arm belongs: where the hand is seen, is held, or will rest. */
+  /** The target of its arm: the hand where it is seen, is held, or will rest. */
   readonly goal: MutablePose<'floor'>;
   /**
    * True in the frame in which the goal changes discontinuously: the hand was reacquired, or begins to sink. The drawn arm must then be
@@ -91,7 +91,7 @@ interface Reach {
 
 interface HandState {
   readonly hand: CompletedHand;
-  /** Where it was seen last, or rests if it never was. */
+  /** The hand where it was seen last, or at rest if it never was. */
   readonly last: Reach;
   /** False before the first frame. */
   known: boolean;

@@ -5,10 +5,13 @@ import { type DeviceBody, deviceJoint, type SharedJoint } from '../tracking/devi
 import { makeJoints, mapJoints } from './joint-positions';
 import type { JointSource, SolvedFrame } from './joint-source';
 
-/** A body whose head, or an arm whose wrist, is so far [m] from where it is tracked is another's, or of another moment. */
+/**
+ * The largest distance [m] of the device's head or wrist from the tracked one; beyond it the device reports another
+ * body or moment.
+ */
 const strayHead = 0.3;
 const strayWrist = 0.2;
-/** From the device's joints to the other source's, and back, in so long [s]. */
+/** The time [s] of the transition between the device's joints and the other source's. */
 const handOverSeconds = 0.3;
 
 const armOf: Partial<Record<EstimatedJoint, 'leftHand' | 'rightHand'>> = {
@@ -26,12 +29,12 @@ const isNear = (body: DeviceBody, joint: SharedJoint, tracked: Vec3, most: numbe
  * the device was different by fades, and comes, within 0.3 s.
  */
 export function createDeviceSource(otherwise: JointSource): JointSource {
-  /** What the device's joints differ by from the other source's [m], heading frame, and how much of it counts [0, 1]. */
+  /** The offset of the device's joints from the other source's [m], heading frame, and its weight [0, 1]. */
   const differences = makeJoints();
   const shares = mapJoints(() => 0);
   let known = false;
 
-  function believed(joint: EstimatedJoint, { deviceBody, completed }: SolvedFrame): boolean {
+  function isPlausible(joint: EstimatedJoint, { deviceBody, completed }: SolvedFrame): boolean {
     if (!deviceBody || !isNear(deviceBody, 'head', completed.headJoint, strayHead)) return false;
     const hand = armOf[joint];
     return hand === undefined || isNear(deviceBody, hand, completed[hand].position, strayWrist);
@@ -52,7 +55,7 @@ export function createDeviceSource(otherwise: JointSource): JointSource {
       for (let index = 0; index < estimatedJoints.length; index++) {
         const joint = estimatedJoints[index]!;
         const difference = differences[joint];
-        const sees = believed(joint, solved);
+        const sees = isPlausible(joint, solved);
         if (sees && solved.deviceBody) {
           subtract(deviceJoint(solved.deviceBody, joint, place), target[joint], place);
           rotateInverse(orientation, place, difference);

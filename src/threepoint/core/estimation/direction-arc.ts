@@ -33,7 +33,10 @@ export const makeDirectionArc = (): DirectionArc => ({
 /** Directions further apart than this [rad] are joined by way of `outside`: the shortest path may lead through the body. */
 const farApart = 2.1;
 
-/** Where an arm passes that swings all the way round, in the axes of the body or its chest: ahead, to its own side and a little down. */
+/**
+ * The direction through which an arm swings all the way round, in the axes of the body or its chest: ahead, to its own
+ * side and a little down.
+ */
 export const outsideOfBody: Readonly<Record<Side, Vec3>> = {
   left: normalise(vec3(-1, -0.2, -1)),
   right: normalise(vec3(1, -0.2, -1)),

@@ -3,12 +3,12 @@ import type { Replayable } from '../tracking/recording';
 import type { TrackingFrame } from '../tracking/tracking-frame';
 import type { PoseEstimator } from './pose-estimator';
 
-/** Frames between two looks at who waits. */
+/** The number of frames between two yields. */
 const framesPerStep = 8;
 
 /**
- * Leads an estimator through a recording, frame by frame, each answer of its network waited for, and tells `drawn` what it draws. Yields the
- * share [0, 1] that is done, now and then. Throws a sentence where the estimator fails.
+ * Runs an estimator over a recording frame by frame, awaiting each answer of its network, and calls `drawn` with each
+ * pose. Yields the share [0, 1] that is done at intervals. Throws a sentence where the estimator fails.
  */
 export async function* estimateRecording(
   { frames }: Pick<Replayable, 'frames'>,

@@ -9,17 +9,19 @@ import { type EstimatorName, estimatorNames, type PoseEstimator } from './pose-e
 import type { PoseRegressor } from './pose-regressor';
 import { createResidual } from './residual';
 
-/** The methods that are nothing without their network. */
+/** The methods that cannot work without their network. */
 export type NetworkName = 'paper' | 'learned';
 
-/** Whether a method needs a network. */
+/** Returns whether a method needs a network. */
 export const needsRegressor = (name: EstimatorName): name is NetworkName => name === 'paper' || name === 'learned';
 
-/** The network a method loads, or null. `device` uses `learned` as its fallback, but also works without it. */
+/**
+ * Returns the network that a method loads, or null. `device` uses `learned` as its fallback, but also works without it.
+ */
 export const networkOf = (name: EstimatorName): NetworkName | null =>
   needsRegressor(name) ? name : name === 'device' ? 'learned' : null;
 
-/** Inverse kinematics alone: the competitor that the networks are measured against, with the same calibration. */
+/** Creates an estimator by inverse kinematics alone: the baseline of the networks, with the same calibration. */
 const ikAlone: JointSource = {
   network: null,
   calibrate: () => undefined,
@@ -32,7 +34,10 @@ const ikAlone: JointSource = {
 export const createIk = (calibration: Calibration, frameByFrame = false): Pipeline =>
   new Pipeline('ik', calibration, ikAlone, frameByFrame);
 
-/** One method with a network, whose stages can be looked at; throws where the regressor is another's. */
+/**
+ * Creates an estimator with a network as a pipeline, for benches of single stages; throws where the regressor belongs
+ * to another method.
+ */
 export function createWithNetwork(
   name: NetworkName,
   calibration: Calibration,
@@ -64,5 +69,5 @@ export function createEstimator(
   }
   if (name === 'ik') return createIk(calibration);
   if (name === 'hands-only') return createHandsOnly(calibration);
-  throw new RangeError(`“${String(name)}” is no estimator: ${estimatorNames.join(', ')}`);
+  throw new RangeError(`“${String(name)}” is not an estimator. Use one of ${estimatorNames.join(', ')}.`);
 }

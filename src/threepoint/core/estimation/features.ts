@@ -6,7 +6,7 @@ import { right, up, type Vec3, vec3, writeVec3 } from '../math/vec3';
 import type { JointPositions } from './joint-positions';
 import type { ThreePoints } from './solve-ik';
 
-/** Numbers per frame; their order is in docs/estimation.md. */
+/** The number of features of a frame; their order is in docs/estimation.md. */
 export const featureCount = 46;
 
 /** Whether the device saw each hand in the frame. */
@@ -17,7 +17,7 @@ export interface SeenHands {
 
 const axis = vec3(0, 0, 0);
 
-/** A position relative to the headset, in units of `unit` [m]. */
+/** Writes a position relative to the headset, in units of `unit` [m]. */
 function writeFromHeadset(
   features: Float32Array,
   next: number,
@@ -31,13 +31,13 @@ function writeFromHeadset(
   return next + 3;
 }
 
-/** The first two columns of a rotation. */
+/** Writes the first two columns of a rotation. */
 function writeColumns(features: Float32Array, start: number, { orientation }: Pose<'heading'>): number {
   const next = writeVec3(rotate(orientation, right, axis), features, start);
   return writeVec3(rotate(orientation, up, axis), features, next);
 }
 
-/** One frame's features from three points and IK's joints, both in this frame's heading frame. */
+/** Writes one frame's features from three points and IK's joints, both in this frame's heading frame. */
 export function frameFeatures(
   { head, leftHand, rightHand }: ThreePoints,
   seen: SeenHands,
@@ -67,21 +67,21 @@ interface TimedFeatures {
   readonly features: Float32Array;
 }
 
-/** The recent frames' features, read at ages in seconds, so that a window means the same at 60, 72 and 120 Hz. */
+/** A history of features that is read at ages in seconds, so that a window means the same at 60, 72 and 120 Hz. */
 export class FeatureWindow {
-  /** Oldest first; what was dropped is kept to be written again. */
+  /** The frames, oldest first; dropped buffers are reused. */
   readonly #frames: TimedFeatures[] = [];
   readonly #spare: TimedFeatures[] = [];
   readonly #longestAge: number;
   readonly #width: number;
 
-  /** width: numbers of a frame. */
+  /** width: the number of features of a frame. */
   constructor(longestAgeSeconds: number, width: number = featureCount) {
     this.#longestAge = longestAgeSeconds;
     this.#width = width;
   }
 
-  /** The buffer of a new frame, for its features to be written into; a time that does not advance replaces the newest. */
+  /** Returns the buffer of a new frame for its features; a time that does not advance replaces the newest frame. */
   push(time: number): Float32Array {
     const frames = this.#frames;
     const newest = frames.at(-1);

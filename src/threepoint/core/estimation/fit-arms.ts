@@ -54,7 +54,7 @@ import { type EstimatedPole, estimatedPole, limitSwivel, type SwivelContext, typ
 
 /** How far a wrist bends against the forearm [rad]: 90°, the extreme of flexion. */
 const wristLimit = Math.PI / 2;
-/** A forearm turns at most this fast [rad/s] about itself; a quick pronation does 15. */
+/** The highest speed [rad/s] of a forearm's turn about itself; a quick pronation reaches 15. */
 const forearmSpeed = 20;
 
 /** The rotations of an arm's bones, floor frame. */
@@ -64,12 +64,12 @@ interface ArmRotations {
   readonly hand: MutableQuat;
 }
 
-/** What one arm remembers, and the rotations it returns. */
+/** The state of one arm, and the rotations it returns. */
 interface ArmState extends SwivelState {
   /** False before the first frame. */
   known: boolean;
   readonly rotations: ArmRotations;
-  /** As it was drawn last. */
+  /** The arm as it was drawn last. */
   readonly drawn: ArmDirections;
   readonly transition: ArmTransition;
   /** Unwrapped angle [rad] by which the hand is turned about the forearm, and how much of it the forearm takes. */
@@ -95,16 +95,16 @@ const makeArmState = (): ArmState => ({
 
 export const makeFitArmsState = (): FitArmsState => ({ left: makeArmState(), right: makeArmState() });
 
-/** The bones that both arms are fitted with: the right one's. */
+/** The bones of both arms, as those of the right one. */
 export const armBones = (skeleton: Skeleton): LimbBones => armBonesOf(skeleton, 'right');
 
-/** What both arms of one frame are fitted to; floor frame. */
+/** The input of both arms in one frame, floor frame. */
 interface ArmsInput {
   readonly frame: CompletedFrame;
   readonly joints: JointPositions;
   readonly torso: TorsoPose;
   readonly bones: LimbBones;
-  /** Where IK's elbows point: for arms whose estimate says nothing. */
+  /** The directions of IK's elbows, for arms without an estimate. */
   readonly poles: Readonly<Record<Side, Vec3>>;
 }
 
@@ -126,10 +126,10 @@ interface BentArm {
 const bent: BentArm = { wrist: vec3(0, 0, 0), circle: makeElbowCircle(), elbow: vec3(0, 0, 0), pole: vec3(0, 0, 0) };
 const wantedPole: EstimatedPole = { direction: vec3(0, 0, 0), confidence: Number.NaN };
 const fallbackPoles: readonly [MutableVec3, MutableVec3] = [vec3(0, 0, 0), vec3(0, 0, 0)];
-/** IK's pole, then the first of those. */
+/** The pole of IK, then the fallback poles. */
 const ikPoles: [Vec3, Vec3] = [fallbackPoles[0], fallbackPoles[0]];
 const estimated: Record<'shoulder' | 'elbow' | 'wrist', Vec3> = { shoulder: zero, elbow: zero, wrist: zero };
-/** Of the arm at hand. */
+/** The context of the current arm. */
 const swivelContext: Mutable<Omit<SwivelContext, 'torso'>> & { torso: TorsoPose | null } = {
   side: 'left',
   torso: null,
@@ -158,13 +158,13 @@ export function fitArms(state: FitArmsState, input: ArmsInput, deltaSeconds: num
   return state;
 }
 
-/** One arm: to its wrist, or on its way there; the hand as tracked, the forearm turned half as far. */
+/** Fits one arm to its wrist, or on its way there: the hand as tracked, the forearm turned half as far. */
 function fitArm(side: Side, state: ArmState, input: ArmsInput, deltaSeconds: number): void {
   const { torso, bones } = input;
   const completed = side === 'left' ? input.frame.leftHand : input.frame.rightHand;
   const floorFromChest = torso.rotations.upperChest;
   const jumped = state.known && completed.jumped;
-  // After a jump the elbow need not be near where it was: the way there is the transition's.
+  // After a jump the elbow need not be near its last position: the transition moves it.
   bendArm(side, state.known && !jumped ? state : null, input, deltaSeconds, bent);
 
   const { wrist, elbow, pole, circle } = bent;
@@ -187,7 +187,7 @@ function fitArm(side: Side, state: ArmState, input: ArmsInput, deltaSeconds: num
   state.known = true;
 }
 
-/** Bends an arm that reaches its hand. before: how the elbow pointed in the frame before; null: that binds it to nothing. */
+/** Bends an arm that reaches its hand. before: the elbow's direction in the frame before; null: unconstrained. */
 function bendArm(
   side: Side,
   before: SwivelState | null,
@@ -217,7 +217,7 @@ function bendArm(
   elbowOnCircle(circle, pole, elbow);
 }
 
-/** Where the wrist is to be: as tracked, or nearer than a place to rest as that comes near the arm's reach. */
+/** Returns the wrist's target: as tracked, or closer than a resting place that nears the arm's reach. */
 function wristTarget(
   { goal: { position }, source }: CompletedHand,
   shoulder: Vec3,
@@ -231,7 +231,10 @@ function wristTarget(
   if (reached < far) addScaled(shoulder, subtract(position, shoulder, target), reached / far, target);
 }
 
-/** The bones' rotations from their directions and the hand's: the forearm takes half of the hand's turn about it, so that no wrist is wrung. */
+/**
+ * Writes the bones' rotations from their directions and the hand's. The forearm takes half of the hand's twist, which
+ * spares the wrist.
+ */
 function turnBones(side: Side, state: ArmState, deltaSeconds: number): void {
   const { drawn, rotations } = state;
   const along = alongArm[side];
@@ -242,7 +245,10 @@ function turnBones(side: Side, state: ArmState, deltaSeconds: number): void {
   limitWrist(rotations.lowerArm, along, rotations.hand);
 }
 
-/** Half of the angle by which the hand is turned about the forearm: unwrapped, so that it does not flip at a half turn, and limited in speed. */
+/**
+ * Returns half of the hand's twist about the forearm: unwrapped, so that it does not flip at a half turn, and limited
+ * in speed.
+ */
 function turnForearm(state: ArmState, along: Vec3, deltaSeconds: number): void {
   multiply(conjugate(untwisted, inverse), hand, inForearm);
   const raw = twistAngle(twistOf(inForearm, along, twist), along);
@@ -252,17 +258,17 @@ function turnForearm(state: ArmState, along: Vec3, deltaSeconds: number): void {
   state.forearmTwist = state.known ? clamp(half, state.forearmTwist - most, state.forearmTwist + most) : half;
 }
 
-/** The hand as it is turned, but against the forearm no further than a wrist bends. */
+/** Writes the hand's rotation, limited to the wrist's range against the forearm. */
 function limitWrist(lowerArm: Quat, along: Vec3, target: MutableQuat): void {
   multiply(conjugate(lowerArm, inverse), hand, inForearm);
   twistOf(inForearm, along, twist);
-  // The swing: what is left of the rotation without its twist.
+  // The swing is the rotation without its twist.
   multiply(inForearm, conjugate(twist, inverse), inForearm);
   multiply(limitAngle(inForearm, wristLimit, inForearm), limitAngle(twist, wristLimit, twist), target);
   multiply(lowerArm, target, target);
 }
 
-/** Forgets the past: the next frame is the first. */
+/** Resets the state: the next frame is the first. */
 export function resetFitArms(state: FitArmsState): void {
   for (const arm of [state.left, state.right]) {
     arm.known = false;

@@ -167,7 +167,7 @@ interface UnleanedThorax {
 
 const thorax: PlacedThorax = { up: vec3(0, 0, 0), line: vec3(0, 0, 0) };
 const unleaned: UnleanedThorax = { up: vec3(0, 0, 0), neckToHead: vec3(0, 0, 0), moved: vec3(0, 0, 0) };
-/** Where the shoulders are to be, floor frame. */
+/** The targets of the shoulders, floor frame. */
 const shoulderTargets: Readonly<Record<Side, MutableVec3>> = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
 const headingRight = vec3(0, 0, 0);
 const lineBefore = vec3(0, 0, 0);

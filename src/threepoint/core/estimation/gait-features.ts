@@ -5,7 +5,7 @@ import { addScaled, forward, scale, up, type Vec3, vec3, writeVec3 } from '../ma
 import { yawOf } from '../tracking/heading';
 import { FeatureWindow } from './features';
 
-/** What a drawn body has of a person whose legs no tracker sees, floor frame [m]. */
+/** The points of a drawn body that a gait is estimated from, floor frame [m]. */
 export interface GaitPoints {
   readonly hips: Pose<'floor'>;
   readonly head: Pose<'floor'>;
@@ -13,13 +13,13 @@ export interface GaitPoints {
   readonly rightHand: Vec3;
 }
 
-/** How long ago [s] the frames are that a gait is told from: steps take half a second. */
+/** The ages [s] of the frames that a gait is estimated from: a step takes half a second. */
 const gaitAges = [0, 0.1, 0.2, 0.35, 0.5, 0.75, 1] as const;
 
 /** hips, their yaw, head, its yaw, left hand, right hand. */
 const sampleWidth = 14;
 const [hipsAt, hipsYawAt, headAt, headYawAt, leftAt, rightAt] = [0, 3, 4, 7, 8, 11] as const;
-/** The same of each age as the network has it: both yaws are a sine and a cosine. */
+/** The number of features of each age in the network's input: both yaws are a sine and a cosine. */
 const ageWidth = 16;
 export const gaitFeatureCount = gaitAges.length * ageWidth;
 
@@ -45,7 +45,7 @@ export function yawOfHips(orientation: Quat): number {
  */
 export class GaitFeatures {
   readonly values = new Float64Array(gaitFeatureCount);
-  /** The same of the mirrored person. */
+  /** The features of the mirrored person. */
   readonly mirrored = new Float64Array(gaitFeatureCount);
   readonly #window = new FeatureWindow(gaitAges.at(-1)!, sampleWidth);
   readonly #samples = new Float32Array(gaitAges.length * sampleWidth);
@@ -67,7 +67,7 @@ export class GaitFeatures {
     for (let age = 0; age < gaitAges.length; age++) this.#writeAge(age, hips.position, eyeHeight);
   }
 
-  /** Forgets earlier frames: the person was moved. */
+  /** Resets the history: the person was moved. */
   reset(): void {
     this.#window.clear();
   }
@@ -84,7 +84,7 @@ export class GaitFeatures {
     this.#writeFromHips(to + 13, from + rightAt, origin, eyeHeight, to + 10);
   }
 
-  /** mirrorTo: where the mirrored person has this point. */
+  /** mirrorTo: the index of the mirrored person's point. */
   #writeFromHips(to: number, from: number, origin: Vec3, eyeHeight: number, mirrorTo = to): void {
     const { values, mirrored } = this;
     const samples = this.#samples;

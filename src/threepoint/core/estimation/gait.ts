@@ -5,7 +5,10 @@ import shipped from './gait-network.json';
 import type { Tensor } from './model-weights';
 import { Perceptron } from './perceptron';
 
-/** What a file of gait weights has: who was trained on, and each tensor's shape and numbers (training/threepoint_training/train_gait.py). */
+/**
+ * The contents of a file of gait weights: its training data, and each tensor's shape and numbers
+ * (training/threepoint_training/train_gait.py).
+ */
 export interface GaitNetwork {
   readonly trainedOn: readonly string[];
   readonly tensors: Readonly<
@@ -13,7 +16,10 @@ export interface GaitNetwork {
   >;
 }
 
-/** Where a foot is expected, floor frame [m], where its toes point [rad, 0 towards −Z], and how surely it stands on the floor [0, 1]. */
+/**
+ * An expected foot: floor frame [m], direction of the toes [rad, 0 towards −Z], and the probability that it stands [0,
+ * 1].
+ */
 interface ExpectedFoot {
   readonly x: number;
   readonly z: number;
@@ -39,7 +45,7 @@ export const shippedGait: GaitNetwork = shipped;
  * computed for a person and their mirror image and averaged.
  */
 export class Gait {
-  /** Overwritten by the next update. */
+  /** The newest estimate; overwritten by the next update. */
   readonly feet: Readonly<Record<Side, ExpectedFoot>>;
   readonly #own: Record<Side, MutableExpectedFoot> = {
     left: { x: 0, z: 0, yaw: 0, standing: 1 },
@@ -48,7 +54,7 @@ export class Gait {
   readonly #features = new GaitFeatures();
   readonly #perceptron: Perceptron;
 
-  /** Throws a sentence where the weights are no gait network's. */
+  /** Throws a sentence where the weights do not belong to a gait network. */
   constructor({ tensors }: GaitNetwork = shippedGait) {
     const weights = new Map<string, Tensor>(
       Object.entries(tensors).map(([name, { shape, numbers }]) => [
@@ -60,7 +66,7 @@ export class Gait {
     this.feet = this.#own;
   }
 
-  /** A frame at a time [s] that does not go back; eyeHeight [m]. */
+  /** Adds a frame at a time [s] that does not go back. eyeHeight [m]. */
   update(points: GaitPoints, eyeHeight: number, time: number): void {
     const { values, mirrored } = this.#features;
     this.#features.update(points, eyeHeight, time);
@@ -73,7 +79,7 @@ export class Gait {
     this.#expect(outputs, 'right', points.hips, yaw, eyeHeight);
   }
 
-  /** Forgets earlier frames: the person was moved. */
+  /** Resets the history: the person was moved. */
   reset(): void {
     this.#features.reset();
   }

@@ -3,7 +3,7 @@ import { makePose, type TrackedPose } from '../math/pose';
 import { HeadsetMountCorrection } from './headset-mount-correction';
 import type { PoseEstimator } from './pose-estimator';
 
-/** What `update` returns, overwritten by the next. */
+/** The result of `update`, overwritten by the next. */
 interface OwnedPose {
   head: TrackedPose;
   leftHand: TrackedPose | null;
@@ -11,7 +11,7 @@ interface OwnedPose {
   readonly body: null;
 }
 
-/** Head and hands as they are tracked, and no body. */
+/** An estimator that returns head and hands as they are tracked, without a body. */
 export function createHandsOnly(calibration: Calibration): PoseEstimator {
   const headset = new HeadsetMountCorrection(calibration);
   const pose: OwnedPose = {

@@ -5,13 +5,16 @@ import { addScaled, right, up, vec3 } from '../math/vec3';
 
 const headUp = vec3(0, 0, 0);
 
-/** Takes how a headset sits on its wearer's head out of its pose: the pitch that a calibration measured, and how far it sits above its usual place. */
+/**
+ * Corrects a head pose for the way a headset is worn: the pitch that a calibration measured, and the rise above its
+ * nominal place.
+ */
 export class HeadsetMountCorrection {
   readonly #corrected: MutablePose<'floor'> & { tracking: TrackedPose['tracking'] } = {
     ...makePose<'floor'>(),
     tracking: 'tracked',
   };
-  /** From the headset to the head as its wearer holds it; null: level, or not measured. */
+  /** The rotation from the headset to a level head; null: level, or not measured. */
   #levelling: MutableQuat | null = null;
 
   constructor(calibration: Calibration) {
@@ -22,7 +25,10 @@ export class HeadsetMountCorrection {
     this.#levelling = gazePitch === 0 ? null : fromAxisAngle(right, -gazePitch, quat(0, 0, 0, 1));
   }
 
-  /** The head as its wearer holds it, lower by `rise` [m] along its own up, floor frame; overwritten by the next call. */
+  /**
+   * Returns the head pose as the wearer holds it, lower by `rise` [m] along its own up, floor frame; overwritten by the
+   * next call.
+   */
   apply(tracked: TrackedPose, rise: number): TrackedPose {
     if (this.#levelling === null && rise === 0) return tracked;
     const { position, orientation } = this.#corrected;

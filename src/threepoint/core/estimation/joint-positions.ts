@@ -2,7 +2,7 @@ import { type EstimatedJoint, estimatedJoints } from '../body/joints';
 import { type Frame, type Transform, transformPoint } from '../math/pose';
 import { copyVec3, type MutableVec3, type Vec3, vec3 } from '../math/vec3';
 
-/** Where the six joints are that no device tracks [m], in the frame the variable's name says. */
+/** The six joints that no device tracks [m], in the frame that the variable's name states. */
 export type JointPositions = Readonly<Record<EstimatedJoint, Vec3>>;
 
 /** Six joints that their owner overwrites. */

@@ -2,19 +2,21 @@ import { reasonOf } from '../errors/reasons';
 import { allFinite } from '../math/all-finite';
 import type { PoseRegressor } from './pose-regressor';
 
-/** Latest-result inference: runs a regressor one run at a time and hands over what it finished; errors are stored in `fault`, never thrown. */
+/**
+ * Runs a regressor one run at a time and passes on each finished result; errors are stored in `fault`, never thrown.
+ */
 export class LatestResult {
   readonly #regressor: PoseRegressor;
   readonly #outputs: number;
   readonly #finished: (output: Float32Array) => void;
   readonly #failed: () => void;
   #running: Promise<void> | null = null;
-  /** The newest run has not settled. */
+  /** Whether the newest run has not settled. */
   #open = false;
   #fault: string | null = null;
   #epoch = 0;
 
-  /** finished: hears each valid result. failed: a run went wrong, so that what earlier ones said no longer holds. */
+  /** finished: called with each valid result. failed: called when a run failed, which invalidates earlier results. */
   constructor(regressor: PoseRegressor, finished: (output: Float32Array) => void, failed: () => void) {
     this.#regressor = regressor;
     this.#outputs = regressor.contract.outputs[0]?.shape.reduce((product, size) => product * size, 1) ?? 0;
@@ -22,17 +24,17 @@ export class LatestResult {
     this.#failed = failed;
   }
 
-  /** The run under way, if there is one; none may be started beside it. */
+  /** The current run, beside which none may be started. */
   get running(): Promise<void> | null {
     return this.#open ? this.#running : null;
   }
 
-  /** What went wrong last, until a run succeeds. */
+  /** The newest fault, until a run succeeds. */
   get fault(): string | null {
     return this.#fault;
   }
 
-  /** Starts a run; resolves when it is finished, however it ends. `features` may be overwritten then. */
+  /** Starts a run; resolves when it has settled. `features` may be overwritten then. */
   start(features: Float32Array): Promise<void> {
     if (this.#open && this.#running) return this.#running;
     this.#open = true;
@@ -40,7 +42,7 @@ export class LatestResult {
     return this.#running;
   }
 
-  /** Runs a regressor that answers at once (`runNow`); what was wrong with the answer is in `fault`. Makes no garbage. */
+  /** Runs a regressor that answers at once (`runNow`); `fault` is the fault of its answer. Makes no garbage. */
   answerNow(features: Float32Array): void {
     try {
       this.#take(this.#regressor.runNow!(features));
@@ -49,7 +51,7 @@ export class LatestResult {
     }
   }
 
-  /** Forgets the run under way: its result is not handed over. */
+  /** Discards the result of the current run. */
   reset(): void {
     this.#epoch += 1;
   }

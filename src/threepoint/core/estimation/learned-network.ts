@@ -3,13 +3,16 @@ import { readWeights, tensorOf } from './model-weights';
 import { Perceptron } from './perceptron';
 import type { FlatWeights, ModelContract, PoseRegressor } from './pose-regressor';
 
-/** Joints that the trunk network corrects, in its order: left and right shoulder, chest joint, hips; three numbers each. */
+/**
+ * The joints that the trunk network corrects, in its order: left and right shoulder, chest joint, hips; three numbers
+ * each.
+ */
 const trunkOutputs = 12;
 const outputs = 3 * estimatedJoints.length;
-/** Inputs of zeros, with which a network is tried out, must not divide by zero. */
+/** The smallest divisor: a trial run with zeros as inputs must not divide by zero. */
 const shortestArm = 1e-3;
 
-/** What a contract says of the file for a run without a runtime; throws a sentence where it names none. */
+/** Returns the contract's entry for the weights of a run without a runtime; throws a sentence where there is none. */
 export function weightsOf({ name, weights }: ModelContract): FlatWeights {
   if (!weights) throw new Error(`${name}.json: names no weights for a run without a runtime`);
   return weights;
@@ -36,7 +39,7 @@ class LearnedNetwork {
   readonly #bodies: Float64Array;
   readonly #output = new Float32Array(outputs);
 
-  /** Throws a sentence where contract and file do not go together. */
+  /** Throws a sentence where contract and file do not match. */
   constructor(contract: ModelContract, bytes: Uint8Array) {
     const stated = weightsOf(contract);
     const weights = readWeights(stated, bytes);
@@ -75,7 +78,7 @@ class LearnedNetwork {
   #correctTrunk(trunk: Float64Array, image: number): void {
     const output = this.#output;
     for (let joint = 0; joint < 4; joint++) {
-      // Left and right change places in the image.
+      // Left and right are swapped in the mirror image.
       const twin = joint < 2 ? 1 - joint : joint;
       for (let axis = 0; axis < 3; axis++) {
         const mirrored = (axis === 0 ? -1 : 1) * trunk[image + 3 * twin + axis]!;
@@ -106,7 +109,7 @@ class LearnedNetwork {
     for (let index = 4; index < inputs; index++) input[to + index] = bodies[from + columns[index - 1]!]!;
   }
 
-  /** To each elbow what its arm adds; the left one was computed as the right one of the image. */
+  /** Adds each arm's correction to its elbow; the left one was computed as the right one of the image. */
   #correctElbows(arm: Float64Array, image: number): void {
     const output = this.#output;
     for (let axis = 0; axis < 3; axis++) {
@@ -116,7 +119,7 @@ class LearnedNetwork {
   }
 }
 
-/** The learned network on the thread that asks, answered in the frame that asks: no runtime, no worker, nothing to wait for. */
+/** Runs the learned network on the calling thread within the frame, without a runtime or a worker. */
 export function createPlainRegressor(contract: ModelContract, bytes: Uint8Array): PoseRegressor {
   const network = new LearnedNetwork(contract, bytes);
   return {

@@ -1,6 +1,6 @@
 import type { FlatWeights } from './pose-regressor';
 
-/** Numbers of one tensor, row by row, and its size in each dimension. */
+/** The numbers of one tensor, row by row, and its size in each dimension. */
 export interface Tensor {
   readonly shape: readonly number[];
   readonly numbers: Float32Array | Int16Array | Int8Array;
@@ -10,9 +10,12 @@ const arrays = { float32: Float32Array, int16: Int16Array, int8: Int8Array } as 
 
 const isType = (name: string | undefined): name is keyof typeof arrays => name !== undefined && name in arrays;
 
-/** The tensors of a file of flat weights by name. Throws a sentence where the file is not as long as its list, or a number is not finite. */
+/**
+ * Returns the tensors of a file of flat weights by name. Throws a sentence where the file's length does not match its
+ * list, or a number is not finite.
+ */
 export function readWeights({ file, tensors }: FlatWeights, bytes: Uint8Array): ReadonlyMap<string, Tensor> {
-  // A copy that begins where every typed array may begin.
+  // A copy is aligned for every typed array.
   const { buffer } = new Uint8Array(bytes);
   const read = new Map<string, Tensor>();
   let offset = 0;
@@ -36,7 +39,7 @@ export function readWeights({ file, tensors }: FlatWeights, bytes: Uint8Array): 
   return read;
 }
 
-/** The tensor of this name; throws where there is none, or it has another shape. */
+/** Returns the tensor of this name; throws where it is missing or has another shape. */
 export function tensorOf(weights: ReadonlyMap<string, Tensor>, name: string, ...shape: number[]): Tensor['numbers'] {
   const tensor = weights.get(name);
   if (!tensor) throw new Error(`no tensor is called ${name}`);

@@ -17,11 +17,11 @@ import type { CompletedFrame } from './complete-hands';
 import { calibratedMetres, doubtAngle, memoryMetres, usualMetres } from './hand-tilts.json';
 import type { IkSolution } from './solve-ik';
 
-/** What is known of how one hand stands to its forearm; directions from elbow to wrist in the frame of the hand as it is tracked. */
+/** The estimated tilt of one hand to its forearm; directions from elbow to wrist in the frame of the tracked hand. */
 interface HandTiltState {
-  /** The direction that a calibration tells, or the usual one, unit. */
+  /** The calibrated direction, or the default one, unit. */
   readonly prior: MutableVec3;
-  told: boolean;
+  calibrated: boolean;
   /** Sum of observed directions times metres of travel [m], decaying by 1/e in memoryMetres. */
   readonly noticed: MutableVec3;
 }
@@ -29,33 +29,33 @@ interface HandTiltState {
 export interface HandTiltsState {
   readonly left: HandTiltState;
   readonly right: HandTiltState;
-  /** What each hand is turned by in its own frame so that its −Z continues the forearm. */
+  /** The turn of each hand in its own frame after which its −Z continues the forearm. */
   readonly turns: Readonly<Record<Side, MutableQuat>>;
 }
 
-const makeHandTiltState = (): HandTiltState => ({ prior: vec3(0, 0, 0), told: false, noticed: vec3(0, 0, 0) });
+const makeHandTiltState = (): HandTiltState => ({ prior: vec3(0, 0, 0), calibrated: false, noticed: vec3(0, 0, 0) });
 
-/** Of a wearer of whom this is told. */
-export function makeHandTiltsState(told: HandTilts | undefined): HandTiltsState {
+/** Returns the state for a wearer with these calibrated tilts. */
+export function makeHandTiltsState(calibrated: HandTilts | undefined): HandTiltsState {
   const state: HandTiltsState = {
     left: makeHandTiltState(),
     right: makeHandTiltState(),
     turns: { left: quat(0, 0, 0, 1), right: quat(0, 0, 0, 1) },
   };
-  tellHandTilts(state, told);
+  resetHandTilts(state, calibrated);
   return state;
 }
 
 /**
- * Takes what another calibration tells, and begins anew from it. Nothing else makes hands forgotten: after a recentre or a pause they are held
+ * Resets the estimate to the tilts of another calibration. A recentre or a pause does not reset it: the hands are held
  * as before.
  */
-export function tellHandTilts(state: HandTiltsState, told: HandTilts | undefined): void {
+export function resetHandTilts(state: HandTiltsState, calibrated: HandTilts | undefined): void {
   for (const side of sides) {
     const hand = state[side];
-    const tilt = told?.[side];
+    const tilt = calibrated?.[side];
     rotate(turnOfTilt(tilt ?? usualHandTilt(side)), forward, hand.prior);
-    hand.told = tilt !== undefined;
+    hand.calibrated = tilt !== undefined;
     setVec3(hand.noticed, 0, 0, 0);
     turnAfter(state, side);
   }
@@ -67,7 +67,7 @@ const direction = vec3(0, 0, 0);
  * Weight of the prior, as the metres of observed travel it equals. A measured tilt's shrinks with the square of doubtAngle/angle once
  * prior and observations differ by more than doubtAngle; the usual tilt's is constant.
  */
-function priorMetres({ prior, told, noticed }: HandTiltState): number {
+function priorMetres({ prior, calibrated: told, noticed }: HandTiltState): number {
   if (!told) return usualMetres;
   const angle = Math.atan2(length(cross(prior, noticed, direction)), dot(prior, noticed));
   return angle > doubtAngle ? calibratedMetres * (doubtAngle / angle) ** 2 : calibratedMetres;
@@ -86,7 +86,7 @@ function turnAfter(state: HandTiltsState, side: Side): void {
  */
 export function noticeHandTilts(
   state: HandTiltsState,
-  { untoldForearms }: IkSolution,
+  { untiltedForearms: untoldForearms }: IkSolution,
   { leftHand, rightHand }: Pick<CompletedFrame, 'leftHand' | 'rightHand'>,
   travel: Readonly<Record<Side, number>>,
 ): void {

@@ -18,8 +18,8 @@ export const makeHeadsetRiseState = (): HeadsetRiseState => ({
   rise: 0,
 });
 
-/** Another calibration: what was noticed of the last one's wearer holds no more. */
-export function forgetHeadsetRise(state: HeadsetRiseState): void {
+/** Resets the estimate for another calibration. */
+export function resetHeadsetRise(state: HeadsetRiseState): void {
   state.reach.left = usualReach;
   state.reach.right = usualReach;
   state.rise = 0;

@@ -6,7 +6,10 @@ import { LatestResult } from './latest-result';
 import { paperFeatureCount, paperFeatures } from './paper-features';
 import type { PoseRegressor } from './pose-regressor';
 
-/** The paper's network as published: local positions in the room's axes and Euler angles in, six joints out. IK until it answers. */
+/**
+ * The paper's network as published: local positions in the room's axes and Euler angles in, six joints out. Inverse
+ * kinematics draws until it answers.
+ */
 export function createPaper(regressor: PoseRegressor): JointSource {
   const input = new Float32Array(paperFeatureCount);
   const answered = makeJoints();
@@ -31,7 +34,7 @@ export function createPaper(regressor: PoseRegressor): JointSource {
   }
 
   const network: JointNetwork = {
-    // Its joints are drawn as they are, so each frame needs its own.
+    // Its joints are drawn unfiltered, so each frame needs its own answer.
     wantsFrames: true,
     ask({ completed }) {
       if (inference.running) return inference.running;

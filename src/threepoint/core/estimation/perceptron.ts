@@ -1,8 +1,8 @@
 import { type Tensor, tensorOf } from './model-weights';
 
-/** Outputs that one pass over the inputs computes: each input is read once for so many weights. */
+/** The number of outputs that one pass over the inputs computes, so that each input is read once for all of them. */
 const rowsAtOnce = 4;
-/** Inputs of people trained on lie within so many deviations; what lies beyond is held there. */
+/** The largest input in standard deviations of the training data; larger ones are clamped. */
 const mostDeviations = 4;
 
 /** One layer's weights as its loop reads them. */

@@ -15,13 +15,13 @@ import { HeadsetMountCorrection } from './headset-mount-correction';
 import { makeJoints } from './joint-positions';
 import type { JointSource, SolvedFrame } from './joint-source';
 import { limitJoints, makeLimitJointsState, resetLimitJoints } from './limit-joints';
-import { makeHandTiltsState, noticeHandTilts, tellHandTilts } from './notice-hand-tilts';
-import { forgetHeadsetRise, makeHeadsetRiseState, noticeHeadsetRise } from './notice-headset-rise';
+import { makeHandTiltsState, noticeHandTilts, resetHandTilts } from './notice-hand-tilts';
+import { makeHeadsetRiseState, noticeHeadsetRise, resetHeadsetRise } from './notice-headset-rise';
 import type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from './pose-estimator';
 import { makeIkSolution, makeThreePoints, solveIk, turnHands } from './solve-ik';
 import { makeSteadyTrackersState, resetSteadyTrackers, steadyTrackers } from './steady-trackers';
 
-/** A gap longer than this [s] is no motion: filters and memories begin anew. */
+/** The longest gap between frames [s] that counts as motion; after a longer one filters and memories are reset. */
 const longestGapSeconds = 0.5;
 
 /** The wearer's body, measured in the ways that the stages need. */
@@ -35,7 +35,7 @@ function measure(calibration: Calibration) {
   };
 }
 
-/** Everything that is remembered of one wearer, stage by stage; a stage writes its own part alone. */
+/** The state of all stages for one wearer; each stage writes its own part only. */
 function makeEstimatorState({ handTilts }: Calibration) {
   const hands = makeCompleteHandsState();
   const trackers = makeSteadyTrackersState();
@@ -53,7 +53,7 @@ function makeEstimatorState({ handTilts }: Calibration) {
       ik: makeIkSolution(),
       deviceBody: null as DeviceBody | null,
     } satisfies SolvedFrame,
-    /** The six joints of the third stage, floor frame. */
+    /** The six joints of stage 3, floor frame. */
     joints: makeJoints(),
     limited: makeLimitJointsState(),
     torso: makeFitTorsoState(),
@@ -63,10 +63,10 @@ function makeEstimatorState({ handTilts }: Calibration) {
 
 export type EstimatorState = ReturnType<typeof makeEstimatorState>;
 
-/** Before the first frame. */
+/** The head before the first frame. */
 const noHead: TrackedPose = { ...makePose<'floor'>(), tracking: 'emulated' };
 
-/** What `update` returns, overwritten by the next. */
+/** The result of `update`, overwritten by the next. */
 interface OwnedPose {
   head: TrackedPose;
   leftHand: TrackedPose | null;
@@ -81,7 +81,7 @@ interface OwnedPose {
 export class Pipeline implements PoseEstimator {
   readonly name: EstimatorName;
   readonly source: JointSource;
-  /** Of the newest frame; for benches that look at single stages. */
+  /** The state of the newest frame; for benches that measure single stages. */
   readonly state: EstimatorState;
   readonly #headingFromFloor = makeTransform<'heading', 'floor'>();
   /** IK's poles, floor frame. */
@@ -94,7 +94,7 @@ export class Pipeline implements PoseEstimator {
 
   readonly #frameByFrame: boolean;
 
-  /** frameByFrame: no filter and no limit of speed holds anything back, for benches that measure what these cost. */
+  /** frameByFrame: without filters and speed limits, for benches that measure their cost. */
   constructor(name: EstimatorName, calibration: Calibration, source: JointSource, frameByFrame = false) {
     this.name = name;
     this.#frameByFrame = frameByFrame;
@@ -112,8 +112,8 @@ export class Pipeline implements PoseEstimator {
   calibrate(calibration: Calibration): void {
     this.#headset.calibrate(calibration);
     this.#body = measure(calibration);
-    tellHandTilts(this.state.tilts, calibration.handTilts);
-    forgetHeadsetRise(this.state.headset);
+    resetHandTilts(this.state.tilts, calibration.handTilts);
+    resetHeadsetRise(this.state.headset);
     this.source.calibrate(this.#body.chestSpace);
   }
 
@@ -144,7 +144,7 @@ export class Pipeline implements PoseEstimator {
     steadyTrackers(state.trackers, completed, step);
     const solved = this.#solve(frame);
     noticeHandTilts(state.tilts, solved.ik, completed, state.trackers.travel);
-    // An arm that is longer than is believed seems as far from its shoulder as one under a headset that sits too high.
+    // An underestimated arm length is indistinguishable from a raised headset.
     if (body.spanMeasured) noticeHeadsetRise(state.headset, solved, body.chestSpace.arm, rise, deltaSeconds);
     this.source.joints(solved, step, state.joints);
     const joints = limitJoints(state.limited, state.joints, completed, step);
@@ -161,7 +161,10 @@ export class Pipeline implements PoseEstimator {
     return this.#estimate;
   }
 
-  /** Seconds since the last frame; 0 for the first, which a pause, or a time that runs backwards or is no number, makes it again. */
+  /**
+   * Returns the time [s] since the last frame; 0 for the first frame and after a reset by a pause, a time that runs
+   * backwards or an invalid time.
+   */
   #elapsed(time: number): number {
     const elapsed = time - this.#lastTime;
     const continues = elapsed >= 0 && elapsed <= longestGapSeconds;

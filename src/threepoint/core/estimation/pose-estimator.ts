@@ -2,7 +2,7 @@ import type { AvatarPose } from '../body/avatar-pose';
 import type { Calibration } from '../body/calibration';
 import type { TrackingFrame } from '../tracking/tracking-frame';
 
-/** Methods that need nothing of a device but three points. */
+/** The methods that need only three tracked points. */
 export const threePointNames = ['hands-only', 'ik', 'paper', 'learned'] as const;
 export type ThreePointName = (typeof threePointNames)[number];
 
@@ -18,23 +18,29 @@ export interface InferenceRequest {
   ask(): Promise<void>;
 }
 
-/** Output of one update; owned by the estimator and overwritten by the next. */
+/** The result of one update; the estimator owns it, and the next update overwrites it. */
 export interface Estimate {
-  /** Floor frame. Head and hands are of this very frame, however old the network's answer is. */
+  /** The pose, floor frame. Head and hands belong to this frame, whatever the age of the network's answer. */
   readonly pose: AvatarPose;
-  /** Null: the method has no network, or one that has answered already or was asked about a frame just before. */
+  /**
+   * The request to a network that answers later; null: the method has none, it has answered, or it was called for a
+   * frame just before.
+   */
   readonly request: InferenceRequest | null;
 }
 
-/** One method of drawing a body from three points. All state belongs to the instance: one per avatar. */
+/** One method of estimating a body from three points. The instance owns all state: one per avatar. */
 export interface PoseEstimator {
   readonly name: EstimatorName;
-  /** Takes effect with the next frame. */
+  /** Sets the measures from the next frame on. */
   calibrate(calibration: Calibration): void;
-  /** Forgets the past: after a recentre, a teleport or a loss of tracking. */
+  /** Resets the state after a recentre, a teleport or a loss of tracking. */
   reset(): void;
-  /** One frame, of finite poses. Synchronous; never throws, never returns NaN; waits for no network. */
+  /**
+   * Estimates the body of one frame of finite poses. Synchronous; never throws, never returns NaN and never waits for a
+   * network.
+   */
   update(frame: TrackingFrame): Estimate;
-  /** Why the newest frame is IK although a network should have drawn it; null: nothing is wrong. */
+  /** Returns why inverse kinematics replaced the network in the newest frame; null: there is no fault. */
   fault(): string | null;
 }

@@ -2,11 +2,11 @@
 export interface TensorContract {
   readonly name: string;
   readonly shape: readonly number[];
-  /** What the numbers are, in words: quantities, frames, order. */
+  /** A description of the numbers: quantities, frames, order. */
   readonly meaning: string;
   /** 'm', 'rad', '1' or a ratio such as 'eyeHeight'. */
   readonly unit: string;
-  /** chest: IK's, of the newest frame. */
+  /** The frame of the numbers. chest: IK's chest in the newest frame. */
   readonly frame: 'floor' | 'heading' | 'chest';
 }
 
@@ -16,11 +16,11 @@ export interface FlatWeights {
   readonly file: string;
   readonly bytes: number;
   readonly sha256: string;
-  /** Of each tensor its type and shape, as in `int8 192 176`, in the order in which they lie. */
+  /** The type and shape of each tensor, such as `int8 192 176`, in the order of the file. */
   readonly tensors: Readonly<Record<string, string>>;
 }
 
-/** The contract beside each model file: what goes in, what comes out, what it was trained on and how good it is. */
+/** The contract beside each model file: its input and output, training data and accuracy. */
 export interface ModelContract {
   readonly name: 'paper' | 'learned';
   readonly version: string;
@@ -30,7 +30,7 @@ export interface ModelContract {
   readonly sha256: string;
   readonly inputs: readonly TensorContract[];
   readonly outputs: readonly TensorContract[];
-  /** Frames per second of the training motion. */
+  /** The frame rate of the training motion [Hz]. */
   readonly rateHz: number;
   /** Ages [s] of the frames in the input, newest first: [0] for a single frame. */
   readonly windowSeconds: readonly number[];
@@ -40,18 +40,24 @@ export interface ModelContract {
   readonly seed: number;
   /** MPJPE [cm] by protocol and joint, as measured by the training run (docs/training.md). */
   readonly errors: Readonly<Record<string, Readonly<Record<string, number>>>>;
-  /** Absent: the model needs a runtime. */
+  /** The weights for a run without a runtime; absent: the model needs one. */
   readonly weights?: FlatWeights;
 }
 
 /** A network that maps one flat feature vector to one flat output vector. */
 export interface PoseRegressor {
   readonly contract: ModelContract;
-  /** Where it runs, for the overlay: 'wasm', 'webgpu', 'plain'. */
+  /** The backend, for the overlay: 'wasm', 'webgpu' or 'plain'. */
   readonly provider: string;
-  /** features: as many numbers as the input tensor has elements, not to be overwritten until it settles. Rejects when the runtime fails. One run at a time. */
+  /**
+   * Runs the network. features: as many numbers as the input tensor has elements, unchanged until the promise settles.
+   * Rejects when the runtime fails. One run at a time.
+   */
   run(features: Float32Array): Promise<Float32Array>;
-  /** The same at once, so that a frame has its own answer; absent where the network runs elsewhere. The numbers are overwritten by the next run. */
+  /**
+   * Runs the network at once, so that a frame has its own answer; absent where it runs elsewhere. The next run
+   * overwrites the numbers.
+   */
   readonly runNow?: (features: Float32Array) => Float32Array;
   dispose(): Promise<void>;
 }

@@ -16,7 +16,7 @@ import { correctionCutoff } from './smoothing.json';
 /** Half-life [s] of the low-pass on the correction. */
 const correctionHalfLife = halfLifeOfCutoff(correctionCutoff);
 
-/** Numbers of the network's input: the features at each age, and the newest frame's chest-frame features. */
+/** The length of the network's input: the features at each age, and the newest frame's chest-frame features. */
 export const learnedInputCount = (windowSeconds: readonly number[]): number =>
   windowSeconds.length * featureCount + chestFeatureCount;
 
@@ -29,13 +29,13 @@ class Residual implements JointSource, JointNetwork {
   readonly #window: FeatureWindow;
   readonly #input: Float32Array;
   readonly #seen = { left: false, right: false };
-  /** The newest residual, and what a low-pass makes of it [m], chest frame. */
+  /** The newest residual, and its low-pass [m], chest frame. */
   readonly #newest = makeJoints();
   readonly #damped = makeJoints();
   readonly #answered = makeJoints();
   readonly #inference: LatestResult;
   #body: ChestSpaceBody;
-  /** Whether `newest` is an answer. */
+  /** Whether `newest` is an answer of the network. */
   #known = false;
 
   constructor(calibration: Calibration, regressor: PoseRegressor) {
@@ -99,7 +99,7 @@ class Residual implements JointSource, JointNetwork {
       this.#inference.answerNow(this.#input);
     }
     const { ik, floorFromHeading } = solved;
-    // Without an answer IK stands alone, and what was there fades.
+    // Without an answer the correction fades, and IK is drawn.
     const share = smoothingFactor(correctionHalfLife, deltaSeconds);
     for (let index = 0; index < estimatedJoints.length; index++) {
       const joint = estimatedJoints[index]!;
@@ -109,7 +109,7 @@ class Residual implements JointSource, JointNetwork {
     }
   }
 
-  /** Takes a frame that is asked about into the window. */
+  /** Adds a requested frame to the window. */
   #remember({ time, completed, points, ik }: SolvedFrame): void {
     const seen = this.#seen;
     seen.left = completed.leftHand.source === 'tracked';

@@ -66,17 +66,20 @@ export interface IkSolution {
   readonly joints: MutableJointPositions;
   /** The chest frame (docs/glossary.md): by the shoulders and the chest joint. */
   readonly chest: ChestAxes;
-  /** Where each elbow points from the line between shoulder and wrist, unit. */
+  /** The direction of each elbow from the line between shoulder and wrist, unit. */
   readonly poles: Readonly<Record<Side, MutableVec3>>;
-  /** Where each forearm would point, elbow to wrist, if nothing were known of how its hand stands to it; unit, frame of the hand as it is tracked. */
-  readonly untoldForearms: Readonly<Record<Side, MutableVec3>>;
+  /**
+   * The direction of each forearm, elbow to wrist, as estimated without the tilt of its hand; unit, frame of the
+   * tracked hand.
+   */
+  readonly untiltedForearms: Readonly<Record<Side, MutableVec3>>;
 }
 
 export const makeIkSolution = (): IkSolution => ({
   joints: makeJoints(),
   chest: makeChestAxes(),
   poles: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
-  untoldForearms: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
+  untiltedForearms: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
 });
 
 const { ik: bounds } = limits;
@@ -97,7 +100,7 @@ function mirror(v: MutableVec3, sigma: number): MutableVec3 {
   return v;
 }
 
-/** What the steps of one solution tell each other, heading frame; overwritten by the next. */
+/** Intermediate results of one solution, heading frame; overwritten by the next. */
 const headJoint = vec3(0, 0, 0);
 /** Wrists from the head joint [arm lengths], their middle and the way between them. */
 const left = vec3(0, 0, 0);
@@ -117,11 +120,21 @@ const sagittal = new Float64Array(6);
 const lateral = new Float64Array(3);
 const reach = new Float64Array(4);
 const handFeatures = new Float64Array(10);
-const a = vec3(0, 0, 0);
-const b = vec3(0, 0, 0);
+// Scratch of `leanTrunk`.
+const headAxis = vec3(0, 0, 0);
+// Scratch of `placeTrunk`: the way from the neck to the head joint [m] by the thorax's rotation, and by the head's.
+const neckByThorax = vec3(0, 0, 0);
+const neckByHead = vec3(0, 0, 0);
+// Scratch of `placeShoulder`, thorax frame [m].
+const handFromShoulder = vec3(0, 0, 0);
+const restShoulder = vec3(0, 0, 0);
+const clavicle = vec3(0, 0, 0);
+// Scratch of `placeArm`.
+const handAxis = vec3(0, 0, 0);
+const untiltedForearm = vec3(0, 0, 0);
 const circle = makeElbowCircle();
-const untoldPole = vec3(0, 0, 0);
-const untoldElbow = vec3(0, 0, 0);
+const untiltedPole = vec3(0, 0, 0);
+const untiltedElbow = vec3(0, 0, 0);
 const fallbackPoles: readonly [MutableVec3, MutableVec3] = [vec3(0, 0, 0), vec3(0, 0, 0)];
 
 /**
@@ -160,7 +173,7 @@ function turnChest(): void {
 
 /** 2. Lean of thorax and lower back. 3. Thorax frame. */
 function leanTrunk(head: Pose<'heading'>, body: ChestSpaceBody): void {
-  const lookingDown = -rotate(head.orientation, forward, a).y;
+  const lookingDown = -rotate(head.orientation, forward, headAxis).y;
   const crouch = clamp(1 - head.position.y / body.eyeHeight, bounds.crouch.min, bounds.crouch.max);
   sagittal[0] = 1;
   sagittal[1] = lookingDown;
@@ -168,7 +181,7 @@ function leanTrunk(head: Pose<'heading'>, body: ChestSpaceBody): void {
   sagittal[3] = -middle.z;
   sagittal[4] = -middle.y;
   sagittal[5] = lookingDown * crouch;
-  lateral[0] = rotate(head.orientation, right, a).y;
+  lateral[0] = rotate(head.orientation, right, headAxis).y;
   lateral[1] = middle.x;
   lateral[2] = rightHand.y - left.y;
   leanRotation(parameters.upper, thorax);
@@ -188,10 +201,11 @@ function leanRotation(segment: { forward: number[]; sideways: number[] }, target
 /** 4. Neck base. 5. Chest joint and hips. */
 function placeTrunk(head: Pose<'heading'>, body: ChestSpaceBody, joints: MutableJointPositions): void {
   const neckLength = length(body.neckToHead);
-  rotate(thorax, body.neckToHead, a);
-  rotate(head.orientation, body.neckToHead, b);
-  normalise(scale(lerp(a, b, parameters.neck, a), 1 / neckLength, a), thoraxUp, a);
-  addScaled(headJoint, a, -neckLength, neck);
+  rotate(thorax, body.neckToHead, neckByThorax);
+  rotate(head.orientation, body.neckToHead, neckByHead);
+  const neckUp = lerp(neckByThorax, neckByHead, parameters.neck, neckByThorax);
+  normalise(scale(neckUp, 1 / neckLength, neckUp), thoraxUp, neckUp);
+  addScaled(headJoint, neckUp, -neckLength, neck);
   addScaled(neck, thoraxUp, -body.thorax, joints.chest);
   addScaled(joints.chest, lowerBackUp, -body.lowerBack, joints.hips);
   joints.hips.y = Math.max(joints.hips.y, bounds.lowestHips * body.eyeHeight);
@@ -206,7 +220,7 @@ function placeArm(
   wrist: Pose<'heading'>,
   turn: Quat,
   body: ChestSpaceBody,
-  { joints, poles, untoldForearms }: IkSolution,
+  { joints, poles, untiltedForearms: untoldForearms }: IkSolution,
 ): void {
   const sigma = sideSign(side);
   const shoulder = side === 'left' ? joints.leftUpperArm : joints.rightUpperArm;
@@ -217,18 +231,20 @@ function placeArm(
 
   // 7. Elbow: the swivel follows where the hand is and how it is turned.
   handFeatures[0] = 1;
-  inThorax(subtract(wrist.position, shoulder, a), sigma, a);
-  writeVec3(scale(a, 1 / body.arm, a), handFeatures, 1);
-  writeVec3(inThorax(rotate(wrist.orientation, up, a), sigma, a), handFeatures, 4);
-  writeVec3(inThorax(rotate(wrist.orientation, backward, a), sigma, a), handFeatures, 7);
+  inThorax(subtract(wrist.position, shoulder, handAxis), sigma, handAxis);
+  writeVec3(scale(handAxis, 1 / body.arm, handAxis), handFeatures, 1);
+  writeVec3(inThorax(rotate(wrist.orientation, up, handAxis), sigma, handAxis), handFeatures, 4);
+  writeVec3(inThorax(rotate(wrist.orientation, backward, handAxis), sigma, handAxis), handFeatures, 7);
   placeElbow(parameters.pole, sigma, poles[side], side === 'left' ? joints.leftLowerArm : joints.rightLowerArm);
 
-  // The same from the hand as it is tracked: its axes are those of the turned hand, turned back.
-  writeVec3(inThorax(rotate(wrist.orientation, rotateInverse(turn, up, a), a), sigma, a), handFeatures, 4);
-  writeVec3(inThorax(rotate(wrist.orientation, rotateInverse(turn, backward, a), a), sigma, a), handFeatures, 7);
-  placeElbow(parameters.untoldPole, sigma, untoldPole, untoldElbow);
-  normalise(subtract(wrist.position, untoldElbow, a), circle.axis, a);
-  rotate(turn, rotateInverse(wrist.orientation, a, a), untoldForearms[side]);
+  // Solves again for the tracked hand, whose axes are those of the turned hand, turned back.
+  rotate(wrist.orientation, rotateInverse(turn, up, handAxis), handAxis);
+  writeVec3(inThorax(handAxis, sigma, handAxis), handFeatures, 4);
+  rotate(wrist.orientation, rotateInverse(turn, backward, handAxis), handAxis);
+  writeVec3(inThorax(handAxis, sigma, handAxis), handFeatures, 7);
+  placeElbow(parameters.untoldPole, sigma, untiltedPole, untiltedElbow);
+  normalise(subtract(wrist.position, untiltedElbow, untiltedForearm), circle.axis, untiltedForearm);
+  rotate(turn, rotateInverse(wrist.orientation, untiltedForearm, untiltedForearm), untoldForearms[side]);
 }
 
 /** The elbow on its circle, and its pole, by these weights of the hand's features. */
@@ -240,19 +256,19 @@ function placeElbow(rows: readonly (readonly number[])[], sigma: number, pole: M
 
 /** 6. Shoulder: the clavicle swings with the hand. */
 function placeShoulder(wrist: Pose<'heading'>, body: ChestSpaceBody, sigma: number, target: MutableVec3): void {
-  const restShoulder = add(body.clavicleRoot, body.clavicle, b);
-  const fromNeck = inThorax(subtract(wrist.position, neck, a), sigma, a);
-  const fromShoulder = subtract(fromNeck, restShoulder, a);
+  add(body.clavicleRoot, body.clavicle, restShoulder);
+  inThorax(subtract(wrist.position, neck, handFromShoulder), sigma, handFromShoulder);
+  subtract(handFromShoulder, restShoulder, handFromShoulder);
   reach[0] = 1;
-  writeVec3(scale(fromShoulder, 1 / body.arm, a), reach, 1);
-  scale(affine(parameters.clavicle, reach, a), body.eyeHeight, a);
-  const far = length(a);
+  writeVec3(scale(handFromShoulder, 1 / body.arm, handFromShoulder), reach, 1);
+  const shift = scale(affine(parameters.clavicle, reach, clavicle), body.eyeHeight, clavicle);
+  const far = length(shift);
   const most = bounds.clavicleShift * body.clavicleLength;
-  if (far > most) scale(a, most / far, a);
-  normalise(add(body.clavicle, a, a), right, a);
-  scale(a, body.clavicleLength, a);
-  mirror(add(body.clavicleRoot, a, a), sigma);
-  add(neck, rotate(thorax, a, a), target);
+  if (far > most) scale(shift, most / far, shift);
+  normalise(add(body.clavicle, shift, clavicle), right, clavicle);
+  scale(clavicle, body.clavicleLength, clavicle);
+  mirror(add(body.clavicleRoot, clavicle, clavicle), sigma);
+  add(neck, rotate(thorax, clavicle, clavicle), target);
 }
 
 /** The chest's axes by its joints: x between the shoulders, y the part of the way from the chest joint to their middle that is normal to it. */

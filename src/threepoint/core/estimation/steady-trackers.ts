@@ -22,9 +22,9 @@ interface TrackerState {
   readonly pose: Pose<'floor'>;
 }
 
-/** What joints are estimated from, floor frame: the trackers without their noise at rest. What is drawn of head and hands are the trackers. */
+/** The filtered trackers that joints are estimated from, floor frame. Head and hands are drawn unfiltered. */
 export type SteadyTrackersState = Readonly<Record<Tracker, TrackerState>> & {
-  /** How far each hand has moved about the head since the frame before [m], floor axes; 0 in the first. */
+  /** The distance that each hand has moved about the head since the frame before [m], floor axes; 0 in the first. */
   readonly travel: Record<Side, number>;
   /** Each hand from the head [m], floor axes. */
   readonly fromHead: Readonly<Record<Side, MutableVec3>>;
@@ -46,7 +46,7 @@ export const makeSteadyTrackersState = (): SteadyTrackersState => ({
 
 const fromHead = vec3(0, 0, 0);
 
-/** Takes the trackers' noise out of what joints are estimated from: strongly at rest, hardly in motion. */
+/** Filters the noise of the trackers for the estimate of joints: strongly at rest, hardly in motion. */
 export function steadyTrackers(
   state: SteadyTrackersState,
   completed: CompletedFrame,
@@ -68,7 +68,7 @@ export function steadyTrackers(
   return state;
 }
 
-/** Forgets the past: the next frame is the first. */
+/** Resets the filters: the next frame is the first. */
 export function resetSteadyTrackers(state: SteadyTrackersState): void {
   for (const tracker of trackers) {
     state[tracker].position.known = false;

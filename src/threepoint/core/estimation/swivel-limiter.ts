@@ -27,26 +27,29 @@ import limits from './kinematic-limits.json';
 
 const { trunkCapsule: capsule } = limits;
 
-/** An elbow circles the line from shoulder to wrist at most this fast [rad/s]; a punch's elbow does 10. */
+/** The highest speed of an elbow about the line from shoulder to wrist [rad/s]; a punch reaches 10. */
 const swivelSpeed = 12;
-/** The same where the hand is a guess. */
+/** The highest speed of the swivel [rad/s] of a guessed hand. */
 const guessedSwivelSpeed = 5;
-/** Longest half-life [s] of the swivel angle, where its estimate says little about the side the elbow points to. */
+/** The longest half-life [s] of the swivel angle, where its estimate is uncertain about the side of the elbow. */
 const swivelHalfLife = 0.35;
-/** An estimated elbow nearer to the arm's line than this [m] says little: the arm is nearly straight. */
+/**
+ * The distance [m] of an estimated elbow from the arm's line below which its direction is uncertain: the arm is nearly
+ * straight.
+ */
 const definedPole = 0.04;
 /** Confidence in the arm's axis rises from 0 to 1 between these wrist distances from the shoulder [arm lengths]. */
 const [handAtShoulder, handAway] = [0.1, 0.3];
 
-/** What an elbow remembers, so that it does not flip: chest frame. */
+/** The state of an elbow that keeps it from flipping, chest frame. */
 export interface SwivelState {
   /** From the shoulder to the wrist, unit. */
   readonly axis: MutableVec3;
-  /** Where the elbow points from that line, unit. */
+  /** The direction of the elbow from that line, unit. */
   readonly pole: MutableVec3;
 }
 
-/** Where an estimated elbow points from its own arm's line, and the confidence in [0, 1] in that. */
+/** The direction of an estimated elbow from its own arm's line, and its confidence in [0, 1]. */
 export interface EstimatedPole {
   readonly direction: MutableVec3;
   confidence: number;
@@ -76,7 +79,7 @@ export interface SwivelContext {
   readonly torso: TorsoPose;
   /** Upper arm and forearm together [m]. */
   readonly armLength: number;
-  /** In the hand, in [0, 1]: elbows of guesses turn slower. */
+  /** The confidence in the hand, in [0, 1]: elbows of guessed hands turn slower. */
   readonly confidence: number;
   readonly deltaSeconds: number;
 }
@@ -157,7 +160,7 @@ function nearestWithin({ low, high }: ClearRange, angle: number): number {
 const partsPerStep = 64;
 const partsPerHalfTurn = 18 * partsPerStep;
 const swivelPart = Math.PI / partsPerHalfTurn;
-/** Of whole steps from none to half a turn: most of the angles that are looked at. */
+/** The cosines of whole steps from none to half a turn, which are most of the angles in use. */
 const stepCosines = Float64Array.from({ length: 19 }, (_, step) => Math.cos(step * partsPerStep * swivelPart));
 const stepSines = Float64Array.from({ length: 19 }, (_, step) => Math.sin(step * partsPerStep * swivelPart));
 

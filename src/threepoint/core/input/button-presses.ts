@@ -7,7 +7,7 @@ export interface HandButtons {
   readonly pinch: number;
   /** What they belong to, where that is known. A hand that turns from one into the other lets go of everything. */
   readonly kind?: 'controller' | 'hand';
-  /** Which device of all that there ever were; absent where they are not told apart. */
+  /** The number of the device among all of the session; absent where devices are not distinguished. */
   readonly device?: number;
 }
 
@@ -31,7 +31,7 @@ export const pressureOf = (buttons: HandButtons, button: Button): number => {
   return value > 0 ? Math.min(value, 1) : 0;
 };
 
-/** Tells presses from noise: thresholds with hysteresis, one memory for each hand. */
+/** Distinguishes presses from noise by thresholds with hysteresis, separately for each hand. */
 export interface ButtonPresses {
   /**
    * The buttons newly pressed in this frame. A hand that is not seen has none; what is down when it is seen (again) for the

@@ -24,7 +24,7 @@ export type TrackedPose = Pose<'floor'> & { readonly tracking: 'tracked' | 'emul
 export const isTracked = (pose: TrackedPose | null | undefined): pose is TrackedPose => pose?.tracking === 'tracked';
 
 /** Returns the pose where the device sees it, null where it is lost or only guessed. */
-export const seenPose = (pose: TrackedPose | null): TrackedPose | null => (isTracked(pose) ? pose : null);
+export const trackedOrNull = (pose: TrackedPose | null): TrackedPose | null => (isTracked(pose) ? pose : null);
 
 /** A pose that its owner overwrites: an optional last argument `target`, as with `MutableVec3`. */
 export interface MutablePose<F extends Frame> extends Pose<F> {
@@ -53,7 +53,9 @@ export const makePose = <F extends Frame>(): MutablePose<F> => ({
   orientation: quat(0, 0, 0, 1),
 });
 
-/** Whether this is a place and a rotation: numbers that are finite, squared too, and no quaternion of length 0. */
+/**
+ * Returns whether position and rotation are valid: finite numbers, also when squared, and a quaternion with a length.
+ */
 export function isFinitePose({ position: p, orientation: o }: Pose<Frame>): boolean {
   const turned = o.x * o.x + o.y * o.y + o.z * o.z + o.w * o.w;
   return turned > 0 && Number.isFinite(turned + p.x * p.x + p.y * p.y + p.z * p.z);
@@ -70,7 +72,7 @@ export const makeTransform = <To extends Frame, From extends Frame>(): MutableTr
   orientation: quat(0, 0, 0, 1),
 });
 
-/** A point's coordinates in To. */
+/** Returns a point's coordinates in To. */
 export function transformPoint<To extends Frame, From extends Frame>(
   t: Transform<To, From>,
   point: Vec3,
@@ -80,7 +82,7 @@ export function transformPoint<To extends Frame, From extends Frame>(
   return add(t.position, target, target);
 }
 
-/** A point's coordinates in From: the inverse of `transformPoint`. */
+/** Returns a point's coordinates in From: the inverse of `transformPoint`. */
 export function untransformPoint<To extends Frame, From extends Frame>(
   t: Transform<To, From>,
   point: Vec3,
@@ -90,7 +92,7 @@ export function untransformPoint<To extends Frame, From extends Frame>(
   return rotateInverse(t.orientation, target, target);
 }
 
-/** A pose in To. */
+/** Returns a pose in To. */
 export function transformPose<To extends Frame, From extends Frame>(
   t: Transform<To, From>,
   pose: Pose<From>,
@@ -102,16 +104,16 @@ export function transformPose<To extends Frame, From extends Frame>(
 }
 
 /** Returns the pose in To where the device sees it, null where it is lost or only guessed. */
-export function transformSeen<To extends Frame>(
+export function transformTracked<To extends Frame>(
   t: Transform<To, 'floor'>,
   pose: TrackedPose | null,
   target?: MutablePose<To>,
 ): MutablePose<To> | null {
-  const seen = seenPose(pose);
+  const seen = trackedOrNull(pose);
   return seen && transformPose(t, seen, target);
 }
 
-/** From From to To by way of Via. */
+/** Returns the transform from From to To by way of Via. */
 export function composeTransforms<To extends Frame, Via extends Frame, From extends Frame>(
   toFromVia: Transform<To, Via>,
   viaFromFrom: Transform<Via, From>,
@@ -122,7 +124,9 @@ export function composeTransforms<To extends Frame, Via extends Frame, From exte
   return target;
 }
 
-/** The transform back: `toFromFrom` becomes `fromFromTo`. The orientation must be unit; target may be `t`. */
+/**
+ * Returns the inverse transform: `toFromFrom` becomes `fromFromTo`. The orientation must be unit; target may be `t`.
+ */
 export function invertTransform<To extends Frame, From extends Frame>(
   t: Transform<To, From>,
   target: MutableTransform<From, To> = makeTransform(),

@@ -210,7 +210,7 @@ export function twistAngle(q: Quat, axis: Vec3): number {
 
 /** The rotation by at most `limit` [rad] in the direction of q. */
 export function limitAngle(q: Quat, limit: number, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
-  // Mostly it is not reached: a cosine tells so without the angle.
+  // The limit is rarely reached, which a cosine shows without the angle.
   if (Math.abs(q.w) >= Math.cos(Math.min(limit, Math.PI) / 2)) return copyQuat(q, target);
   return slerp(identity, q, limit / angleBetween(identity, q), target);
 }

@@ -31,7 +31,7 @@ export function randomNumbers(seed: number): () => number {
   };
 }
 
-/** The same of the standard normal distribution, by Box and Muller; 1 − u is never 0. */
+/** Returns a generator of standard normal numbers by Box and Muller; 1 − u is never 0. */
 export function normalNumbers(seed: number): () => number {
   const uniform = randomNumbers(seed);
   return () => Math.sqrt(-2 * Math.log(1 - uniform())) * Math.cos(2 * Math.PI * uniform());

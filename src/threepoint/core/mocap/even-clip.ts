@@ -1,10 +1,10 @@
-import { conjugate, multiply, type Quat, quat, setQuat, slerp } from '../math/quat';
+import { conjugate, type MutableQuat, multiply, type Quat, quat, setQuat, slerp } from '../math/quat';
 import { rateHz, shortestPieceSeconds, teleportSpeed } from './mocap-rules.json';
 import { type OurMotion, positionsWidth, rotationsWidth } from './our-joints';
 import type { Piece } from './person';
 import { bodyJoints, trackedJoints } from './skeleton-map';
 
-/** Where a motion leaps [frames], and what is left between leaps: pieces long enough to be motion. */
+/** Returns the frames at which a motion jumps, and the pieces between them that are long enough to be motion. */
 export function cutAtLeaps({ positions, rateHz: rate, frameCount }: OurMotion): {
   readonly cuts: readonly number[];
   readonly pieces: readonly Piece[];
@@ -32,10 +32,11 @@ export interface EvenClip {
   readonly rotations: Float32Array<ArrayBuffer>;
 }
 
-const a = quat(0, 0, 0, 1);
-const b = quat(0, 0, 0, 1);
+// Scratch of `evenClip`: a joint's rotations in the two frames that are mixed.
+const rotationBefore = quat(0, 0, 0, 1);
+const rotationAfter = quat(0, 0, 0, 1);
 
-const rotationAt = ({ rotations }: OurMotion, frame: number, joint: number, target: typeof a) => {
+const rotationAt = ({ rotations }: OurMotion, frame: number, joint: number, target: MutableQuat) => {
   const at = frame * rotationsWidth + 4 * joint;
   return setQuat(target, rotations[at]!, rotations[at + 1]!, rotations[at + 2]!, rotations[at + 3]!);
 };
@@ -64,7 +65,9 @@ export function evenClip(motion: OurMotion, { from, to }: Piece, floor: number, 
       clip.positions[frame * positionsWidth + i] = i % 3 === 1 ? value - floor : value;
     }
     for (let joint = 0; joint < trackedJoints.length; joint++) {
-      const turn = slerp(rotationAt(motion, first, joint, a), rotationAt(motion, second, joint, b), share, a);
+      rotationAt(motion, first, joint, rotationBefore);
+      rotationAt(motion, second, joint, rotationAfter);
+      const turn = slerp(rotationBefore, rotationAfter, share, rotationBefore);
       if (joint === 0) multiply(turn, back, turn);
       clip.rotations.set([turn.x, turn.y, turn.z, turn.w], frame * rotationsWidth + 4 * joint);
     }

@@ -11,7 +11,7 @@ export function floorFromFile({ up: upward = '+y', forward = '+z' }: SkeletonMap
   return conjugate(fromAxes(cross(ahead, above), above, scale(ahead, -1)));
 }
 
-/** The same motion counted from other poses: where its joints rest, and how each is turned there. */
+/** Returns the motion relative to another rest pose. */
 function countedFrom(file: FileMotion, { positions, rotations }: JointPoses): FileMotion {
   const backs = rotations.map((rotation) => conjugate(rotation));
   return {
@@ -38,7 +38,10 @@ function facingForward(file: FileMotion, map: SkeletonMap): FileMotion {
   return countedFrom(file, turned);
 }
 
-/** A motion counted from the T-pose that a map tells, facing forward; unchanged where it tells none. Throws a sentence where it is none of the file's. */
+/**
+ * Returns the motion relative to the T-pose of a map, facing forward; unchanged where the map has none. Throws a
+ * sentence where the T-pose does not match the file.
+ */
 export function fromMappedRest(
   file: FileMotion,
   map: SkeletonMap,
@@ -61,7 +64,7 @@ export function fromMappedRest(
   return facingForward(countedFrom(file, file.pose(restFrame - 1, makeJointPoses(file.names.length))), map);
 }
 
-/** Where these angles [degrees] place the joints: the root at the origin, others at their offsets, angles that are not given 0. */
+/** Returns the joints at these angles [degrees]: the root at the origin, others at their offsets, missing angles 0. */
 function poseOfAngles(
   motion: BvhMotion,
   joints: readonly BvhJoint[],

@@ -24,7 +24,7 @@ interface Beside {
 /** The content of a file of motion, with its name. */
 export type MocapSource = {
   readonly name: string;
-  /** Of a skeleton that is not known here. */
+  /** The map of a skeleton that is unknown here. */
   readonly map?: Beside;
 } & (
   | { readonly format: 'bvh'; readonly text: string }
@@ -56,7 +56,7 @@ export interface PreparedMocap {
   readonly notes: readonly string[];
 }
 
-/** The same fault as a sentence that begins with the name of its file. */
+/** Returns the fault as a sentence that begins with the name of its file. */
 const faultIn = (name: string, error: unknown): Error =>
   new Error(`${name}: ${error instanceof Error ? error.message : String(error)}`, { cause: error });
 
@@ -95,7 +95,7 @@ function rateOf(name: string): number {
   return cmu.subjectsAt60Hz.includes(Number(found[1])) ? 60 : cmu.rateHz;
 }
 
-/** Whose motion it is, as the evaluation takes it of files in one folder: the start of the name. */
+/** Returns the person's name from the start of the file's, as the evaluation does for files in one folder. */
 function personOf(name: string): string {
   const person = stemOf(name).split('_')[0]!;
   return /^\d+$/.test(person) ? String(Number(person)).padStart(3, '0') : person;

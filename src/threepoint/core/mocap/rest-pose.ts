@@ -4,7 +4,7 @@ import { distance, dot, down, length, normalise, right, scale, subtract, up, typ
 import { shortestBone } from './mocap-rules.json';
 import type { SkeletonMap, TruthJoint } from './skeleton-map';
 
-/** Where joints rest [m], +Y up, facing −Z; those that a file lacks are not there. */
+/** The joints at rest [m], +Y up, facing −Z, without those that a file lacks. */
 export type RestPose = ReadonlyMap<TruthJoint, Vec3>;
 
 const trunk = [
@@ -16,7 +16,7 @@ const trunk = [
 const direction = (v: Vec3): Vec3 => normalise(v, zero);
 
 /** A direction of a body that faces −Z, in a word. */
-function told({ x, y, z }: Vec3): string {
+function shownVector({ x, y, z }: Vec3): string {
   const [ax, ay, az] = [Math.abs(x), Math.abs(y), Math.abs(z)];
   if (ax >= ay && ax >= az) return x > 0 ? 'to the right' : 'to the left';
   if (ay >= az) return y > 0 ? 'up' : 'down';
@@ -40,10 +40,10 @@ export function checkRest(rest: RestPose, { joints }: SkeletonMap): void {
   };
   for (const [near, far] of trunk) bone(near, far, 'the trunk');
   const spine = direction(subtract(at('neck'), at('hips')));
-  if (dot(spine, up) < 0.7) refuse(`the trunk, ${joints.hips} to ${joints.neck}, points ${told(spine)}`, 'up');
+  if (dot(spine, up) < 0.7) refuse(`the trunk, ${joints.hips} to ${joints.neck}, points ${shownVector(spine)}`, 'up');
   const across = subtract(at('rightUpperArm'), at('leftUpperArm'));
   if (dot(direction(across), right) < 0.7 || length(across) < 0.1) {
-    const so = length(across) < 0.02 ? 'lie on each other' : `lie ${told(across)} of each other`;
+    const so = length(across) < 0.02 ? 'lie on each other' : `lie ${shownVector(across)} of each other`;
     refuse(`the shoulders, ${joints.leftUpperArm} and ${joints.rightUpperArm}, ${so}`, 'left and right');
   }
   for (const side of sides) {
@@ -53,12 +53,13 @@ export function checkRest(rest: RestPose, { joints }: SkeletonMap): void {
     bone(elbow, hand, `the ${side} arm`);
     const arm = direction(subtract(at(hand), at(shoulder)));
     if (dot(arm, up) > 0.5 || dot(arm, outward) < -0.3)
-      refuse(`the ${side} arm, ${joints[shoulder]} to ${joints[hand]}, points ${told(arm)}`, 'sideways');
+      refuse(`the ${side} arm, ${joints[shoulder]} to ${joints[hand]}, points ${shownVector(arm)}`, 'sideways');
     if (dot(direction(subtract(at(elbow), at(shoulder))), direction(subtract(at(hand), at(elbow)))) < 0)
       refuse(`the ${side} arm is folded at ${joints[elbow]}`, 'straight');
     const [hip, foot] = [`${side}UpperLeg`, `${side}Foot`] as const;
     if (!rest.has(hip) || !rest.has(foot)) continue;
     const leg = direction(subtract(at(foot), at(hip)));
-    if (dot(leg, down) < 0.7) refuse(`the ${side} leg, ${joints[hip]} to ${joints[foot]}, points ${told(leg)}`, 'down');
+    if (dot(leg, down) < 0.7)
+      refuse(`the ${side} leg, ${joints[hip]} to ${joints[foot]}, points ${shownVector(leg)}`, 'down');
   }
 }

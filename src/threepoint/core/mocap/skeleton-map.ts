@@ -30,19 +30,19 @@ export const legJoints = [
 export const truthJoints = [...bodyJoints, ...legJoints] as const;
 /** See truthJoints. */
 export type TruthJoint = (typeof truthJoints)[number];
-/** Whose turns are what a headset and two hands report. */
+/** The source joint for each tracker's rotation. */
 export const trackedJoints = ['head', 'leftHand', 'rightHand'] as const satisfies readonly TruthJoint[];
 /** See trackedJoints. */
 export type TrackedJoint = (typeof trackedJoints)[number];
 
-/** Which joint of a file is which of ours. */
+/** The mapping from a file's joints to the skeleton's. */
 export interface SkeletonMap {
   readonly name: string;
   /** What the file calls ours. */
   readonly joints: Readonly<Partial<Record<TruthJoint, string>>>;
   /** Metres per unit; absent: the unit that makes the arms a person's. */
   readonly scale?: number;
-  /** Whose turn head or hands follow, where that is no joint of theirs. */
+  /** The source joint for the rotation of head or hands where it is not the joint itself. */
   readonly rotations?: Readonly<Partial<Record<TrackedJoint, string>>>;
   /** The file's axes: which way is up (absent: +y), and which way people at rest face (absent: +z). */
   readonly up?: FileAxis;
@@ -78,7 +78,7 @@ export function findSkeletonMap(names: readonly string[]): SkeletonMap {
   throw new Error(unknownSkeleton(names));
 }
 
-/** Says what comes closest, so that a file that lacks its wrists alone is told so. */
+/** Returns a sentence with the closest known skeleton, which helps where only the wrists are missing. */
 function unknownSkeleton(names: readonly string[]): string {
   const known = new Set(names);
   const lacks = (skeletons as readonly SkeletonMap[]).map(({ joints }) =>

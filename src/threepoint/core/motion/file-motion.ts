@@ -1,7 +1,7 @@
 import { type MutableQuat, quat } from '../math/quat';
 import { type MutableVec3, type Vec3, vec3 } from '../math/vec3';
 
-/** Where joints are and how they are turned since the rest pose, in the unit and axes of their file. */
+/** Positions and rotations of joints since the rest pose, in the unit and axes of their file. */
 export interface JointPoses {
   readonly positions: readonly MutableVec3[];
   readonly rotations: readonly MutableQuat[];
@@ -16,7 +16,7 @@ export const makeJointPoses = (count: number): JointPoses => ({
 /** What a file of motion says of all joints of a skeleton, whichever format it has; in its own unit and axes. */
 export interface FileMotion {
   readonly names: readonly string[];
-  /** Of every joint at rest, from the root. */
+  /** The positions of all joints at rest, from the root. */
   readonly rest: readonly Vec3[];
   /** Frames per second; null: the file does not say. */
   readonly rateHz: number | null;

@@ -16,7 +16,7 @@ export interface NodeTrack {
 
 export interface Clip {
   readonly name: string;
-  /** Of all tracks [s], rising. */
+  /** The times of all tracks [s], rising. */
   readonly times: Float32Array;
   readonly tracks: readonly NodeTrack[];
   /** What else is to be said of it. */

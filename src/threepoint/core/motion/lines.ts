@@ -13,7 +13,7 @@ export interface Word {
 
 /** Lines of a text one by one, with the place of what is read. */
 export class Lines {
-  /** Of the line at hand, from 1. */
+  /** The number of the current line, from 1. */
   number = 0;
   line = '';
   #next = 0;

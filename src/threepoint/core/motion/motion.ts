@@ -6,13 +6,13 @@ import type { MotionBone } from './skeleton';
 export interface Motion {
   /** Every bone before its children, the measured ones first. */
   readonly bones: readonly MotionBone[];
-  /** Of the measured bones. */
+  /** The number of measured bones. */
   readonly measured: number;
   /** Frames per second that the device asked for; `times` are what counts. */
   readonly rateHz: number;
   /** Seconds from the first frame, rising. */
   readonly times: Float64Array;
-  /** Where the hips are [m]: x, y, z of each frame. */
+  /** The hips' positions [m]: x, y, z of each frame. */
   readonly hips: Float64Array;
   /** Rotation of each measured bone against its parent, in T-pose's axes: x, y, z, w, bone after bone, frame after frame. */
   readonly rotations: Float32Array;
@@ -27,7 +27,7 @@ export function rotationAt(motion: Motion, frame: number, bone: number, target: 
   return setQuat(target, rotations[at]!, rotations[at + 1]!, rotations[at + 2]!, rotations[at + 3]!);
 }
 
-/** Where the hips are in one frame [m]. */
+/** Returns the hips' position in one frame [m]. */
 export const hipsAt = ({ hips }: Motion, frame: number, target: MutableVec3): MutableVec3 =>
   setVec3(target, hips[3 * frame]!, hips[3 * frame + 1]!, hips[3 * frame + 2]!);
 
@@ -66,8 +66,8 @@ const mostFrames = 1_080_000;
 const framesPerStep = 64;
 
 /**
- * The same motion at an even rate [Hz], interpolated. Yields the share [0, 1] that is done. Throws a sentence where that is no rate, or the motion lasts so long at it that no file
- * could hold it.
+ * Interpolates the motion at an even rate [Hz]. Yields the share [0, 1] that is done. Throws a sentence where the rate
+ * is invalid, or the motion would have more frames than a file can hold.
  */
 export function* resampleMotion(motion: Motion, rateHz: number): Generator<number, Motion> {
   const { times, measured } = motion;
@@ -95,10 +95,11 @@ export function* resampleMotion(motion: Motion, rateHz: number): Generator<numbe
   return even;
 }
 
-const a = vec3(0, 0, 0);
-const b = vec3(0, 0, 0);
-const from = quat(0, 0, 0, 1);
-const to = quat(0, 0, 0, 1);
+// Scratch of `mixFrame`: hips and one bone's rotation in the two frames that are mixed.
+const hipsBefore = vec3(0, 0, 0);
+const hipsAfter = vec3(0, 0, 0);
+const rotationBefore = quat(0, 0, 0, 1);
+const rotationAfter = quat(0, 0, 0, 1);
 
 function mixFrame(
   motion: Motion,
@@ -107,14 +108,14 @@ function mixFrame(
   share: number,
   { into, frame }: { readonly into: Motion; readonly frame: number },
 ): void {
-  const hips = lerp(hipsAt(motion, before, a), hipsAt(motion, after, b), share, a);
+  const hips = lerp(hipsAt(motion, before, hipsBefore), hipsAt(motion, after, hipsAfter), share, hipsBefore);
   into.hips.set([hips.x, hips.y, hips.z], 3 * frame);
   for (let bone = 0; bone < motion.measured; bone++) {
     const { x, y, z, w } = slerp(
-      rotationAt(motion, before, bone, from),
-      rotationAt(motion, after, bone, to),
+      rotationAt(motion, before, bone, rotationBefore),
+      rotationAt(motion, after, bone, rotationAfter),
       share,
-      from,
+      rotationBefore,
     );
     into.rotations.set([x, y, z, w], 4 * (frame * motion.measured + bone));
   }

@@ -8,7 +8,7 @@ const framesPerStep = 16;
 /** What the head of a file says of its angles, in radians; without it they are in the skeleton's unit. */
 const radiansPerUnit: Readonly<Record<string, number>> = { ':DEGREES': Math.PI / 180, ':RADIANS': 1 };
 
-/** Where the numbers of a bone begin in a row, and how many they are. */
+/** The columns of a bone in a row: the first one and their number. */
 interface Columns {
   readonly at: number;
   readonly count: number;

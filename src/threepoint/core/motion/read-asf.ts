@@ -23,7 +23,7 @@ export interface AsfSkeleton {
   readonly rootFreedoms: readonly string[];
   readonly rootAxis: Quat;
   readonly rootPosition: Vec3;
-  /** Of its own angles, and of those of an AMC file that says nothing of its own. */
+  /** The unit of the file's angles, and of an AMC file that states none. */
   readonly radiansPerUnit: number;
 }
 
@@ -91,7 +91,7 @@ class Sections {
       const bone = rawBone(this.#lines, words[0]!, this.#block);
       this.bones.set(bone.name, bone);
       this.#block = null;
-      if (this.bones.size > mostBones) this.#lines.fail(1, `more than ${mostBones} bones: no person's skeleton`);
+      if (this.bones.size > mostBones) this.#lines.fail(1, `more than ${mostBones} bones: not a human skeleton`);
     } else if (['direction', 'length', 'axis'].includes(first)) {
       this.#block?.set(first, words);
       numbersOf(this.#lines, words, first === 'length' ? 1 : 3);

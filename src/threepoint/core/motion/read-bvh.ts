@@ -84,7 +84,7 @@ function readHierarchy(lines: Lines): readonly OpenJoint[] {
       pending = `${top(column, 'End Site').name}:end`;
     } else if (keyword === '{') {
       if (pending === null) lines.fail(column, '“{” without a joint before it');
-      if (joints.length >= mostJoints) lines.fail(column, `more than ${mostJoints} joints: no person's skeleton`);
+      if (joints.length >= mostJoints) lines.fail(column, `more than ${mostJoints} joints: not a human skeleton`);
       joints.push({ name: pending, parent: stack.at(-1) ?? -1, offset: vec3(0, 0, 0), channels: [] });
       stack.push(joints.length - 1);
       pending = null;

@@ -55,7 +55,7 @@ const quatOf = ([x, y, z, w]: readonly number[]): MutableQuat => quat(x!, y!, z!
 
 function nodesOf(description: Json): Node[] {
   const given = objects(description.nodes);
-  if (given.length > mostNodes) throw new Error(`more than ${mostNodes} nodes: no person's skeleton`);
+  if (given.length > mostNodes) throw new Error(`more than ${mostNodes} nodes: not a human skeleton`);
   const nodes = given.map(({ translation, rotation, scale, matrix }, i): Node => {
     if (matrix !== undefined)
       throw new Error(`nodes[${i}] has a matrix, where a bone has a translation and a rotation`);

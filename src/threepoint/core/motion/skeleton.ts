@@ -18,9 +18,9 @@ export interface MotionBone {
   readonly parent: number;
   /** From the parent's joint in T-pose [m]; of the root: from the floor below. */
   readonly offset: Vec3;
-  /** Where the bone ends, from its own joint [m]; null: where its first child begins. */
+  /** The end of the bone from its joint [m]; null: the joint of its first child. */
   readonly end: Vec3 | null;
-  /** False: no device tells and no estimator guesses how it moves (legs); it keeps its rest. */
+  /** Whether a device or an estimator provides the bone's motion; false (legs): it keeps its rest. */
   readonly measured: boolean;
 }
 
@@ -28,7 +28,7 @@ export interface MotionBone {
 export const turnPoint = (point: Vec3, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
   setVec3(target, -point.x, point.y, -point.z);
 
-/** The same rotation seen in the frame that is turned by half about +Y. */
+/** Returns the rotation in the frame that is turned by half a turn about +Y. */
 export const turnRotation = (q: Quat, target: MutableQuat): MutableQuat => setQuat(target, -q.x, q.y, -q.z, q.w);
 
 const straight: FingerBend = { knuckle: 0, spread: 0, middle: 0, end: 0 };

@@ -54,7 +54,7 @@ export class BoneRotations {
   readonly #shape = makeHandShape();
   readonly #rotation = quat(0, 0, 0, 1);
   #target = new Float32Array();
-  /** Where the next rotation goes. */
+  /** The index at which the next rotation is written. */
   #at = 0;
 
   constructor(calibration: Calibration) {
@@ -123,14 +123,14 @@ export class MotionTaker {
   /** The next frame. Throws a sentence where the pose has no body: of head and hands alone no motion is made. */
   add({ time, leftHand, rightHand, fingers = unknownFingers }: TrackingFrame, { body }: AvatarPose): void {
     if (!body)
-      throw new Error('This method draws no body: there are head and hands alone, and no motion to be written.');
+      throw new Error('This method estimates no body, so there is no motion to export. Choose another method.');
     const { times, hips, seen, rotations, measured } = this.#motion;
     const index = this.#count;
     if (index === 0) this.#firstTime = time;
     times[index] = time - this.#firstTime;
     const at = turnPoint(body.hipsPosition, hipsOfBody);
     hips.set([at.x, at.y, at.z], 3 * index);
-    // Where the device only guesses, the arm is a guess.
+    // A hand that the device only guesses has a guessed arm.
     seen[index] = (isTracked(leftHand) ? 1 : 0) + (isTracked(rightHand) ? 2 : 0);
     const deltaSeconds = index === 0 ? 0 : times[index] - times[index - 1]!;
     this.#rotations.write(body, fingers, deltaSeconds, rotations, 4 * index * measured);

@@ -12,7 +12,7 @@ export async function* partOf<Result>(work: Work<Result>, from: number, to: numb
   }
 }
 
-/** The same of work that never waits. */
+/** Yields the scaled progress of work that never waits. */
 export function* portionOf<Result>(
   work: Generator<number, Result>,
   from: number,
@@ -71,8 +71,8 @@ export async function runInTurns<Step, Result>(
 }
 
 /**
- * Seconds that are left of work of which this share [0, 1] took so many seconds; null: too little is done to say. Work at an even pace is told
- * exactly.
+ * Returns the estimated seconds left of work whose share [0, 1] took `elapsedSeconds`; null: too little is done for an
+ * estimate. Exact for work at an even pace.
  */
 export const secondsLeft = (share: number, elapsedSeconds: number): number | null =>
   share >= 0.02 && elapsedSeconds > 0 ? (elapsedSeconds * (1 - share)) / share : null;

@@ -2,7 +2,7 @@ import { isTracked, type TrackedPose } from '../math/pose';
 import { type Recording, recordingDuration } from '../tracking/recording';
 import type { TrackingFrame } from '../tracking/tracking-frame';
 
-/** Of the specification that the files follow. */
+/** The version of the specification that the files follow. */
 export const bidsVersion = '1.11.1';
 
 const absent = 'n/a';
@@ -62,7 +62,7 @@ const poseChannels = points.flatMap(({ of: part, point, placement }) =>
     reference_frame: 'floor',
     read(frame: TrackingFrame): string {
       const pose = frame[part];
-      // Where the device only guesses a hand, nothing was measured.
+      // A hand that the device only guesses was not measured.
       return pose && (part === 'head' || isTracked(pose)) ? of(pose).toFixed(6) : absent;
     },
   })),

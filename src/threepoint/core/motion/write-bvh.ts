@@ -35,16 +35,16 @@ const joint = 'CHANNELS 3 Yrotation Xrotation Zrotation';
 const unmeasured = 'CHANNELS 0';
 
 /** Lines of the hierarchy, bones indented below their parents. */
-function hierarchy(bones: readonly MotionBone[], told: (v: Vec3) => string): string[] {
+function hierarchy(bones: readonly MotionBone[], format: (v: Vec3) => string): string[] {
   const lines: string[] = ['HIERARCHY'];
   const write = (index: number, depth: number): void => {
     const { name, parent, offset, end, measured } = bones[index]!;
     const indent = '\t'.repeat(depth);
     lines.push(`${indent}${parent < 0 ? 'ROOT' : 'JOINT'} ${name}`, `${indent}{`);
-    lines.push(`${indent}\tOFFSET ${parent < 0 ? told(vec3(0, 0, 0)) : told(offset)}`);
+    lines.push(`${indent}\tOFFSET ${parent < 0 ? format(vec3(0, 0, 0)) : format(offset)}`);
     lines.push(`${indent}\t${parent < 0 ? root : measured ? joint : unmeasured}`);
     for (const [child, bone] of bones.entries()) if (bone.parent === index) write(child, depth + 1);
-    if (end) lines.push(`${indent}\tEnd Site`, `${indent}\t{`, `${indent}\t\tOFFSET ${told(end)}`, `${indent}\t}`);
+    if (end) lines.push(`${indent}\tEnd Site`, `${indent}\t{`, `${indent}\t\tOFFSET ${format(end)}`, `${indent}\t}`);
     lines.push(`${indent}}`);
   };
   write(0, 0);
@@ -63,7 +63,7 @@ export function fileOrder(bones: readonly MotionBone[]): readonly number[] {
 }
 
 const framesPerStep = 64;
-/** Of the work, what an even rate takes. */
+/** The share of the work that resampling takes. */
 const resampling = 0.3;
 
 /**
@@ -74,24 +74,24 @@ export function* writeBvh(
   motion: Motion,
   { unit = 'm', rateHz = motion.rateHz }: BvhOptions = {},
 ): Generator<number, readonly string[]> {
-  if (unit !== 'm' && unit !== 'cm') throw new Error(`“${String(unit)}” is no unit of a BVH here: m, cm`);
+  if (unit !== 'm' && unit !== 'cm') throw new Error(`“${String(unit)}” is not a unit of a BVH file. Use m or cm.`);
   const even = yield* portionOf(resampleMotion(motion, rateHz), 0, resampling);
   const perMetre = unit === 'cm' ? 100 : 1;
   const digits = unit === 'cm' ? 4 : 6;
   const place = vec3(0, 0, 0);
-  const told = (v: Vec3): string => {
+  const format = (v: Vec3): string => {
     const { x, y, z } = scale(v, perMetre, place);
     return `${fixed(x, digits)} ${fixed(y, digits)} ${fixed(z, digits)}`;
   };
   const count = even.times.length;
-  const header = [...hierarchy(even.bones, told), 'MOTION', `Frames: ${count}`];
+  const header = [...hierarchy(even.bones, format), 'MOTION', `Frames: ${count}`];
   const parts = [`${header.join('\n')}\nFrame Time: ${(1 / rateHz).toFixed(9)}\n`];
   const order = fileOrder(even.bones).filter((index) => even.bones[index]!.measured);
   const rotation = quat(0, 0, 0, 1);
   const angles = vec3(0, 0, 0);
   let lines = '';
   for (let frame = 0; frame < count; frame++) {
-    const numbers = [told(hipsAt(even, frame, vec3(0, 0, 0)))];
+    const numbers = [format(hipsAt(even, frame, vec3(0, 0, 0)))];
     for (const bone of order) {
       const { x, y, z } = eulerYxz(rotationAt(even, frame, bone, rotation), angles);
       numbers.push(`${fixed(y * degrees, 5)} ${fixed(x * degrees, 5)} ${fixed(z * degrees, 5)}`);

@@ -10,8 +10,8 @@ const framesPerStep = 64;
  */
 export function* writeCsv(motion: Motion): Generator<number, readonly string[]> {
   const { bones, times, seen } = motion;
-  const told = bones.filter(({ measured }) => measured);
-  const columns = told.flatMap(({ name }) => ['x', 'y', 'z'].map((axis) => `${name}_${axis}`));
+  const measuredBones = bones.filter(({ measured }) => measured);
+  const columns = measuredBones.flatMap(({ name }) => ['x', 'y', 'z'].map((axis) => `${name}_${axis}`));
   const parts = [`${['time', 'left_hand_seen', 'right_hand_seen', ...columns].join(',')}\n`];
   const posed = makePosedBones(motion);
   const place = vec3(0, 0, 0);
@@ -19,7 +19,7 @@ export function* writeCsv(motion: Motion): Generator<number, readonly string[]> 
   for (let frame = 0; frame < times.length; frame++) {
     poseBones(motion, frame, posed);
     const row = [times[frame]!.toFixed(6), String(seen[frame]! & 1), String(seen[frame]! >> 1)];
-    for (let bone = 0; bone < told.length; bone++) {
+    for (let bone = 0; bone < measuredBones.length; bone++) {
       const { x, y, z } = turnPoint(posed.positions[bone]!, place);
       row.push(x.toFixed(6), y.toFixed(6), z.toFixed(6));
     }

@@ -42,7 +42,7 @@ class Joints {
     return this.#bones.findIndex(({ name }) => name === bone);
   }
 
-  /** Where the bone leads: to its end, or to the bone that is named. */
+  /** Returns the way along a bone: to its end, or to the bone `next`. */
   along(bone: string, next: string | null): Vec3 {
     const { end } = this.#bones[this.index(bone)]!;
     return next === null ? (end ?? up) : this.#bones[this.index(next)]!.offset;
@@ -73,14 +73,14 @@ function addArm(joints: Joints, side: Side): void {
   joints.add(`${side}-hand-wrist-twist`, `${side}LowerArm`, `${side}Hand`, up, 0.9);
 }
 
-/** Where the bones of the palm begin, which are not modelled [share of the way from the wrist to the knuckle]. */
+/** The start of the palm's bones, which are not modelled [share of the way from the wrist to the knuckle]. */
 const palmBegins = 0.3;
 
 function addHand(joints: Joints, side: Side): void {
   const hand = `${side}Hand`;
   const middle = `${side}MiddleProximal`;
   joints.add(`${side}-hand-palm`, hand, middle, up, (palmBegins + 1) / 2);
-  // As the wrist is tracked, not along the middle finger's bone to the degree.
+  // The direction follows the tracked wrist, which differs by degrees from the middle finger's bone.
   const ahead = side === 'left' ? right : left;
   joints.list.push({ name: `${side}-hand-wrist`, bone: joints.index(hand), at: zero, rest: axesAlong(ahead, up) });
   for (const finger of fingerNames) {
@@ -156,7 +156,7 @@ export class XRBodyPoser {
     this.#poses = new Map(this.#joints.map(({ name }) => [name, makePose<'floor'>()]));
   }
 
-  /** Of all joints, in the specification's order. */
+  /** The names of all joints, in the specification's order. */
   get names(): readonly string[] {
     return this.#joints.map(({ name }) => name);
   }

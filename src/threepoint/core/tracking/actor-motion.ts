@@ -35,7 +35,7 @@ interface Key {
   readonly time: number;
   readonly left: HandKey;
   readonly right: HandKey;
-  /** Of the head: pitch up and yaw to the left [degrees] against the trunk. */
+  /** The head's pitch up and yaw to the left [degrees] against the trunk. */
   readonly pitch?: number;
   readonly look?: number;
   /** Yaw of the whole body to the left [degrees], and how low the head is: 1 standing. */
@@ -114,12 +114,15 @@ const minimumJerk = (t: number): number => t * t * t * (10 - 15 * t + 6 * t * t)
 
 const radians = (degrees: number): number => (degrees * Math.PI) / 180;
 
-/** The newest performer: an actor is asked for one body frame after frame. */
-let performer: { readonly calibration: Calibration; readonly body: ChestSpaceBody } | null = null;
+/** The bodies of calibrations that the actor has performed with: it performs with one in frame after frame. */
+const bodies = new WeakMap<Calibration, ChestSpaceBody>();
 
 function bodyOf(calibration: Calibration): ChestSpaceBody {
-  if (performer?.calibration !== calibration) performer = { calibration, body: chestSpaceBody(calibration) };
-  return performer.body;
+  const known = bodies.get(calibration);
+  if (known) return known;
+  const body = chestSpaceBody(calibration);
+  bodies.set(calibration, body);
+  return body;
 }
 
 /**

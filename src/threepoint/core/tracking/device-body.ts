@@ -3,7 +3,10 @@ import { allFinite } from '../math/all-finite';
 import { sides } from '../math/side';
 import { type MutableVec3, setVec3 } from '../math/vec3';
 
-/** What is kept of WebXR Body Tracking's joints, in the specification's order: all but what lies within a hand, whose fingers a frame has anyway. */
+/**
+ * The joints of WebXR Body Tracking that are used, in the specification's order: all but those within a hand, whose
+ * fingers a frame has anyway.
+ */
 export const deviceJointNames: readonly string[] = [
   ...['hips', 'spine-lower', 'spine-middle', 'spine-upper', 'chest', 'neck', 'head'],
   ...sides.flatMap((side) =>
@@ -17,18 +20,21 @@ export const deviceJointNames: readonly string[] = [
   ),
 ];
 
-/** Where a device places its wearer's joints: x, y, z of each of `deviceJointNames` [m], floor frame, finite. */
+/** The joints that a device reports: x, y, z of each of `deviceJointNames` [m], floor frame, finite. */
 export type DeviceBody = Float32Array;
 
-/** Numbers of a DeviceBody. */
+/** The length of a DeviceBody. */
 export const deviceBodySize = 3 * deviceJointNames.length;
 
-/** Whether every joint of it has a place. */
+/** Returns whether the array has a finite position for every joint. */
 export const isFiniteDeviceBody = (body: DeviceBody): boolean => body.length === deviceBodySize && allFinite(body);
 
 const named = (joint: string): number => 3 * deviceJointNames.indexOf(joint);
 
-/** Our joints that a device has too, and where in a DeviceBody they begin; our `chest` lies where the thorax begins, a device's `spine-upper`. */
+/**
+ * The index in a DeviceBody of each joint of the skeleton that devices have too. The skeleton's `chest` lies where the
+ * thorax begins, a device's `spine-upper`.
+ */
 const places = {
   hips: named('hips'),
   chest: named('spine-upper'),
@@ -42,16 +48,16 @@ const places = {
   rightHand: named('right-hand-wrist'),
 } as const satisfies Partial<Record<JointName, number>>;
 
-/** A joint of ours that devices have too. */
+/** A joint of the skeleton that devices report too. */
 export type SharedJoint = keyof typeof places;
 
-/** Where the device has this joint [m], floor frame. */
+/** Returns the device's position of this joint [m], floor frame. */
 export function deviceJoint(body: DeviceBody, joint: SharedJoint, target: MutableVec3): MutableVec3 {
   const at = places[joint];
   return setVec3(target, body[at]!, body[at + 1]!, body[at + 2]!);
 }
 
-/** Between two of them, joint by joint; share 0: the first. */
+/** Interpolates between two bodies, joint by joint; share 0: the first. */
 export function mixDeviceBodies(
   a: DeviceBody,
   b: DeviceBody,

@@ -2,7 +2,7 @@ import { type Calibration, calibrationComplaint, steepestGazePitch } from '../bo
 import { type HandTilts, handTiltOf, isBelievableTilt } from '../body/hand-tilt';
 import { sideSign, skeletonFromCalibration } from '../body/skeleton';
 import { clamp } from '../math/damper';
-import { type Pose, transformSeen } from '../math/pose';
+import { type Pose, transformTracked } from '../math/pose';
 import { rotate, rotateInverse } from '../math/quat';
 import { type Side, sides } from '../math/side';
 import { add, addScaled, distance, forward, length, normalise, scale, subtract, type Vec3, vec3 } from '../math/vec3';
@@ -12,7 +12,7 @@ import type { TrackingFrame } from './tracking-frame';
 
 /** The person stands straight, looks ahead and stretches both arms forward (or sideways) for this long. */
 export const measuringSeconds = 2;
-/** A page that draws too seldom measures for longer, up to this [s]. */
+/** The longest measuring time [s], for pages with a low frame rate. */
 const longestMeasuringSeconds = 6;
 
 interface Sample {
@@ -38,7 +38,7 @@ const withSample = (newest: Sample, before: SampleList | null): SampleList => ({
   count: (before?.count ?? 0) + 1,
 });
 
-/** Oldest first. */
+/** Returns the samples, oldest first. */
 function samplesOf(list: SampleList): readonly Sample[] {
   const samples: Sample[] = [];
   for (let rest: SampleList | null = list; rest; rest = rest.before) samples.push(rest.newest);
@@ -48,7 +48,7 @@ function samplesOf(list: SampleList): readonly Sample[] {
 export type GuidedCalibration =
   | {
       readonly kind: 'measuring';
-      /** How much is done, 0 to 1. */
+      /** The progress, 0 to 1. */
       readonly part: number;
       readonly startTime: number | null;
       readonly samples: SampleList | null;
@@ -57,13 +57,16 @@ export type GuidedCalibration =
   | {
       readonly kind: 'failed';
       readonly fault: CalibrationFault;
-      /** In English, for whom the fault has no words of its own. */
+      /** An English sentence, for pages that have no text for the fault. */
       readonly reason: string;
     };
 
 export const startGuidedCalibration: GuidedCalibration = { kind: 'measuring', part: 0, startTime: null, samples: null };
 
-/** The next state after a frame; `done` and `failed` stay as they are. Time that runs backwards starts the measuring again. */
+/**
+ * Returns the next state after a frame; `done` and `failed` stay as they are. Time that runs backwards restarts the
+ * measuring.
+ */
 export function stepGuidedCalibration(state: GuidedCalibration, frame: TrackingFrame): GuidedCalibration {
   if (state.kind !== 'measuring') return state;
   const startTime = state.startTime === null || frame.time < state.startTime ? frame.time : state.startTime;
@@ -79,35 +82,40 @@ function sampleOf({ head, leftHand, rightHand }: TrackingFrame): Sample {
   return {
     head: head.position,
     gaze: rotate(head.orientation, forward).y,
-    left: transformSeen(fromFloor, leftHand),
-    right: transformSeen(fromFloor, rightHand),
+    left: transformTracked(fromFloor, leftHand),
+    right: transformTracked(fromFloor, rightHand),
   };
 }
 
-// A frame or two of a measuring that lasts two seconds say nothing; four a second, on a slow machine, do.
+// The lowest frame rate of a valid measuring: a few frames in two seconds are not enough; four a second, on a slow
+// machine, are.
 const FEWEST_SAMPLES = 8;
-/** [m] that a head at rest sways at most. */
+/** The largest sway of a head at rest [m]. */
 const HEAD_SWAY = 0.06;
-/** [m] that a hand at rest wanders at most, as the mean distance from its middle. */
+/** The largest mean distance of a hand at rest from its middle [m]. */
 const HAND_SWAY = 0.05;
-/** A hand must be seen in this part of the frames. */
+/** The share of the frames in which a hand must be seen. */
 const SEEN = 0.7;
 // 30° up or down.
 const STEEPEST_GAZE = 0.5;
-// The arms of those we trained on measure 0.33 to 0.38 eye heights from shoulder to wrist; an elbow bent by 76° leaves 0.28,
-// and so does a floor that is half a metre too low: the two cannot be told apart, and neither is measured.
+// The arms of the training data measure 0.33 to 0.38 eye heights from shoulder to wrist. An elbow bent by 76° leaves
+// 0.28, and so does a floor that is half a metre too low: the two are indistinguishable, and neither is measured.
 const SHORTEST_ARM = 0.28;
 const LONGEST_ARM = 0.46;
-/** The middle of what they measure; a longer arm than the second says that the wearer sits, or that the floor is too high. */
+/**
+ * The mean arm in eye heights; an arm longer than the second limit shows that the wearer sits, or that the floor is too
+ * high.
+ */
 const ORDINARY_ARM = 0.355;
 const SEATED_ARM = 0.42;
-/** [m] between the left arm's length and the right's. */
+/** The largest difference [m] between the left arm's length and the right's. */
 const UNEVEN_ARMS = 0.1;
 // How far, in eye heights, the shoulder joint comes forward with a stretched arm: what the fitted clavicle of the
 // inverse kinematics does there.
 const PROTRACTION = 0.018;
 
-// A wearer who reads a sheet beside them does not look where the arms point: then the gaze says nothing about the headset's tilt.
+// A wearer who reads a sheet beside them does not look along their arms: the gaze does not show the headset's tilt
+// then.
 const LOOKING_AHEAD = Math.PI / 18;
 
 // The length of the mean of unit vectors that lie 12° from it.
@@ -140,7 +148,7 @@ function measureHead(samples: readonly Sample[]): MeasuredHead | CalibrationFaul
   return Math.abs(gaze) > STEEPEST_GAZE ? 'gaze' : { height: middle.y, gaze };
 }
 
-/** One hand that is never seen may be missing: the other one's arm then stands for both. */
+/** Returns the arms of both hands. A hand that is never seen may be missing: the other arm stands for both. */
 function measureWrists(samples: readonly Sample[]): readonly MeasuredWrist[] | CalibrationFault {
   const wrists: MeasuredWrist[] = [];
   for (const side of sides) {
@@ -156,7 +164,7 @@ function measureWrists(samples: readonly Sample[]): readonly MeasuredWrist[] | C
   return wrists.length === 0 ? 'handsUnseen' : wrists;
 }
 
-/** Eye height, and the mean length of the arms from shoulder to wrist [m]. */
+/** Returns the eye height, and the mean length of the arms from shoulder to wrist [m]. */
 interface MeasuredBody {
   readonly eyeHeight: number;
   readonly arm: number;
@@ -171,7 +179,7 @@ function measureBody(wrists: readonly MeasuredWrist[], headHeight: number): Meas
   let eyeHeight = headHeight;
   let arms = reaches(eyeHeight);
   if (arms && Math.min(...arms) > SEATED_ARM * headHeight) {
-    // Seated, or above a floor that is not where it should be: then the arms tell how tall the wearer is.
+    // For a seated wearer, or a floor at the wrong height, the height is estimated from the arms.
     for (let i = 0; i < 8 && arms; i++) {
       eyeHeight = mean(arms) / ORDINARY_ARM;
       arms = reaches(eyeHeight);
@@ -215,7 +223,7 @@ function reachOf(side: Side, wrist: Vec3, headHeight: number, eyeHeight: number)
   return arm && length(arm);
 }
 
-/** The same arm from its shoulder to the wrist. */
+/** Returns the arm from its shoulder to the wrist. */
 function armTo(side: Side, wrist: Vec3, headHeight: number, eyeHeight: number): Vec3 | null {
   const shoulder = add(restShoulder(side, eyeHeight), vec3(0, headHeight - eyeHeight, 0));
   const arm = subtract(wrist, shoulder);
@@ -225,7 +233,7 @@ function armTo(side: Side, wrist: Vec3, headHeight: number, eyeHeight: number): 
   return subtract(wrist, addScaled(shoulder, forward, PROTRACTION * eyeHeight));
 }
 
-/** How each hand stands to its arm, which is straight; a hand that turned meanwhile, or whose wrist was bent, is left as it is. */
+/** Returns each hand's tilt to its straight arm; a hand that turned, or whose wrist was bent, is left out. */
 function tiltsOf(wrists: readonly MeasuredWrist[], headHeight: number, eyeHeight: number): { handTilts?: HandTilts } {
   const handTilts: { -readonly [Hand in keyof HandTilts]: HandTilts[Hand] } = {};
   for (const { side, position, seen } of wrists) {
@@ -242,7 +250,7 @@ function tiltsOf(wrists: readonly MeasuredWrist[], headHeight: number, eyeHeight
   return Object.keys(handTilts).length > 0 ? { handTilts } : {};
 }
 
-/** Whether both arms point where the head does; wrists in the heading frame. Arms stretched sideways do as well. */
+/** Returns whether both arms point forward, or both sideways; wrists in the heading frame. */
 function looksAhead(wrists: readonly Vec3[]): boolean {
   const [first, second] = wrists;
   if (!first || !second) return false;
@@ -254,7 +262,10 @@ function looksAhead(wrists: readonly Vec3[]): boolean {
   return length(between) > length(middle) ? sideways : forwards && sideways;
 }
 
-/** The shoulder joint of a person who stands straight, heading frame; what the span of the arms is measured from. */
+/**
+ * Returns the shoulder joint of a person who stands straight, heading frame, from which the span of the arms is
+ * measured.
+ */
 function restShoulder(side: Side, eyeHeight: number): Vec3 {
   // The span does not matter for shoulders.
   const { restOffsets, eyesInHead } = skeletonFromCalibration({ eyeHeight, armSpan: eyeHeight });
@@ -263,7 +274,7 @@ function restShoulder(side: Side, eyeHeight: number): Vec3 {
   return add(upperChest, add(restOffsets[`${side}Shoulder`], restOffsets[`${side}UpperArm`]));
 }
 
-/** The mean of the middle half: a few wild values do not move it. */
+/** Returns the mean of the middle half, which outliers do not move. */
 function robustMean(values: readonly number[]): number {
   const sorted = [...values].sort((a, b) => a - b);
   const cut = Math.floor(sorted.length / 4);

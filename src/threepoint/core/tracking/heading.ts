@@ -17,11 +17,14 @@ export function yawOf(orientation: Quat): number {
   return Math.sqrt(gaze.x * gaze.x + gaze.z * gaze.z) >= 1e-3 ? Math.atan2(-gaze.x, -gaze.z) : 0;
 }
 
-/** The yaw of a head as a rotation about +Y; see `yawOf`. */
+/** Returns the yaw of a head as a rotation about +Y; see `yawOf`. */
 export const headingOf = (orientation: Quat, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat =>
   fromAxisAngle(up, yawOf(orientation), target);
 
-/** From the heading frame (origin on the floor under the headset, yaw of the head) to the floor frame. */
+/**
+ * Returns the transform from the heading frame (origin on the floor under the headset, yaw of the head) to the floor
+ * frame.
+ */
 export function floorFromHeading(
   head: Pose<'floor'>,
   target: MutableTransform<'floor', 'heading'> = makeTransform(),
@@ -35,18 +38,20 @@ export function floorFromHeading(
 export const headingFromFloor = (head: Pose<'floor'>): Transform<'heading', 'floor'> =>
   invertTransform(floorFromHeading(head));
 
-/** The horizontal part of a head's right axis at which its heading begins to mean something, and at which it is certain. */
+/** The horizontal part of a head's right axis at which its heading starts to be defined, and at which it is certain. */
 const [undefinedHeading, definedHeading] = [0.35, 0.7];
 
-/** Which way a head faces along the floor. */
+/** The direction that a head faces along the floor. */
 export interface Heading {
   /** About +Y [rad], see `yawOf`. */
   yaw: number;
-  /** In [0, 1]; 0 for a head on its side, whose heading says nothing of the body's. */
+  /** The confidence in [0, 1]; 0 for a head on its side, whose heading is independent of the body's. */
   confidence: number;
 }
 
-/** Writes the heading of a head that is turned so, floor frame. On its side: `yawOf`'s fallback, with confidence 0. */
+/**
+ * Writes the heading of a head with this orientation, floor frame. On its side: `yawOf`'s fallback, with confidence 0.
+ */
 export function readHeading(orientation: Quat, target: Heading = { yaw: Number.NaN, confidence: Number.NaN }): Heading {
   target.yaw = yawOf(orientation);
   const { x, z } = rotate(orientation, right, axis);

@@ -11,31 +11,37 @@ import { fromAxisAngle, rotate } from '../math/quat';
 import { right, zero } from '../math/vec3';
 import type { TrackingFrame } from './tracking-frame';
 
-/** Notices a wearer who stands taller than the calibration says. Smaller tells nothing: people crouch, slouch and sit. */
+/**
+ * Detects a wearer who stands taller than the calibration. A lower headset shows nothing: people crouch, slouch and
+ * sit.
+ */
 interface HeightWatch {
   /**
    * Once a frame, with the calibration in force: the same, grown, in the frame that proves it too small; else null. Another
    * object is another calibration, unless it is the one that was returned.
    */
   observe(frame: TrackingFrame, calibration: Calibration): Calibration | null;
-  /** Forgets how high the headset was: the floor lies elsewhere, or another person wears it. */
+  /** Discards the observed height: the floor lies elsewhere, or another person wears the headset. */
   reset(): void;
 }
 
-/** Seconds at a height that prove it: longer than anybody jumps. */
+/** The time [s] at a height that proves it: longer than anybody jumps. */
 const provingSeconds = 1.25;
-/** [m] by which eyes rise and sink in that time while a person stands or walks. */
+/** The range [m] within which eyes rise and sink in that time while a person stands or walks. */
 const calmRange = 0.04;
-/** As a part of the eye height: shoes, and a headset that was put on anew. */
+/** The ignored excess as a share of the eye height: shoes, and a headset that sits differently. */
 const deadZone = 0.02;
-/** The same once something grew: what was measured is wrong then, and a wearer who straightens up is followed. */
+/**
+ * The ignored excess once the calibration has grown: the measured one was wrong, and a wearer who straightens up is
+ * followed.
+ */
 const grownDeadZone = 0.005;
-/** As a part of the eye height that was measured: a wearer who rises further stands on something. */
+/** The largest growth as a share of the measured eye height: a wearer who rises further stands on something. */
 const mostGrowth = 0.08;
-/** A longer one [s] between two frames hides what happened in it. */
+/** The longest gap between two frames [s] without an unobserved motion. */
 const longestGap = 0.5;
 
-/** Eyes that stay within `calmRange`: from when to when [s], how low and how high [m]. */
+/** A period in which the eyes stayed within `calmRange`: start and end [s], lowest and highest [m]. */
 interface CalmStand {
   readonly since: number;
   readonly until: number;
@@ -45,19 +51,19 @@ interface CalmStand {
 
 export function createHeightWatch(): HeightWatch {
   let current: Calibration | null = null;
-  /** The eye height [m] before anything grew, and the one above which a wearer stands on something. */
+  /** The eye height [m] before any growth, and the highest plausible one: above it a wearer stands on something. */
   let measured = 0;
   let highest = 0;
   /** From the skull's pivot to the eyes, in the frame of a headset whose wearer looks straight ahead. */
   let eyesInHeadset = zero;
-  /** How far [m] they are above that pivot then. */
+  /** The height [m] of the eyes above that pivot then. */
   let levelRise = 0;
   let stand: CalmStand | null = null;
 
   function take(calibration: Calibration): void {
     current = calibration;
     measured = calibration.eyeHeight;
-    // Of a wearer who has the average body, sitting since the headset was put on, no height is known that would say so.
+    // The height of a wearer with the default body is unknown if they have been sitting: any height is possible.
     highest = calibration === defaultCalibration ? eyeHeightRange.max : measured * (1 + mostGrowth);
     const { eyesInHead } = skeletonFromCalibration(calibration);
     eyesInHeadset = rotate(fromAxisAngle(right, -(calibration.gazePitch ?? 0)), eyesInHead);
@@ -65,7 +71,7 @@ export function createHeightWatch(): HeightWatch {
     stand = null;
   }
 
-  /** How high [m] the eyes would be if the head were level: looking up lifts a headset and makes no one taller. */
+  /** Returns the height [m] of the eyes with a level head: looking up lifts a headset and makes no one taller. */
   function levelHeight({ position, orientation }: TrackingFrame['head']): number {
     return position.y - rotate(orientation, eyesInHeadset).y + levelRise;
   }
@@ -91,7 +97,7 @@ export function createHeightWatch(): HeightWatch {
   };
 }
 
-/** The stand with one more frame; one that begins with it, where the head moved or was not seen for a while. */
+/** Returns the period with one more frame, or a new one where the head moved or was not seen. */
 function prolonged(stand: CalmStand | null, time: number, height: number): CalmStand {
   const begun: CalmStand = { since: time, until: time, lowest: height, highest: height };
   if (!stand || time < stand.until || time - stand.until > longestGap) return begun;

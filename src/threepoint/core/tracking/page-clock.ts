@@ -1,8 +1,8 @@
-/** A frame that comes later than this after the one before it [s] follows a pause, of which no more than this counts. */
+/** The longest step of the clock [s]: a longer gap between frames is a pause, of which only this much counts. */
 export const longestStep = 0.5;
-/** Of the first frames, until one has told how long they are [s]. */
+/** The assumed length of the first frames [s], until one was measured. */
 const usualStep = 1 / 60;
-/** No device draws more often [s]: a time stamp that is less ahead does not tell how long the frame was. */
+/** The shortest frame of any device [s]: a smaller step of the time stamp does not measure a frame. */
 const shortestStep = 1 / 1000;
 
 /**
@@ -19,19 +19,19 @@ export interface PageClock {
   tick(timestampMs: number): number;
   /** Whether the newest frame follows a pause. */
   readonly paused: boolean;
-  /** What was left out of all pauses so far [s]. */
+  /** The time that was left out of all pauses so far [s]. */
   readonly leftOut: number;
-  /** The time between two frames, for what comes from elsewhere. */
+  /** Returns the time between two frames, for events from elsewhere. */
   now(): number;
 }
 
-/** `read`: the page's running time [ms], on any clock that mostly goes on (`performance.now`). */
+/** Creates a page clock. `read`: the page's running time [ms], on any mostly monotonic clock (`performance.now`). */
 export function createPageClock(read: () => number): PageClock {
-  /** Of the newest frame: its time here, what the device said, and what `read` did then. */
+  /** The newest frame: its time by this clock, its time stamp, and the value of `read`. */
   let time = 0;
   let stamp: number | null = null;
   let readAt = read();
-  let told = 0;
+  let newest = 0;
   let step = usualStep;
   let paused = false;
   let leftOut = 0;
@@ -39,7 +39,7 @@ export function createPageClock(read: () => number): PageClock {
   return {
     tick(dated) {
       const timestampMs = Number.isFinite(dated) ? dated : read();
-      // Devices that round their time stamps date frames alike too, but a whole frame apart.
+      // Devices that round their time stamps repeat them too, but a whole frame later.
       if (timestampMs === stamp && Math.abs(read() - readAt) < 500 * step) return time;
       if (stamp === null) time = timestampMs / 1000;
       else {
@@ -51,8 +51,8 @@ export function createPageClock(read: () => number): PageClock {
       }
       stamp = timestampMs;
       readAt = read();
-      time = Math.max(time, told);
-      told = time;
+      time = Math.max(time, newest);
+      newest = time;
       return time;
     },
     get paused() {
@@ -63,13 +63,13 @@ export function createPageClock(read: () => number): PageClock {
     },
     now() {
       const since = Math.min(longestStep, Math.max(0, (read() - readAt) / 1000));
-      told = Math.max(told, (stamp === null ? readAt / 1000 : time) + since);
-      return told;
+      newest = Math.max(newest, (stamp === null ? readAt / 1000 : time) + since);
+      return newest;
     },
   };
 }
 
-/** The same clock, which goes on from where it was when it is set back. Asked often: what passes between two questions may be lost. */
+/** Returns a clock that continues when `read` is set back. Call it often: time between two calls may be lost. */
 export function neverBack(read: () => number): () => number {
   let setBack = 0;
   let last = Number.NEGATIVE_INFINITY;

@@ -8,22 +8,22 @@ import { lerp } from '../math/vec3';
 import { type DeviceBody, deviceBodySize, deviceJointNames, mixDeviceBodies } from './device-body';
 import type { TrackingFrame } from './tracking-frame';
 
-/** Frames in the order of their times: an array, or what makes each one when it is asked for. */
+/** Frames in the order of their times: an array, or an object that makes each frame on demand. */
 export interface TrackingFrames extends Iterable<TrackingFrame> {
   readonly length: number;
-  /** As an array's: from 0, or below 0 from the end. */
+  /** Returns the frame at an index, below 0 from the end, as an array does. */
   at(index: number): TrackingFrame | undefined;
 }
 
-/** What was tracked over a while, as it was tracked: full precision, lost hands as null. */
+/** Recorded tracking in full precision, with lost hands as null. */
 export interface Recording<Frames extends TrackingFrames = readonly TrackingFrame[]> {
-  /** What the frames come from, in words: a headset's name, 'emulated headset'. */
+  /** A description of the source: a headset's name, or 'emulated headset'. */
   readonly device: string;
-  /** Frames per second that the device asked for; the frames' own times are what counts. */
+  /** The device's frame rate [Hz]; the frames' own times take precedence. */
   readonly rateHz: number;
-  /** The body of the person; null: not known. */
+  /** The person's measures; null: unknown. */
   readonly calibration: Calibration | null;
-  /** At least one, times rising. */
+  /** One frame or more, with rising times. */
   readonly frames: Frames;
 }
 
@@ -31,19 +31,19 @@ export interface Recording<Frames extends TrackingFrames = readonly TrackingFram
 export type Replayable = Recording<TrackingFrames>;
 
 const format = 'threepoint-recording';
-/** 3: frames may have the device's body. 2: they may have fingers. 1: they have neither. */
+/** The newest version of the format. Frames may have a device body from 3 on, and fingers from 2 on. */
 const version = 3;
 const fingersSince = 2;
 const bodySince = 3;
 
 const poseColumns = 7;
-/** Five fingers of four joints and a pinch. */
+/** The number of columns of a hand: five fingers of four joints, and a pinch. */
 const bendColumns = 21;
 const columns =
   'time [s]; head, left hand, right hand: position [m], orientation xyzw, tracking; where known, fingers of the left hand, of the right: ' +
   'knuckle, spread, middle, end [rad] from thumb to little finger, pinch; where the device reports a body, its joints: x, y, z [m]';
 
-/** A hand's angles to a ten-thousandth of a radian. */
+/** Returns a hand's angles, rounded to a ten-thousandth of a radian. */
 const bends = (shape: HandShape | null): readonly number[] | null =>
   shape &&
   [
@@ -54,13 +54,16 @@ const bends = (shape: HandShape | null): readonly number[] | null =>
     shape.pinch,
   ].map((angle) => Math.round(1e4 * angle) / 1e4);
 
-/** A device's joints to a tenth of a millimetre. */
+/** Returns a device body's joints, rounded to a tenth of a millimetre. */
 const bodyNumbers = (body: DeviceBody): readonly number[] => Array.from(body, (value) => Math.round(1e4 * value) / 1e4);
 
-/** The text of a recording file: JSON with one frame per line. */
+/** Returns the text of a recording file: JSON with one frame per line. */
 export const writeRecording = (recording: Replayable): string => cutRecording(recording, Number.POSITIVE_INFINITY).text;
 
-/** The same with as many frames from the first on as fit into so many bytes of UTF-8, and how many they are; at least one. */
+/**
+ * Returns a recording file with as many of the first frames as fit into `mostBytes` bytes of UTF-8, at least one, and
+ * their number.
+ */
 export function cutRecording(
   { device, rateHz, calibration, frames }: Replayable,
   mostBytes: number,
@@ -84,7 +87,7 @@ export function cutRecording(
   const bodyJoints = { bodyJoints: deviceJointNames };
   const end = '\n]}\n';
   const lines: string[] = [];
-  // Of what stands here the device's name alone is more than ASCII: three bytes for each of its characters at most.
+  // Only the device's name may contain other characters than ASCII: at most three bytes each.
   let bytes = top(bodyJoints).length + 2 * device.length + end.length;
   for (const frame of frames) {
     const written = line(frame);
@@ -96,18 +99,18 @@ export function cutRecording(
   return { text: `${top(hasBody ? bodyJoints : {})}${lines.join(',\n')}${end}`, frames: lines.length };
 }
 
-/** The recording in the text of a file; throws a sentence that says which line or frame is wrong, and why. */
+/** Parses the text of a recording file. Throws a sentence that names the wrong line or frame and its fault. */
 export function parseRecording(text: string): Recording {
   const file = parseJson(text);
-  if (!isRecord(file) || file.format !== format) throw new Error('This is no recording of threepoint.');
+  if (!isRecord(file) || file.format !== format) throw new Error('This file is not a threepoint recording.');
   const written = file.version;
   if (!isFiniteNumber(written) || !Number.isInteger(written) || written < 1 || written > version) {
     throw new Error(`The recording has version ${String(written)}; this page reads versions 1 to ${version}.`);
   }
-  if (typeof file.device !== 'string') throw new Error('The recording does not say its device.');
-  if (!isFiniteNumber(file.rateHz) || file.rateHz <= 0) throw new Error('The recording does not say its rate in Hz.');
+  if (typeof file.device !== 'string') throw new Error('The recording names no device.');
+  if (!isFiniteNumber(file.rateHz) || file.rateHz <= 0) throw new Error('The recording has no frame rate in Hz.');
   if (file.bodyJoints !== undefined && JSON.stringify(file.bodyJoints) !== JSON.stringify(deviceJointNames)) {
-    throw new Error('The recording’s body has other joints than this page knows.');
+    throw new Error('The recording’s device body has other joints than this version reads.');
   }
   if (!Array.isArray(file.frames) || file.frames.length === 0) throw new Error('The recording has no frames.');
   const frames = file.frames.map((frame, index) => parseFrame(frame, index, written));
@@ -124,11 +127,11 @@ function parseJson(text: string): unknown {
     return JSON.parse(text);
   } catch (error) {
     if (!(error instanceof SyntaxError)) throw error;
-    throw new Error(`The recording is no JSON${placeOfSyntaxError(text, error.message)}.`);
+    throw new Error(`The recording is not valid JSON${placeOfSyntaxError(text, error.message)}.`);
   }
 }
 
-/** Frames are one to a line: the first line that is none on its own is where a damaged file breaks. */
+/** Locates a syntax error: each frame is one line, and the first line that does not parse is damaged. */
 function placeOfSyntaxError(text: string, message: string): string {
   const lines = text.split('\n');
   const broken = lines.slice(1, -2).findIndex((line) => {
@@ -136,7 +139,7 @@ function placeOfSyntaxError(text: string, message: string): string {
       JSON.parse(line.replace(/,\s*$/, ''));
       return false;
     } catch {
-      // reason: the line that does not parse is what is being looked for.
+      // reason: the line that does not parse is the one that is searched for.
       return true;
     }
   });
@@ -148,7 +151,7 @@ const isRecord = (value: unknown): value is Record<string, unknown> =>
 
 const isFiniteNumber = (value: unknown): value is number => typeof value === 'number' && Number.isFinite(value);
 
-/** Tilts of the hands that have one; null: of none. */
+/** Returns the tilts of the hands that have one; null: neither has. */
 function parseHandTilts(value: unknown): HandTilts | null {
   if (!isRecord(value)) return null;
   const tiltOf = (tilt: unknown) =>
@@ -204,7 +207,7 @@ function parseFrame(value: unknown, index: number, written: number): TrackingFra
 
 function parsePose(value: unknown, what: string): TrackedPose {
   if (!Array.isArray(value) || value.length !== poseColumns + 1 || !value.slice(0, poseColumns).every(isFiniteNumber)) {
-    throw new Error(`${what} is not seven finite numbers and a word.`);
+    throw new Error(`${what} is not seven finite numbers and a tracking state.`);
   }
   const tracking = value[poseColumns];
   if (tracking !== 'tracked' && tracking !== 'emulated') {
@@ -213,7 +216,7 @@ function parsePose(value: unknown, what: string): TrackedPose {
   const [px, py, pz, x, y, z, w] = value as number[];
   const orientation = { x: x!, y: y!, z: z!, w: w! };
   if (Math.abs(Math.hypot(x!, y!, z!, w!) - 1) > 1e-3)
-    throw new Error(`${what} has an orientation of a length other than 1.`);
+    throw new Error(`${what} has an orientation that is not a unit quaternion.`);
   return { position: { x: px!, y: py!, z: pz! }, orientation, tracking };
 }
 
@@ -237,15 +240,15 @@ function parseBody(value: unknown, what: string): DeviceBody {
   return Float32Array.from(value);
 }
 
-/** Seconds from the first frame to the last. */
+/** Returns the time [s] from the first frame to the last. */
 export const recordingDuration = ({ frames }: Replayable): number => frames.at(-1)!.time - frames.at(0)!.time;
 
-/** The last frame that is not later than a time [s]; the first where all are. */
+/** Returns the index of the last frame that is not later than a time [s]; 0 where all are later. */
 function indexAt(frames: TrackingFrames, time: number): number {
   const isLater = (index: number): boolean => frames.at(index)!.time > time;
   const last = frames.length - 1;
   const [first, end] = [frames.at(0)!.time, frames.at(-1)!.time];
-  // Devices keep their pace: from where the frame would lie at an even one, doubled steps lead past it.
+  // Devices keep their rate: the search starts where the frame would lie at an even one, and doubles its steps.
   let low = Math.floor(clamp(end > first ? (time - first) / (end - first) : 0, 0, 1) * last);
   let high = low + 1;
   for (let step = 1; low > 0 && isLater(low); step *= 2) [low, high] = [Math.max(0, low - step), low];

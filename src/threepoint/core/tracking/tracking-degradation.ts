@@ -7,18 +7,18 @@ import { add, length, lerp, scale, setVec3, vec3 } from '../math/vec3';
 import { deviceBodySize, mixDeviceBodies } from './device-body';
 import type { TrackingFrame } from './tracking-frame';
 
-/** What a body is to suffer on purpose, so that its effect on people can be studied. */
+/** The degradation of tracking that a study applies on purpose, to measure its effect on people. */
 export interface TrackingImpairments {
-  /** By how much the body follows later than it could [ms], up to `mostLatencyMs`. */
+  /** The added latency [ms], up to `mostLatencyMs`. */
   readonly latencyMs?: number;
-  /** Normal and new in every frame: standard deviation along and about each axis. */
+  /** Normal noise, drawn for every frame: standard deviation along and about each axis. */
   readonly trackerNoise?: { readonly positionMm: number; readonly rotationDegrees: number };
-  /** Each hand is lost for `seconds` each time, after waits that are exponentially distributed. */
+  /** Each hand is lost for `seconds` at a time, after exponentially distributed waits. */
   readonly dropouts?: { readonly perMinute: number; readonly seconds: number };
 }
 
 export const mostLatencyMs = 200;
-/** Frames that are kept: the longest latency at 300 Hz. */
+/** The number of buffered frames: the longest latency at 300 Hz. */
 const kept = 64;
 const sides = ['left', 'right'] as const;
 const handOf = { left: 'leftHand', right: 'rightHand' } as const;
@@ -26,7 +26,7 @@ const handOf = { left: 'leftHand', right: 'rightHand' } as const;
 type MutableTrackedPose = MutablePose<'floor'> & { tracking: TrackedPose['tracking'] };
 const makeTrackedPose = (): MutableTrackedPose => ({ ...makePose<'floor'>(), tracking: 'tracked' });
 
-/** A hand of a frame, in memory of its own. */
+/** A buffered hand of a frame. */
 class KeptHand {
   readonly pose = makeTrackedPose();
   readonly shape = makeHandShape();
@@ -46,7 +46,7 @@ function keepPose(pose: TrackedPose, target: MutableTrackedPose): void {
   target.tracking = pose.tracking;
 }
 
-/** A frame in memory of its own. */
+/** A buffered frame. */
 class KeptFrame {
   time = 0;
   readonly head = makeTrackedPose();
@@ -66,7 +66,7 @@ class KeptFrame {
   }
 }
 
-/** When a hand is lost next and until when it is [s]. */
+/** The start of a hand's next loss and the end of the current one [s]. */
 interface Loss {
   next: number;
   until: number;
@@ -86,18 +86,18 @@ function mixPose(a: TrackedPose, b: TrackedPose, t: number, target: MutableTrack
 }
 
 /**
- * Head and hands as a worse tracker would have them: later, noisy, with hands that are lost. What the device itself says of the body is as late,
- * else as it was: it does not come from these trackers. Leaves no garbage.
+ * Degrades tracking: head and hands are delayed and noisy, and hands are lost. The device's own body is only delayed,
+ * because it does not come from these trackers. Makes no garbage.
  */
 export class TrackingDegradation {
   #impairments: TrackingImpairments | null = null;
-  /** A ring; `#newest` is the index of the newest frame, `#count` how many there are. */
+  /** A ring buffer; `#newest` is the index of the newest frame, `#count` the number of frames. */
   readonly #ring = Array.from({ length: kept }, () => new KeptFrame());
   #newest = 0;
   #count = 0;
-  /** Of the generator, see `nextRandom`; in an array, which holds whole numbers of 32 bits without boxes. */
+  /** The seed of the generator, see `nextRandom`; an Int32Array holds 32-bit integers without boxes. */
   readonly #seed = new Int32Array(1);
-  /** For three axes of a position and three of a rotation. */
+  /** Random numbers for three axes of a position and three of a rotation. */
   readonly #normals = new Float64Array(6);
   readonly #losses: Record<Side, Loss> = { left: { next: 0, until: 0 }, right: { next: 0, until: 0 } };
   #lossesDrawn = false;
@@ -111,7 +111,9 @@ export class TrackingDegradation {
     ...{ fingers: undefined, deviceBody: undefined },
   };
 
-  /** From the next frame on; null: nothing. What is random follows from the seed and the frames' times. */
+  /**
+   * Sets the degradation from the next frame on; null: none. Random numbers follow from the seed and the frames' times.
+   */
   configure(impairments: TrackingImpairments | null, seed = 0): void {
     this.#impairments = impairments;
     this.#seed[0] = seed;
@@ -119,12 +121,15 @@ export class TrackingDegradation {
     this.reset();
   }
 
-  /** What was tracked before is no way to what is tracked next. */
+  /** Discards the buffered frames after a discontinuity. */
   reset(): void {
     this.#count = 0;
   }
 
-  /** The frame as the body is to have it, at the same time [s]: itself, or a frame that the next call overwrites. */
+  /**
+   * Returns the degraded frame with the same time [s]: the frame itself where nothing is degraded, else one that the
+   * next call overwrites.
+   */
   apply(frame: TrackingFrame): TrackingFrame {
     const impairments = this.#impairments;
     if (!impairments) return frame;
@@ -150,7 +155,7 @@ export class TrackingDegradation {
     return this.#ring[(this.#newest - steps + kept) % kept]!;
   }
 
-  /** What was tracked by the latency earlier: between two frames, or the oldest where it is later. */
+  /** Writes the tracking of `latencyMs` ago, between two frames; the oldest frame where the buffer is shorter. */
   #delay(frame: TrackingFrame, { latencyMs = 0 }: TrackingImpairments): WrittenFrame {
     const time = frame.time - latencyMs / 1000;
     let steps = 0;
@@ -220,7 +225,7 @@ export class TrackingDegradation {
     multiply(fromAxisAngle(axis, angle, turn), orientation, orientation);
   }
 
-  /** Standard normal numbers by Box and Muller, in an array that stores them without boxes; 1 − u is never 0. */
+  /** Draws standard normal numbers by Box and Muller into an array that stores them without boxes; 1 − u is never 0. */
   #drawNormals(): Float64Array {
     for (let i = 0; i < this.#normals.length; i++) {
       const radius = Math.sqrt(-2 * Math.log(1 - this.#uniform()));
@@ -229,12 +234,12 @@ export class TrackingDegradation {
     return this.#normals;
   }
 
-  /** Seconds until a hand is lost. */
+  /** Draws the time [s] until a hand is lost. */
   #wait(perMinute: number): number {
     return (-60 * Math.log(1 - this.#uniform())) / perMinute;
   }
 
-  /** In [0, 1). */
+  /** Draws a number in [0, 1). */
   #uniform(): number {
     this.#seed[0] = seedAfter(this.#seed[0]!);
     return uniformOf(this.#seed[0]!);

@@ -7,16 +7,19 @@ import type { DeviceBody } from './device-body';
  * Hands: the wrist, already corrected for the controller's grip; −Z towards the knuckles, +Y out of the back of the hand.
  */
 export interface TrackingFrame {
-  /** Seconds on a monotonic clock whose zero means nothing. */
+  /** The time [s] on a monotonic clock with an arbitrary zero. */
   readonly time: number;
   readonly head: TrackedPose;
-  /** null: not seen. Never a pose at the origin. */
+  /** The left wrist; null: not seen. Never a pose at the origin. */
   readonly leftHand: TrackedPose | null;
   readonly rightHand: TrackedPose | null;
-  /** Absent: of neither hand known. In memory of the tracker's own, which the next frame overwrites: copy what must stay. */
+  /** The fingers; absent: unknown for both hands. The next frame overwrites the object: copy what must stay. */
   readonly fingers?: Fingers | undefined;
-  /** Absent: the device reports no body in this frame. In memory of the tracker's own, too. */
+  /** The device's own body; absent: not reported in this frame. The next frame overwrites the array. */
   readonly deviceBody?: DeviceBody | undefined;
-  /** The device shows something of its own before the page: no hand is for the page, and a player who holds something goes on holding it. */
+  /**
+   * Set while the device shows a menu in front of the page: hands are not for the page, and players keep what they
+   * hold.
+   */
   readonly suspended?: true;
 }

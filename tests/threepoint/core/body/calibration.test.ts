@@ -56,9 +56,9 @@ describe('what is a person’s body', () => {
     // reason: what a page without types leaves out; the same holds for the next
     ['a span that is left out', { eyeHeight: 1.6 } as Calibration, /arm span of NaN m is outside/],
     ['a forearm of null', { ...defaultCalibration, forearm: null as unknown as number }, /forearm of 0\.00 m/],
-    ['a giant with a child’s arms', { eyeHeight: 2.1, armSpan: 0.9 }, /does not go with/],
+    ['a giant with a child’s arms', { eyeHeight: 2.1, armSpan: 0.9 }, /does not match/],
     ['a forearm as long as an arm', { ...defaultCalibration, forearm: 0.5 }, /forearm of 0\.50 m/],
-    ['a forearm of inches', { ...defaultCalibration, forearm: 0.11 }, /does not go with an arm span of/],
+    ['a forearm of inches', { ...defaultCalibration, forearm: 0.11 }, /does not match an arm span of/],
     ['no number for a forearm', { ...defaultCalibration, forearm: Number.NaN }, /forearm/],
     ['a headset’s tilt in degrees', { ...defaultCalibration, gazePitch: 12 }, /headset’s tilt of 12\.00 rad/],
     ['no number for it', { ...defaultCalibration, gazePitch: Number.NaN }, /headset’s tilt/],

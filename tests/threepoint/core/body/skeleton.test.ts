@@ -64,7 +64,7 @@ describe('the calibrated skeleton', () => {
     expect(length(wide.leftLowerArm)).toBeGreaterThan(length(small.leftLowerArm));
   });
 
-  test('a forearm that is told divides the arm and moves nothing else: half-way between the average’s and what is told', () => {
+  test('a measured forearm divides the arm and moves nothing else: half-way between the average’s and the measured one', () => {
     const told = { eyeHeight: 1.6, armSpan: 1.5, forearm: 0.25 };
     const average = skeletonFromCalibration({ eyeHeight: 1.6, armSpan: 1.5 }).restOffsets;
     const { restOffsets } = skeletonFromCalibration(told);
@@ -78,7 +78,7 @@ describe('the calibrated skeleton', () => {
     }
   });
 
-  test('no told forearm makes a bone vanish', () => {
+  test('no measured forearm makes a bone vanish', () => {
     for (const forearm of [0, 0.05, 1, 9]) {
       const { upper, lower } = armBones({ eyeHeight: 1.6, armSpan: 1.5, forearm });
       expect(Math.min(upper, lower)).toBeGreaterThan(0.2);

@@ -104,7 +104,7 @@ const largestOf = (places: readonly Vec3[]): number =>
   Math.max(...places.slice(1).map((place, i) => distance(place, places[i]!)));
 
 const largestStep = (frames: readonly Hands[]): number => largestOf(frames.map(({ rightHand }) => rightHand.position));
-/** Of wrist and elbow. */
+/** Returns the largest step of wrist and elbow. */
 const largestDrawnStep = (arms: readonly Arm[]): number =>
   Math.max(largestOf(arms.map(({ wrist }) => wrist)), largestOf(arms.map(({ elbow }) => elbow)));
 
@@ -221,7 +221,7 @@ describe('a hand that is lost', () => {
     }
   });
 
-  test('a guessed position is not believed', () => {
+  test('a guessed position is not used', () => {
     const guessed = (time: number) => frame(time, { ...tracked(vec3(0, 0, 0)), tracking: 'emulated' as const });
     const frames = follow(guessed, 1);
     for (const { rightHand } of frames) {

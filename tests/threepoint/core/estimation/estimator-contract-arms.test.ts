@@ -161,7 +161,7 @@ describe.each(bodies)('$label', (subject) => {
           }
           before = joints;
         }
-        // Where it was found may be further away than the arm is long.
+        // The hand may have been found further away than the arm is long.
         const far = distance(before![`${side}UpperArm`].position, back.position);
         const tooFar = Math.max(0, far - reachOf(calibration));
         expect(distance(before![`${side}Hand`].position, back.position)).toBeLessThan(tooFar + 1e-3);

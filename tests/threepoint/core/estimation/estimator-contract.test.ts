@@ -44,7 +44,7 @@ describe.each(subjects)('$label', (subject) => {
     );
   });
 
-  test('an estimate is written over the one before: a frame makes none anew', async () => {
+  test('an estimate is written over the one before: a frame allocates none', async () => {
     await fc.assert(
       fc.asyncProperty(person, async ({ at, calibration, start }) => {
         const estimator = create(calibration);

@@ -13,7 +13,7 @@ import { openShippedModel } from './shipped-models';
 
 const calibration = { eyeHeight: 1.65, armSpan: 1.56 };
 const at = movingPerson(7, calibration, { x: 1, z: -0.5, yaw: 2 });
-/** So far apart that each is asked about, by the learned method too. */
+/** Frames with gaps that make the learned method request each of them too. */
 const frames = Array.from({ length: 90 }, (_, i) => at(3 + i / 30));
 
 const apart = (a: AvatarPose, b: AvatarPose): number => {

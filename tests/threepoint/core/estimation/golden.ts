@@ -34,13 +34,13 @@ export interface GoldenCase {
 export interface GoldenFit {
   readonly calibration: Calibration;
   readonly frames: readonly {
-    /** Where the hands are. */
+    /** A description of the hands. */
     readonly situation: string;
     readonly positions: readonly Numbers[];
     readonly rotations: readonly Numbers[];
     readonly estimated: readonly Numbers[];
     readonly fitted: readonly Numbers[];
-    /** Of the left and the right elbow: whether the swivel limiter keeps it out of the trunk. */
+    /** Whether the swivel limiter keeps the left and the right elbow out of the trunk. */
     readonly limited: readonly boolean[];
   }[];
 }
@@ -108,7 +108,7 @@ export function goldenPoints({ positions, rotations, seen }: GoldenCase['frames'
   };
 }
 
-/** The same as IK sees them, hands turned so. */
+/** Returns the points as IK receives them, with the hands turned. */
 export function pointsInHeading({ head, leftHand, rightHand }: GoldenPoints, turns: HandTurns): ThreePoints {
   const points = makeThreePoints();
   const transform = headingFromFloor(head);

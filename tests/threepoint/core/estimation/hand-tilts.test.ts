@@ -18,7 +18,7 @@ const straight = { pitch: 0, yaw: 0 };
 /** Until the second frame nothing has been noticed. */
 const framesAsTold = 2;
 
-/** The frame as devices tell it whose hands stand at these tilts to the forearms. */
+/** Returns the frame of a device whose hands have these tilts to the forearms. */
 const worn = (frame: TrackingFrame, left: typeof straight, right: typeof straight): TrackingFrame => {
   const turned = (hand: TrackingFrame['leftHand'], by: typeof straight) =>
     hand && { ...hand, orientation: multiply(hand.orientation, conjugate(turnOfTilt(by))) };
@@ -82,7 +82,7 @@ describe('hands that stand at a tilt to their forearms', () => {
     expect(drawn.leftHand).toEqual(frame.leftHand);
   });
 
-  test('one hand may be told and the other not', () => {
+  test('one hand may be calibrated and the other not', () => {
     const frame = movingPerson(5, body, { x: 0, z: 0, yaw: 0 })(1);
     const rotationsOf = (handTilts: Calibration['handTilts']) =>
       poseOf(createEstimator('ik', { ...body, handTilts }), frame).body?.localRotations;
@@ -103,7 +103,7 @@ describe('tilts that are noticed while hands move', () => {
   const degreesFrom = (found: Quat, { pitch, yaw }: typeof straight) =>
     (angleBetween(found, turnOfTilt({ pitch, yaw })) * 180) / Math.PI;
 
-  test('are at first what calibration tells, else the usual ones, a left hand’s the mirror image', () => {
+  test('are at first the calibrated ones, else the usual ones, a left hand’s the mirror image', () => {
     const told = { pitch: 0.3, yaw: -0.2 };
     const { left, right } = noticed(0, { left: told });
     expect(left).toBeSameRotationAs(turnOfTilt(told), 1e-6);
@@ -129,7 +129,7 @@ describe('tilts that are noticed while hands move', () => {
     }
   });
 
-  test('do not feed themselves: after minutes it makes little difference what was told', () => {
+  test('do not feed themselves: after minutes it makes little difference what was calibrated', () => {
     const [usual, told] = [undefined, { left: { pitch: 0.5, yaw: 0.5 }, right: { pitch: 0.5, yaw: 0.5 } }].map((told) =>
       noticed(180, told),
     );
@@ -147,7 +147,7 @@ describe('tilts that are noticed while hands move', () => {
     expect(estimator.state.tilts.turns.right).not.toEqual(before.right);
   });
 
-  test('stay over a recentre and a pause, and begin anew with a calibration', () => {
+  test('stay over a recentre and a pause, and are reset by a calibration', () => {
     const estimator = createIk(body);
     const person = movingPerson(8, body, { x: 0, z: 0, yaw: 0 });
     const { turns } = estimator.state.tilts;

@@ -182,7 +182,7 @@ describe('a hand that is lost', () => {
     );
   });
 
-  test('a pause begins anew: nothing of the arm before it is left', () => {
+  test('a pause resets: nothing of the arm before it is left', () => {
     const person = movingPerson(7, calibration, { x: 1, z: -2, yaw: 2 });
     const [used, fresh] = [createEstimator('ik', calibration), createEstimator('ik', calibration)];
     for (let i = 0; i < 30; i++) poseOf(used, person(i / 60));

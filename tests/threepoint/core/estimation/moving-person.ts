@@ -8,7 +8,7 @@ import { add, addScaled, cross, normalise, right, subtract, up, type Vec3, vec3 
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { fromEulerYxz } from '../euler-angles';
 
-/** Where a person stands on the floor and which way they face at the start. */
+/** The initial position and yaw of a person on the floor. */
 export interface Standpoint {
   readonly x: number;
   readonly z: number;
@@ -86,7 +86,7 @@ export function movingPerson(
   };
 }
 
-/** The same frame moved and turned as a whole. */
+/** Returns the frame moved and turned as a whole. */
 export function transformFrame(transform: Transform<Frame, Frame>, frame: TrackingFrame): TrackingFrame {
   const moved = (pose: TrackedPose): TrackedPose => ({
     ...(transformPose(transform, pose) as TrackedPose),
@@ -103,7 +103,7 @@ export function transformFrame(transform: Transform<Frame, Frame>, frame: Tracki
 export const mirrorPoint = ({ x, y, z }: Vec3): Vec3 => vec3(-x, y, z);
 export const mirrorRotation = ({ x, y, z, w }: Quat): Quat => ({ x, y: -y, z: -z, w });
 
-/** The same frame as a mirror on the plane x = 0 shows it: hands change sides. */
+/** Returns the frame mirrored on the plane x = 0: hands change sides. */
 export function mirrorFrame(frame: TrackingFrame): TrackingFrame {
   const mirrored = (pose: TrackedPose): TrackedPose => ({
     position: mirrorPoint(pose.position),
@@ -118,7 +118,7 @@ export function mirrorFrame(frame: TrackingFrame): TrackingFrame {
   };
 }
 
-/** The same frame with one hand as given. */
+/** Returns the frame with another hand. */
 export const withHand = (frame: TrackingFrame, side: Side, hand: TrackedPose | null): TrackingFrame =>
   side === 'left' ? { ...frame, leftHand: hand } : { ...frame, rightHand: hand };
 

@@ -23,7 +23,7 @@ const poleTowards = (elbow: Vec3): EstimatedPole =>
   });
 const angle = (a: Vec3, b: Vec3): number => 2 * Math.asin(Math.min(1, distance(a, b) / 2));
 
-/** Where the elbow points, frame after frame, when its estimate jumps from one side to the other. */
+/** Returns the elbow's direction in each frame when its estimate jumps from one side to the other. */
 function turning(from: Vec3, to: EstimatedPole, confidence: number, rateHz: number, seconds: number): Vec3[] {
   const limits = { side: 'right', torso: upright, armLength: 0.54, confidence } as const;
   let pole = limitSwivel(null, poleTowards(from), circle, { ...limits, deltaSeconds: 0 }, vec3(0, 0, 0));

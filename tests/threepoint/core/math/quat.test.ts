@@ -162,7 +162,7 @@ describe('toBeSameRotationAs', () => {
     expect(q).toBeSameRotationAs(negated(q));
   });
 
-  test('a degree is told from two', () => {
+  test('one degree is distinguished from two', () => {
     const turned = fromAxisAngle(up, 1 + (1.5 * Math.PI) / 180);
     expect(turned).toBeSameRotationAs(q, 2);
     expect(turned).not.toBeSameRotationAs(q, 1);

@@ -42,7 +42,7 @@ describe('a damaged AMC is refused in a sentence that says where', () => {
     expect(() => prepare(acclaim, motion, change)).toThrow(sentence);
   });
 
-  test('a name that tells no rate', () => {
+  test('a name without a rate', () => {
     const { files } = acclaim;
     const renamed = {
       ...acclaim,
@@ -94,7 +94,7 @@ describe('a damaged ASF is refused in a sentence', () => {
   test('a million bones', () => {
     const many = Array.from({ length: 1e6 }, (_, i) => `begin\nname b${i}\ndirection 0 1 0\nlength 1\nend\n`).join('');
     expect(() => prepare(acclaim, skeletonName, (all) => all.replace(':hierarchy', `${many}:hierarchy`))).toThrow(
-      /more than 2000 bones: no person's skeleton/,
+      /more than 2000 bones: not a human skeleton/,
     );
   });
 });
@@ -150,7 +150,7 @@ describe('a skeleton that is no person’s, or not known, is refused in a senten
     expect(bvh(change)).toThrow(sentence);
   });
 
-  test('a leap is told, and what lies before and after is kept', () => {
+  test('a jump is reported, and what lies before and after is kept', () => {
     const { clips, notes } = prepare(walk, walk.motion, unchanged);
     expect(notes).toEqual(['it leaps at frame 39; cut there']);
     expect(clips).toHaveLength(2);

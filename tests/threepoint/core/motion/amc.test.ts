@@ -27,7 +27,7 @@ const skeleton = (unit: string, angle: number) => `:units
 
 const motion = (header: string, angle: number) => `:FULLY-SPECIFIED\n${header}\n1\nroot 0 0 0 0 0 0\nupper ${angle}\n`;
 
-/** Where the bone ends in the one frame. */
+/** Returns the end of the bone in the one frame. */
 function endOf(asf: string, amc: string) {
   const file = finishWork(readAmc(amc, readAsf(asf), 'person.asf'));
   const pose = makeJointPoses(file.names.length);

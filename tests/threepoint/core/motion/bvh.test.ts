@@ -137,7 +137,7 @@ describe('a BVH file', () => {
     expect(() => read(many)).toThrow(/more than 5000 joints/);
   });
 
-  test('tells how far it is read', () => {
+  test('reports how far it is read', () => {
     const shares = [...readBvh(text)];
     expect(shares.length).toBeGreaterThan(2);
     expect(shares).toEqual([...shares].sort((a, b) => a - b));

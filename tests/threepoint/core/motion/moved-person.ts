@@ -23,7 +23,7 @@ export const person: Calibration = defaultCalibration;
 const skeleton = skeletonFromCalibration(person);
 const sides = ['left', 'right'] as const;
 
-/** Where joints are and how they are turned, floor frame; of finger tips and other ends the place alone. */
+/** The joints' positions and rotations, floor frame; ends such as finger tips have a position only. */
 export type Truth = ReadonlyMap<string, { readonly position: Vec3; readonly orientation: Quat | null }>;
 
 /** A motion, and of each of its frames the joints as kinematics has them, computed without it. */

@@ -12,7 +12,7 @@ import { actingPerson, bytesOf, rateHz } from './moved-person';
 const { motion, truth } = actingPerson();
 const { json, binary } = chunksOf(bytesOf(writeVrma(motion)))!;
 
-/** The same file with something else in its description. */
+/** Returns the file with a replacement in its description. */
 const changed = (from: string | RegExp, to: string): unknown => {
   expect(json).toMatch(from);
   return JSON.parse(json.replace(from, to));

@@ -103,7 +103,7 @@ describe('the guided calibration', () => {
     expect(state.calibration.armSpan).toBeCloseTo(clean.calibration.armSpan, 6);
   });
 
-  test('tells how much is done, and ends after two seconds', () => {
+  test('reports how much is done, and ends after two seconds', () => {
     const still = stretched(person, 'forward');
     let state: GuidedCalibration = startGuidedCalibration;
     const parts: number[] = [];
@@ -226,7 +226,7 @@ describe('the guided calibration', () => {
       }
     });
 
-    test('is never believed to be steeper than 15°', () => {
+    test('is never assumed to be steeper than 15°', () => {
       const state = worn(0.4);
       if (state.kind !== 'done') throw new Error('not measured');
       expect(state.calibration.gazePitch).toBeCloseTo(Math.PI / 12, 6);

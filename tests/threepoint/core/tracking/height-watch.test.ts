@@ -75,7 +75,7 @@ describe('a person who stands taller than was calibrated', () => {
     expect(wear(walking, person).at(-1)!.eyeHeight).toBeCloseTo(1.05 * person.eyeHeight, 2);
   });
 
-  test('grows further when they straighten up further, by less than would have told at first', () => {
+  test('grows further when they straighten up further, by less than would have counted at first', () => {
     const straightening = motion(6, (time) => person.eyeHeight * (time < 3 ? 1.05 : 1.06));
     const heights = wear(straightening, person).map(({ eyeHeight }) => eyeHeight);
     expect(heights).toHaveLength(3);

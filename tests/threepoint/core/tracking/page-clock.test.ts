@@ -4,7 +4,7 @@ import { describe, expect, test } from 'vitest';
 
 const frameMs = 1000 / 72;
 
-/** The times of these time stamps [ms], each told when `read` says `readOf` of it. */
+/** Returns the times of these time stamps [ms], each passed when `read` returns `readOf` of it. */
 function timesOf(
   stamps: readonly number[],
   readOf: (stamp: number, index: number) => number = (stamp) => stamp,
@@ -92,7 +92,7 @@ describe('the page’s clock', () => {
     expect(passed).toEqual([frame, frame, frame, longestStep].map((seconds) => expect.closeTo(seconds, 6)));
   });
 
-  test('what is left out of a pause is told, of a step back nothing', () => {
+  test('what is left out of a pause is reported, of a step back nothing', () => {
     let read = 0;
     const clock = createPageClock(() => read);
     for (const stamp of [0, 16, 20_016]) {

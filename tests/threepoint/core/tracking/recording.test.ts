@@ -166,15 +166,15 @@ describe('a recording', () => {
     ['a body with other joints', withBody.replace('"hips"', '"tail"'), /other joints/],
     ['a body in a file of version 2', withBody.replace('"version":3', '"version":2'), /Frame 1 .*is not a time/],
     ['fingers in a file of version 1', withFingers.replace('"version":3', '"version":1'), /Frame 1 .*is not a time/],
-    ['nothing', '', /no JSON/],
-    ['prose', 'Dear Sir', /no JSON/],
-    ['other JSON', '{"photos": []}', /no recording of threepoint/],
-    ['an array', '[]', /no recording of threepoint/],
+    ['nothing', '', /not valid JSON/],
+    ['prose', 'Dear Sir', /not valid JSON/],
+    ['other JSON', '{"photos": []}', /not a threepoint recording/],
+    ['an array', '[]', /not a threepoint recording/],
     ['a later version', writeRecording(some).replace('"version":3', '"version":7'), /version 7/],
     ['no frames', '{"format":"threepoint-recording","version":1,"device":"","rateHz":60,"frames":[]}', /no frames/],
     ['no rate', writeRecording(some).replace('"rateHz":72', '"rateHz":"often"'), /rate/],
     ['a damaged line', writeRecording(some).replace('[5.1,', '[5.1 oops,'), /line 3 is damaged/],
-    ['a cut-off end', writeRecording(some).slice(0, -20), /no JSON/],
+    ['a cut-off end', writeRecording(some).slice(0, -20), /not valid JSON/],
     ['a frame without a time', writeRecording(some).replace('[5.1,', '["noon",'), /Frame 2 .*time/],
     ['time that runs backwards', writeRecording(some).replace('[5.1,', '[4.1,'), /Frame 2 .*not later/],
     ['a frame without a head', writeRecording(some).replace('[5.2,[2,', '[5.2,null,[2,'), /Frame 3/],
@@ -223,7 +223,7 @@ describe('sampling', () => {
       fc.property(times, number(-5, 105), (unsorted, time) => {
         const sorted = unsorted.toSorted((a, b) => a - b);
         const frames = sorted.map((at) => ({ ...some.frames[0]!, time: at }));
-        // Interpolated between its neighbours, the head's place tells which they were.
+        // The head's position identifies the neighbours that were interpolated.
         const placed = frames.map((frame, i) => ({
           ...frame,
           head: { ...frame.head, position: { x: i, y: 0, z: 0 } },

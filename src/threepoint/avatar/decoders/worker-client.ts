@@ -7,7 +7,7 @@ interface Waiting<Answer> {
 }
 
 /** A worker that answers in the order in which it is asked. It begins with the first question and ends when none is left. */
-export class AskedWorker<Question, Answer> {
+export class WorkerClient<Question, Answer> {
   readonly #name: string;
   readonly #begin: () => Worker;
   readonly #waiting: Waiting<Answer>[] = [];
@@ -20,7 +20,7 @@ export class AskedWorker<Question, Answer> {
     this.#begin = begin;
   }
 
-  ask(question: Question): Promise<Answer> {
+  request(question: Question): Promise<Answer> {
     return new Promise((resolve, reject) => {
       this.#worker ??= this.#started();
       this.#waiting.push({ resolve, reject });

@@ -11,7 +11,7 @@ import { movingPerson } from './moving-person';
 
 const body: Calibration = { eyeHeight: 1.58, armSpan: 1.5 };
 
-/** The frame as a headset tells it that points up by `pitch` [rad] when its wearer looks straight ahead. */
+/** Returns the frame of a headset that points up by `pitch` [rad] when its wearer looks straight ahead. */
 const tilted = (frame: TrackingFrame, pitch: number): TrackingFrame => ({
   ...frame,
   head: { ...frame.head, orientation: multiply(frame.head.orientation, fromAxisAngle(right, pitch)) },
