@@ -20,7 +20,7 @@ const frameTimeHeads = [
   { text: 'late', numeric: true, title: 'Frames shown later than the device wanted' },
 ] as const;
 
-/** Work per frame; where there are cohorts, of each for itself. */
+/** Returns the work per frame, separately for each cohort. */
 export function frameTimeParts({ study, titleOf, labelOf, fileOf, factsOf }: ShownResults): readonly Node[] {
   const { plan, records } = study;
   const times = frameTimes(records, cohortIn(plan));

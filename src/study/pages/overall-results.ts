@@ -26,7 +26,7 @@ const heads = [
   { text: 'Holm p (χ²)', numeric: true },
 ] as const;
 
-/** The rows of one measure: an effect each. What is tested by ranks stands beside the first. */
+/** Returns a row for each effect of a measure. The test by ranks is in the first row. */
 function rowsOf(results: ShownResults, one: OverallComparison, tagged: boolean): readonly TableRow[] {
   const { n, variance, ranks, holmP, ranksHolmP } = one;
   return effectsOf(variance).map(([name, effect], index) => {
@@ -50,7 +50,7 @@ function rowsOf(results: ShownResults, one: OverallComparison, tagged: boolean):
   });
 }
 
-/** One family: a table of all conditions and cohorts at once, and who was left out of it. */
+/** Returns the table of one family of tests with the participants that are left out. */
 function familyParts(
   results: ShownResults,
   { file, caption }: { readonly file: string; readonly caption: (count: number) => string },
@@ -78,7 +78,10 @@ function familyParts(
 
 const analyses = 'analyses of variance, and tests by ranks';
 
-/** Analyses of all conditions and cohorts at once; none for two conditions without cohorts, which are compared in pairs. */
+/**
+ * Returns the analyses of all conditions and cohorts at once; nothing for two conditions without cohorts, which are
+ * compared in pairs.
+ */
 export function overallResults(results: ShownResults): readonly Node[] {
   const { study, measures } = results;
   if (!comparedAsAWhole(study.plan)) return [];

@@ -4,7 +4,7 @@ import { paperTable } from '../model/results/result-tables';
 import { csvButton, fixed, paperAboutOf, pText } from './result-cells';
 import { tableNode } from './table';
 
-/** The paper's printed numbers, recomputed from its t values and tables. */
+/** Returns the paper's printed numbers, recomputed from its t values and tables. */
 export function paperCheck(): readonly Node[] {
   const rows = checkedPaperRows();
   const wrong = rows.filter(({ follows }) => !follows).map(({ question }) => question);

@@ -1,12 +1,15 @@
 import { button, element } from 'threepoint-ui/element';
 
-/** Where the token stays while the tab is open; never longer, for the computer may be a shared one. */
+/**
+ * The key under which the session storage keeps the token while the tab is open. It is not kept longer, because
+ * computers are shared.
+ */
 const kept = 'threepoint-experimenter-token';
 
 export const keptToken = (): string | null => sessionStorage.getItem(kept);
 export const forgetToken = (): void => sessionStorage.removeItem(kept);
 
-/** Asks for the experimenter's token; `use` answers with a complaint, or null where the token opens. */
+/** Asks for the experimenter's token; `use` resolves with a complaint, or with null if the token is accepted. */
 export function signInForm(use: (token: string) => Promise<string | null>): HTMLElement {
   const input = element('input', {
     type: 'password',

@@ -10,7 +10,7 @@ function box() {
   return { input, said, node: element('label', { class: 'check' }, input, said) };
 }
 
-/** The text consented to, in the language chosen; `onLanguage` hears in which the page speaks from then on. */
+/** Returns the form of consent in the chosen language; `onLanguage` is called with the phrases of another one. */
 export function consentForm(
   { study, language: first, ...actions }: FormOf<'consent'>,
   onLanguage: (phrases: Phrases) => void,

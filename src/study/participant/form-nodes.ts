@@ -97,7 +97,7 @@ function lockedOutForm({
   ];
 }
 
-/** What leads nowhere: a heading, and why. */
+/** Returns a final page: a heading and a reason. */
 function lastWords(kicker: string, title: string, text: string, trouble: boolean): readonly Node[] {
   return [
     element('p', { class: trouble ? 'kicker trouble' : 'kicker' }, kicker),
@@ -106,7 +106,7 @@ function lastWords(kicker: string, title: string, text: string, trouble: boolean
   ];
 }
 
-/** `onLanguage` hears of another language that is chosen on the form. */
+/** Returns the nodes of a form; `onLanguage` is called when another language is chosen on it. */
 export function formNodes(form: StudyForm, onLanguage: (phrases: Phrases) => void): readonly Node[] {
   const { say } = form.phrases;
   switch (form.kind) {
@@ -127,6 +127,6 @@ export function formNodes(form: StudyForm, onLanguage: (phrases: Phrases) => voi
   }
 }
 
-/** Small, at the foot of a form. */
+/** Returns the small text at the foot of a form. */
 export const formNote = (form: StudyForm): string =>
   form.kind === 'consent' ? `${inLanguage(form.study.title, form.phrases.language)} · ${form.participant}` : '';
