@@ -14,7 +14,7 @@ import { recordingTime } from '../../model/records/trial-clock';
 import { voidedBlocks } from '../../model/tables/study-tables';
 import type { MotionFile } from '../storage/motion';
 
-/** What the data set is made of. */
+/** The content of a data set. */
 export interface BidsContent {
   readonly plan: StudyPlan;
   readonly simulated: boolean;
@@ -23,25 +23,25 @@ export interface BidsContent {
 }
 
 export interface BidsDataset {
-  /** Paths within the data set, with their text; none without motion. */
+  /** The text of each file by its path in the data set; none without motion. */
   readonly files: Readonly<Record<string, string>>;
-  /** Of each recording that is not in it: why. */
+  /** The reason for each recording that is left out. */
   readonly leftOut: readonly string[];
 }
 
-/** A trial of which there is a recording. */
+/** A trial with a recording. */
 interface Run {
   readonly trial: TrialRecord;
-  /** When its first frame is on its clock [s]. */
+  /** The time of its first frame on its clock [s]. */
   readonly first: number;
   readonly label: string;
-  /** From 1, for each participant and task in the order in which they were played. */
+  /** Counted from 1 for each participant and task, in the order in which they were played. */
   readonly number: number;
 }
 
 const trackingSystem = 'tracksys-webxr';
 
-/** Letters and digits: what names in BIDS may have. */
+/** Removes characters that names in BIDS may not have. */
 const labelOf = (task: string): string => task.replaceAll('-', '');
 
 const described = (description: string, rest: object = {}) => ({ Description: description, ...rest });
@@ -95,7 +95,10 @@ const json = (value: unknown): string => `${JSON.stringify(value, null, 2)}\n`;
 
 const seconds = (value: number): number => Math.round(value * 1e6) / 1e6;
 
-/** What happened in a trial on the clock of its recording; null: nothing tells how the two clocks lie (older records). */
+/**
+ * Returns the events of a trial on the clock of its recording, or null for older records, which do not relate the two
+ * clocks.
+ */
 function eventRows({ trial, first }: Run): Readonly<Record<string, unknown>>[] | null {
   const { clock, events, seconds: length } = trial.body.outcome;
   if (!clock) return null;
@@ -166,7 +169,7 @@ function participantRow(participant: string, told: DemographicsRecord['body'] | 
   };
 }
 
-/** The files of each recording, one after the other: together they would not fit into memory. */
+/** Writes the files of each recording one after the other, because together they would not fit into memory. */
 function writeRuns({ records, motion }: BidsContent) {
   const trials = new Map(
     records.flatMap((record) =>
@@ -210,7 +213,7 @@ const readme = ({ plan, simulated }: BidsContent): string =>
     '',
   ].join('\n');
 
-/** The motion of a study as a BIDS data set; what cannot be read is left out, with its reason. */
+/** Returns the motion of a study as a BIDS data set; unreadable recordings are left out with the reason. */
 export function bidsDataset(content: BidsContent): BidsDataset {
   const { plan, simulated, records } = content;
   const { files: written, runs, leftOut } = writeRuns(content);

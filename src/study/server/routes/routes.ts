@@ -26,30 +26,30 @@ import type { StudySeats } from './seats';
 export interface StudyRoutesOptions extends StudyGuardOptions {
   /** Signs participants into the rooms of their trials. */
   readonly seats: StudySeats;
-  /** What serves the studies: exports say it. */
+  /** The software that serves the studies, for exports. */
   readonly software: Software;
   readonly makeZip: Exporter;
 }
 
-/** Longest bodies [bytes]. */
+/** The largest bodies [bytes]. */
 export const bodyLimits = { json: 512 * 1024, motion: mostMotionBytes } as const;
 export const mostRecordsAtOnce = 200;
 
 const prefix = '/api/studies';
 
-/** A request to a route of the studies, as it crosses from the thread of the sockets to that of the database. */
+/** A request to a route of the studies, as it is sent from the thread of the sockets to that of the database. */
 export interface StudyRequest {
-  /** When it came: seconds since 1970. */
+  /** The time of the request in seconds since 1970. */
   readonly at: number;
   readonly token: string | null;
   readonly address: ClientAddress | null;
-  /** What the address has for the route's ":names"; not yet checked. */
+  /** The values of the ":names" of the route, not checked yet. */
   readonly names: Readonly<Record<string, string>>;
-  /** What follows the "?". */
+  /** The query of the address, without "?". */
   readonly query: string;
 }
 
-/** A request whose names are checked: the study and, where the route has one, the participant; else empty. */
+/** A request with checked names of study and participant; empty if the route has none. */
 interface StudyCall extends Concerned {
   readonly at: number;
   readonly query: URLSearchParams;
@@ -57,17 +57,17 @@ interface StudyCall extends Concerned {
 }
 
 export interface StudyRoute extends Omit<Route<StudyAccess>, 'handle'> {
-  /** Its answer waits until what it changed is on the disk. */
+  /** Whether the answer waits until the change is on the disk. */
   readonly changes: boolean;
-  /** Its answer takes as long as it takes. */
+  /** Whether the answer has no time limit. */
   readonly isPatient: boolean;
   handle(call: StudyCall): Answer | Promise<Answer>;
 }
 
-/** All below /api/studies. A participant's token opens nothing but that participant. */
+/** All routes below /api/studies. A participant's token gives access to this participant only. */
 export interface StudyRoutes {
   readonly routes: readonly StudyRoute[];
-  /** Throws an HttpError where this request may not; asked before the body is read. */
+  /** Throws an HttpError if the request is not permitted; called before the body is read. */
   admit(route: StudyRoute, request: StudyRequest): Promise<void>;
   handle(route: StudyRoute, request: StudyRequest, body: Uint8Array<ArrayBuffer>): Answer | Promise<Answer>;
 }
@@ -80,7 +80,7 @@ const concerned = ({ token, address, names }: StudyRequest): Concerned => ({
 
 type Handle = StudyRoute['handle'];
 
-/** One line of the table: its path is below the prefix, its body JSON of at most so many bytes. */
+/** Returns a route with a path below the prefix and a limit of its JSON body [bytes]. */
 const route = (
   method: Route['method'],
   path: string,
@@ -121,7 +121,7 @@ const newStudySchema = v.strictObject({
 });
 const versionSchema = v.object({ version: v.optional(integerBetween(1, 10_000)) });
 const withdrawalSchema = v.object({ code: text(60) });
-/** `consent`: version of the text that the participant has read. */
+/** `consent` is the version of the text that the participant has read. */
 const claimSchema = v.strictObject({ invitation: v.optional(text(60)), consent: v.optional(text(40)) });
 const seatSchema = v.strictObject({ step: text(120), run: integerBetween(1, 99) });
 const remarkSchema = v.strictObject({ text: text(2000) });
@@ -131,7 +131,7 @@ const motionSchema = v.object({
   trial: v.pipe(v.string(notATrial), v.regex(/^[a-z0-9][a-z0-9/@.:-]{0,119}$/, notATrial)),
 });
 
-/** What a participant may know of a plan: the order and names of conditions come only with their own schedule. */
+/** Returns the public part of a plan. Participants get the order and names of conditions only with their schedule. */
 const publicPlan = (plan: StudyPlan, simulated: boolean) => {
   const { id, title, consent, remote, phrases = {} } = plan;
   return { id, title, consent, languages: languagesOf(plan), phrases, simulated, contact: remote?.contact ?? null };
@@ -141,7 +141,7 @@ const statusOfRefusal = {
   ...{ unknown: 404, conflict: 409, begun: 409, forbidden: 403, locked: 503, busy: 503, full: 507, lost: 507 },
 } as const satisfies Readonly<Record<StoreRefusal['reason'], number>>;
 
-/** What a page waits before it asks again where the database is locked or busy [s]. */
+/** The time after which a page repeats its request if the database is locked or busy [s]. */
 export const retryAfterSeconds = 5;
 
 interface TableOptions {
@@ -154,13 +154,13 @@ interface TableOptions {
 
 type Exporting = Pick<TableOptions, 'store' | 'software' | 'makeZip'>;
 
-/** The version of the plan that is asked for; undefined: the newest. */
+/** Returns the requested version of the plan, or undefined for the newest. */
 function versionIn(query: URLSearchParams): number | undefined {
   const asked = query.get('version');
   return checked(versionSchema, asked === null ? {} : { version: Number(asked) }).version;
 }
 
-/** A study with what was recorded of those who follow the version of its plan that `info` shows. */
+/** Returns a study with the records of participants who follow the version of its plan that `info` shows. */
 function recordsOf(store: StudyStore, info: StudyInfo): Answer {
   const { participants } = info.versions.find(({ version }) => version === info.version) as PlanVersion;
   const head = `${JSON.stringify(info).slice(0, -1)},"records":`;
@@ -169,7 +169,7 @@ function recordsOf(store: StudyStore, info: StudyInfo): Answer {
   return { ...json(null), body };
 }
 
-/** What an error is to the other side; null: a fault of the server. */
+/** Returns the HTTP error for an error, or null for a fault of the server. */
 export function refusalOf(error: unknown): HttpError | null {
   if (!(error instanceof StoreRefusal)) return knownRefusalOf(error);
   const { reason, message } = error;
@@ -200,13 +200,13 @@ async function exportOf({ store, software, makeZip }: Exporting, asked: ExportAs
   };
 }
 
-/** A route whose answer is an export. */
+/** Returns a route whose answer is an export. */
 const exporting = (path: string, access: StudyAccess, handle: Handle): StudyRoute => ({
   ...route('GET', path, access, 0, handle),
   isPatient: true,
 });
 
-/** What is of one study, and of the server as a whole. */
+/** Returns the routes of the server and of one study. */
 function studyTable({ store, guard, software, makeZip }: TableOptions): StudyRoute[] {
   return [
     route('GET', '', 'experimenter', 0, () =>
@@ -221,7 +221,7 @@ function studyTable({ store, guard, software, makeZip }: TableOptions): StudyRou
       const { plan, simulated, newVersion = false } = checked(newStudySchema, jsonOf(call));
       return json(store.plans.add(checkedPlan(plan), { simulated, newVersion, at: call.at }), 201);
     }),
-    // A participant who has begun reads the text of the version that is theirs.
+    // Participants who have begun read the text of their version.
     route('GET', '/:study', 'anyone', 0, ({ study, query }) => {
       const { plan, simulated } = store.plans.get(study);
       const participant = query.get('participant');
@@ -252,7 +252,7 @@ function studyTable({ store, guard, software, makeZip }: TableOptions): StudyRou
   ];
 }
 
-/** What a device goes by that has taken a participant's place: a session that another device began goes on where that one was. */
+/** Returns the state for a device that has taken a participant's place; a session of another device is continued. */
 const sessionOf = ({ store }: Pick<TableOptions, 'store'>, { study, participant, at }: StudyCall) => ({
   plan: store.plans.planFor(study, participant),
   simulated: store.plans.get(study).simulated,
@@ -260,7 +260,7 @@ const sessionOf = ({ store }: Pick<TableOptions, 'store'>, { study, participant,
   ...profileFrom(store.records.all(study, participant)),
 });
 
-/** Throws where a plan that was stored could not be a new study's any more: nothing can be recorded by its rules. */
+/** Throws if a stored plan is no longer valid for a new study, because nothing can be recorded by its rules. */
 function refuseOutdated(plan: StudyPlan): void {
   try {
     checkedPlan(plan);
@@ -274,7 +274,10 @@ function refuseOutdated(plan: StudyPlan): void {
   }
 }
 
-/** `read`: version of the text that was consented to; undefined: not told. Throws where the plan shows another one, and the place stays free. */
+/**
+ * Takes a place. `read` is the version of the text that was consented to, if it was sent. Throws if the plan has
+ * another one; the place stays free.
+ */
 function takePlace(
   { store }: Pick<TableOptions, 'store'>,
   { study, participant, at }: StudyCall,
@@ -289,13 +292,13 @@ function takePlace(
   return store.places.claim(study, participant, at);
 }
 
-/** A route that signs: it takes a body and changes nothing. */
+/** Returns a route that signs: it takes a body and changes nothing. */
 const signing = (path: string, handle: Handle): StudyRoute => ({
   ...route('POST', path, 'participant', bodyLimits.json, handle),
   changes: false,
 });
 
-/** What is of one participant. */
+/** Returns the routes of one participant. */
 function participantTable({ store, guard, seats, software, makeZip }: TableOptions): StudyRoute[] {
   const own = '/:study/participants/:participant';
   return [
@@ -362,7 +365,7 @@ function participantTable({ store, guard, seats, software, makeZip }: TableOptio
     signing(`${own}/seat`, async (call) => {
       const trial = checked(seatSchema, jsonOf(call));
       const plan = store.plans.planFor(call.study, call.participant);
-      // Let in without being this participant: an experimenter, who watches.
+      // A request that is admitted without the participant's token is from an experimenter, who watches.
       return json(await seats.sign(plan, call.participant, trial, !guard.isParticipant(call)));
     }),
     exporting(`${own}/export`, 'participant', ({ study, participant, at }) =>
