@@ -89,7 +89,7 @@ export function createStudyCard(parent: HTMLElement = document.body): StudyCard 
         if (another) fill(card, parts, held);
         else {
           card.replaceChildren(...parts);
-          // The same screen keeps the keyboard focus when its card is rebuilt.
+          // A rebuilt screen keeps the keyboard focus when its card is rebuilt.
           const again = focused && card.querySelector<HTMLElement>(`[data-id="${focused}"]`);
           if (again) again.focus({ preventScroll: true });
         }

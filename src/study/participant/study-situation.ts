@@ -32,7 +32,7 @@ export interface StudySituation {
   /** Why the last action changed nothing; null: it did. */
   readonly refusal: string | null;
   readonly playing: boolean;
-  /** The participants for whom a started trial waits, empty if unknown; null: it waits for no one. */
+  /** The participants that a started trial waits for, empty if unknown; null: none. */
   readonly waitingFor: readonly string[] | null;
   /** Whether the participant wants to stop and has not confirmed it yet. */
   readonly stopping: boolean;

@@ -41,7 +41,7 @@ export interface FinishedTrial {
 export interface PlayedTrial {
   /** The step, run and attempt of the trial. When the session changes to another one, the trial is void. */
   readonly key: string;
-  /** The participants for whom the trial waits, empty if unknown; null: it waits for no one. */
+  /** The participants that the trial waits for, empty if unknown; null: none. */
   readonly waitingFor: readonly string[] | null;
   /** Whether the game is paused by another participant of the group. */
   readonly standing: boolean;

@@ -35,7 +35,7 @@ export interface TaskRunner {
   /** Returns the events since the last call. */
   take(): readonly TaskEvent[];
   /**
-   * The codes of the participants for whom a started trial waits, empty if unknown; null: it waits for no one, or there
+   * The codes of the participants that a started trial waits for, empty if unknown; null: it waits for none, or there
    * is no trial.
    */
   readonly waitingFor: readonly string[] | null;

@@ -18,10 +18,10 @@ const asked = v.object({
   seed: given(integerBetween(0, 2 ** 31 - 1), '1'),
 });
 
-/** Every row is shown whose power is nearer to the one wanted; below it every fifth. */
+/** Rows whose power is this near to the wanted one are all shown; below them every fifth. */
 const closeToIt = 0.05;
 
-/** The first row at which a test reaches the power, in words. */
+/** Returns the first row at which a test reaches the power, in words. */
 function needed(rows: readonly PowerRow[], test: 't' | 'wilcoxon', power: number): string {
   const row = rows.find((one) => one[test] >= power);
   return row ? `${row.n}` : `more than ${mostSimulated}`;

@@ -7,7 +7,7 @@ import { verifyExport } from './verify-export';
 
 const [path = ''] = process.argv.slice(2);
 const file = basename(path);
-/** What is wrong in so many places is one mistake many times. */
+/** More complaints than this have one cause. */
 const mostShown = 50;
 
 try {

@@ -1,11 +1,11 @@
 import { calibrationFaults } from 'threepoint/core/tracking/calibration-faults';
 
 /**
- * Every phrase that the page itself says to participants, by key. What stands in braces is filled in; a phrase with a number has the plural
- * forms of its language, chosen by {count}.
+ * The phrases of the page for participants, by key. Names in braces are filled in. A phrase with a number has the
+ * plural forms of its language, chosen by {count}.
  */
 export const english = {
-  // Buttons that several screens have.
+  // Buttons of several screens.
   next: 'Next',
   back: 'Back',
   pause: 'Pause',
@@ -19,7 +19,7 @@ export const english = {
   measureAgain: 'Measure again',
   tryAgain: 'Try again',
 
-  // What screens have in common.
+  // Texts of several screens.
   study: 'Study',
   progress: 'Progress',
   language: 'Language',
@@ -30,7 +30,7 @@ export const english = {
   callExperimenter: 'Please call the experimenter',
   askExperimenter: 'Ask the experimenter.',
 
-  // Before a session: who takes part, and consent.
+  // Entrance and consent.
   'entrance.title': 'Who takes part?',
   'entrance.code': 'Your code: a P and two or three digits',
   'entrance.invitation': 'Your invitation: sixteen letters and digits',
@@ -52,7 +52,7 @@ export const english = {
   'declined.title': 'Thank you all the same',
   'declined.text': 'Nothing was recorded. You can close this page, or open your link again.',
 
-  // The code with which everything can be deleted.
+  // The withdrawal code.
   'code.kicker': 'Your withdrawal code',
   'code.title': 'Please write this down',
   'code.use':
@@ -62,7 +62,7 @@ export const english = {
   'code.save': 'Save both as a file',
   'code.file': 'Withdrawal code: {code}\nTo have everything deleted, enter it at {address}',
 
-  // What is asked about participants.
+  // Questions about participants.
   'about.kicker': 'About you',
   'about.title': 'Before you play',
   'about.missing': 'What is marked still needs an answer.',
@@ -91,7 +91,7 @@ export const english = {
   'about.vision.corrected': 'Well with glasses or lenses',
   'about.vision.impaired': 'Impaired, also in the headset',
 
-  // Putting the headset on, and what keeps a participant who is alone from beginning.
+  // Putting the headset on, and faults of the set-up of participants who take part alone.
   'headset.title': 'Put on the headset',
   'headset.measures':
     'Press the button, put the headset on and take both controllers. You are measured first: it takes five seconds.',
@@ -111,7 +111,7 @@ export const english = {
   'setup.high':
     'Your eyes were measured {height} above the floor: the headset has the floor too low. Set it anew in its settings.',
 
-  // Being measured.
+  // Measurement of the body.
   'measures.title': 'Your measures',
   'measures.stance':
     'Stand straight inside the marked zone, look ahead and stretch both arms forward, wrists straight, when the countdown begins.',
@@ -192,7 +192,7 @@ export const english = {
   },
   'question.timeLeft': '{time} left',
   'question.takeTime': 'Take the time you need.',
-  /** Rows of letters of the keyboard in the headset, with spaces between them; at most twelve in each of four. */
+  /** Rows of letters of the keyboard in the headset, separated by spaces; at most twelve in each of four. */
   'keys.rows': "1234567890 qwertyuiop asdfghjkl' zxcvbnm,.-",
   'keys.space': 'Space',
   'keys.delete': 'Delete',
@@ -212,7 +212,7 @@ export const english = {
   /** A technical reason, which is in English in every language. */
   reason: '{reason}',
 
-  // Where answers are.
+  // Upload status.
   'kept.all': 'Everything is saved.',
   'kept.saving': 'Saving …',
   'kept.sending': 'Sending …',
@@ -234,7 +234,7 @@ export const english = {
     other: 'They stay on this device: the server refuses {count} records ({reason}). You can go on. {contact}',
   },
 
-  // The end, and a place that is another device's.
+  // The end, and a place that belongs to another device.
   'end.title': 'Thank you',
   'end.stopped': 'Your part is over. Take the headset off and rest.',
   'end.done': 'You have done everything.',
@@ -254,7 +254,7 @@ export const english = {
   },
   'lockedOut.anew': 'Forget it here and begin anew',
 
-  // The page on which participants withdraw.
+  // The withdrawal page.
   'withdrawal.title': 'Withdraw from a study',
   'withdrawal.study': 'The study, as it stands in your link',
   'withdrawal.code': 'Your withdrawal code',

@@ -1,6 +1,6 @@
 import type { Catalogue } from './catalogue';
 
-/** The page's phrases in German, in the words of a laboratory to its participants. */
+/** The German phrases of the page. */
 export const german = {
   next: 'Weiter',
   back: 'Zurück',

@@ -77,7 +77,7 @@ export interface ComparedCohortPair {
   readonly comparisons: readonly CohortComparison[];
 }
 
-/** Comparisons of cohorts as a tidy table, full precision. */
+/** Returns comparisons of cohorts as a tidy table in full precision. */
 export const cohortTable = (name: string, pairs: readonly ComparedCohortPair[], facts: TableFacts): Table => ({
   name,
   columns: columnsOf(facts),

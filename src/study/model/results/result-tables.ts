@@ -7,12 +7,12 @@ import type { FrameTimeRow } from './frame-times';
 import type { Measured } from './measures';
 import { checkedPaperRows } from './paper-tables';
 
-/** What tables of results say beside their figures. */
+/** The facts that tables of results state next to their figures. */
 export interface TableFacts {
-  /** planned: what the plan names, and nothing else, is adjusted together. */
+  /** planned: p is adjusted over the measures that the plan names only. */
   readonly family: 'planned' | 'explored';
   readonly simulated: boolean;
-  /** What a question asks about, in a word or two; empty: nothing is said. */
+  /** Returns the subject of a question in a word or two; empty: none. */
   readonly aboutOf: (one: Measured) => string;
   readonly isPlanned: (one: Measured) => boolean;
 }
@@ -23,11 +23,11 @@ const simulatedColumn = boolean(
   'TRUE: made by a program. It says nothing about people.',
 );
 const ids = 'small letters, digits, hyphens';
-/** In [0, 1]: p, ε, shares of variance. */
+/** Values in [0, 1]: p, ε, shares of variance. */
 export const share = '0 to 1';
 const correlation = '-1 to 1';
 
-/** What every table of compared measures begins with. */
+/** The first columns of every table of compared measures. */
 export const measureColumns: readonly Column[] = [
   simulatedColumn,
   text(
@@ -50,7 +50,7 @@ export const measureColumns: readonly Column[] = [
   ),
 ];
 
-/** What every row of them begins with. */
+/** Returns the first cells of every row. */
 export const measureCells = (one: Measured, { simulated, aboutOf, isPlanned }: TableFacts) => ({
   simulated,
   of: one.of,
@@ -59,31 +59,31 @@ export const measureCells = (one: Measured, { simulated, aboutOf, isPlanned }: T
   planned: isPlanned(one),
 });
 
-/** Mean of one side with its interval. */
+/** Returns the columns of one side's mean and interval. */
 export const meanColumns = (side: 'first' | 'second', what: string, source: (figure: string) => string) => [
   number(`mean_${side}`, '', 'any', source('mean'), `Mean ${what}.`),
   number(`low_${side}`, '', 'any', source('interval'), 'Lower end of its 95 % confidence interval.'),
   number(`high_${side}`, '', 'any', source('interval'), 'Upper end.'),
 ];
 
-/** The cells of one side. */
+/** Returns the cells of one side. */
 export const meanCells = (side: 'first' | 'second', summary: MeanSummary | null) => ({
   [`mean_${side}`]: summary?.mean ?? null,
   [`low_${side}`]: summary?.interval?.low ?? null,
   [`high_${side}`]: summary?.interval?.high ?? null,
 });
 
-/** The ends of an effect's interval. */
+/** Returns the columns of the ends of an effect's interval. */
 export const endColumns = (name: string, method: string, none: string) => [
   number(`low_${name}`, '', 'any', `computed: ${method}`, 'Lower end of its 95 % confidence interval.'),
   number(`high_${name}`, '', 'any', `computed: ${method}`, `Upper end; both empty: ${none}.`),
 ];
 
-/** The interval of an effect by the noncentral t. */
+/** Returns the columns of an interval by the noncentral t. */
 export const noncentralColumns = (name: string) =>
   endColumns(name, 'noncentral t', 'nothing varies, or t is too far out');
 
-/** The interval of a rank-biserial correlation. */
+/** The columns of the interval of a rank-biserial correlation. */
 export const biserialColumns = [
   number('rank_biserial', '', correlation, 'computed: (ranks for − ranks against) / all ranks', 'Its effect size.'),
   ...endColumns(
@@ -93,7 +93,7 @@ export const biserialColumns = [
   ),
 ];
 
-/** Over which rows p is adjusted. */
+/** Describes the rows over which p is adjusted. */
 export const familyText = ({ family }: Pick<TableFacts, 'family'>, alike: string) =>
   `computed: Holm over the rows of this table with the same ${alike}${family === 'planned' ? '' : ' and unit'}`;
 
@@ -129,7 +129,7 @@ function comparisonColumns(facts: TableFacts): readonly Column[] {
 
 /** Comparisons that belong together. */
 export interface ComparedPair {
-  /** Ids: first − second. */
+  /** The ids: first − second. */
   readonly conditions: readonly [string, string];
   readonly comparisons: readonly Comparison[];
 }
@@ -157,7 +157,7 @@ const comparisonCells = (one: Comparison) => ({
   high_rank_biserial: one.signedRank?.effectInterval?.high ?? null,
 });
 
-/** Comparisons of conditions as a tidy table, full precision. */
+/** Returns comparisons of conditions as a tidy table in full precision. */
 export const comparisonTable = (name: string, pairs: readonly ComparedPair[], facts: TableFacts): Table => ({
   name,
   columns: comparisonColumns(facts),
@@ -208,7 +208,7 @@ const effectCells = (effect: Effect) => ({
   high_eta: effect.interval?.high ?? null,
 });
 
-/** The effects that were analysed, by name. */
+/** Returns the analysed effects by name. */
 export const effectsOf = (variance: VarianceAnalysis | null): readonly (readonly [string, Effect])[] =>
   (
     [
@@ -218,7 +218,7 @@ export const effectsOf = (variance: VarianceAnalysis | null): readonly (readonly
     ] as const
   ).flatMap(([name, effect]) => (effect ? [[name, effect] as const] : []));
 
-/** What belongs to a measure as a whole stands once, beside its first effect. */
+/** Returns the cells of the whole measure, which are in the row of its first effect. */
 const wholeCells = ({ holmP, ranksHolmP, ranks: byRanks }: OverallComparison) => ({
   p_holm: holmP,
   chi_squared: byRanks?.chiSquared ?? null,
@@ -236,7 +236,7 @@ const noWhole = {
   p_ranks_holm: null,
 };
 
-/** The analyses of all conditions and cohorts at once as a tidy table: a row for each effect. */
+/** Returns the analyses of all conditions and cohorts as a tidy table with a row for each effect. */
 export const overallTable = (name: string, comparisons: readonly OverallComparison[], facts: TableFacts): Table => ({
   name,
   columns: overallColumns,
@@ -251,7 +251,7 @@ export const overallTable = (name: string, comparisons: readonly OverallComparis
   ),
 });
 
-/** Frame times as a tidy table. */
+/** Returns frame times as a tidy table. */
 export const frameTimeTable = (rows: readonly FrameTimeRow[], { simulated }: Pick<TableFacts, 'simulated'>): Table => ({
   name: 'frame-times',
   columns: [
@@ -286,7 +286,7 @@ export const frameTimeTable = (rows: readonly FrameTimeRow[], { simulated }: Pic
 
 const printed = "the paper's tables 9 and 10";
 
-/** The paper's tables 9 and 10 with what follows from their t. */
+/** Returns the paper's tables 9 and 10 with the values computed from their t. */
 export const paperTable = (): Table => ({
   name: 'paper-check',
   columns: [

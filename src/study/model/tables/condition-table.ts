@@ -38,7 +38,7 @@ const columns = [
   number('dropout_seconds', 's', '0.1 to 10', from('dropouts.seconds'), 'For how long each time.'),
 ];
 
-/** What the conditions and cohorts of a plan are. */
+/** Returns the table of conditions and cohorts of a plan. */
 export const conditionTable = ({ conditions, cohorts = [] }: StudyPlan): Table => ({
   name: 'conditions',
   columns,

@@ -37,7 +37,7 @@ const excluded = text(
 );
 const time = number('at', 's', moment, 'records: at', 'When, by the clock of the device.');
 
-/** What can be chosen in answer to a question about the participant. */
+/** Returns the options of a question about the participant. */
 function optionsOf(id: keyof Demographics): string {
   const field = demographicFields.find((one) => one.id === id);
   return field?.kind === 'choice' ? field.options.map(({ value }) => value).join(', ') : 'any text';
@@ -109,7 +109,7 @@ export const scaleColumns = [
   excluded,
 ];
 
-/** Which trial a row belongs to. */
+/** The columns that identify the trial of a row. */
 const trialNames = [
   ...who,
   ...where,
