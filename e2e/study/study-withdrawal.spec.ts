@@ -87,7 +87,7 @@ test('a participant whose network fails while everything is deleted is not told 
   });
   const go = page.getByRole('button', { name: 'Delete everything' });
   await go.click();
-  await expect(page.getByRole('alert')).toContainText('It is not known whether everything is deleted');
+  await expect(page.getByRole('alert')).toContainText('It is unknown whether your data were deleted');
   await page.unroute('**/unheard/withdraw');
   await go.click();
   await expect(page.getByRole('alert')).toContainText('if you have sent it before, everything is deleted already');

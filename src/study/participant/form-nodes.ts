@@ -83,7 +83,7 @@ function lockedOutForm({
   participant,
   unsent,
   contact,
-  anew,
+  restart,
 }: FormOf<'locked-out'>): readonly Node[] {
   return [
     element('p', { class: 'kicker trouble' }, say('study')),
@@ -93,7 +93,7 @@ function lockedOutForm({
       ...(contact === null ? [] : [say('lockedOut.contact', { contact })]),
     ]),
     ...(unsent > 0 ? [element('p', { class: 'hint' }, say('lockedOut.unsent', { count: unsent }))] : []),
-    element('div', { class: 'row' }, button(say('lockedOut.anew'), anew)),
+    element('div', { class: 'row' }, button(say('lockedOut.restart'), restart)),
   ];
 }
 

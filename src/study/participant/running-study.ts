@@ -194,7 +194,7 @@ export class RunningStudy {
     return {
       ...{ kind: 'locked-out', phrases, participant: progress.participant, unsent: uploadStatus.unsent },
       contact: plan.remote?.contact ?? null,
-      anew: () => void this.#forget().then(() => this.#page.address.reload()),
+      restart: () => void this.#forget().then(() => this.#page.address.reload()),
     };
   }
 

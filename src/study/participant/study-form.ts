@@ -68,7 +68,7 @@ type FormContent =
       readonly unsent: number;
       /** The contact for participants who take part alone; null: an experimenter is present. */
       readonly contact: string | null;
-      anew(): void;
+      restart(): void;
     }
   /** The study cannot continue on this device. */
   | { readonly kind: 'fault'; readonly text: string };

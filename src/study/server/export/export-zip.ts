@@ -62,7 +62,7 @@ function readme(content: ExportContent, leftOut: readonly string[], whole: boole
     'software.json which version of the program served it, with the SHA-256 of its networks',
     'codebook.csv  every column of the other tables: meaning, unit, values, source',
     'The tables are tidy: UTF-8, a row per observation, an empty field where there is no value.',
-    'An apostrophe before what a spreadsheet would take for a formula was put there by us.',
+    'Text that a spreadsheet would take for a formula begins with an added apostrophe.',
     ...(whole
       ? [
           'results/      what the page of results computes: planned, then explored',
@@ -74,7 +74,7 @@ function readme(content: ExportContent, leftOut: readonly string[], whole: boole
     'bids/         the same as a BIDS data set (motion)',
     ...leftOut.map((reason) => `  left out: ${reason}`),
     `${checksumsFile}  a hash of every file: "sha256sum --check ${checksumsFile}"`,
-    'The program itself computes all of it anew and says what differs: npm run study:verify -- FILE.zip',
+    'The program recomputes everything and reports differences: npm run study:verify -- FILE.zip',
     '',
   ].join('\r\n');
 }

@@ -1,21 +1,22 @@
-# Computes the tables in results/ anew from the tidy tables of this export, and says what differs.
+# Recomputes the tables in results/ from the tidy tables of this export, and reports differences.
 #
 #   Rscript analysis/analyse.R
 #
-# R alone is needed, no package. Nothing of the program that made the export is used: tests are R's own, sums of squares those of its linear
-# models. The tables computed are written to analysis/r/. Change what you like: this file is a beginning for an analysis of your own.
+# The script needs R without packages, and is independent of the program that made the export: the tests are R's, sums of
+# squares are those of its linear models. The computed tables are written to analysis/r/. Change the script as you like: it
+# is a start for your own analysis.
 
 relative <- 1e-6
 absolute <- 1e-9 # Figures this small differ by rounding.
 confidence <- 0.95
-constant_squares <- 1e-20 # Of values about 0: squares this small are rounding.
-equal_within <- 1e-9 # Values this near to each other, against the largest that they are computed from, are equal but for rounding.
-eta_confidence <- 0.9 # Of a share of the variance, which has but one side.
+constant_squares <- 1e-20 # Squares this small, of values about 0, are rounding.
+equal_within <- 1e-9 # Values that differ by at most this share of the largest input are equal up to rounding.
+eta_confidence <- 0.9 # The confidence for a share of the variance, which is one-sided.
 largest_f <- 700 # F times its degrees of freedom beyond which the export has no interval,
 largest_lambda <- 1400 # nor where an end of it lies beyond this noncentrality.
-largest_t <- 18.5 # The same of t,
+largest_t <- 18.5 # The limit of t,
 largest_delta <- 37 # and of its noncentrality.
-exact_below <- 50 # From as many pairs (values in a cohort) on, or with ties or zeros, Wilcoxon's tests are approximated.
+exact_below <- 50 # From this many pairs (values in a cohort) on, or with ties or zeros, Wilcoxon's tests are approximated.
 
 script <- sub("^--file=", "", grep("^--file=", commandArgs(FALSE), value = TRUE)[1])
 root <- dirname(dirname(normalizePath(script)))
