@@ -76,7 +76,9 @@ test('a plan with participants changes as a new version, which the experimenter 
   expect(asked).toContain('has begun: P01 keep its plan');
   page.once('dialog', (dialog) => void dialog.accept());
   await choose(page, changed);
-  await expect(page.getByText('version 2 is for those who begin now. Who stays with version 1: P01.')).toBeVisible();
+  await expect(
+    page.getByText('version 2 is for those who begin now. Earlier participants stay with version 1: P01.'),
+  ).toBeVisible();
   await expect(page.getByRole('row', { name: /^P01, version 1 / })).toBeVisible();
   await expect(page.getByRole('button', { name: 'Export version 1' })).toBeVisible();
   await keepPicture(page, 'study-versions');

@@ -199,7 +199,7 @@ test('a study of added latency from its file to a verified zip: one participant 
   const zip = `artifacts/${download.suggestedFilename()}`;
   await download.saveAs(zip);
   const { stdout } = await promisify(execFile)('npm', ['run', '-s', 'study:verify', '--', zip]);
-  expect(stdout).toMatch(/: sound: \d+ files, computed anew from \d+ records\./);
+  expect(stdout).toMatch(/: sound: \d+ files, recomputed from \d+ records\./);
 
   await page.goto(`${origin}/results?study=${plan.id}`);
   // By hand: ownership is the mean of 2, 5 and 8 − 1 under 100 ms, of 1, 4 and 8 − 7 under none; the work load that of 5 to 80, and of 0 to 75.

@@ -84,7 +84,7 @@ async function ask(
   const said: unknown = await response.json().catch(() => null);
   const ours = typeof said === 'object' && said !== null && 'error' in said;
   if (!ours && response.status === 404) throw new NoStudyServer(response.status);
-  const sentence = ours ? String(said.error) : `the server says ${response.status}`;
+  const sentence = ours ? String(said.error) : `the server answered ${response.status}`;
   // Proxies send these while the server is away. The server itself sends 5xx if nothing was acknowledged.
   if (response.status >= 500 && response.status !== 507) throw new ServerUnreachable(sentence);
   const field = typeof said === 'object' && said !== null && 'field' in said ? said.field : null;
@@ -96,7 +96,7 @@ async function whole<T>(body: Promise<T>): Promise<T> {
   try {
     return await body;
   } catch (error) {
-    throw new ServerUnreachable(`the answer broke off (${reasonOf(error)})`);
+    throw new ServerUnreachable(`the answer was incomplete (${reasonOf(error)})`);
   }
 }
 

@@ -82,8 +82,8 @@ export function cohortResults(results: ShownResults, compared: ComparedCohorts):
   const under =
     compared.conditions.length === 1
       ? `under “${labelOf(compared.conditions[0] ?? '')}”`
-      : 'of what each had under all conditions, as a mean';
-  const said = `Differences are ${labelOf(first)} − ${labelOf(second)}, between participants (scores of groups: between groups), ${under}. Tests are two-sided; * marks Holm’s p below .05 over the table that it stands in (scores: points and per cent apart).`;
+      : 'by the mean of each participant over all conditions';
+  const said = `Differences are ${labelOf(first)} − ${labelOf(second)}, between participants (scores of groups: between groups), ${under}. Tests are two-sided; * marks Holm’s p below .05, adjusted over its table (scores: points and per cent separately).`;
   return [
     element('p', { class: 'soft' }, said),
     ...plannedParts(cohorts),

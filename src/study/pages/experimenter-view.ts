@@ -37,7 +37,7 @@ export function versionsText({ versions }: Pick<OpenStudy, 'versions'>): string 
     .map(({ version, participants }) => `with version ${version}: ${participants.join(', ')}`);
   return (
     `The plan was changed: version ${newest.version} is for those who begin now. ` +
-    `Who stays ${stays.join('; ')}. Results and exports keep the versions apart.`
+    `Earlier participants stay ${stays.join('; ')}. Results and exports keep the versions apart.`
   );
 }
 
@@ -70,7 +70,7 @@ export const openStudy = (study: OpenStudy, now: number, actions: StudyActions):
 function studyHead(study: OpenStudy, actions: StudyActions): readonly Node[] {
   const { plan, simulated, retentionUntil, versions } = study;
   const until = new Date(retentionUntil * 1000).toLocaleDateString();
-  const notice = 'SIMULATED: in this study a program takes part. Its data say nothing about people.';
+  const notice = 'SIMULATED: a program takes part in this study. Its data say nothing about people.';
   return [
     ...(simulated ? [element('p', { class: 'simulated' }, notice)] : []),
     element('h2', {}, studyTitle(plan)),
@@ -160,7 +160,7 @@ export function newStudyCard(marked: boolean, { begin, mark }: NewStudyActions):
         begin({ name: 'The paper’s study', simulated: simulated.checked, json: paper }),
       ),
       element('label', {}, element('span', {}, 'Or a study file (JSON, docs/study.md)'), file),
-      element('a', { href: './preview.html' }, 'Look at a study file first'),
+      element('a', { href: './preview.html' }, 'Preview a study file first'),
       element('label', { class: 'inline' }, simulated, element('span', {}, 'simulated: a program takes part')),
     ),
   );

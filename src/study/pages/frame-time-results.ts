@@ -17,7 +17,7 @@ const frameTimeHeads = [
   { text: 'max', numeric: true },
   { text: 'mean', numeric: true },
   { text: 'worst p95', numeric: true, title: 'Largest of the trials’ 95th percentiles' },
-  { text: 'late', numeric: true, title: 'Frames shown later than the device wanted' },
+  { text: 'late', numeric: true, title: 'Frames that were shown late' },
 ] as const;
 
 /** Returns the work per frame, separately for each cohort. */

@@ -9,11 +9,11 @@ import { type TableRow, tableNode } from './table';
 
 const heads = [
   { text: 'Measure' },
-  { text: 'n', title: 'Participants (of scores: groups) whose values are complete', numeric: true },
+  { text: 'n', title: 'Participants (for scores: groups) with complete values', numeric: true },
   { text: 'effect' },
   { text: 'F', numeric: true },
   { text: 'df', numeric: true },
-  { text: 'p', title: 'Corrected by Greenhouse and Geisser’s ε where there is one', numeric: true },
+  { text: 'p', title: 'Corrected by Greenhouse and Geisser’s ε, if there is one', numeric: true },
   { text: 'ε', title: 'Greenhouse and Geisser', numeric: true },
   { text: 'partial η²', title: 'With its 90 % confidence interval', numeric: true },
   { text: 'Holm p', title: 'Adjusted over all measures of this table', numeric: true },
@@ -71,7 +71,13 @@ function familyParts(
     bar(csvButton(overallTable(file, compared, factsOf(planned ? 'planned' : 'explored')), fileOf(file))),
     ...(leftOut.length === 0
       ? []
-      : [element('p', { class: 'soft' }, `Left out somewhere for want of a valid value: ${leftOut.join(', ')}.`)]),
+      : [
+          element(
+            'p',
+            { class: 'soft' },
+            `Left out of some analyses because a value is missing:  ${leftOut.join(', ')}.`,
+          ),
+        ]),
     ...(planned ? [plannedNote()] : []),
   ];
 }

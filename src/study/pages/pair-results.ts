@@ -88,7 +88,7 @@ export function pairResults(
     planned: compareConditions(measures.planned, conditions).comparisons,
   };
   const { first, second } = pairs.labels;
-  const said = `Differences are ${first} − ${second}, paired within participants (scores of groups: within groups). Tests are two-sided; * marks Holm’s p below .05 over the table that it stands in (scores: points and per cent apart).`;
+  const said = `Differences are ${first} − ${second}, paired within participants (scores of groups: within groups). Tests are two-sided; * marks Holm’s p below .05, adjusted over its table (scores: points and per cent separately).`;
   return {
     nodes: [
       element('p', { class: 'soft' }, said),

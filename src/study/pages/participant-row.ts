@@ -158,7 +158,7 @@ function linkCell(
     ),
     element(
       'code',
-      { class: 'soft', title: 'The invitation: what the page asks for where it was not in the link' },
+      { class: 'soft', title: 'The invitation, which the page asks for if the link lacks it' },
       invitation,
     ),
   );

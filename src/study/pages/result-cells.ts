@@ -24,7 +24,7 @@ export const measureCell = ({ nameOf, factsOf }: ShownResults, measure: Measured
     {},
     nameOf(measure),
     ...(tagged && factsOf('explored').isPlanned(measure)
-      ? [' ', element('span', { class: 'badge', title: 'Its planned test stands in the table above' }, 'planned')]
+      ? [' ', element('span', { class: 'badge', title: 'Its planned test is in the table above' }, 'planned')]
       : []),
   );
 
@@ -46,5 +46,5 @@ export const plannedNote = () =>
   element(
     'p',
     { class: 'soft', role: 'note' },
-    'What follows is exploratory: Holm’s p there is over the table that it stands in.',
+    'The following results are exploratory: Holm’s p is adjusted over each table.',
   );

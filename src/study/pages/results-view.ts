@@ -97,7 +97,7 @@ function summary({ study: { plan, records }, measures }: ShownResults): readonly
   const planned =
     measures.planned.length === 0
       ? 'The plan names no measure as planned: everything here is exploratory.'
-      : 'What the plan names stands first, as a family of its own. All other tables are exploratory; what is planned is marked in them.';
+      : 'Planned measures come first, as a separate family. All other tables are exploratory; planned measures are marked in them.';
   return [
     element(
       'section',
@@ -166,8 +166,8 @@ function leftOutParts({ study: { records } }: ShownResults, all: readonly Exclus
   });
   return [
     element('h2', {}, 'Left out'),
-    excluded.length === 0 ? element('p', {}, 'Nothing was left out of what is compared above.') : listNode(excluded),
-    element('p', { class: 'soft' }, 'Tutorials and attempts that were interrupted are recorded and never evaluated.'),
+    excluded.length === 0 ? element('p', {}, 'Nothing was left out of the comparisons above.') : listNode(excluded),
+    element('p', { class: 'soft' }, 'Tutorials and interrupted attempts are recorded but not evaluated.'),
     ...(assisted.length === 0 ? [] : [element('h2', {}, 'Played with aids'), listNode(assisted)]),
   ];
 }

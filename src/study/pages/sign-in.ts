@@ -39,7 +39,7 @@ export function signInForm(use: (token: string) => Promise<string | null>): HTML
     { class: 'sign-in' },
     element('label', {}, element('span', {}, 'The experimenter’s token'), input),
     go,
-    element('p', { class: 'soft' }, 'The server draws it at its first start and says where it lies.'),
+    element('p', { class: 'soft' }, 'The server generates it at its first start and prints the path of its file.'),
     complaint,
   );
 }

@@ -28,11 +28,11 @@ export function openStudyFile(zip: Uint8Array): OpenedStudy {
       },
     });
   } catch (error) {
-    throw new Error(`This is no export of a study: ${reasonOf(error)}.`);
+    throw new Error(`This is not an export of a study: ${reasonOf(error)}.`);
   }
   const json = (name: string): unknown => {
     const path = Object.keys(files).find((path) => path === name || path.endsWith(`/${name}`));
-    if (!path) throw new Error(`This is no export of a study: it holds no ${name}.`);
+    if (!path) throw new Error(`This is not an export of a study: it has no ${name}.`);
     try {
       return JSON.parse(strFromU8(files[path] as Uint8Array));
     } catch (error) {

@@ -46,7 +46,7 @@ export async function askHowToVoid(study: OpenStudy, participant: string): Promi
   const others = companions(study, participant);
   const repeat = option('Repeat the block at once (otherwise the next one follows)');
   const together = option(
-    `Also for ${others.join(' and ')}: a match is played together, and one that is repeated waits for all`,
+    `Also for ${others.join(' and ')}: they play the match together, and a repeated match waits for all`,
   );
   const reason = await askForSentence({
     title: `Void the present block of ${participant}`,

@@ -41,9 +41,9 @@ const unavailable = (message: string): HttpError =>
   new HttpError(503, message, { headers: { 'retry-after': String(retryAfterSeconds) } });
 
 const sentences = {
-  full: 'the studies have too many requests at once: nothing of this was stored. Send it again in a few seconds',
-  late: 'the database did not answer in time, and whether this was stored is not known: send it again',
-  ended: 'the studies were interrupted, and whether this was stored is not known: send it again',
+  full: 'too many requests to the studies: nothing of this was stored. Send it again in a few seconds',
+  late: 'the database did not answer in time, and it is unknown whether this was stored. Send it again',
+  ended: 'the studies were interrupted, and it is unknown whether this was stored. Send it again',
 } as const;
 
 /** The thread of the studies. After a fault, such as a lack of memory, the next request starts it again. */

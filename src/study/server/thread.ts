@@ -58,7 +58,7 @@ function expire(store: StudyStore, at: number, log: Log): void {
       log(`study "${study}": ${participant} is past the retention date, ${records} records deleted`);
     }
   } catch (error) {
-    log(`study: who is past a retention date could not be read, ${again}: ${reasonOf(error)}`);
+    log(`study: the retention dates could not be read, ${again}: ${reasonOf(error)}`);
   }
 }
 

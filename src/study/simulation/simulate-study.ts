@@ -203,7 +203,7 @@ class SimulatedSession {
       this.#now += 5 + Math.round(10 * this.#random.uniform());
       this.#take(step);
     }
-    throw new Error(`${participant} does not come to an end`);
+    throw new Error(`${participant} does not reach the end`);
   }
 
   #tell(event: ProgressEvent): void {

@@ -67,7 +67,7 @@ function findings(records: readonly StudyRecord[], plan: StudyPlan): readonly st
 function run(): void {
   const { out, plan: planFile, participants, seed: givenSeed, effectsOn } = simulateOptions();
   if (existsSync(out) && readdirSync(out).length > 0) {
-    throw new ValidationError('--out', `${out} is not empty: simulated files are never put among others`);
+    throw new ValidationError('--out', `${out} is not empty. Choose an empty folder for simulated files.`);
   }
   if (!existsSync(planFile)) throw new ValidationError('--plan', `there is no file ${planFile}`);
   const given = parsePlan(readFileSync(planFile, 'utf8'), planFile);

@@ -23,7 +23,7 @@ function unpacked(zip: Uint8Array): Files {
     all = unzipSync(zip);
   } catch (error) {
     throw new Error(
-      `this is no zip, or its end is missing (${reasonOf(error)}): copy it once more from where it was saved`,
+      `this is not a zip file, or its end is missing (${reasonOf(error)}): copy it again from its source`,
     );
   }
   const inFolder = ([path, bytes]: [string, Uint8Array]) => [path.replace(/^[^/]*\//, ''), bytes] as const;
@@ -36,7 +36,7 @@ function unpacked(zip: Uint8Array): Files {
 
 function textOf(files: Files, name: string): string {
   const bytes = files[name];
-  if (!bytes) throw new Error(`${name} is missing: without it nothing can be computed anew`);
+  if (!bytes) throw new Error(`${name} is missing: nothing can be recomputed without it`);
   return strFromU8(bytes);
 }
 
@@ -75,7 +75,7 @@ function checksumComplaints(files: Files): readonly string[] {
     const bytes = files[path];
     if (!bytes) return [`${path} is missing.`];
     const changed = createHash('sha256').update(bytes).digest('hex') !== hash;
-    return changed ? [`${path} is not as it was exported: its SHA-256 is another than in ${checksumsFile}.`] : [];
+    return changed ? [`${path} has changed since the export: its SHA-256 differs from that in ${checksumsFile}.`] : [];
   });
 }
 

@@ -52,7 +52,7 @@ function unevenness(plan: StudyPlan): readonly string[] {
   const sizes = cohortCounts(plan);
   if (!even(sizes)) {
     const listed = [...sizes].map(([id, count]) => `${id} ${count}`).join(', ');
-    remarks.push(`The cohorts do not come out even: ${listed} participants.`);
+    remarks.push(`The cohorts are not balanced: ${listed} participants.`);
   }
   for (const task of plan.tasks) {
     for (const cohort of plan.cohorts ?? [null]) {
@@ -60,8 +60,8 @@ function unevenness(plan: StudyPlan): readonly string[] {
       if (even(counts)) continue;
       const [least, most] = [Math.min(...counts.values()), Math.max(...counts.values())];
       remarks.push(
-        `${taskTitle(plan, task.id)}${cohort ? `, cohort ${cohort.id}` : ''}: the ${counts.size} orders do not come out even, some come ${timesText(most)}, ` +
-          `others ${timesText(least)}; a multiple of ${evenParticipants(plan, task)} participants would make them even.`,
+        `${taskTitle(plan, task.id)}${cohort ? `, cohort ${cohort.id}` : ''}: the ${counts.size} orders are not balanced: some occur ${timesText(most)}, ` +
+          `others ${timesText(least)}; a multiple of ${evenParticipants(plan, task)} participants would balance them.`,
       );
     }
   }
@@ -77,7 +77,7 @@ function alikeRemarks(
   return entries.flatMap(({ id }, index) => {
     const first = entries[said.indexOf(said[index] as string)];
     return first && first.id !== id
-      ? [`${list} "${first.id}" and "${id}" are the same body: ${embodimentInWords(first)}.`]
+      ? [`${list} "${first.id}" and "${id}" have the same body: ${embodimentInWords(first)}.`]
       : [];
   });
 }
@@ -89,7 +89,7 @@ const unspokenRemarks = (plan: StudyPlan): readonly string[] =>
     if (missing.length === 0) return [];
     const named = missing.length > 5 ? `${missing.slice(0, 5).join(', ')} …` : missing.join(', ');
     return [
-      `Language ${language} lacks ${missing.length} of ${phraseKeys.length} phrases of the page (${named}): they are said in English.`,
+      `Language ${language} lacks ${missing.length} of ${phraseKeys.length} phrases of the page (${named}): they are shown in English.`,
     ];
   });
 
@@ -99,7 +99,7 @@ const untestedRemarks = (plan: StudyPlan): readonly string[] =>
     const [, of = '', id] = measure.split('/');
     const questionnaire = id === undefined ? null : questionnaireNamed(plan, of);
     if (!questionnaire || isNumeric(questionnaire, id ?? '')) return [];
-    return [`Planned "${measure}" is not answered with a number: it is tested nowhere.`];
+    return [`Planned "${measure}" is not answered with a number and will not be tested.`];
   });
 
 /** Returns the remarks for experimenters to read before the first participant comes; empty: none. */

@@ -56,7 +56,7 @@ const taskSchema = v.strictObject({
 export const planSchema = v.strictObject({
   /** The address of the schema for editors; the program ignores it. */
   $schema: v.exactOptional(text(500)),
-  format: v.literal(planFormat, `expected "${planFormat}": this is no study file`),
+  format: v.literal(planFormat, `expected "${planFormat}": this is not a study file`),
   version: v.literal(planVersion, `expected ${planVersion}, the version that this program reads`),
   id: identifier,
   title: words(120),

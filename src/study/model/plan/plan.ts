@@ -117,7 +117,7 @@ function refuseUnclearBodies({ conditions, cohorts = [] }: StudyPlan): void {
   const ofCohorts = new Set(cohorts.flatMap(embodimentFieldsOf));
   conditions.forEach((condition, index) => {
     const twice = embodimentFieldsOf(condition).find((field) => ofCohorts.has(field));
-    if (twice) throw new ValidationError(`conditions[${index}].${twice}`, 'is said by cohorts already');
+    if (twice) throw new ValidationError(`conditions[${index}].${twice}`, 'is set by cohorts already');
     if (condition.estimator === undefined && !ofCohorts.has('estimator')) {
       throw new ValidationError(`conditions[${index}].estimator`, 'is missing');
     }
@@ -182,7 +182,7 @@ function refuseUnknownMeasures(plan: StudyPlan): void {
     if (known.includes(measure)) return;
     throw new ValidationError(
       `planned[${index}]`,
-      `"${measure}" is measured nowhere: expected task/questionnaire/question, task/questionnaire/scale or task/score, as "${known[0]}"`,
+      `"${measure}" is not measured: expected task/questionnaire/question, task/questionnaire/scale or task/score, as "${known[0]}"`,
     );
   });
 }
@@ -236,7 +236,7 @@ export function parsePlan(json: string, file: string): StudyPlan {
     return checkedPlan(JSON.parse(json));
   } catch (error) {
     if (error instanceof ValidationError) throw new ValidationError(error.field, error.complaint, file);
-    if (error instanceof SyntaxError) throw new ValidationError('', `this is no JSON: ${error.message}`, file);
+    if (error instanceof SyntaxError) throw new ValidationError('', `this is not JSON: ${error.message}`, file);
     throw error;
   }
 }
@@ -251,7 +251,7 @@ export function planComplaints(json: string, file: string): readonly string[] {
     value = JSON.parse(json);
   } catch (error) {
     if (!(error instanceof SyntaxError)) throw error;
-    return [`${file}: this is no JSON: ${error.message}`];
+    return [`${file}: this is not JSON: ${error.message}`];
   }
   const complaints = complaintsAbout(planSchema, value).map(({ field, complaint }) =>
     [file, field, complaint].filter(Boolean).join(': '),

@@ -84,7 +84,7 @@ export function advance(schedule: Schedule, progress: Progress, event: ProgressE
     return at.refused(refusals.asked);
   }
   try {
-    const next = follow(at, event) ?? at.refused(`"${event.type}" has no place in the step "${at.step.id}"`);
+    const next = follow(at, event) ?? at.refused(`"${event.type}" does not fit the step "${at.step.id}"`);
     if (next.progress === progress) return next;
     return { ...next, progress: { ...next.progress, changes: (progress.changes ?? 0) + 1 } };
   } catch (error) {
@@ -324,7 +324,7 @@ function voidBlock(at: Moment, event: EventOf<'void-block'>): Advance | null {
   const { repeat, of } = event;
   const { task, block, run } = at.place;
   if (of && (of.task !== task || of.block !== block)) {
-    return at.refused(`block ${of.block} of "${of.task}", which was meant, is not under way`);
+    return at.refused(`block ${of.block} of "${of.task}", which the command is for, is not under way`);
   }
   const { steps } = at.schedule;
   const { runs } = at.progress;

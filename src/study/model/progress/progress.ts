@@ -102,7 +102,7 @@ export function resumed(schedule: Schedule, json: string): Progress {
     value = JSON.parse(json);
   } catch (error) {
     if (!(error instanceof SyntaxError)) throw error;
-    throw new ValidationError('', `the stored session is no JSON: ${error.message}`);
+    throw new ValidationError('', `the stored session is not JSON: ${error.message}`);
   }
   const progress = checked(progressSchema, value);
   for (const field of ['study', 'participant'] as const) {

@@ -32,7 +32,7 @@ function refuseScale(scale: Scale, questions: readonly Question[], field: string
       if (!found) throw new ValidationError(at, `there is no question "${id}"`);
       const kind = questionKind(found.answer);
       if (list === 'choices' && kind.options(found.answer) === null) {
-        throw new ValidationError(at, `"${id}" is no choice`);
+        throw new ValidationError(at, `"${id}" is not a choice`);
       }
       if (list === 'questions' && kind.range(found.answer) === null) {
         throw new ValidationError(at, `"${id}" is not answered with a number`);
@@ -58,13 +58,13 @@ export function resolvedQuestionnaire(file: QuestionnaireFile, field = ''): Ques
     if (first !== index)
       throw new ValidationError(`${way}.id`, `"${question.id}" is the name of question ${first} too`);
     // Answers are properties of an object, so an id must not be one of its prototype.
-    if (question.id in {})
-      throw new ValidationError(`${way}.id`, `"${question.id}" is a name that the program keeps for itself`);
+    if (question.id in {}) throw new ValidationError(`${way}.id`, `"${question.id}" is a reserved name`);
     const answer = question.answer ?? file.answer;
-    if (!answer) throw new ValidationError(`${way}.answer`, 'is missing, and the questionnaire says none for all');
+    if (!answer)
+      throw new ValidationError(`${way}.answer`, 'is missing, and the questionnaire has none for all questions');
     if (question.answer) questionKind(question.answer).check?.(question.answer, `${way}.answer`);
     if (question.reversed && questionKind(answer).range(answer) === null) {
-      throw new ValidationError(`${way}.reversed`, `a ${answer.kind} has no other way round`);
+      throw new ValidationError(`${way}.reversed`, `a ${answer.kind} cannot be reversed`);
     }
     return { ...question, answer };
   });

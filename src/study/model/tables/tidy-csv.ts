@@ -87,18 +87,23 @@ export function tidyCsv({ name, columns, rows }: Table): string {
 }
 
 const sourceMeaning =
-  'Where it comes from: the way to it in records.json, behind the kind of record where only one kind has it, or in plan.json; or how it is computed.';
+  'Path in records.json, after the kind of record if only one kind has it, or in plan.json; or its computation.';
 
 /** Returns the table that explains the columns of the tables. */
 export function codebookOf(tables: readonly Pick<Table, 'name' | 'columns'>[]): Table {
   return {
     name: 'codebook',
     columns: [
-      text('table', 'names of files', 'the tables of this export', 'File of the column, without its ending.'),
+      text('table', 'names of files', 'the tables of this export', 'File of the column, without its extension.'),
       text('column', 'any text', 'the tables of this export', 'Name of the column.'),
-      text('type', 'text, number, boolean', 'the tables of this export', 'In every type an empty field is no value.'),
+      text(
+        'type',
+        'text, number, boolean',
+        'the tables of this export',
+        'An empty field is a missing value in every type.',
+      ),
       text('unit', 'SI or a word', 'the tables of this export', 'Unit; empty: none.'),
-      text('values', 'any text', 'the tables of this export', 'What may stand in it.'),
+      text('values', 'any text', 'the tables of this export', 'Possible values.'),
       text('source', 'any text', 'the tables of this export', sourceMeaning),
       text('description', 'any text', 'the tables of this export', 'What it means.'),
     ],

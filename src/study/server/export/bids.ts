@@ -50,7 +50,7 @@ const participantColumns = {
   participant_id: described('Code of the participant.'),
   age: described('As told.', { Units: 'year' }),
   handedness: described('As told.', { Levels: { left: 'left', right: 'right', ambidextrous: 'both' } }),
-  gender: described('As told: woman, man, non-binary, other, not-said.'),
+  gender: described('As stated: woman, man, non-binary, other, not-said.'),
   vr_experience: described('none, once-or-twice, several-times, monthly, weekly.'),
   vision: described('normal, corrected, impaired.'),
 };
@@ -60,12 +60,12 @@ const scanColumns = {
   acq_time: described('Its first frame, UTC, by the clock of the device.'),
   task: described('Id of the task.'),
   condition: described('Id of the condition.'),
-  estimator: described('Method that drew the body.'),
+  estimator: described('Estimator of the body.'),
   block: described('Place of the condition in the order of this participant, from 1.'),
   block_run: described('From 1; a block that was voided and repeated runs again.'),
   attempt: described('From 1; a trial lost by a crash or reload is tried again.'),
   repetition: described('Trial of the block, from 1.'),
-  excluded: described('Why the trial counts for nothing; n/a: it counts.'),
+  excluded: described('Why the trial is not counted; n/a: it is.'),
 };
 
 const eventColumns = {
@@ -77,15 +77,15 @@ const eventColumns = {
   trial_type: described('What happened.', {
     Levels: {
       trial: 'from the start signal to the end, pauses within',
-      pause: 'the trial stood; frames of this time are not recorded',
+      pause: 'the trial was paused; frames of this time are not recorded',
       hit: 'an arrow or ball of this participant scored',
       miss: 'one did not',
       catch: "another's ball scored for the group",
     },
   }),
   points: described('What it scored.'),
-  trial_time: described('Second of the trial, which stands in pauses.', { Units: 's' }),
-  game_time: described("Second of the game's own clock, which also stands while the head is lost.", { Units: 's' }),
+  trial_time: described('Second of the trial, without pauses.', { Units: 's' }),
+  game_time: described("Second of the game's clock, which also pauses while the head is lost.", { Units: 's' }),
 };
 
 const table = (columns: object, rows: readonly Readonly<Record<string, unknown>>[]): string =>
@@ -205,11 +205,11 @@ const readme = ({ plan, simulated }: BidsContent): string =>
     ...(simulated ? ['SIMULATED: a program made this. It says nothing about people.', ''] : []),
     `Motion of head and wrists in the study "${studyTitle(plan)}" (${plan.id}), as BIDS ${bidsVersion} motion data.`,
     '',
-    'Only of participants who agreed to have their motion kept. A run is a trial; *_scans.tsv says its condition, and whether it counts.',
+    'Only participants who consented to motion recording. A run is a trial; *_scans.tsv has its condition and whether it is counted.',
     'Frame: the floor where the headset has it, +X right, +Y up, +Z backward, right-handed, in metres (channels.json).',
-    'Clock: "latency" and the onsets of events count from the first frame and run on in pauses. The second of the trial, which stands in',
-    'them, is the column trial_time. acq_time is the first frame by the clock of the device.',
-    'A hand that was not seen is n/a in every channel of it.',
+    'Clock: "latency" and the onsets of events start at the first frame and include pauses. The second of the trial, without',
+    'pauses, is the column trial_time. acq_time is the first frame by the clock of the device.',
+    'An untracked hand is n/a in all its channels.',
     '',
   ].join('\n');
 

@@ -38,7 +38,7 @@ export const checksumsFile = 'checksums.sha256';
 const day = (seconds: number) => new Date(seconds * 1000).toISOString().slice(0, 10);
 
 const simulatedNotice =
-  'SIMULATED: a program made this. It says nothing about people and must never be analysed with theirs.';
+  'SIMULATED: a program made this. It says nothing about people and must not be analysed with data of people.';
 
 /** Returns the analysis scripts, which are next to this file. */
 const analysisFiles = () =>
@@ -61,16 +61,16 @@ function readme(content: ExportContent, leftOut: readonly string[], whole: boole
     'plan.json     the study as it was run',
     'software.json which version of the program served it, with the SHA-256 of its networks',
     'codebook.csv  every column of the other tables: meaning, unit, values, source',
-    'The tables are tidy: UTF-8, a row per observation, an empty field where there is no value.',
+    'The tables are tidy: UTF-8, a row per observation, an empty field for a missing value.',
     'Text that a spreadsheet would take for a formula begins with an added apostrophe.',
     ...(whole
       ? [
-          'results/      what the page of results computes: planned, then explored',
+          'results/      the results of the page: planned, then exploratory',
           'analysis/     the same from the tidy tables: "Rscript analysis/analyse.R", or',
           '              "pip install -r analysis/requirements.txt" and "python analysis/analyse.py"',
         ]
       : []),
-    'motion/       where there is consent to it: tracked frames as they were recorded',
+    'motion/       recordings of tracking frames, with consent to them',
     'bids/         the same as a BIDS data set (motion)',
     ...leftOut.map((reason) => `  left out: ${reason}`),
     `${checksumsFile}  a hash of every file: "sha256sum --check ${checksumsFile}"`,

@@ -65,7 +65,7 @@ export function createExporter(file: string): Exporter {
   let waiting = 0;
   return async (order) => {
     if (waiting >= mostWaiting) {
-      throw new StoreRefusal('busy', `${waiting} exports are waiting already: ask again when they are made`);
+      throw new StoreRefusal('busy', `${waiting} exports are waiting already. Try again in a few minutes`);
     }
     waiting += 1;
     const zip = last.then(() => zipInProcess(file, order)).finally(() => (waiting -= 1));

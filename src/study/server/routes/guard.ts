@@ -118,7 +118,7 @@ export function createStudyGuard(options: StudyGuardOptions): StudyGuard {
       const { plan } = store.plans.get(study);
       if (await isExperimenter({ token, address })) return claim();
       if (invitation === undefined) {
-        const why = `${participant} is taken by invitation: it stands in the link of the participant`;
+        const why = `${participant} needs an invitation, which is in the participant’s link`;
         throw new HttpError(403, why, { field: 'invitation' });
       }
       const secret = `${participant} ${normalisedCode(invitation)}`;

@@ -268,8 +268,8 @@ function refuseOutdated(plan: StudyPlan): void {
     if (!(error instanceof ValidationError)) throw error;
     throw new HttpError(
       409,
-      `the plan of this study is of an older version of the program, and today it is refused: ${error.message}. ` +
-        'What was recorded can be exported and deleted; a study with another plan needs another id',
+      `the plan of this study is of an older version of the program and no longer valid: ${error.message}. ` +
+        'Its records can be exported and deleted. Give a study with another plan another id',
     );
   }
 }

@@ -181,13 +181,12 @@ export class StudyDatabase {
     try {
       await this.#commits.flushed();
     } catch (error) {
-      const text =
-        'the disk of the server failed, and what was sent may not be stored: the server must be started again';
+      const text = 'the disk of the server failed, and this may not be stored. Restart the server';
       throw new StoreRefusal('lost', text, reasonOf(error));
     }
     if (this.#misplaced !== null) {
       const text =
-        'the folder of the studies was deleted or replaced while the server ran, and nothing is stored: it must be put back, or the server started again';
+        'the folder of the studies was deleted or replaced while the server ran, and nothing is stored. Put it back, or restart the server';
       throw new StoreRefusal('lost', text, this.#misplaced);
     }
   }

@@ -66,7 +66,10 @@ export class StudyDeletion {
   deleteSimulated(study: string): void {
     const { database, plans } = this.#parts;
     if (!plans.get(study).simulated) {
-      throw new StoreRefusal('forbidden', `the study "${study}" is of people: its participants are deleted one by one`);
+      throw new StoreRefusal(
+        'forbidden',
+        `the study "${study}" has data of people: delete its participants one by one`,
+      );
     }
     database.transaction(() => {
       for (const table of ['records', 'motion', 'receipts']) {

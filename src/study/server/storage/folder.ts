@@ -58,17 +58,17 @@ function remedyOf(error: unknown, directory: string): string | null {
   const file = join(directory, 'studies.db');
   const reason = reasonOf(error);
   if (error instanceof FolderTaken) {
-    return `Another server has the folder ${directory}. End it, or name another folder with --studies.`;
+    return `Another server uses the folder ${directory}. Stop it, or name another folder with --studies.`;
   }
   if (error instanceof DatabaseProblem) return `${file} ${error.message}`;
   if (error instanceof StoreRefusal)
-    return `${file} cannot be written: ${reason}. Mend that, then start the server again.`;
+    return `${file} cannot be written: ${reason}. Repair that, then start the server again.`;
   const { code } = (error ?? {}) as NodeJS.ErrnoException;
   if (code === 'ENOSPC' || code === 'EDQUOT') {
     return `The disk with ${directory} is full (${reason}). Make room, then start the server again.`;
   }
   if (code === 'EMFILE' || code === 'ENFILE') {
-    return `The files that the server may have open do not suffice (${reason}). Raise the limit: ulimit -n 1024.`;
+    return `The server may not open enough files (${reason}). Raise the limit: ulimit -n 1024.`;
   }
   if (typeof code === 'string' && /^E[A-Z]+$/.test(code)) {
     return `The folder ${directory} cannot be used (${reason}). Give the account of the server the right to write there, or name another folder with --studies.`;
@@ -83,7 +83,7 @@ function remedyOf(error: unknown, directory: string): string | null {
       return `The disk with ${file} is full (${reason}). Make room, then start the server again.`;
     case 11:
     case 26:
-      return `${file} is damaged, or no database (${reason}). Put a copy of it back, or move it away to begin with an empty one; "sqlite3 ${file} .recover" reads what can still be read.`;
+      return `${file} is damaged or not a database (${reason}). Restore a copy, or move it away to start with an empty one; "sqlite3 ${file} .recover" reads what can still be read.`;
     default:
       return `${file} cannot be used (${reason}). Give the account of the server the right to write to it and to its folder, or name another folder with --studies.`;
   }

@@ -96,7 +96,7 @@ export class StudyPlans {
       else {
         const text =
           `the study "${checked.id}" has begun: ${listed(begun.map(({ participant }) => participant))} keep its plan. ` +
-          `What has changed can be version ${known.version + 1}, for those who come later; or give it another id`;
+          `Add the plan as version ${known.version + 1} for later participants, or give it another id`;
         throw new StoreRefusal('begun', text);
       }
       return this.get(checked.id);
@@ -166,7 +166,7 @@ export class StudyPlans {
     if (code !== codeBefore) {
       throw new ValidationError(
         'participants',
-        `the codes of participants would change from ${codeBefore} to ${code}, and links that were sent would open nothing: give the plan another id`,
+        `the codes of participants would change from ${codeBefore} to ${code}, and sent links would stop working: give the plan another id`,
       );
     }
     const kept = new Map<string, number>();

@@ -128,7 +128,7 @@ export function migrate(database: DatabaseSyncInstance): void {
   const damage = read('quick_check(1)');
   if (damage !== 'ok') {
     throw new DatabaseProblem(
-      `is damaged (${String(damage).replaceAll('\n', ' ')}): put a copy of it back, or read what can still be read by ".recover" of sqlite3.`,
+      `is damaged (${String(damage).replaceAll('\n', ' ')}): restore a copy, or recover the rest with ".recover" of sqlite3.`,
     );
   }
   for (let next = version; next < migrations.length; next++) {
