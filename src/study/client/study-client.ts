@@ -81,13 +81,13 @@ async function ask(
     throw new ServerUnreachable(`the server does not answer (${reasonOf(error)})`);
   }
   if (response.ok) return response;
-  const said: unknown = await response.json().catch(() => null);
-  const ours = typeof said === 'object' && said !== null && 'error' in said;
-  if (!ours && response.status === 404) throw new NoStudyServer(response.status);
-  const sentence = ours ? String(said.error) : `the server answered ${response.status}`;
+  const answer: unknown = await response.json().catch(() => null);
+  const isStudyServer = typeof answer === 'object' && answer !== null && 'error' in answer;
+  if (!isStudyServer && response.status === 404) throw new NoStudyServer(response.status);
+  const sentence = isStudyServer ? String(answer.error) : `the server answered ${response.status}`;
   // Proxies send these while the server is away. The server itself sends 5xx if nothing was acknowledged.
   if (response.status >= 500 && response.status !== 507) throw new ServerUnreachable(sentence);
-  const field = typeof said === 'object' && said !== null && 'field' in said ? said.field : null;
+  const field = typeof answer === 'object' && answer !== null && 'field' in answer ? answer.field : null;
   throw new ServerRefusal(response.status, sentence, typeof field === 'string' ? field : null);
 }
 

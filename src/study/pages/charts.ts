@@ -248,8 +248,8 @@ export function stripChart(
       Plot.dot(means, { fx: 'of', x: 'x', y: 'mean', fill: 'side', r: 5, stroke: 'white', strokeWidth: 1.5 }),
     ],
   });
-  const said = `each dot a ${options.each}, mean and 95 % confidence interval`;
-  return headed(plot as SVGSVGElement, options, `${options.axis}; ${said}`);
+  const legend = `each dot a ${options.each}, mean and 95 % confidence interval`;
+  return headed(plot as SVGSVGElement, options, `${options.axis}; ${legend}`);
 }
 
 /** Returns the picture as an SVG file. */

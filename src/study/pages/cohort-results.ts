@@ -83,9 +83,9 @@ export function cohortResults(results: ShownResults, compared: ComparedCohorts):
     compared.conditions.length === 1
       ? `under “${labelOf(compared.conditions[0] ?? '')}”`
       : 'by the mean of each participant over all conditions';
-  const said = `Differences are ${labelOf(first)} − ${labelOf(second)}, between participants (scores of groups: between groups), ${under}. Tests are two-sided; * marks Holm’s p below .05, adjusted over its table (scores: points and per cent separately).`;
+  const note = `Differences are ${labelOf(first)} − ${labelOf(second)}, between participants (scores of groups: between groups), ${under}. Tests are two-sided; * marks Holm’s p below .05, adjusted over its table (scores: points and per cent separately).`;
   return [
-    element('p', { class: 'soft' }, said),
+    element('p', { class: 'soft' }, note),
     ...plannedParts(cohorts),
     ...answerParts(cohorts),
     ...scaleParts(cohorts),

@@ -88,10 +88,10 @@ export function pairResults(
     planned: compareConditions(measures.planned, conditions).comparisons,
   };
   const { first, second } = pairs.labels;
-  const said = `Differences are ${first} − ${second}, paired within participants (scores of groups: within groups). Tests are two-sided; * marks Holm’s p below .05, adjusted over its table (scores: points and per cent separately).`;
+  const note = `Differences are ${first} − ${second}, paired within participants (scores of groups: within groups). Tests are two-sided; * marks Holm’s p below .05, adjusted over its table (scores: points and per cent separately).`;
   return {
     nodes: [
-      element('p', { class: 'soft' }, said),
+      element('p', { class: 'soft' }, note),
       ...plannedParts(pairs),
       ...answerParts(pairs),
       ...scaleParts(pairs),

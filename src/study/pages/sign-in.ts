@@ -25,11 +25,11 @@ export function signInForm(use: (token: string) => Promise<string | null>): HTML
     const token = input.value.trim();
     if (!token) return;
     go.disabled = true;
-    const said = await use(token);
+    const refusal = await use(token);
     go.disabled = false;
-    complaint.hidden = said === null;
-    complaint.textContent = said ?? '';
-    if (said === null) sessionStorage.setItem(kept, token);
+    complaint.hidden = refusal === null;
+    complaint.textContent = refusal ?? '';
+    if (refusal === null) sessionStorage.setItem(kept, token);
   }
   input.addEventListener('keydown', ({ key }) => {
     if (key === 'Enter') void open();

@@ -71,8 +71,8 @@ export function demographicsForm({ phrases, done, stop }: FormOf<'demographics'>
       first.node.scrollIntoView({ block: 'center' });
       return;
     }
-    const said = done(Object.fromEntries(fields.map(({ field, value }) => [field.id, value()])));
-    if (said !== null) complaint.say(said);
+    const refusal = done(Object.fromEntries(fields.map(({ field, value }) => [field.id, value()])));
+    if (refusal !== null) complaint.say(refusal);
   }
   return [
     element('p', { class: 'kicker' }, say('about.kicker')),

@@ -9,13 +9,13 @@ import type { Invited, StudyForm } from './study-form';
 
 function participantForm({
   phrases: { say },
-  complaint: said,
+  complaint: fault,
   known,
   go,
   decline,
 }: FormOf<'participant'>): readonly Node[] {
   const complaint = complaintLine();
-  if (said !== null) complaint.say(said);
+  if (fault !== null) complaint.say(fault);
   const field = (name: keyof Invited, label: string, placeholder: string, maxlength: number) => {
     const attributes = { type: 'text', name, placeholder, maxlength, autocomplete: 'off' };
     const input = element('input', { ...attributes, value: known[name] ?? '' });
@@ -23,7 +23,7 @@ function participantForm({
       if (key === 'Enter') submit.click();
     });
     return {
-      said: () => input.value.trim().toUpperCase(),
+      value: () => input.value.trim().toUpperCase(),
       node: element('label', { class: 'field' }, element('span', {}, label), input),
     };
   };
@@ -32,7 +32,7 @@ function participantForm({
   const submit = button(
     say('continue'),
     () => {
-      const answer = { participant: participant.said(), invitation: invitation.said() };
+      const answer = { participant: participant.value(), invitation: invitation.value() };
       if (!/^P\d{2,3}$/.test(answer.participant)) complaint.say(say('entrance.wrongCode'));
       else if (answer.invitation === '') complaint.say(say('entrance.noInvitation'));
       else go(answer);

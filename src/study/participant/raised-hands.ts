@@ -8,7 +8,7 @@ const holdSeconds = 1.5;
 export class RaisedHands {
   /** The time since the hands are up [s]; null: they are not. */
   #since: number | null = null;
-  #told = false;
+  #reported = false;
 
   /**
    * Takes a frame into account; null: the gesture does not apply. Returns true once, when the hands were up for long
@@ -19,12 +19,12 @@ export class RaisedHands {
     const hands = frame ? [frame.leftHand, frame.rightHand].filter((hand) => hand !== null) : [];
     if (!frame || hands.length === 0 || hands.some(({ position }) => position.y < height)) {
       this.#since = null;
-      this.#told = false;
+      this.#reported = false;
       return false;
     }
     this.#since ??= frame.time;
-    if (this.#told || frame.time - this.#since < holdSeconds) return false;
-    this.#told = true;
+    if (this.#reported || frame.time - this.#since < holdSeconds) return false;
+    this.#reported = true;
     return true;
   }
 }

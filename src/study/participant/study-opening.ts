@@ -128,8 +128,8 @@ export async function openSession(place: Place, opening: OpeningOptions): Promis
           if (claimed.progress.motion && !motion) session.apply({ type: 'remark', text: noMotionHere });
           return session;
         }
-        const said = session.apply({ type: 'consent', motion, version, ...(language !== null && { language }) });
-        return said === null ? session : { why: new Error(said) };
+        const refusal = session.apply({ type: 'consent', motion, version, ...(language !== null && { language }) });
+        return refusal === null ? session : { why: new Error(refusal) };
       } catch (error) {
         if (error instanceof ServerRefusal && error.field === 'invitation') return 'uninvited';
         if (error instanceof ServerRefusal && error.field === 'consent') return 'changed';

@@ -27,12 +27,12 @@ function summary(plan: StudyPlan): readonly string[] {
     `A participant takes at most ${clock(played + rests + questionnaires)} min: ${clock(played)} of play, ${clock(rests)} of rest, ` +
       `${clock(questionnaires)} of questionnaires. Consent, measures and demographics take additional time.`,
   ];
-  for (const { id, label, ...said } of plan.conditions) {
-    lines.push(`Condition "${id}", ${label}: ${embodimentInWords(said) || 'as its cohort'}.`);
+  for (const { id, label, ...body } of plan.conditions) {
+    lines.push(`Condition "${id}", ${label}: ${embodimentInWords(body) || 'as its cohort'}.`);
   }
   const sizes = cohortCounts(plan);
-  for (const { id, label, ...said } of plan.cohorts ?? []) {
-    lines.push(`Cohort "${id}", ${label}, ${sizes.get(id)} participants: ${embodimentInWords(said)}.`);
+  for (const { id, label, ...body } of plan.cohorts ?? []) {
+    lines.push(`Cohort "${id}", ${label}, ${sizes.get(id)} participants: ${embodimentInWords(body)}.`);
   }
   for (const task of plan.tasks) {
     for (const cohort of plan.cohorts ?? [null]) {

@@ -22,9 +22,9 @@ const inEnglish = (phrase: Phrase): string => (typeof phrase === 'string' ? phra
 /** A phrase may be left out; editors show the English one. */
 const schemaOf = (key: PhraseKey) => {
   const phrase: Phrase = english[key];
-  const said = inEnglish(phrase);
-  const plain: v.GenericSchema<Phrase> = v.pipe(text(longest), v.description(said));
-  return v.exactOptional(typeof phrase === 'string' ? plain : v.pipe(pluralForms, v.description(said)));
+  const phraseText = inEnglish(phrase);
+  const plain: v.GenericSchema<Phrase> = v.pipe(text(longest), v.description(phraseText));
+  return v.exactOptional(typeof phrase === 'string' ? plain : v.pipe(pluralForms, v.description(phraseText)));
 };
 
 /** The schema of phrases in other languages or of the study's choice: {"fr": {"next": "Suivant"}}. */
@@ -48,9 +48,9 @@ function refuseRows(rows: string, field: string): void {
 }
 
 /** A plural form may leave the number out, as in "one record"; other texts need all their placeholders. */
-function refuseGaps(key: PhraseKey, said: string, field: string, mayLeaveOut: ReadonlySet<string>): void {
+function refuseGaps(key: PhraseKey, phraseText: string, field: string, mayLeaveOut: ReadonlySet<string>): void {
   const wanted = gapsIn(inEnglish(english[key]));
-  const found = gapsIn(said);
+  const found = gapsIn(phraseText);
   const missing = [...wanted].filter((name) => !found.has(name) && !mayLeaveOut.has(name));
   if (missing.length > 0) throw new ValidationError(field, `lacks ${braced(missing)}`);
   const unknown = [...found].filter((name) => !wanted.has(name));
@@ -77,8 +77,8 @@ export function refusePhrases(phrases: Readonly<Record<string, GivenPhrases>>, l
         if (key === 'keys.rows') refuseRows(phrase, fieldOf(language, key, null));
         continue;
       }
-      for (const [name, said] of Object.entries(phrase) as [string, string][]) {
-        refuseGaps(key, said, fieldOf(language, key, name), name === 'other' ? whole : number);
+      for (const [name, phraseText] of Object.entries(phrase) as [string, string][]) {
+        refuseGaps(key, phraseText, fieldOf(language, key, name), name === 'other' ? whole : number);
       }
     }
   }

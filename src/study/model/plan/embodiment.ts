@@ -38,18 +38,20 @@ export type PartialEmbodiment = v.InferOutput<v.StrictObjectSchema<typeof embodi
 export type Embodiment = PartialEmbodiment & { readonly estimator: ThreePointName };
 
 /** Returns the properties that are set. */
-export const embodimentFieldsOf = (said: PartialEmbodiment): readonly (keyof PartialEmbodiment)[] =>
-  fields.filter((field) => said[field] !== undefined);
+export const embodimentFieldsOf = (properties: PartialEmbodiment): readonly (keyof PartialEmbodiment)[] =>
+  fields.filter((field) => properties[field] !== undefined);
 
 /** Returns the properties of cohort and condition together; `checkedPlan` ensures that they include an estimator. */
 export function embodimentOf(cohort: PartialEmbodiment, condition: PartialEmbodiment): Embodiment {
-  const said = [cohort, condition].flatMap((of) => embodimentFieldsOf(of).map((field) => [field, of[field]] as const));
-  return Object.fromEntries(said) as Embodiment;
+  const properties = [cohort, condition].flatMap((of) =>
+    embodimentFieldsOf(of).map((field) => [field, of[field]] as const),
+  );
+  return Object.fromEntries(properties) as Embodiment;
 }
 
 /** Describes a body: "learned, 100 ms later, no mirror". */
-export function embodimentInWords(said: PartialEmbodiment): string {
-  const { estimator, avatar, mirror, upperBodyOnly, latencyMs, trackerNoise: noise, dropouts } = said;
+export function embodimentInWords(properties: PartialEmbodiment): string {
+  const { estimator, avatar, mirror, upperBodyOnly, latencyMs, trackerNoise: noise, dropouts } = properties;
   return [
     estimator,
     avatar && `as ${avatar}`,

@@ -73,9 +73,11 @@ function alikeRemarks(
   list: string,
   entries: readonly (PartialEmbodiment & { readonly id: string })[],
 ): readonly string[] {
-  const said = entries.map((entry) => JSON.stringify(embodimentFieldsOf(entry).map((field) => [field, entry[field]])));
+  const described = entries.map((entry) =>
+    JSON.stringify(embodimentFieldsOf(entry).map((field) => [field, entry[field]])),
+  );
   return entries.flatMap(({ id }, index) => {
-    const first = entries[said.indexOf(said[index] as string)];
+    const first = entries[described.indexOf(described[index] as string)];
     return first && first.id !== id
       ? [`${list} "${first.id}" and "${id}" have the same body: ${embodimentInWords(first)}.`]
       : [];

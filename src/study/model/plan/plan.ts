@@ -108,9 +108,9 @@ function refuseUnclearBodies({ conditions, cohorts = [] }: StudyPlan): void {
   for (const [list, entries] of Object.entries(lists)) {
     for (const field of saidByAllOrNone) {
       const missing = entries.findIndex((entry) => entry[field] === undefined);
-      const said = entries.findIndex((entry) => entry[field] !== undefined);
-      if (missing >= 0 && said >= 0) {
-        throw new ValidationError(`${list}[${missing}].${field}`, `is missing, and ${list}[${said}] has it`);
+      const present = entries.findIndex((entry) => entry[field] !== undefined);
+      if (missing >= 0 && present >= 0) {
+        throw new ValidationError(`${list}[${missing}].${field}`, `is missing, and ${list}[${present}] has it`);
       }
     }
   }
@@ -138,8 +138,8 @@ function refuseUnfilledCohorts(plan: StudyPlan): void {
   );
   const together = largestGroup(plan);
   if (participants / together < cohorts.length) {
-    const whom = together === 1 ? 'participants' : `groups of ${together}`;
-    throw new ValidationError('cohorts', `${participants / together} ${whom} do not fill ${cohorts.length} cohorts`);
+    const units = together === 1 ? 'participants' : `groups of ${together}`;
+    throw new ValidationError('cohorts', `${participants / together} ${units} do not fill ${cohorts.length} cohorts`);
   }
 }
 

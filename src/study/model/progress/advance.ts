@@ -272,8 +272,11 @@ function submit(at: Moment): Advance | null {
   const unwell = reachedRule(at.schedule.askToStop, step.questionnaire, body.answers);
   if (!unwell) return at.moveOn(progress, handedIn);
   const { questionnaire, measure, value } = unwell;
-  const told = at.withEvent({ ...progress, unwell: true }, { type: 'unwell', place, questionnaire, measure, value });
-  return at.moveOn(told.progress, [...handedIn, ...told.records]);
+  const recorded = at.withEvent(
+    { ...progress, unwell: true },
+    { type: 'unwell', place, questionnaire, measure, value },
+  );
+  return at.moveOn(recorded.progress, [...handedIn, ...recorded.records]);
 }
 
 function tick(at: Moment): Advance {
@@ -294,12 +297,12 @@ function stop(at: Moment, { by, reason }: EventOf<'stop'>): Advance | null {
   if (step.kind === 'end') return null;
   if (progress.motion === null) return at.refused('nothing is recorded before consent');
   const { unwell: _, ...decided } = progress;
-  const said = reason === undefined ? {} : { reason: checked(text(500), reason) };
-  const told = at.withEvent(
+  const stated = reason === undefined ? {} : { reason: checked(text(500), reason) };
+  const recorded = at.withEvent(
     { ...decided, stopped: true, paused: false },
-    { type: 'stop', by, ...said, place, step: step.id },
+    { type: 'stop', by, ...stated, place, step: step.id },
   );
-  return at.taken(at.entered(told.progress, schedule.steps.at(-1) as StudyStep), told.records);
+  return at.taken(at.entered(recorded.progress, schedule.steps.at(-1) as StudyStep), recorded.records);
 }
 
 /**

@@ -49,13 +49,13 @@ export const participantColumns = [
   text('consent_version', 'any text', 'consent: body.version', 'Version of the text consented to.'),
   boolean('motion_consent', 'consent: body.motion', 'Whether tracked frames may be kept.'),
   text('language', tag, 'consent: body.language', 'Language of the text; empty: the study has only one.'),
-  text('gender', optionsOf('gender'), 'demographics: body.gender', 'As told.'),
-  number('age', 'years', '16 to 120', 'demographics: body.age', 'As told.'),
+  text('gender', optionsOf('gender'), 'demographics: body.gender', 'As stated.'),
+  number('age', 'years', '16 to 120', 'demographics: body.age', 'As stated.'),
   text('major', 'any text', 'demographics: body.major', 'Field of study or work, as typed.'),
   text('vr_experience', optionsOf('vrExperience'), 'demographics: body.vrExperience', 'Use of virtual reality before.'),
   text('vr_systems', 'any text', 'demographics: body.vrSystems', 'Systems used before, as typed.'),
   text('handedness', optionsOf('handedness'), 'demographics: body.handedness', 'Preferred hand, as stated.'),
-  text('vision', optionsOf('vision'), 'demographics: body.vision', 'As told.'),
+  text('vision', optionsOf('vision'), 'demographics: body.vision', 'As stated.'),
 ];
 
 const languageRead = 'Language of the questionnaire; the first of the plan if the record has none.';

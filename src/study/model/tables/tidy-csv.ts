@@ -108,7 +108,7 @@ export function codebookOf(tables: readonly Pick<Table, 'name' | 'columns'>[]): 
       text('description', 'any text', 'the tables of this export', 'What it means.'),
     ],
     rows: tables.flatMap((table) =>
-      table.columns.map(({ name, ...said }) => ({ table: table.name, column: name, ...said })),
+      table.columns.map(({ name, ...rest }) => ({ table: table.name, column: name, ...rest })),
     ),
   };
 }

@@ -18,7 +18,7 @@ class PreviewPage {
   readonly #bar = pageElement('bar', HTMLElement);
   readonly #list = pageElement('stops', HTMLElement);
   readonly #stage = pageElement('view', HTMLElement);
-  readonly #said = pageElement('said', HTMLElement);
+  readonly #messages = pageElement('said', HTMLElement);
   readonly #card = createStudyCard(this.#stage);
   readonly #sheet = createDrawnSheet();
   readonly #playing = element('p', { class: 'playing' });
@@ -93,7 +93,7 @@ class PreviewPage {
   #render(complaints: readonly string[] = []): void {
     const walk = this.#walk;
     this.#bar.replaceChildren(...this.#controls());
-    this.#said.replaceChildren(...this.#words(complaints));
+    this.#messages.replaceChildren(...this.#words(complaints));
     this.#list.replaceChildren(
       ...(walk ? walk.stops.map((stop, index) => this.#stopButton(walk, index, stop.label)) : []),
     );

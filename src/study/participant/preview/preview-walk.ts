@@ -117,8 +117,8 @@ export class PreviewWalk {
     this.#actions = {
       apply: (event) => this.#apply(event),
       goTo: (index) => this.#goToQuestion(index),
-      choose: (question, value) => this.#said(this.#answering.choose(question, value)),
-      type: (question, typed) => this.#said(this.#answering.type(question, typed)),
+      choose: (question, value) => this.#showRefusal(this.#answering.choose(question, value)),
+      type: (question, typed) => this.#showRefusal(this.#answering.type(question, typed)),
       submit: () => (this.#answering.readyToSubmit() ? this.#apply({ type: 'submit' }) : this.#followQuestion()),
       calibrate: next,
       enterVr: next,
@@ -186,7 +186,7 @@ export class PreviewWalk {
     this.#at = this.#nearest(index);
     this.#stopping = false;
     this.#answering.goTo(this.stop.question);
-    this.#said(null);
+    this.#showRefusal(null);
   }
 
   /** Returns the content of this stop. */
@@ -279,7 +279,7 @@ export class PreviewWalk {
     const { id } = this.#session.step;
     const refusal = refusalFor(this.#session.apply(event), this.#session.phrases);
     const { step } = this.#session;
-    if (step.id === id) this.#said(refusal);
+    if (step.id === id) this.#showRefusal(refusal);
     // Not by goTo, because the answers that were handed in may lead to the question whether to stop.
     else this.#stand(this.stops.findIndex((stop) => stop.step === step.id));
   }
@@ -293,10 +293,10 @@ export class PreviewWalk {
   #followQuestion(): void {
     const { step } = this.stop;
     this.#at = this.stops.findIndex((stop) => stop.step === step && stop.question === this.#answering.question);
-    this.#said(null);
+    this.#showRefusal(null);
   }
 
-  #said(refusal: string | null): void {
+  #showRefusal(refusal: string | null): void {
     this.#refusal = refusal;
     this.#onChange();
   }

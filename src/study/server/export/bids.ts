@@ -48,8 +48,8 @@ const described = (description: string, rest: object = {}) => ({ Description: de
 
 const participantColumns = {
   participant_id: described('Code of the participant.'),
-  age: described('As told.', { Units: 'year' }),
-  handedness: described('As told.', { Levels: { left: 'left', right: 'right', ambidextrous: 'both' } }),
+  age: described('As stated.', { Units: 'year' }),
+  handedness: described('As stated.', { Levels: { left: 'left', right: 'right', ambidextrous: 'both' } }),
   gender: described('As stated: woman, man, non-binary, other, not-said.'),
   vr_experience: described('none, once-or-twice, several-times, monthly, weekly.'),
   vision: described('normal, corrected, impaired.'),
@@ -158,14 +158,14 @@ function scanRow(run: Run, excluded: string): Readonly<Record<string, unknown>> 
   };
 }
 
-function participantRow(participant: string, told: DemographicsRecord['body'] | undefined) {
+function participantRow(participant: string, stated: DemographicsRecord['body'] | undefined) {
   return {
     participant_id: `sub-${participant}`,
-    age: told?.age ?? null,
-    handedness: told?.handedness === 'both' ? 'ambidextrous' : (told?.handedness ?? null),
-    gender: told?.gender ?? null,
-    vr_experience: told?.vrExperience ?? null,
-    vision: told?.vision ?? null,
+    age: stated?.age ?? null,
+    handedness: stated?.handedness === 'both' ? 'ambidextrous' : (stated?.handedness ?? null),
+    gender: stated?.gender ?? null,
+    vr_experience: stated?.vrExperience ?? null,
+    vision: stated?.vision ?? null,
   };
 }
 
@@ -219,7 +219,7 @@ export function bidsDataset(content: BidsContent): BidsDataset {
   const { files: written, runs, leftOut } = writeRuns(content);
   if (runs.length === 0) return { files: {}, leftOut };
   const participants = [...new Set(runs.map(({ trial }) => trial.participant))].toSorted();
-  const told = new Map(
+  const stated = new Map(
     records.flatMap((record) => (record.kind === 'demographics' ? [[record.participant, record.body] as const] : [])),
   );
   const excluded = voidedBlocks(records);
@@ -233,7 +233,7 @@ export function bidsDataset(content: BidsContent): BidsDataset {
     README: readme(content),
     'participants.tsv': table(
       participantColumns,
-      participants.map((id) => participantRow(id, told.get(id))),
+      participants.map((id) => participantRow(id, stated.get(id))),
     ),
     'participants.json': json(participantColumns),
     ...written,
