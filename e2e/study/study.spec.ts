@@ -38,7 +38,7 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
   await page.getByRole('button', { name: 'I have noted it' }).click();
 
   await page.getByRole('button', { name: 'Continue' }).click();
-  await expect(page.getByRole('alert').filter({ hasText: 'still needs an answer' })).toBeVisible();
+  await expect(page.getByRole('alert').filter({ hasText: 'still need an answer' })).toBeVisible();
   await tellOfOneself(page);
   await keepPicture(page, 'study-demographics');
   await page.getByRole('button', { name: 'Continue' }).click();
