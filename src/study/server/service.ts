@@ -8,7 +8,8 @@ import type { Call, Route, Service } from 'threepoint-http/router';
 import { shortageOf, startThread, ThreadCalls, ThreadUnavailable } from 'threepoint-http/thread-calls';
 import type { StudyDispatcher, StudyOutcome } from './routes/dispatcher';
 import type { StudyAccess } from './routes/guard';
-import { retryAfterSeconds, type StudyRequest, type StudyRoute } from './routes/routes';
+import type { StudyRequest, StudyRoute } from './routes/route';
+import { retryAfterSeconds } from './routes/routes';
 import type { OpenedStudies, StudyThreadApi, StudyThreadOptions } from './thread';
 
 export interface StudyServiceOptions extends StudyThreadOptions {

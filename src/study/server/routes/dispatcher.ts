@@ -1,7 +1,8 @@
 import type { Answer } from 'threepoint-http/answer';
 import { StoreRefusal } from '../storage/database';
 import type { StudyStore } from '../storage/store';
-import { refusalOf, type StudyRequest, type StudyRoute, type StudyRoutes } from './routes';
+import type { StudyRequest, StudyRoute } from './route';
+import { refusalOf, type StudyRoutes } from './routes';
 
 /** The result of a request, in a form that can be sent between threads. */
 export type StudyOutcome =

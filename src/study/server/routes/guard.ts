@@ -13,7 +13,7 @@ import type { StudyStore } from '../storage/store';
 export type StudyAccess = 'anyone' | 'participant' | 'experimenter' | 'invited' | 'withdrawing';
 
 export interface StudyGuardOptions {
-  readonly store: StudyStore;
+  readonly store: Pick<StudyStore, 'plans' | 'places'>;
   /** The experimenter's token, sent as "Authorization: Bearer …"; null: there are no experimenters. */
   readonly experimenterToken: string | null;
   readonly onWrongGuess: (guess: WrongGuess) => void;
