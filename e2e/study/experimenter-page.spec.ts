@@ -78,7 +78,7 @@ test('a study stays marked as simulated when its first file was wrong @full', as
   await choose(JSON.stringify({ ...plan('second-try'), participants: 0 }));
   await expect(page.getByRole('alert')).toContainText('participants');
   await choose(JSON.stringify(plan('second-try')));
-  await expect(page.getByText('SIMULATED: in this study a program takes part')).toBeVisible();
+  await expect(page.getByText('SIMULATED: a program takes part in this study')).toBeVisible();
   await expect(page.getByText('second-try-simulated · ')).toBeVisible();
 });
 
@@ -113,7 +113,7 @@ test('a block of those who play together is voided for all of them, if the exper
   const voidBlock = async (uncheck: boolean) => {
     await page.getByRole('row', { name: /^P01 / }).getByRole('button', { name: 'Void block' }).click();
     await page.getByRole('textbox').fill('a ball rolled away');
-    const together = page.getByLabel(`Also for ${second}: a match is played together`);
+    const together = page.getByLabel(`Also for ${second}: they play the match together`);
     await expect(together).toBeChecked();
     if (uncheck) await together.uncheck();
     await page.getByRole('button', { name: 'Void it' }).click();

@@ -25,7 +25,7 @@ test('a plan is remarked upon, simulated to its results, and the simulation dele
   await signIn(page);
   await choose(page, plan({ id: 'uneven', participants: 7 }));
   const remarks = page.getByRole('list', { name: 'Before you begin' });
-  await expect(remarks.getByText('a multiple of 6 participants would make them even')).toBeVisible();
+  await expect(remarks.getByText('a multiple of 6 participants would balance them')).toBeVisible();
   await keepPicture(page, 'study-remarks');
 
   await page.goto(`${origin}/experimenter`);
@@ -36,7 +36,7 @@ test('a plan is remarked upon, simulated to its results, and the simulation dele
   await keepPicture(page, 'study-simulation-dialog');
   await page.getByRole('button', { name: 'Simulate', exact: true }).click();
   await expect(page.getByText('Effects: answers −1.2 points under "late-200"')).toBeVisible({ timeout: 90_000 });
-  await expect(page.getByText('SIMULATED: in this study a program takes part')).toBeVisible();
+  await expect(page.getByText('SIMULATED: a program takes part in this study')).toBeVisible();
   await expect(page.locator('.badge', { hasText: 'finished' })).toHaveCount(18);
   await page.getByRole('link', { name: 'Results' }).last().click();
   await expect(page.getByText('SIMULATED: a program made these data')).toBeVisible();
@@ -76,7 +76,9 @@ test('a plan with participants changes as a new version, which the experimenter 
   expect(asked).toContain('has begun: P01 keep its plan');
   page.once('dialog', (dialog) => void dialog.accept());
   await choose(page, changed);
-  await expect(page.getByText('version 2 is for those who begin now. Who stays with version 1: P01.')).toBeVisible();
+  await expect(
+    page.getByText('version 2 is for those who begin now. Earlier participants stay with version 1: P01.'),
+  ).toBeVisible();
   await expect(page.getByRole('row', { name: /^P01, version 1 / })).toBeVisible();
   await expect(page.getByRole('button', { name: 'Export version 1' })).toBeVisible();
   await keepPicture(page, 'study-versions');

@@ -41,7 +41,7 @@ test('a participant withdraws alone, by the code on the page that stands beside 
   const go = page.getByRole('button', { name: 'Delete everything' });
   await page.getByLabel('Your withdrawal code').fill('AAAA-BBBB-CCCC-DDDD');
   await expect(go).toBeDisabled();
-  await page.getByLabel(/I want everything deleted/).check();
+  await page.getByLabel(/I want all my data deleted/).check();
   await go.click();
   await expect(page.getByRole('alert')).toContainText('Nothing is recorded under this code.');
   await keepPicture(page, 'study-withdraw');
@@ -80,14 +80,14 @@ test('a participant whose network fails while everything is deleted is not told 
   const { withdrawalCode } = (await claimed.json()) as { withdrawalCode: string };
   await page.goto(`${origin}/withdraw?study=unheard`);
   await page.getByLabel('Your withdrawal code').fill(withdrawalCode);
-  await page.getByLabel(/I want everything deleted/).check();
+  await page.getByLabel(/I want all my data deleted/).check();
   await page.route('**/unheard/withdraw', async (route) => {
     await route.fetch();
     await route.abort();
   });
   const go = page.getByRole('button', { name: 'Delete everything' });
   await go.click();
-  await expect(page.getByRole('alert')).toContainText('It is not known whether everything is deleted');
+  await expect(page.getByRole('alert')).toContainText('It is unknown whether your data were deleted');
   await page.unroute('**/unheard/withdraw');
   await go.click();
   await expect(page.getByRole('alert')).toContainText('if you have sent it before, everything is deleted already');

@@ -41,7 +41,7 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
   await page.getByRole('button', { name: 'I have noted it' }).click();
 
   await page.getByRole('button', { name: 'Continue' }).click();
-  await expect(page.getByRole('alert').filter({ hasText: 'still needs an answer' })).toBeVisible();
+  await expect(page.getByRole('alert').filter({ hasText: 'still need an answer' })).toBeVisible();
   await tellOfOneself(page);
   await keepPicture(page, 'study-demographics');
   await page.getByRole('button', { name: 'Continue' }).click();
@@ -163,7 +163,7 @@ test('a link without its invitation asks for it, a wrong one is said, and the li
   await page.goto(`${origin}/?study=invited&participant=P02&quality=low`);
   await expect(page.getByLabel(/Your code/)).toHaveValue('P02');
   await page.getByRole('button', { name: 'Continue' }).click();
-  await expect(page.getByRole('alert').filter({ hasText: 'Without the invitation' })).toBeVisible();
+  await expect(page.getByRole('alert').filter({ hasText: 'The place needs an invitation' })).toBeVisible();
   await page.getByLabel('Your invitation').fill('aaaa-bbbb-cccc-dddd');
   await page.getByRole('button', { name: 'Continue' }).click();
   const agree = async () => {

@@ -16,10 +16,10 @@ import type {
 import type { StudyRecord } from '../model/records/study-record';
 import type { SimulatedParticipant } from '../simulation/simulate-study';
 
-/** The server answered, and the answer is no. */
+/** The server answered and refused the request. */
 export class ServerRefusal extends Error {
   readonly status: number;
-  /** What of the request was wrong, as `records[1].body.age`; null: not a matter of one field. */
+  /** The invalid field of the request, as `records[1].body.age`; null: no single field is at fault. */
   readonly field: string | null;
 
   constructor(status: number, message: string, field: string | null = null) {
@@ -29,33 +29,33 @@ export class ServerRefusal extends Error {
   }
 }
 
-/** Where studies cannot be had, in a sentence. */
+/** The message for a host without studies. */
 export const noStudiesHere = 'Studies need a threepoint server, and this page comes from a host without one.';
 
-/** What answered is no server of ours: it knows nothing of studies, and says so in no words of ours. */
+/** The server that answered does not know studies: it is another program, and its answer has no message. */
 export class NoStudyServer extends ServerRefusal {
   constructor(status: number) {
     super(status, noStudiesHere);
   }
 }
 
-/** There was no answer: no network, no server, or one that broke off. Trying again later may help. */
+/** There was no answer: no network, no server, or an aborted request. A later attempt may succeed. */
 export class ServerUnreachable extends Error {}
 
 interface Asked {
   readonly method?: 'GET' | 'POST' | 'PUT' | 'DELETE';
   readonly token?: string;
   readonly body?: unknown;
-  /** Sent as it is instead of `body`. */
+  /** Text that is sent instead of `body`. */
   readonly text?: string;
-  /** Milliseconds after which an answer no longer comes; null: it may take its time. */
+  /** The time after which the request is aborted [ms]; null: it may take any time. */
   readonly patienceMs?: number | null;
 }
 
 const usualPatienceMs = 15_000;
-/** While a person waits before an empty page. */
+/** The time limit while a person waits before an empty page [ms]. */
 const shortPatienceMs = 4000;
-/** While a recording is on its way: as long as the server gives a request to arrive. */
+/** The time limit of an upload of a recording [ms], which is the time that the server gives a request to arrive. */
 export const motionPatienceMs = 120_000;
 
 /** `server`: the folder of its page, no slash at its end. */
@@ -81,26 +81,26 @@ async function ask(
     throw new ServerUnreachable(`the server does not answer (${reasonOf(error)})`);
   }
   if (response.ok) return response;
-  const said: unknown = await response.json().catch(() => null);
-  const ours = typeof said === 'object' && said !== null && 'error' in said;
-  if (!ours && response.status === 404) throw new NoStudyServer(response.status);
-  const sentence = ours ? String(said.error) : `the server says ${response.status}`;
-  // Proxies say these while the server is away; the server itself means 5xx as "nothing was acknowledged".
+  const answer: unknown = await response.json().catch(() => null);
+  const isStudyServer = typeof answer === 'object' && answer !== null && 'error' in answer;
+  if (!isStudyServer && response.status === 404) throw new NoStudyServer(response.status);
+  const sentence = isStudyServer ? String(answer.error) : `the server answered ${response.status}`;
+  // Proxies send these while the server is away. The server itself sends 5xx if nothing was acknowledged.
   if (response.status >= 500 && response.status !== 507) throw new ServerUnreachable(sentence);
-  const field = typeof said === 'object' && said !== null && 'field' in said ? said.field : null;
+  const field = typeof answer === 'object' && answer !== null && 'field' in answer ? answer.field : null;
   throw new ServerRefusal(response.status, sentence, typeof field === 'string' ? field : null);
 }
 
-/** The body of an answer; throws where it breaks off. */
+/** Resolves with the body of an answer; rejects if it is incomplete. */
 async function whole<T>(body: Promise<T>): Promise<T> {
   try {
     return await body;
   } catch (error) {
-    throw new ServerUnreachable(`the answer broke off (${reasonOf(error)})`);
+    throw new ServerUnreachable(`the answer was incomplete (${reasonOf(error)})`);
   }
 }
 
-/** Asks a server for JSON. */
+/** Returns a function that requests JSON from a server. */
 const answersOf = (server: string) =>
   async function answer<T>(path: string, asked: Asked = {}): Promise<T> {
     const response = await ask(server, path, asked);
@@ -112,20 +112,20 @@ const of = (study: string, participant?: string) =>
 
 const versionPart = (version: number | undefined) => (version === undefined ? '' : `?version=${version}`);
 
-/** What a participant's page asks of the server. Every call throws ServerRefusal or ServerUnreachable. */
+/** The requests of a participant's page to the server. Every call rejects with ServerRefusal or ServerUnreachable. */
 export interface ParticipantClient {
-  /** As this participant may read it. */
+  /** Returns the study with the text of the plan version that this participant follows. */
   study(study: string, participant: string): Promise<PublicStudy>;
-  /** `invitation` as it stands in the link, or as it was typed; `consent`: version of the text that was read. */
+  /** `invitation` is taken from the link or was typed; `consent` is the version of the text that was read. */
   claim(study: string, participant: string, invitation: string, consent: string): Promise<Claim>;
-  /** Returns the ids that are safely stored now. */
+  /** Resolves with the ids that are stored now. */
   send(study: string, participant: string, token: string, records: readonly StudyRecord[]): Promise<readonly string[]>;
-  /** null: nothing has been reported. */
+  /** Resolves with null if nothing was reported. */
   progress(study: string, participant: string, token: string): Promise<Progress | null>;
   saveProgress(study: string, participant: string, token: string, progress: Progress): Promise<void>;
   commands(study: string, participant: string, token: string, after: number): Promise<readonly NumberedCommand[]>;
   sendMotion(study: string, participant: string, token: string, trial: string, recording: string): Promise<void>;
-  /** The participant's seat in the room of a trial that a group plays together. */
+  /** Resolves with the participant's seat in the room of a trial that a group plays together. */
   seat(study: string, participant: string, token: string, trial: PlayedTogether): Promise<SignedSeat>;
 }
 
@@ -162,11 +162,11 @@ export function createParticipantClient(server: string): ParticipantClient {
   };
 }
 
-/** What a participant asks of the server who wants everything deleted. Every call throws ServerRefusal or ServerUnreachable. */
+/** The requests of the withdrawal page. Every call rejects with ServerRefusal or ServerUnreachable. */
 export interface WithdrawalClient {
-  /** As anyone may read it. */
+  /** Returns the public part of the study. */
   study(study: string): Promise<PublicStudy>;
-  /** Deletes everything of the participant whose code this is, however it was typed. */
+  /** Deletes everything of the participant who has this code, in any notation of the code. */
   withdraw(study: string, code: string): Promise<Receipt>;
 }
 
@@ -178,24 +178,24 @@ export function createWithdrawalClient(server: string): WithdrawalClient {
   };
 }
 
-/** Bodies of the server are 512 KiB at most. */
+/** The server accepts bodies of 512 KiB at most. */
 const recordsAtOnce = 50;
 
-/** What the experimenter's pages ask of the server. */
+/** The requests of the experimenter's pages to the server. */
 export interface ExperimenterClient {
   studies(): Promise<readonly StudyListing[]>;
-  /** `newVersion`: also where the study has begun with another plan. */
+  /** `newVersion` allows another plan for a study that has begun. */
   addStudy(plan: unknown, simulated: boolean, newVersion?: boolean): Promise<StudyInfo>;
-  /** What was recorded under this version of the plan, else under the newest. */
+  /** Resolves with the records under this version of the plan, or under the newest one. */
   records(study: string, version?: number): Promise<RecordedStudy>;
   participants(study: string): Promise<readonly ParticipantState[]>;
   receipts(study: string): Promise<readonly Receipt[]>;
   command(study: string, participant: string, command: StudyCommand): Promise<void>;
   remark(study: string, participant: string, text: string): Promise<void>;
   release(study: string, participant: string): Promise<void>;
-  /** Another invitation; links with the old one open nothing any more. */
+  /** Makes another invitation; links with the old one stop working. */
   reinvite(study: string, participant: string): Promise<void>;
-  /** The zip file of a participant, or of all under a version of the plan. */
+  /** Resolves with the zip file of a participant, or of all under a version of the plan. */
   export(
     study: string,
     of?: { readonly participant?: string; readonly version?: number },
@@ -203,7 +203,7 @@ export interface ExperimenterClient {
   delete(study: string, participant: string): Promise<Receipt>;
   /** Stores a simulated participant from the first record to the last. */
   addSimulated(study: string, simulated: SimulatedParticipant): Promise<void>;
-  /** Deletes a simulated study whole. */
+  /** Deletes a simulated study completely. */
   deleteSimulated(study: string): Promise<void>;
 }
 
@@ -226,7 +226,7 @@ export function createExperimenterClient(token: string, server: string): Experim
     release: (study, participant) => answer(`${of(study, participant)}/release`, { method: 'POST', token }),
     reinvite: (study, participant) => answer(`${of(study, participant)}/invitation`, { method: 'POST', token }),
     async export(study, { participant, version } = {}) {
-      // Many recordings take minutes to be zipped, and to arrive.
+      // A zip file of many recordings takes minutes to make and to download.
       const asked = { token, patienceMs: null };
       const response = await ask(server, `${of(study, participant)}/export${versionPart(version)}`, asked);
       const name = /filename="([^"]+)"/.exec(response.headers.get('content-disposition') ?? '')?.[1];

@@ -1,12 +1,15 @@
 import { button, element } from 'threepoint-ui/element';
 
-/** What a dialog asks by, and the button that answers. */
+/** The content of a dialog and the button that confirms it. */
 export interface Question {
   readonly content: readonly Node[];
   readonly confirm: HTMLButtonElement;
 }
 
-/** Opens a dialog with a title, what `ask` puts in it and a button to cancel; what was answered, null: cancelled. */
+/**
+ * Opens a dialog with a title, content and a button to cancel; resolves with the answer, or with null if it is
+ * cancelled.
+ */
 export function askInDialog<T>(title: string, ask: (answer: (value: T) => void) => Question): Promise<T | null> {
   return new Promise((resolve) => {
     const dialog = element('dialog', { 'aria-label': title });

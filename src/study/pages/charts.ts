@@ -3,19 +3,19 @@ import type { CohortComparison } from '../model/results/compare-cohorts';
 import type { Comparison } from '../model/results/compare-conditions';
 import { swarm } from './swarm';
 
-/** The two conditions or cohorts compared, as people read them. */
+/** The labels of the two conditions or cohorts that are compared. */
 export interface ComparedLabels {
   readonly first: string;
   readonly second: string;
 }
 
-/** What has a mean on either side. */
+/** A comparison with a mean on either side. */
 export type TwoSided = Pick<Comparison, 'first' | 'second'>;
 
 export interface ChartOptions<One extends TwoSided> {
   readonly title: string;
   readonly labels: ComparedLabels;
-  /** What a comparison is called below the axis. */
+  /** Returns the name of a comparison below the axis. */
   readonly nameOf: (comparison: One) => string;
   readonly axis: string;
   /** Ends of the scale. */
@@ -35,11 +35,14 @@ function svgNode(tag: string, attributes: Readonly<Record<string, string | numbe
   return node;
 }
 
-/** A note whose words would run out of the picture [pixels] is divided behind what the axis is; letters are about so wide. */
+/**
+ * Wraps a note that would not fit the picture after the first part of its sentence; `letter` is the mean width of a
+ * letter [pixels].
+ */
 const noteLines = (note: string, width: number, letter = 6.3): readonly string[] =>
   note.length * letter <= width ? [note] : note.split(/(?<=;) /);
 
-/** Title, key and, where it applies, the mark of simulation: inside the picture, so that no copy of it loses them. */
+/** Adds the title, the key and the mark of simulation inside the picture, so that copies of it keep them. */
 function headed(
   plot: SVGSVGElement | HTMLElement,
   { title, labels, simulated }: Omit<ChartOptions<never>, 'nameOf'>,
@@ -47,7 +50,7 @@ function headed(
 ): SVGSVGElement {
   if (!(plot instanceof SVGSVGElement)) throw new Error('ui/charts: expected a plain SVG from the plot');
   const width = Number(plot.getAttribute('width'));
-  // Plots stand their labels in the middle unless told otherwise.
+  // Plots centre their labels by default.
   const text = { 'font-family': 'Inter, "Segoe UI", system-ui, sans-serif', fill: ink, 'text-anchor': 'start' };
   plot.prepend(svgNode('rect', { width: '100%', height: '100%', fill: 'white' }));
   plot.append(svgNode('text', { ...text, x: 12, y: 24, 'font-size': 16, 'font-weight': 650 }, title));
@@ -82,17 +85,17 @@ const shared = {
   style: { fontSize: '13px', color: ink, background: 'white', fontFamily: 'Inter, "Segoe UI", system-ui, sans-serif' },
 } as const;
 
-/** Answers are whole; other scales choose for themselves. */
+/** Answers are whole numbers; other scales choose their own ticks. */
 const ticksOf = ({ domain: [low, high] }: Pick<ChartOptions<never>, 'domain'>) =>
   high - low < 10 ? Array.from({ length: high - low + 1 }, (_, index) => low + index) : 5;
 
-/** "3", never "3.0": ends of scales are whole. */
+/** Formats ends of scales as whole numbers: "3", not "3.0". */
 const tickText = (value: number): string => String(Number(value.toFixed(6)));
 
 const widthFor = (count: number, each = 100) => Math.max(520, 90 + count * each);
 const height = 360;
 
-/** The mean of each side and its 95 % confidence interval; whiskers end where the scale does. */
+/** Returns the mean of each side with its 95 % confidence interval, clipped to the scale. */
 const meansOf = <One extends TwoSided>(comparisons: readonly One[], { nameOf, domain }: ChartOptions<One>) =>
   comparisons.flatMap((comparison) =>
     sides.flatMap((side) => {
@@ -105,7 +108,7 @@ const meansOf = <One extends TwoSided>(comparisons: readonly One[], { nameOf, do
     }),
   );
 
-/** Means as bars with their 95 % confidence intervals: the paper's figures 11 to 14. */
+/** Draws means as bars with their 95 % confidence intervals, as figures 11 to 14 of the paper. */
 export function barChart<One extends TwoSided>(comparisons: readonly One[], options: ChartOptions<One>): SVGSVGElement {
   const [low, high] = options.domain;
   const bars = meansOf(comparisons, options);
@@ -137,7 +140,7 @@ export function barChart<One extends TwoSided>(comparisons: readonly One[], opti
   return headed(plot as SVGSVGElement, options, `${options.axis}; mean and 95 % confidence interval`);
 }
 
-/** Every participant (or group) as a line from one condition to the other; alike ones make the line thicker. */
+/** Draws every participant (or group) as a line from one condition to the other. Equal lines make a thicker one. */
 export function pairedChart(comparisons: readonly Comparison[], options: ChartOptions<Comparison>): SVGSVGElement {
   const lines = comparisons.flatMap((comparison) => {
     const alike = new Map<string, { second: number; first: number; count: number }>();
@@ -199,12 +202,12 @@ export function pairedChart(comparisons: readonly Comparison[], options: ChartOp
   );
 }
 
-/** Of a dot [pixels]. */
+/** The diameter of a dot [pixels]. */
 const dotDiameter = 7;
-/** Across a comparison, from −0.5 to 0.5: the means in the middle, the dots of each side beyond its mean. */
+/** Positions across a comparison, from −0.5 to 0.5: means in the middle, dots outside. */
 const strip = { mean: 0.07, dots: 0.29, width: 0.34 } as const;
 
-/** Every participant (or group) of two cohorts as a dot, alike ones side by side, next to means and 95 % confidence intervals. */
+/** Draws every participant (or group) of two cohorts as a dot next to means and 95 % confidence intervals. */
 export function stripChart(
   comparisons: readonly CohortComparison[],
   options: ChartOptions<CohortComparison> & { readonly each: string },
@@ -245,14 +248,14 @@ export function stripChart(
       Plot.dot(means, { fx: 'of', x: 'x', y: 'mean', fill: 'side', r: 5, stroke: 'white', strokeWidth: 1.5 }),
     ],
   });
-  const said = `each dot a ${options.each}, mean and 95 % confidence interval`;
-  return headed(plot as SVGSVGElement, options, `${options.axis}; ${said}`);
+  const legend = `each dot a ${options.each}, mean and 95 % confidence interval`;
+  return headed(plot as SVGSVGElement, options, `${options.axis}; ${legend}`);
 }
 
-/** The picture as a file of its own. */
+/** Returns the picture as an SVG file. */
 export const svgText = (svg: SVGSVGElement): string => new XMLSerializer().serializeToString(svg);
 
-/** The picture in twice its size, for slides and papers that take no SVG. */
+/** Resolves with the picture at twice its size as PNG, for slides and papers that do not accept SVG. */
 export async function pngOf(svg: SVGSVGElement): Promise<Blob> {
   const width = Number(svg.getAttribute('width'));
   const height = Number(svg.getAttribute('height'));

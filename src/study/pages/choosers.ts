@@ -6,7 +6,7 @@ interface Choice {
   readonly label: string;
 }
 
-/** A list to choose one from. */
+/** Returns a list to choose one entry from. */
 export function chooser(
   name: string,
   choices: readonly Choice[],
@@ -22,7 +22,7 @@ export function chooser(
   return element('label', {}, element('span', {}, name), select);
 }
 
-/** Which two of several are compared, `what` they are; nothing where there are but two. */
+/** Returns the choice of which two of several `what` are compared; nothing if there are only two. */
 export function pairChooser(
   what: 'condition' | 'cohort',
   choices: readonly Choice[],

@@ -8,7 +8,7 @@ import type { Compared, ShownResults } from './shown-results';
 
 type Cohorts = Compared<CohortComparison> & { readonly compared: ComparedCohorts };
 
-/** A table of comparisons with its button. */
+/** Returns a table of comparisons with its download button. */
 function tableOf(cohorts: Cohorts, file: string, caption: string, comparisons: readonly CohortComparison[]) {
   const { results, compared } = cohorts;
   const facts = results.factsOf(file.startsWith('planned') ? 'planned' : 'explored');
@@ -28,7 +28,7 @@ function plannedParts(cohorts: Cohorts): readonly Node[] {
   ];
 }
 
-/** Means, and every participant, side by side; no figure of the paper shows cohorts. */
+/** Returns charts of means and of participants side by side. */
 const figuresOf = (cohorts: Cohorts, charts: readonly Chart<CohortComparison>[]) =>
   charts.map((chart) => {
     const own = { ...chart, file: `${chart.file}-cohorts`, note: '' };
@@ -65,7 +65,7 @@ function scoreParts(cohorts: Cohorts): readonly Node[] {
   ];
 }
 
-/** Two cohorts, first − second, by the mean of what each had under these conditions. */
+/** Returns the comparison of two cohorts, first − second, by each participant's mean under the chosen conditions. */
 export function cohortResults(results: ShownResults, compared: ComparedCohorts): readonly Node[] {
   const { measures, labelOf } = results;
   const [first, second] = compared.cohorts;
@@ -82,10 +82,10 @@ export function cohortResults(results: ShownResults, compared: ComparedCohorts):
   const under =
     compared.conditions.length === 1
       ? `under “${labelOf(compared.conditions[0] ?? '')}”`
-      : 'of what each had under all conditions, as a mean';
-  const said = `Differences are ${labelOf(first)} − ${labelOf(second)}, between participants (scores of groups: between groups), ${under}. Tests are two-sided; * marks Holm’s p below .05 over the table that it stands in (scores: points and per cent apart).`;
+      : 'by the mean of each participant over all conditions';
+  const note = `Differences are ${labelOf(first)} − ${labelOf(second)}, between participants (scores of groups: between groups), ${under}. Tests are two-sided; * marks Holm’s p below .05, adjusted over its table (scores: points and per cent separately).`;
   return [
-    element('p', { class: 'soft' }, said),
+    element('p', { class: 'soft' }, note),
     ...plannedParts(cohorts),
     ...answerParts(cohorts),
     ...scaleParts(cohorts),

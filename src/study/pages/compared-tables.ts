@@ -8,7 +8,7 @@ import { type TableHead, type TableRow, tableNode } from './table';
 
 const significance = 0.05;
 
-/** What a row says of two sides, whether pairs or cohorts. */
+/** The test results in a row of a table, of pairs or of cohorts. */
 interface Tested {
   readonly n: string;
   readonly difference: number | undefined;
@@ -26,7 +26,7 @@ interface Tested {
   } | null;
 }
 
-/** Of pairs: V is the sum of positive ranks. */
+/** Paired tests; V is the sum of positive ranks. */
 export const testedPairs = ({ pairs, test, signedRank }: Comparison): Tested => ({
   n: String(pairs.length),
   difference: test?.meanDifference,
@@ -40,7 +40,7 @@ export const testedPairs = ({ pairs, test, signedRank }: Comparison): Tested => 
   byRanks: signedRank,
 });
 
-/** Of cohorts: W counts pairs in which the first is larger. */
+/** Tests between cohorts; W counts the pairs in which the first is larger. */
 export const testedCohorts = ({ first, second, test, rankSum }: CohortComparison): Tested => ({
   n: `${first?.n ?? 0}, ${second?.n ?? 0}`,
   difference: test?.meanDifference,
@@ -56,7 +56,7 @@ export const testedCohorts = ({ first, second, test, rankSum }: CohortComparison
 
 type Two = Measured & Pick<Comparison, 'first' | 'second' | 'holmP' | 'ranksHolmP'>;
 
-/** How two sides are tested, and what the columns of that are called. */
+/** The kind of test of two sides and the headings of its columns. */
 export interface Testing<One extends Two> {
   readonly tested: (one: One) => Tested;
   readonly heads: {
@@ -136,7 +136,7 @@ function rowOf<One extends Two>(results: ShownResults, testing: Testing<One>, on
   };
 }
 
-/** A table of two sides. Where not only planned ones stand in it, these are marked. */
+/** Returns a table of comparisons. Planned ones are marked if the table also has others. */
 export const comparedTable = <One extends Two>(
   compared: Compared<One>,
   testing: Testing<One>,

@@ -12,7 +12,7 @@ import type { Compared } from './shown-results';
 
 type Two = Measured & TwoSided;
 
-/** Comparisons on one scale, in one picture. */
+/** Comparisons on one scale in one chart. */
 export interface Chart<One extends Two> {
   readonly comparisons: readonly One[];
   readonly title: string;
@@ -20,13 +20,13 @@ export interface Chart<One extends Two> {
   readonly axis: string;
   readonly domain: readonly [number, number];
   readonly nameOf: (one: One) => string;
-  /** Behind the caption of the means. */
+  /** A note after the caption of the means. */
   readonly note: string;
-  /** Who has a value of their own. */
+  /** The unit that has one value each. */
   readonly each: 'participant' | 'group';
 }
 
-/** The means of a chart. */
+/** Returns the means of a chart as a figure. */
 export function meansFigure<One extends Two>({ results, labels }: Compared<One>, chart: Chart<One>): HTMLElement {
   const { comparisons, title, file, note, each: _, ...options } = chart;
   const { simulated } = results.study;
@@ -34,7 +34,7 @@ export function meansFigure<One extends Two>({ results, labels }: Compared<One>,
   return figure(bars, `${title}, means${note}`, results.fileOf(file));
 }
 
-/** Every pair of a chart. */
+/** Returns every pair of a chart as a figure. */
 export function pairsFigure({ results, labels }: Compared<Comparison>, chart: Chart<Comparison>): HTMLElement {
   const { comparisons, title, file, note: _, each, ...options } = chart;
   const { simulated } = results.study;
@@ -42,7 +42,7 @@ export function pairsFigure({ results, labels }: Compared<Comparison>, chart: Ch
   return figure(lines, `${title}, every ${each}`, results.fileOf(`${file}-pairs`));
 }
 
-/** Every participant of two cohorts. */
+/** Returns every participant of two cohorts as a figure. */
 export function stripFigure(
   { results, labels }: Compared<CohortComparison>,
   chart: Chart<CohortComparison>,
@@ -60,13 +60,13 @@ function axisOf(form: AnswerForm, [from, to]: readonly [number, number], languag
   return `answer, ${from} ${label(low)} to ${to} ${label(high)}`;
 }
 
-/** The figure of the paper that shows these answers, in words. */
+/** The figure of the paper that shows these answers, for captions. */
 const paperFigures: Readonly<Record<string, string>> = {
   archery: ' (the paper’s figure 11)',
   ball: ' (the paper’s figure 13)',
 };
 
-/** Charts of the questions: those of one task and questionnaire that are answered on the same scale together. */
+/** Returns a chart for the questions of a task and questionnaire that share a scale. */
 export function questionCharts<One extends Two>({ results, answers }: Compared<One>): readonly Chart<One>[] {
   const { asked } = results;
   const [language] = languagesOf(results.study.plan);
@@ -99,7 +99,7 @@ export function questionCharts<One extends Two>({ results, answers }: Compared<O
   return [...charts.values()];
 }
 
-/** A chart for each scale, all tasks side by side. */
+/** Returns a chart for each scale, with all tasks side by side. */
 export function scaleCharts<One extends Two>({ results, scales }: Compared<One>): readonly Chart<One>[] {
   const { asked } = results;
   const charts = new Map<string, Chart<One>>();
@@ -123,7 +123,7 @@ export function scaleCharts<One extends Two>({ results, scales }: Compared<One>)
   return [...charts.values()];
 }
 
-/** A chart for each task that was played for points. */
+/** Returns a chart for each task that has scores. */
 export const scoreCharts = <One extends Two>({ results, percent }: Compared<One>): readonly Chart<One>[] =>
   percent.map((comparison) => {
     const name = results.titleOf(comparison.of);

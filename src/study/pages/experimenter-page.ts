@@ -20,10 +20,10 @@ import { askForSimulation } from './simulation-dialog';
 import { storeSimulation } from './store-simulation';
 import { StudyAccess } from './study-access';
 
-/** How often the states are asked for [ms]. */
+/** The interval at which states are requested [ms]. */
 const refreshEveryMs = 1500;
 
-/** The experimenter's page: one study, its participants, and what can be done about them. */
+/** The experimenter's page: one study, its participants and the actions on them. */
 class ExperimenterPage {
   readonly #content: HTMLElement;
   readonly #access = new StudyAccess(
@@ -31,13 +31,13 @@ class ExperimenterPage {
     (study) => void this.#open(study),
   );
   #study: OpenStudy | null = null;
-  /** Whether the study to be begun is marked as simulated. */
+  /** Whether the new study is marked as simulated. */
   #simulated = false;
   #notice = '';
   #complaint = '';
   #online = true;
   #shownKey = '';
-  /** A button must not go away between press and release. */
+  /** Whether a pointer is pressed. A button must not be replaced between press and release. */
   #pressing = false;
 
   constructor(content: HTMLElement) {
@@ -50,7 +50,7 @@ class ExperimenterPage {
     });
     for (const event of ['pointerup', 'pointercancel']) {
       document.addEventListener(event, () => {
-        // The click follows the release.
+        // The click event follows the release.
         setTimeout(() => {
           this.#pressing = false;
         }, 0);
@@ -85,7 +85,7 @@ class ExperimenterPage {
         const states = await client.participants(study.plan.id);
         const receivedAt = Date.now() / 1000;
         const receipts = await client.receipts(study.plan.id);
-        // Another study may have been opened meanwhile.
+        // Another study may have been opened in the meantime.
         if (this.#study?.plan.id === study.plan.id) this.#study = { ...this.#study, states, receivedAt, receipts };
         this.#online = true;
       } catch (error) {
@@ -176,7 +176,7 @@ class ExperimenterPage {
       ...[this.#access.listed, this.#study, this.#notice, this.#complaint, this.#online],
       Math.floor(now),
     ]);
-    // An open list, or a field that is being typed in, is not taken away.
+    // An open list and a focused field are not replaced.
     if (key === this.#shownKey || this.#pressing || document.activeElement instanceof HTMLSelectElement) return;
     this.#shownKey = key;
     keepingFocus(this.#content, () => this.#content.replaceChildren(...this.#parts(now)));
@@ -205,7 +205,10 @@ class ExperimenterPage {
   }
 }
 
-/** Adds a study; where one of the same id has begun with another plan, as a new version of it, if the experimenter wants that. null: no. */
+/**
+ * Adds a study. If one of the same id has begun with another plan, the experimenter is asked whether to add a new
+ * version; resolves with null if not.
+ */
 async function addOrChange(client: ExperimenterClient, plan: StudyPlan, simulated: boolean): Promise<StudyInfo | null> {
   try {
     return await client.addStudy(plan, simulated);
@@ -223,7 +226,7 @@ const anotherStudy = () =>
     element('a', { href: './experimenter.html' }, 'Begin or open another study'),
   );
 
-/** Builds a table anew and gives the focus back to the button of the same row and label that had it. */
+/** Rebuilds the content and restores the focus to the button of the same row and label. */
 function keepingFocus(content: HTMLElement, build: () => void): void {
   const focused = document.activeElement?.closest('tr')?.rowIndex;
   const label = document.activeElement?.textContent;

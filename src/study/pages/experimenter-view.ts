@@ -7,27 +7,27 @@ import type { ParticipantState, Receipt, StudyInfo } from '../model/progress/stu
 import { type ParticipantActions, participantHeads, participantRow } from './participant-row';
 import { tableNode } from './table';
 
-/** A study as the experimenter's page has it open. */
+/** A study that is open on the experimenter's page. */
 export interface OpenStudy extends StudyInfo {
   readonly states: readonly ParticipantState[];
-  /** When the server told them, by the clock of this page [s since 1970]. */
+  /** The time at which the states were received, by the clock of this page [s since 1970]. */
   readonly receivedAt: number;
   readonly receipts: readonly Receipt[];
 }
 
 export interface StudyActions extends ParticipantActions {
-  /** Sends simulated participants through the plan. */
+  /** Stores simulated participants of the plan in a separate study. */
   simulate(): void;
-  /** Of a simulated study alone: deletes it whole. */
+  /** Deletes a simulated study completely. */
   deleteSimulated(): void;
-  /** Of this version of the plan. */
+  /** Exports the records under this version of the plan. */
   exportAll(version: number): void;
 }
 
 export const receiptText = ({ number, participant, reason, records, motionFiles, at }: Receipt) =>
   `Receipt ${number}: ${participant}, ${reason}, ${records} records and ${motionFiles} recordings, ${new Date(at * 1000).toLocaleString()}`;
 
-/** "Version 2 is for those who come now; P01 and P02 stay with version 1."; empty: there is only one. */
+/** Returns a sentence about the versions of the plan, or an empty text if there is only one. */
 export function versionsText({ versions }: Pick<OpenStudy, 'versions'>): string {
   const newest = versions.at(-1);
   if (!newest || versions.length < 2) return '';
@@ -37,15 +37,18 @@ export function versionsText({ versions }: Pick<OpenStudy, 'versions'>): string 
     .map(({ version, participants }) => `with version ${version}: ${participants.join(', ')}`);
   return (
     `The plan was changed: version ${newest.version} is for those who begin now. ` +
-    `Who stays ${stays.join('; ')}. Results and exports keep the versions apart.`
+    `Earlier participants stay ${stays.join('; ')}. Results and exports keep the versions apart.`
   );
 }
 
-/** The plan of this version, which a participant follows; of none that is known: the newest. */
+/** Returns the plan of the version that a participant follows, or the newest plan. */
 export const planOf = ({ plan, versions }: Pick<OpenStudy, 'plan' | 'versions'>, followed: number | undefined) =>
   versions.find(({ version }) => version === followed)?.plan ?? plan;
 
-/** An open study, as of `now` [s since 1970, by the clock of this page]: what it is, its participants, what was deleted. */
+/**
+ * Returns the parts of an open study at `now` [s since 1970, by the clock of this page]: heading, participants,
+ * receipts.
+ */
 export const openStudy = (study: OpenStudy, now: number, actions: StudyActions): readonly Node[] => [
   ...studyHead(study, actions),
   tableNode(
@@ -67,7 +70,7 @@ export const openStudy = (study: OpenStudy, now: number, actions: StudyActions):
 function studyHead(study: OpenStudy, actions: StudyActions): readonly Node[] {
   const { plan, simulated, retentionUntil, versions } = study;
   const until = new Date(retentionUntil * 1000).toLocaleDateString();
-  const notice = 'SIMULATED: in this study a program takes part. Its data say nothing about people.';
+  const notice = 'SIMULATED: a program takes part in this study. Its data say nothing about people.';
   return [
     ...(simulated ? [element('p', { class: 'simulated' }, notice)] : []),
     element('h2', {}, studyTitle(plan)),
@@ -95,14 +98,14 @@ function studyHead(study: OpenStudy, actions: StudyActions): readonly Node[] {
   ];
 }
 
-/** To every screen of the plan as participants see it. */
+/** Returns the link to a preview of every screen of the plan. */
 function previewLink(plan: StudyPlan): HTMLElement {
   const link = element('a', { href: './preview.html' }, 'Preview');
   link.addEventListener('click', () => storePreviewPlan(plan));
   return link;
 }
 
-/** What to know before the first participant comes. */
+/** Returns the remarks to read before the first participant comes. */
 const remarkList = (remarks: readonly string[]): readonly Node[] =>
   remarks.length === 0
     ? []
@@ -123,7 +126,7 @@ const receiptList = (receipts: readonly Receipt[]): readonly Node[] =>
         element('ul', {}, ...receipts.map((receipt) => element('li', {}, receiptText(receipt)))),
       ];
 
-/** A study to be begun: `name` for messages, `json` reads its file. */
+/** A new study: `name` is for messages, `json` reads its file. */
 export interface NewStudy {
   readonly name: string;
   readonly simulated: boolean;
@@ -132,11 +135,11 @@ export interface NewStudy {
 
 export interface NewStudyActions {
   begin(study: NewStudy): void;
-  /** Hears of the mark whenever it changes: the card is built anew when a file was wrong. */
+  /** Called when the mark changes, because the card is rebuilt after an invalid file. */
   mark(simulated: boolean): void;
 }
 
-/** Where a study is begun; `marked`: as simulated. */
+/** Returns the card on which a study is started; `marked`: it is marked as simulated. */
 export function newStudyCard(marked: boolean, { begin, mark }: NewStudyActions): HTMLElement {
   const file = element('input', { type: 'file', accept: '.json,application/json', 'aria-label': 'Study file' });
   const simulated = element('input', { type: 'checkbox', checked: marked });
@@ -157,7 +160,7 @@ export function newStudyCard(marked: boolean, { begin, mark }: NewStudyActions):
         begin({ name: 'The paper’s study', simulated: simulated.checked, json: paper }),
       ),
       element('label', {}, element('span', {}, 'Or a study file (JSON, docs/study.md)'), file),
-      element('a', { href: './preview.html' }, 'Look at a study file first'),
+      element('a', { href: './preview.html' }, 'Preview a study file first'),
       element('label', { class: 'inline' }, simulated, element('span', {}, 'simulated: a program takes part')),
     ),
   );

@@ -2,7 +2,9 @@ import { offerDownload } from 'threepoint-ui/downloads';
 import { button, element } from 'threepoint-ui/element';
 import { pngOf, svgText } from './charts';
 
-/** A picture with its caption, which saves as SVG and PNG under the name of a file without its ending. */
+/**
+ * Returns a picture with its caption and buttons that save it as SVG and PNG; `file` is a name without its extension.
+ */
 export function figure(svg: SVGSVGElement, caption: string, file: string): HTMLElement {
   svg.setAttribute('role', 'img');
   svg.setAttribute('aria-label', caption);

@@ -17,10 +17,10 @@ const frameTimeHeads = [
   { text: 'max', numeric: true },
   { text: 'mean', numeric: true },
   { text: 'worst p95', numeric: true, title: 'Largest of the trials’ 95th percentiles' },
-  { text: 'late', numeric: true, title: 'Frames shown later than the device wanted' },
+  { text: 'late', numeric: true, title: 'Frames that were shown late' },
 ] as const;
 
-/** Work per frame; where there are cohorts, of each for itself. */
+/** Returns the work per frame, separately for each cohort. */
 export function frameTimeParts({ study, titleOf, labelOf, fileOf, factsOf }: ShownResults): readonly Node[] {
   const { plan, records } = study;
   const times = frameTimes(records, cohortIn(plan));

@@ -9,11 +9,11 @@ import { type TableRow, tableNode } from './table';
 
 const heads = [
   { text: 'Measure' },
-  { text: 'n', title: 'Participants (of scores: groups) whose values are complete', numeric: true },
+  { text: 'n', title: 'Participants (for scores: groups) with complete values', numeric: true },
   { text: 'effect' },
   { text: 'F', numeric: true },
   { text: 'df', numeric: true },
-  { text: 'p', title: 'Corrected by Greenhouse and Geisser’s ε where there is one', numeric: true },
+  { text: 'p', title: 'Corrected by Greenhouse and Geisser’s ε, if there is one', numeric: true },
   { text: 'ε', title: 'Greenhouse and Geisser', numeric: true },
   { text: 'partial η²', title: 'With its 90 % confidence interval', numeric: true },
   { text: 'Holm p', title: 'Adjusted over all measures of this table', numeric: true },
@@ -26,7 +26,7 @@ const heads = [
   { text: 'Holm p (χ²)', numeric: true },
 ] as const;
 
-/** The rows of one measure: an effect each. What is tested by ranks stands beside the first. */
+/** Returns a row for each effect of a measure. The test by ranks is in the first row. */
 function rowsOf(results: ShownResults, one: OverallComparison, tagged: boolean): readonly TableRow[] {
   const { n, variance, ranks, holmP, ranksHolmP } = one;
   return effectsOf(variance).map(([name, effect], index) => {
@@ -50,7 +50,7 @@ function rowsOf(results: ShownResults, one: OverallComparison, tagged: boolean):
   });
 }
 
-/** One family: a table of all conditions and cohorts at once, and who was left out of it. */
+/** Returns the table of one family of tests with the participants that are left out. */
 function familyParts(
   results: ShownResults,
   { file, caption }: { readonly file: string; readonly caption: (count: number) => string },
@@ -71,14 +71,23 @@ function familyParts(
     bar(csvButton(overallTable(file, compared, factsOf(planned ? 'planned' : 'explored')), fileOf(file))),
     ...(leftOut.length === 0
       ? []
-      : [element('p', { class: 'soft' }, `Left out somewhere for want of a valid value: ${leftOut.join(', ')}.`)]),
+      : [
+          element(
+            'p',
+            { class: 'soft' },
+            `Left out of some analyses because a value is missing:  ${leftOut.join(', ')}.`,
+          ),
+        ]),
     ...(planned ? [plannedNote()] : []),
   ];
 }
 
 const analyses = 'analyses of variance, and tests by ranks';
 
-/** Analyses of all conditions and cohorts at once; none for two conditions without cohorts, which are compared in pairs. */
+/**
+ * Returns the analyses of all conditions and cohorts at once; nothing for two conditions without cohorts, which are
+ * compared in pairs.
+ */
 export function overallResults(results: ShownResults): readonly Node[] {
   const { study, measures } = results;
   if (!comparedAsAWhole(study.plan)) return [];

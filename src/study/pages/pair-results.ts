@@ -13,7 +13,7 @@ function saved({ results, conditions }: Pairs, file: string, comparisons: readon
   return bar(csvButton(comparisonTable(file, [{ conditions, comparisons }], facts), results.fileOf(file)));
 }
 
-/** What the plan named beforehand, a family of its own; below it everything is shown once more, as explored. */
+/** Returns the planned measures as a separate family; the exploratory results below show them again. */
 function plannedParts(pairs: Pairs): readonly Node[] {
   const { planned } = pairs;
   if (planned.length === 0) return [];
@@ -68,7 +68,7 @@ function scoreParts(pairs: Pairs): readonly Node[] {
   ];
 }
 
-/** Two conditions, first − second: figures, tables, and who was left out of them. */
+/** Returns the comparison of two conditions, first − second: figures, tables and the participants that are left out. */
 export function pairResults(
   results: ShownResults,
   conditions: readonly [string, string],
@@ -88,10 +88,10 @@ export function pairResults(
     planned: compareConditions(measures.planned, conditions).comparisons,
   };
   const { first, second } = pairs.labels;
-  const said = `Differences are ${first} − ${second}, paired within participants (scores of groups: within groups). Tests are two-sided; * marks Holm’s p below .05 over the table that it stands in (scores: points and per cent apart).`;
+  const note = `Differences are ${first} − ${second}, paired within participants (scores of groups: within groups). Tests are two-sided; * marks Holm’s p below .05, adjusted over its table (scores: points and per cent separately).`;
   return {
     nodes: [
-      element('p', { class: 'soft' }, said),
+      element('p', { class: 'soft' }, note),
       ...plannedParts(pairs),
       ...answerParts(pairs),
       ...scaleParts(pairs),

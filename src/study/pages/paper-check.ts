@@ -4,7 +4,7 @@ import { paperTable } from '../model/results/result-tables';
 import { csvButton, fixed, paperAboutOf, pText } from './result-cells';
 import { tableNode } from './table';
 
-/** The paper's printed numbers, recomputed from its t values and tables. */
+/** Returns the paper's printed numbers, recomputed from its t values and tables. */
 export function paperCheck(): readonly Node[] {
   const rows = checkedPaperRows();
   const wrong = rows.filter(({ follows }) => !follows).map(({ question }) => question);
@@ -13,7 +13,7 @@ export function paperCheck(): readonly Node[] {
     element(
       'p',
       {},
-      `From the t values of its tables 9 and 10 with ${paperDf} degrees of freedom every p is computed anew. Printed values that do not follow from their t: ${wrong.join(' and ')}. The paper corrects for none of its twelve tests; Holm’s correction stands beside.`,
+      `From the t values of its tables 9 and 10 with ${paperDf} degrees of freedom every p is recomputed. Printed values that do not match their t: ${wrong.join(' and ')}. The paper does not correct its twelve tests; Holm-adjusted values are shown next to it.`,
     ),
     tableNode(
       'Anvari, Park and Kim 2023, tables 9 and 10, recomputed',

@@ -6,7 +6,7 @@ import { clockText } from '../model/progress/progress';
 import type { ParticipantState, StudyCommand } from '../model/progress/study-api';
 import type { TableRow } from './table';
 
-/** A page that has been silent for longer than this is lost [s]. */
+/** A page that was silent for longer than this counts as lost [s]. */
 const silentAfter = 12;
 
 /** What an experimenter can do about a participant. */
@@ -35,13 +35,13 @@ export const participantHeads = [
   { text: 'Page' },
 ] as const;
 
-/** The plan that a participant follows; `several`: not all follow the same version. */
+/** The plan that a participant follows; `several`: participants follow different versions. */
 export interface FollowedPlan {
   readonly plan: StudyPlan;
   readonly several: boolean;
 }
 
-/** A participant's line in the table, `age` seconds after the server told the state. */
+/** Returns a participant's row, `age` seconds after the state was received. */
 export function participantRow(
   state: ParticipantState,
   { plan, several }: FollowedPlan,
@@ -74,7 +74,7 @@ const heardText = (seconds: number) =>
       ? `${Math.round(seconds / 60)} min ago`
       : `${Math.round(seconds / 3600)} h ago`;
 
-/** "Archery, block 2 (ik), trial": the experimenter may know the condition. */
+/** Returns the place as "Archery, block 2 (ik), trial". Experimenters may know the condition. */
 function placeText(schedule: Schedule, id: string): string {
   const step = schedule.steps.find((other) => other.id === id);
   if (!step) return id;
@@ -86,9 +86,9 @@ function placeText(schedule: Schedule, id: string): string {
   return `${step.task}, block ${step.block}${of}: ${step.kind}`;
 }
 
-/** The cohort, where the plan has some, and the order of conditions in each task. */
+/** Returns the cohort, if there is one, and the order of conditions in each task. */
 function orderTexts(schedule: Schedule, of: StudyPlan): readonly string[] {
-  // A name of a condition or cohort is not divided between two lines.
+  // Makes a name that is not broken between two lines.
   const whole = (id: string) => id.replaceAll('-', '\u2011');
   const orders = of.tasks.map(({ id, groupSize }) => {
     const blocks = schedule.steps.flatMap((step) =>
@@ -138,7 +138,7 @@ function actionsCell(
   );
 }
 
-/** The participant's page: to open here, to copy, and the invitation to type where a link cannot be sent. */
+/** Returns the participant's page to open or to copy, and the invitation to type if a link cannot be sent. */
 function linkCell(
   study: string,
   { participant, invitation }: ParticipantState,
@@ -158,7 +158,7 @@ function linkCell(
     ),
     element(
       'code',
-      { class: 'soft', title: 'The invitation: what the page asks for where it was not in the link' },
+      { class: 'soft', title: 'The invitation, which the page asks for if the link lacks it' },
       invitation,
     ),
   );

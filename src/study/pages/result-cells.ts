@@ -6,7 +6,7 @@ import { type Table, tidyCsv } from '../model/tables/tidy-csv';
 import type { Interval } from '../statistics/summaries';
 import type { ShownResults } from './shown-results';
 
-/** Where there is no number. */
+/** The text of a cell without a number. */
 export const none = '–';
 export const fixed = (value: number | null | undefined, digits: number) =>
   value == null ? none : value.toFixed(digits).replace('-', '−');
@@ -17,34 +17,34 @@ const interval = (between: Interval | null | undefined, digits: number) =>
 export const meanCell = (mean: number | undefined, between: Interval | null | undefined, digits: number): Node =>
   element('div', {}, fixed(mean, digits), element('div', { class: 'soft interval' }, interval(between, digits)));
 
-/** The name of a measure, with a mark where the plan names it and not all that stands in the table is planned. */
+/** Returns the name of a measure, marked if it is planned and the table also has others. */
 export const measureCell = ({ nameOf, factsOf }: ShownResults, measure: Measured, tagged: boolean): Node =>
   element(
     'span',
     {},
     nameOf(measure),
     ...(tagged && factsOf('explored').isPlanned(measure)
-      ? [' ', element('span', { class: 'badge', title: 'Its planned test stands in the table above' }, 'planned')]
+      ? [' ', element('span', { class: 'badge', title: 'Its planned test is in the table above' }, 'planned')]
       : []),
   );
 
-/** What a question of the paper asks about; empty: it is none of them. */
+/** Returns the subject of a question of the paper, or an empty text for other questions. */
 export const paperAboutOf = (id: string): string =>
   [shippedQuestionnaires.archery, shippedQuestionnaires.ball]
     .flatMap((asked) => asked?.questions ?? [])
     .find((question) => question.id === id)?.about ?? '';
 
-/** Saves a table as `file`.csv. */
+/** Returns a button that saves a table as `file`.csv. */
 export const csvButton = (table: Table, file: string) =>
   button('CSV', () => offerDownload(`${file}.csv`, 'text/csv;charset=utf-8', tidyCsv(table)), { class: 'small' });
 
-/** Buttons in a row. */
+/** Returns buttons in a row. */
 export const bar = (...buttons: readonly Node[]) => element('div', { class: 'bar' }, ...buttons);
 
-/** What stands below planned tests. */
+/** Returns the note below planned tests. */
 export const plannedNote = () =>
   element(
     'p',
     { class: 'soft', role: 'note' },
-    'What follows is exploratory: Holm’s p there is over the table that it stands in.',
+    'The following results are exploratory: Holm’s p is adjusted over each table.',
   );

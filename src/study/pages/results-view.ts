@@ -14,17 +14,17 @@ import { pairResults } from './pair-results';
 import { bar } from './result-cells';
 import { type ShownResults, type ShownStudy, shownResults } from './shown-results';
 
-/** What is compared on the page: first − second. */
+/** The sides that are compared on the page: first − second. */
 export interface Selection {
   /** null: the plan has one condition. */
   readonly conditions: readonly [string, string] | null;
   /** null: the plan has no cohorts. */
   readonly cohorts: readonly [string, string] | null;
-  /** Conditions under which cohorts are compared. */
+  /** The conditions under which cohorts are compared. */
   readonly under: readonly string[];
 }
 
-/** The second against the first: what comes first in the plan is what others are compared with. */
+/** Returns the initial selection: the second entry of the plan against the first, which is the reference. */
 export function firstSelection(plan: Pick<StudyPlan, 'conditions' | 'cohorts'>): Selection {
   const pairOf = ([baseline, other]: readonly { readonly id: string }[]) =>
     baseline && other ? ([other.id, baseline.id] as const) : null;
@@ -32,7 +32,7 @@ export function firstSelection(plan: Pick<StudyPlan, 'conditions' | 'cohorts'>):
   return { conditions: pairOf(plan.conditions), cohorts: pairOf(plan.cohorts ?? []), under };
 }
 
-/** "P03, P07: voided: the phone rang (archery)"; alike reasons in one line. */
+/** Returns lines such as "P03, P07: voided: the phone rang (archery)"; equal reasons share a line. */
 function exclusionList(all: readonly Exclusion[]): readonly string[] {
   const lines = new Map<string, { who: Set<string>; of: Set<string> }>();
   for (const { participant, of, reason } of all) {
@@ -63,13 +63,13 @@ function demographicsText(records: readonly StudyRecord[]): string {
   );
 }
 
-/** What stands above all results of simulated participants. */
+/** Returns the notice above all results of simulated participants. */
 export const simulatedNotice = ({ simulated }: Pick<ShownStudy, 'simulated'>): readonly Node[] => {
   const text = 'SIMULATED: a program made these data. They say nothing about people.';
   return simulated ? [element('p', { class: 'simulated', role: 'note' }, text)] : [];
 };
 
-/** Everything computed from a study: figures, tables, exclusions. `choose` is told what is to be compared instead. */
+/** Returns everything computed from a study: figures, tables, exclusions. `choose` is called with another selection. */
 export function studyResults(
   study: ShownStudy,
   selection: Selection,
@@ -97,7 +97,7 @@ function summary({ study: { plan, records }, measures }: ShownResults): readonly
   const planned =
     measures.planned.length === 0
       ? 'The plan names no measure as planned: everything here is exploratory.'
-      : 'What the plan names stands first, as a family of its own. All other tables are exploratory; what is planned is marked in them.';
+      : 'Planned measures come first, as a separate family. All other tables are exploratory; planned measures are marked in them.';
   return [
     element(
       'section',
@@ -166,8 +166,8 @@ function leftOutParts({ study: { records } }: ShownResults, all: readonly Exclus
   });
   return [
     element('h2', {}, 'Left out'),
-    excluded.length === 0 ? element('p', {}, 'Nothing was left out of what is compared above.') : listNode(excluded),
-    element('p', { class: 'soft' }, 'Tutorials and attempts that were interrupted are recorded and never evaluated.'),
+    excluded.length === 0 ? element('p', {}, 'Nothing was left out of the comparisons above.') : listNode(excluded),
+    element('p', { class: 'soft' }, 'Tutorials and interrupted attempts are recorded but not evaluated.'),
     ...(assisted.length === 0 ? [] : [element('h2', {}, 'Played with aids'), listNode(assisted)]),
   ];
 }

@@ -1,17 +1,17 @@
 import { button, element } from 'threepoint-ui/element';
 import { askInDialog } from './ask-in-dialog';
 
-/** What a dialog asks. */
+/** The texts of a dialog that asks for a sentence. */
 export interface Asked {
   readonly title: string;
   readonly label: string;
-  /** What the button says that confirms. */
+  /** The label of the confirming button. */
   readonly confirm: string;
-  /** More to choose, below the field. */
+  /** Further controls below the field. */
   readonly extra?: readonly Node[];
 }
 
-/** Asks for a sentence in a dialog; null: cancelled. */
+/** Asks for a sentence in a dialog; resolves with null if it is cancelled. */
 export function askForSentence({ title, label, confirm, extra = [] }: Asked): Promise<string | null> {
   const text = element('textarea', { maxlength: 500, 'aria-label': label });
   return askInDialog<string>(title, (answer) => {

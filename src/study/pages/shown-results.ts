@@ -8,45 +8,45 @@ import type { Measured } from '../model/results/measures';
 import { isPlanned } from '../model/results/planned';
 import type { TableFacts } from '../model/results/result-tables';
 
-/** What the results are computed from. */
+/** The data from which results are computed. */
 export interface ShownStudy {
   readonly plan: StudyPlan;
   readonly simulated: boolean;
   readonly records: readonly StudyRecord[];
-  /** Of the plan, where it has several: the records are of those who followed this one. */
+  /** The version of the plan that the records follow, if the plan has several. */
   readonly planVersion?: number;
   readonly versions?: readonly PlanVersion[];
 }
 
-/** A study's measures, and what things are called. */
+/** The measures of a study and the names to show. */
 export interface ShownResults {
   readonly study: ShownStudy;
   readonly asked: readonly Questionnaire[];
   readonly measures: StudyMeasures;
-  /** Of a condition or a cohort. */
+  /** Returns the label of a condition or a cohort. */
   labelOf(id: string): string;
-  /** With its id where participants read another task's title alike. */
+  /** Returns the title of a task, with its id if another task has the same title. */
   titleOf(task: string): string;
   nameOf(measure: Measured): string;
-  /** The name of a file to save, without its ending. */
+  /** Returns the name of a file to save, without its extension. */
   fileOf(name: string): string;
   factsOf(family: TableFacts['family']): TableFacts;
 }
 
-/** Two sides that are compared, as they are shown: first − second. */
+/** Two compared sides as they are shown: first − second. */
 export interface Compared<One extends Measured & Pick<Comparison, 'first' | 'second'>> {
   readonly results: ShownResults;
   readonly labels: { readonly first: string; readonly second: string };
   readonly answers: readonly One[];
-  /** Of the scales that are computed from the answers: a family of their own. */
+  /** The comparisons of scales, which are a separate family. */
   readonly scales: readonly One[];
   readonly points: readonly One[];
   readonly percent: readonly One[];
-  /** What the plan names: answers, scales and points together. */
+  /** The comparisons that the plan names: answers, scales and points. */
   readonly planned: readonly One[];
 }
 
-/** Everything that a study measures. Throws where simulated records and records of people are mixed. */
+/** Returns the measures of a study. Throws if simulated records and records of people are mixed. */
 export function shownResults(study: ShownStudy): ShownResults {
   const { plan, simulated, records, planVersion } = study;
   const asked = questionnairesOf(plan);

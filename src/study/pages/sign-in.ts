@@ -1,12 +1,15 @@
 import { button, element } from 'threepoint-ui/element';
 
-/** Where the token stays while the tab is open; never longer, for the computer may be a shared one. */
+/**
+ * The key under which the session storage keeps the token while the tab is open. It is not kept longer, because
+ * computers are shared.
+ */
 const kept = 'threepoint-experimenter-token';
 
 export const keptToken = (): string | null => sessionStorage.getItem(kept);
 export const forgetToken = (): void => sessionStorage.removeItem(kept);
 
-/** Asks for the experimenter's token; `use` answers with a complaint, or null where the token opens. */
+/** Asks for the experimenter's token; `use` resolves with a complaint, or with null if the token is accepted. */
 export function signInForm(use: (token: string) => Promise<string | null>): HTMLElement {
   const input = element('input', {
     type: 'password',
@@ -22,11 +25,11 @@ export function signInForm(use: (token: string) => Promise<string | null>): HTML
     const token = input.value.trim();
     if (!token) return;
     go.disabled = true;
-    const said = await use(token);
+    const refusal = await use(token);
     go.disabled = false;
-    complaint.hidden = said === null;
-    complaint.textContent = said ?? '';
-    if (said === null) sessionStorage.setItem(kept, token);
+    complaint.hidden = refusal === null;
+    complaint.textContent = refusal ?? '';
+    if (refusal === null) sessionStorage.setItem(kept, token);
   }
   input.addEventListener('keydown', ({ key }) => {
     if (key === 'Enter') void open();
@@ -36,7 +39,7 @@ export function signInForm(use: (token: string) => Promise<string | null>): HTML
     { class: 'sign-in' },
     element('label', {}, element('span', {}, 'The experimenter’s token'), input),
     go,
-    element('p', { class: 'soft' }, 'The server draws it at its first start and says where it lies.'),
+    element('p', { class: 'soft' }, 'The server generates it at its first start and prints the path of its file.'),
     complaint,
   );
 }

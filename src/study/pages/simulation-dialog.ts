@@ -30,8 +30,8 @@ export function askForSimulation({
     },
   });
   const text =
-    `${participants} of them walk the plan to its end, into a study of their own that is marked SIMULATED and can be deleted at once. ` +
-    'State by how many points of a scale from 1 to 5 answers shall differ; 0 everywhere: the results should find nothing.';
+    `${participants} of them go through the plan to its end, in a separate study that is marked SIMULATED and can be deleted at once. ` +
+    'Enter by how many points of a scale from 1 to 5 answers differ. With 0 everywhere the results should find nothing.';
   return askInDialog<Simulation>('Simulate participants', (answer) => ({
     content: [
       element('p', { class: 'soft' }, text),

@@ -7,7 +7,7 @@ import type { RecordedStudy, StudyListing } from '../model/progress/study-api';
 import { forgetToken, keptToken, signInForm } from './sign-in';
 import { studySelect } from './study-select';
 
-/** The studies of this server, as a page sees them whose visitor has given the experimenter's token. */
+/** The studies of this server, for a page whose user has entered the experimenter's token. */
 export class StudyAccess {
   readonly #onChange: () => void;
   readonly #onAsked: (study: string) => void;
@@ -16,15 +16,15 @@ export class StudyAccess {
   #listed: readonly StudyListing[] = [];
 
   /**
-   * `onChange` hears when the token has opened the server, and when there turns out to be none; `onAsked`, once it has, which study the
-   * address asks for.
+   * `onChange` is called when the token is accepted and when no server is found. `onAsked` is called after that with
+   * the study in the address.
    */
   constructor(onChange: () => void, onAsked: (study: string) => void) {
     this.#onChange = onChange;
     this.#onAsked = onAsked;
   }
 
-  /** null: no token has opened the server yet. */
+  /** The client; null: no token was accepted yet. */
   get client(): ExperimenterClient | null {
     return this.#client;
   }
@@ -33,7 +33,7 @@ export class StudyAccess {
     return this.#listed;
   }
 
-  /** Signs in with the token of this tab, where there is one. */
+  /** Signs in with the token of this tab, if there is one. */
   async resume(): Promise<void> {
     void this.#server.known().then((state) => {
       if (state === 'none') this.#onChange();
@@ -42,7 +42,10 @@ export class StudyAccess {
     if (token !== null) await this.#signIn(token);
   }
 
-  /** Plan and records of a study, of this version of its plan or of the newest, which the address asks for from now on. */
+  /**
+   * Resolves with plan and records of a study under this version of its plan or the newest one, and puts the study into
+   * the address.
+   */
   async open(client: ExperimenterClient, id: string, version?: number): Promise<RecordedStudy> {
     const recorded = await client.records(id, version);
     const address = new URL(location.href);
@@ -51,19 +54,19 @@ export class StudyAccess {
     return recorded;
   }
 
-  /** Asks the server for its studies again. */
+  /** Requests the list of studies again. */
   async list(client: ExperimenterClient): Promise<void> {
     this.#listed = await client.studies();
   }
 
-  /** Where the token is given; on a host without a server, a sentence in its place. */
+  /** Returns the form for the token, or a message on a host without a server. */
   form(): HTMLElement {
     if (this.#server.state !== 'none') return signInForm((token) => this.#signIn(token));
     const ask = button('Ask again', () => void this.#server.ask().then(() => this.#onChange()));
     return element('div', { class: 'bar' }, element('p', { role: 'status' }, noStudiesHere), ask);
   }
 
-  /** The list of studies; `none`: what it says without any. */
+  /** Returns the list of studies; `none` is its text without any. */
   select(chosen: string | undefined, none: string, choose: (id: string) => void): HTMLElement {
     const list = studySelect(this.#listed, chosen, none, choose);
     return element('label', {}, element('span', {}, 'Study'), list);
@@ -76,7 +79,7 @@ export class StudyAccess {
     });
   }
 
-  /** Answers with a complaint, or null where the token opens. */
+  /** Resolves with a complaint, or with null if the token is accepted. */
   async #signIn(token: string): Promise<string | null> {
     const candidate = createExperimenterClient(token, pageFolder());
     try {

@@ -3,19 +3,19 @@ import { reasonOf } from 'threepoint/core/errors/reasons';
 import { type StudyPlan, storedPlan } from '../model/plan/plan';
 import { checkedRecord, type StudyRecord } from '../model/records/study-record';
 
-/** A study as an export holds it. */
+/** A study as an export contains it. */
 export interface OpenedStudy {
   readonly plan: StudyPlan;
   readonly simulated: boolean;
   readonly records: readonly StudyRecord[];
-  /** Of the plan, where it has several. */
+  /** The version of the plan, if the plan has several. */
   readonly planVersion?: number;
 }
 
-/** Exports of a whole study are a few megabytes; what unpacks to more than this is none [bytes]. */
+/** The largest unpacked size of an export [bytes]. Exports of whole studies have a few megabytes. */
 const largest = 512 * 2 ** 20;
 
-/** Reads the zip file of an export; throws a sentence that names the file in it and what is wrong. */
+/** Reads the zip file of an export; throws an Error that names the file in it and what is wrong. */
 export function openStudyFile(zip: Uint8Array): OpenedStudy {
   let files: Record<string, Uint8Array>;
   let size = 0;
@@ -28,11 +28,11 @@ export function openStudyFile(zip: Uint8Array): OpenedStudy {
       },
     });
   } catch (error) {
-    throw new Error(`This is no export of a study: ${reasonOf(error)}.`);
+    throw new Error(`This is not an export of a study: ${reasonOf(error)}.`);
   }
   const json = (name: string): unknown => {
     const path = Object.keys(files).find((path) => path === name || path.endsWith(`/${name}`));
-    if (!path) throw new Error(`This is no export of a study: it holds no ${name}.`);
+    if (!path) throw new Error(`This is not an export of a study: it has no ${name}.`);
     try {
       return JSON.parse(strFromU8(files[path] as Uint8Array));
     } catch (error) {
@@ -51,7 +51,7 @@ export function openStudyFile(zip: Uint8Array): OpenedStudy {
       throw new Error(`records.json: records[${index}]: ${reasonOf(error)}`);
     }
   });
-  // Exports of a plan that was never changed, and older ones, name no version.
+  // Exports of an unchanged plan, and older ones, name no version.
   const versionPart =
     'planVersion' in file && typeof file.planVersion === 'number' ? { planVersion: file.planVersion } : {};
   return { plan, records, simulated: 'simulated' in file && file.simulated === true, ...versionPart };

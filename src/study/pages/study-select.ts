@@ -1,7 +1,9 @@
 import { element } from 'threepoint-ui/element';
 import type { StudyListing } from '../model/progress/study-api';
 
-/** The studies of a server, to choose one from; `choose` gets its id, or an empty text. `none`: what the list says without any. */
+/**
+ * Returns the list of studies; `choose` receives an id or an empty text. `none` is the text of the list without any.
+ */
 export function studySelect(
   listed: readonly StudyListing[],
   chosen: string | undefined,
@@ -18,7 +20,7 @@ export function studySelect(
     }),
   );
   select.addEventListener('change', () => {
-    // A page that is drawn anew leaves a list alone that has the focus.
+    // The page does not redraw a list that has the focus.
     select.blur();
     choose(select.value);
   });

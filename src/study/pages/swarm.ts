@@ -1,7 +1,7 @@
 /**
- * Where dots of one diameter stand beside the middle of a strip so that none hides another, in the order of the values: each as near to
- * the middle as those before it leave room. Values and results in diameters; where the strip is narrower than the swarm, all move closer
- * together and dots overlap.
+ * Places dots of equal diameter beside the middle of a strip without overlap, in the order of the values, as near to
+ * the middle as possible. Values and results are in diameters. If the strip is narrower than the swarm, all dots move
+ * closer together and overlap.
  */
 export function swarm(values: readonly number[], width: number): readonly number[] {
   const placed: { readonly value: number; readonly beside: number }[] = [];
@@ -12,7 +12,7 @@ export function swarm(values: readonly number[], width: number): readonly number
     const near = placed.filter((other) => value - other.value < 1);
     const isFree = (beside: number) =>
       near.every((other) => Math.hypot(value - other.value, beside - other.beside) >= 1 - 1e-9);
-    // Touching one that is there already, or in the middle: the nearest place is one of these.
+    // The nearest free position touches an earlier dot or is in the middle.
     const candidates = near.flatMap((other) => {
       const aside = Math.sqrt(1 - (value - other.value) ** 2);
       return [other.beside + aside, other.beside - aside];

@@ -1,6 +1,6 @@
 import { element } from 'threepoint-ui/element';
 
-/** A cell: text, or a node of one's own. */
+/** A cell: text or a node. */
 export type TableCell = string | Node;
 
 export interface TableHead {
@@ -14,7 +14,7 @@ export interface TableRow {
   readonly look?: string;
 }
 
-/** A table with a caption; columns that hold numbers stand to the right. `dense`: there are many of them. */
+/** Returns a table with a caption, with numeric columns aligned to the right. `dense` is for tables with many rows. */
 export function tableNode(
   caption: string,
   heads: readonly TableHead[],

@@ -4,17 +4,17 @@ import type { MeantBlock } from '../model/progress/study-api';
 import { type OpenStudy, planOf } from './experimenter-view';
 import { askForSentence } from './sentence-dialog';
 
-/** What is to be voided. */
+/** The block to void. */
 export interface VoidedBlock {
   readonly reason: string;
   readonly repeat: boolean;
-  /** Whose block it is; more than one of those who play it together. */
+  /** The participants whose block it is, several if they play it together. */
   readonly participants: readonly string[];
-  /** null: the participant was in none. */
+  /** null: the participant is in no block. */
   readonly of: MeantBlock | null;
 }
 
-/** Where a participant is, by the plan that they follow. */
+/** Returns the place of a participant in the schedule of the plan that they follow. */
 function placeOf(study: OpenStudy, participant: string) {
   const own = study.states.find((state) => state.participant === participant);
   const schedule = scheduleFor(planOf(study, own?.version), participant);
@@ -22,13 +22,13 @@ function placeOf(study: OpenStudy, participant: string) {
   return { schedule, block: step && 'task' in step ? { task: step.task, block: step.block } : null };
 }
 
-/** Whether a participant is in this block now. */
+/** Returns whether a participant is in this block now. */
 export function isIn(study: OpenStudy, participant: string, { task, block }: MeantBlock): boolean {
   const now = placeOf(study, participant).block;
   return now?.task === task && now.block === block;
 }
 
-/** Who plays the matches of the present block with a participant, and is in it too. */
+/** Returns the participants who play the matches of the present block with this one and are in it too. */
 function companions(study: OpenStudy, participant: string): readonly string[] {
   const { schedule, block } = placeOf(study, participant);
   if (!block) return [];
@@ -41,12 +41,12 @@ const option = (text: string) => {
   return { input, node: element('label', { class: 'inline' }, input, element('span', {}, text)) };
 };
 
-/** Asks why a participant's present block is to be voided, and how; null: cancelled. */
+/** Asks why and how a participant's present block is voided; resolves with null if it is cancelled. */
 export async function askHowToVoid(study: OpenStudy, participant: string): Promise<VoidedBlock | null> {
   const others = companions(study, participant);
   const repeat = option('Repeat the block at once (otherwise the next one follows)');
   const together = option(
-    `Also for ${others.join(' and ')}: a match is played together, and one that is repeated waits for all`,
+    `Also for ${others.join(' and ')}: they play the match together, and a repeated match waits for all`,
   );
   const reason = await askForSentence({
     title: `Void the present block of ${participant}`,

@@ -5,11 +5,11 @@ import type { ParticipantSession } from './participant-session';
 
 type Answered = Pick<ParticipantSession, 'step' | 'progress' | 'apply'>;
 
-/** The questions of the step at hand; none where it is no questionnaire. */
+/** Returns the questions of the present step; none unless it is a questionnaire. */
 export const screenQuestions = ({ step }: Pick<ParticipantSession, 'step'>): readonly Question[] =>
   step.kind === 'questionnaire' ? step.questionnaire.questions : [];
 
-/** Where a participant is in the questionnaire of the step at hand. */
+/** The position of a participant in the questionnaire of the present step. */
 export class Answering {
   readonly #session: Answered;
   #question = 0;
@@ -20,22 +20,22 @@ export class Answering {
     this.#session = session;
   }
 
-  /** Index of the question shown. */
+  /** The index of the question on display. */
   get question(): number {
     return this.#question;
   }
 
-  /** What was typed into its field; null: nothing. */
+  /** The text that was typed into its field; null: none. */
   get typed(): string | null {
     return this.#typed;
   }
 
-  /** Whether handing in failed for want of an answer. */
+  /** Whether handing in failed because an answer is missing. */
   get triedToSubmit(): boolean {
     return this.#triedToSubmit;
   }
 
-  /** Another step has begun: its questions begin where the first answer is missing. */
+  /** Called when another step has begun. Its questions start at the first one without an answer. */
   enterStep(): void {
     this.#triedToSubmit = false;
     this.goTo(Math.max(0, this.#firstOpenQuestion()));
@@ -46,19 +46,22 @@ export class Answering {
     this.#typed = null;
   }
 
-  /** Why the answer is not taken; null: it is. So below. */
+  /** Answers a question; returns why the answer is refused, or null if it is taken. */
   choose(question: string, value: Answer): string | null {
     return this.#session.apply({ type: 'answer', question, value });
   }
 
-  /** What stands in a field is the answer as soon as it is one; until then there is none. */
+  /**
+   * Takes typed text as the answer if it is valid, and otherwise removes the answer; returns why that is refused, or
+   * null.
+   */
   type(question: Question, typed: string): string | null {
     this.#typed = typed;
     const value = typedAnswer(question.answer, typed);
     return this.#session.apply({ type: 'answer', question: question.id, value });
   }
 
-  /** Whether all is answered that must be; else the first open question is shown. */
+  /** Returns whether every required question is answered; otherwise shows the first open one. */
   readyToSubmit(): boolean {
     const open = this.#firstOpenQuestion();
     if (open < 0) return true;
@@ -67,7 +70,7 @@ export class Answering {
     return false;
   }
 
-  /** Index of the first question without an answer; −1: there is none. */
+  /** Returns the index of the first required question without an answer, or −1. */
   #firstOpenQuestion(): number {
     const questions = screenQuestions(this.#session);
     const [open] = unanswered({ questions }, this.#session.progress.draft);

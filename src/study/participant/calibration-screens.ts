@@ -5,7 +5,7 @@ import { askToStopButton, calibrateButton, enterButton, pauseButton, type Screen
 import type { StudyScreen } from './study-screen';
 import type { StudySituation } from './study-situation';
 
-/** Of a participant who is to be measured: putting the headset on, what keeps them from beginning, measuring. */
+/** Returns the screens before and during a measurement: putting the headset on, faults of the set-up, measuring. */
 export function calibrationScreen(
   parts: ScreenParts,
   { session, inSession, calibration, setupFaults }: StudySituation,
@@ -35,7 +35,7 @@ export function calibrationScreen(
   };
 }
 
-/** What keeps a participant who is alone from beginning, and whom they can ask. */
+/** Shows why a participant who takes part alone cannot begin, and the contact. */
 function setupScreen(
   parts: ScreenParts,
   { contact }: RemoteTerms,
@@ -52,7 +52,7 @@ function setupScreen(
   };
 }
 
-/** What a step of measuring says in one word or figure. */
+/** Returns a step of the measurement in one word or number. */
 function headlineOf(step: Exclude<CalibrationStep, { kind: 'failed' }>, { say }: Phrases): string {
   if (step.kind === 'countdown') return String(Math.ceil(step.secondsLeft));
   return step.kind === 'measuring' ? say('measuring.hold') : say('measuring.done');

@@ -6,11 +6,11 @@ import { languageChoice } from './language-choice';
 
 function box() {
   const input = element('input', { type: 'checkbox' });
-  const said = element('span', {});
-  return { input, said, node: element('label', { class: 'check' }, input, said) };
+  const label = element('span', {});
+  return { input, label, node: element('label', { class: 'check' }, input, label) };
 }
 
-/** The text consented to, in the language chosen; `onLanguage` hears in which the page speaks from then on. */
+/** Returns the form of consent in the chosen language; `onLanguage` is called with the phrases of another one. */
 export function consentForm(
   { study, language: first, ...actions }: FormOf<'consent'>,
   onLanguage: (phrases: Phrases) => void,
@@ -39,22 +39,22 @@ export function consentForm(
     choice.label(say('language'));
     kicker.textContent = say('consent.kicker', { version: consent.version });
     simulation.textContent = say('consent.simulated');
-    agreed.said.textContent = say('consent.understood');
+    agreed.label.textContent = say('consent.understood');
     note.textContent = say('consent.nothingRecorded');
     go.textContent = say('consent.agree');
     decline.textContent = say('consent.decline');
     title.textContent = inLanguage(consent.title, language);
     texts.replaceChildren(...paragraphs(consent.paragraphs.map((one) => inLanguage(one, language))));
-    for (const node of [title, texts, ...(motion ? [motion.said] : [])]) node.lang = language;
-    if (motion && consent.motion !== null) motion.said.textContent = inLanguage(consent.motion, language);
+    for (const node of [title, texts, ...(motion ? [motion.label] : [])]) node.lang = language;
+    if (motion && consent.motion !== null) motion.label.textContent = inLanguage(consent.motion, language);
   }
 
   async function agree(): Promise<void> {
     go.disabled = true;
     const chosen = languages.length > 1 ? phrases.language : null;
-    const said = await actions.agree({ motion: motion?.input.checked ?? false, language: chosen });
-    if (said === null) return;
-    complaint.say(said);
+    const refusal = await actions.agree({ motion: motion?.input.checked ?? false, language: chosen });
+    if (refusal === null) return;
+    complaint.say(refusal);
     go.disabled = false;
   }
 

@@ -43,7 +43,7 @@ function fieldNode(field: DemographicField, { say }: Phrases): FieldNode {
   };
 }
 
-/** What is wrong with an answer; null: nothing. */
+/** Returns what is wrong with an answer, or null. */
 function complaintAbout(field: DemographicField, given: Given, { say }: Phrases): string | null {
   if (given === undefined || given === '') return mayStayOpen(field) ? null : say('about.missing');
   if (field.kind !== 'age' || typeof given !== 'number') return null;
@@ -51,7 +51,7 @@ function complaintAbout(field: DemographicField, given: Given, { say }: Phrases)
   return Number.isInteger(given) && given >= from && given <= to ? null : say('about.ageRange', { from, to });
 }
 
-/** What the paper asked of its participants before they played. */
+/** Returns the form with the questions that the paper asked its participants before they played. */
 export function demographicsForm({ phrases, done, stop }: FormOf<'demographics'>): readonly Node[] {
   const { say } = phrases;
   const complaint = complaintLine();
@@ -71,8 +71,8 @@ export function demographicsForm({ phrases, done, stop }: FormOf<'demographics'>
       first.node.scrollIntoView({ block: 'center' });
       return;
     }
-    const said = done(Object.fromEntries(fields.map(({ field, value }) => [field.id, value()])));
-    if (said !== null) complaint.say(said);
+    const refusal = done(Object.fromEntries(fields.map(({ field, value }) => [field.id, value()])));
+    if (refusal !== null) complaint.say(refusal);
   }
   return [
     element('p', { class: 'kicker' }, say('about.kicker')),

@@ -9,13 +9,13 @@ import type { Invited, StudyForm } from './study-form';
 
 function participantForm({
   phrases: { say },
-  complaint: said,
+  complaint: fault,
   known,
   go,
   decline,
 }: FormOf<'participant'>): readonly Node[] {
   const complaint = complaintLine();
-  if (said !== null) complaint.say(said);
+  if (fault !== null) complaint.say(fault);
   const field = (name: keyof Invited, label: string, placeholder: string, maxlength: number) => {
     const attributes = { type: 'text', name, placeholder, maxlength, autocomplete: 'off' };
     const input = element('input', { ...attributes, value: known[name] ?? '' });
@@ -23,7 +23,7 @@ function participantForm({
       if (key === 'Enter') submit.click();
     });
     return {
-      said: () => input.value.trim().toUpperCase(),
+      value: () => input.value.trim().toUpperCase(),
       node: element('label', { class: 'field' }, element('span', {}, label), input),
     };
   };
@@ -32,7 +32,7 @@ function participantForm({
   const submit = button(
     say('continue'),
     () => {
-      const answer = { participant: participant.said(), invitation: invitation.said() };
+      const answer = { participant: participant.value(), invitation: invitation.value() };
       if (!/^P\d{2,3}$/.test(answer.participant)) complaint.say(say('entrance.wrongCode'));
       else if (answer.invitation === '') complaint.say(say('entrance.noInvitation'));
       else go(answer);
@@ -83,7 +83,7 @@ function lockedOutForm({
   participant,
   unsent,
   contact,
-  anew,
+  restart,
 }: FormOf<'locked-out'>): readonly Node[] {
   return [
     element('p', { class: 'kicker trouble' }, say('study')),
@@ -93,11 +93,11 @@ function lockedOutForm({
       ...(contact === null ? [] : [say('lockedOut.contact', { contact })]),
     ]),
     ...(unsent > 0 ? [element('p', { class: 'hint' }, say('lockedOut.unsent', { count: unsent }))] : []),
-    element('div', { class: 'row' }, button(say('lockedOut.anew'), anew)),
+    element('div', { class: 'row' }, button(say('lockedOut.restart'), restart)),
   ];
 }
 
-/** What leads nowhere: a heading, and why. */
+/** Returns a final page: a heading and a reason. */
 function lastWords(kicker: string, title: string, text: string, trouble: boolean): readonly Node[] {
   return [
     element('p', { class: trouble ? 'kicker trouble' : 'kicker' }, kicker),
@@ -106,7 +106,7 @@ function lastWords(kicker: string, title: string, text: string, trouble: boolean
   ];
 }
 
-/** `onLanguage` hears of another language that is chosen on the form. */
+/** Returns the nodes of a form; `onLanguage` is called when another language is chosen on it. */
 export function formNodes(form: StudyForm, onLanguage: (phrases: Phrases) => void): readonly Node[] {
   const { say } = form.phrases;
   switch (form.kind) {
@@ -127,6 +127,6 @@ export function formNodes(form: StudyForm, onLanguage: (phrases: Phrases) => voi
   }
 }
 
-/** Small, at the foot of a form. */
+/** Returns the small text at the foot of a form. */
 export const formNote = (form: StudyForm): string =>
   form.kind === 'consent' ? `${inLanguage(form.study.title, form.phrases.language)} · ${form.participant}` : '';

@@ -5,7 +5,7 @@ export type FormOf<Kind extends StudyForm['kind']> = Extract<StudyForm, { kind: 
 
 export const paragraphs = (texts: readonly string[]) => texts.map((text) => element('p', {}, text));
 
-/** A line that says what is wrong with a form, announced. */
+/** A line with the complaint about a form, which screen readers announce. */
 export function complaintLine(): { readonly node: HTMLElement; say(text: string): void; hide(): void } {
   const node = element('p', { class: 'hint', role: 'alert' });
   node.hidden = true;

@@ -1,9 +1,9 @@
 import { element } from 'threepoint-ui/element';
 
-/** A choice of languages, each in its own words; `onChoice` hears of the one chosen. */
+/** A choice of languages, each in its own name; `onChoice` is called with the chosen one. */
 export interface LanguageChoice {
   readonly node: HTMLElement;
-  /** What stands over it: the word for "language". */
+  /** Sets its label, the word for "language". */
   label(text: string): void;
 }
 

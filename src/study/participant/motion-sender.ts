@@ -1,23 +1,26 @@
 import { ServerRefusal, ServerUnreachable } from '../client/study-client';
 import type { SessionStore } from './session-store';
 
-/** After recordings that did not arrive so many exchanges pass at most before they are sent again: each may be 16 MiB. */
+/** The most exchanges that pass before failed uploads are repeated. Each may be 16 MiB. */
 const longestRest = 32;
 
 export interface MotionSenderOptions {
   readonly send: (trial: string, recording: string) => Promise<void>;
-  /** Told of what is neither a refusal of one recording nor a silence of the server. */
+  /** Called with an error that is neither a refusal of one recording nor a missing answer. */
   readonly onFault: (error: unknown) => void;
   readonly onChange: () => void;
 }
 
-/** Sends the recordings of a session one after the other, beside its exchanges: one may take minutes, and no command waits for it. */
+/**
+ * Uploads the recordings of a session one after the other, in parallel to its exchanges: an upload may take minutes,
+ * and commands do not wait for it.
+ */
 export class MotionSender {
   readonly #store: SessionStore;
   readonly #options: MotionSenderOptions;
   #sending: Promise<void> | null = null;
   #refusal: string | null = null;
-  /** Exchanges left out before the next attempt, and after it, should it fail too. */
+  /** The number of exchanges to skip before the next attempt; it grows if that fails too. */
   #rest = 0;
   #nextRest = 1;
 
@@ -26,12 +29,14 @@ export class MotionSender {
     this.#options = options;
   }
 
-  /** Why the server refuses a recording, however often it is sent; null: it refuses none. */
+  /** Why the server refuses a recording permanently; null: it refuses none. */
   get refusal(): string | null {
     return this.#refusal;
   }
 
-  /** Begins to send what is kept, unless that is under way or has failed a moment ago. Asked with every exchange. */
+  /**
+   * Starts to upload the kept recordings, unless an upload is under way or has just failed. Called with every exchange.
+   */
   send(): void {
     if (this.#sending || this.#store.motion.length === 0) return;
     if (this.#rest > 0) {
@@ -44,12 +49,12 @@ export class MotionSender {
     });
   }
 
-  /** Resolves when no recording is on its way; never rejects. */
+  /** Resolves when no upload is under way; never rejects. */
   sent(): Promise<void> {
     return this.#sending ?? Promise.resolve();
   }
 
-  /** What the server will not take stays and does not hold up the rest. */
+  /** A refused recording is kept and does not delay the others. */
   async #sendAll(): Promise<void> {
     let refusal: string | null = null;
     try {

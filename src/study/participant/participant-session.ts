@@ -13,69 +13,72 @@ import { sendRecords } from './send-records';
 import { SessionStore, type Unsent } from './session-store';
 import type { KeptSession, StudyVault } from './study-vault';
 
-/** Where what was recorded is now. */
+/** How much of the recorded data the server has. */
 export interface UploadStatus {
-  /** Records and recordings that the server has not acknowledged. */
+  /** The number of records and recordings that the server has not acknowledged. */
   readonly unsent: number;
-  /** Of these, how many are in the memory of the page alone, because the device has no room. */
+  /** The number of these that are only in the memory of the page, because the device could not store them. */
   readonly unsaved: number;
-  /** Why the device could not store; null: it can. */
+  /** Why the device could not store them; null: it could. */
   readonly storageFault: string | null;
-  /** Whether the server answered last time. */
+  /** Whether the server answered the last request. */
   readonly online: boolean;
-  /** What the server will not take, however often it is sent; null: nothing. */
+  /** Why the server permanently refuses data; null: it refuses none. */
   readonly refusal: string | null;
-  /** The place is no longer this device's: the experimenter released it or deleted what was recorded. */
+  /** Whether the place belongs to another device, because the experimenter released it or deleted its records. */
   readonly lockedOut: boolean;
 }
 
-/** One participant on this device: the steps, and the way of every record from here to the server. */
+/** The session of one participant on this device: its steps and the upload of its records. */
 export interface ParticipantSession {
   readonly schedule: Schedule;
   readonly progress: Progress;
   readonly step: StudyStep;
   readonly plan: KeptSession['plan'];
-  /** What the page says, in the participant's language. */
+  /** The phrases of the page in the participant's language. */
   readonly phrases: Phrases;
   readonly simulated: boolean;
-  /** null once it has been noted. */
+  /** The withdrawal code; null: the participant has noted it. */
   readonly withdrawalCode: string | null;
   readonly preferredHand: Side | null;
   /** The newest measures of the body; null: not measured yet. */
   readonly calibration: Calibration | null;
   readonly uploadStatus: UploadStatus;
-  /** Seconds left of this step; null: it has no limit. */
+  /** Returns the seconds left of this step, or null if it has no limit. */
   remaining(): number | null;
-  /** Takes an event at once and stores what follows; returns why not, null: taken. */
+  /** Applies an event and stores its consequences; returns why it is refused, or null. */
   apply(event: ProgressEvent): string | null;
   codeNoted(): void;
-  /** The participant's seat in the room of a trial that the group plays together; rejects with why there is none. */
+  /**
+   * Resolves with the participant's seat in the room of a trial that the group plays together; rejects with the reason
+   * if there is none.
+   */
   seat(trial: PlayedTogether): Promise<SignedSeat>;
-  /** Tracked frames of a trial, kept until the server has them. */
+  /** Keeps the tracking frames of a trial until the server has them. */
   keepMotion(trial: string, recording: string): void;
   /**
-   * Sends the records that are unsent, reports the progress and follows the experimenter's commands; then begins to send the recordings,
-   * for which no exchange waits. Never rejects.
+   * Sends the unsent records, reports the progress and follows the experimenter's commands, then starts to upload
+   * recordings without waiting for them. Never rejects.
    */
   exchange(): Promise<void>;
-  /** Resolves when no recording is on its way to the server: it has them, or they are tried again with a later exchange. */
+  /** Resolves when no upload of a recording is under way. Failed uploads are repeated with a later exchange. */
   motionSent(): Promise<void>;
-  /** Resolves when the device has stored everything so far, or has said that it cannot. */
+  /** Resolves when the device has stored everything so far or has reported that it cannot. */
   settled(): Promise<void>;
 }
 
 export interface ParticipantSessionOptions {
   readonly client: ParticipantClient;
-  /** null: this browser stores nothing; records stay in memory until they are sent. */
+  /** null: the browser stores nothing; records are kept in memory until they are sent. */
   readonly vault: StudyVault | null;
   /** Seconds since 1970. */
   readonly now: () => number;
   readonly onChange: () => void;
-  /** Before a command of the experimenter is followed: what has happened by then is to be told. */
+  /** Called before a command of the experimenter is followed, so that earlier results are recorded first. */
   readonly onCommand?: () => void;
 }
 
-/** The first session of a participant on this device; another one may have gone before it. */
+/** Returns the first session of a participant on this device; another device may have begun it. */
 export function startSession(claim: Claim, study: string, participant: string): KeptSession {
   const schedule = scheduleFor(claim.plan, participant);
   return {
@@ -91,7 +94,7 @@ export function startSession(claim: Claim, study: string, participant: string): 
   };
 }
 
-/** `unsent`: what an earlier visit of this page left in the vault. */
+/** `unsent` is the data that an earlier visit of this page left in the vault. */
 export const createParticipantSession = (
   kept: KeptSession,
   unsent: Unsent,
@@ -109,7 +112,7 @@ class DeviceSession implements ParticipantSession {
   #online = true;
   #refusal: string | null = null;
   #lockedOut = false;
-  /** The progress that the server was told last; null: none. */
+  /** The progress that was last reported to the server; null: none. */
   #reported: Progress | null = null;
   #exchanging: Promise<void> | null = null;
   #phrases: Phrases | null = null;
@@ -216,7 +219,10 @@ class DeviceSession implements ParticipantSession {
     return this.#store.settled();
   }
 
-  /** `command`: number of the experimenter's command that this event is; it has been followed then, even where it changes nothing else. */
+  /**
+   * `command` is the number of the experimenter's command that caused the event. It counts as followed even if nothing
+   * changes.
+   */
   #take(event: ProgressEvent, command?: number): string | null {
     const session = this.#session;
     const before = command === undefined ? session.progress : { ...session.progress, commandsSeen: command };
@@ -234,14 +240,15 @@ class DeviceSession implements ParticipantSession {
   }
 
   async #exchangeOnce(): Promise<void> {
-    // The server must not be ahead of the device: after a crash the device would tell it all again, and differently.
+    // The server must not be ahead of the device: after a crash the device would send other records for the same
+    // events.
     await this.#store.save();
     try {
       await this.#report();
       const { study, participant, token } = this.#session;
       const { commandsSeen = 0 } = this.progress;
       for (const command of await this.#client.commands(study, participant, token, commandsSeen)) this.#follow(command);
-      // What a command changed is reported at once: the experimenter waits for it.
+      // The changes of a command are reported at once, because the experimenter waits for them.
       if (this.progress !== this.#reported) await this.#report();
       this.#online = true;
       this.#motion.send();
@@ -251,7 +258,7 @@ class DeviceSession implements ParticipantSession {
     this.#onChange();
   }
 
-  /** Sends the records that are unsent, then where the participant is; before consent not even that. */
+  /** Sends the unsent records and then the progress, which is not reported before consent. */
   async #report(): Promise<void> {
     const { study, participant, token } = this.#session;
     this.#refusal = await sendRecords(this.#store, (records) => this.#client.send(study, participant, token, records));
@@ -269,13 +276,13 @@ class DeviceSession implements ParticipantSession {
     } else this.#store.noteFault(error);
   }
 
-  /** Each command is followed once, even across a reload or on another device. */
+  /** Follows each command once, even across a reload or on another device. */
   #follow({ number, command }: NumberedCommand): void {
     if (number <= (this.progress.commandsSeen ?? 0)) return;
     this.#onCommand();
     const { step, running, motion } = this.progress;
     const refusal = this.#take(command, number);
-    // The experimenter learns from the records why a command changed nothing.
+    // A record states why a command changed nothing.
     if (refusal === null || motion === null) return;
     const where = `${step}${running ? ', running' : ''}`;
     this.apply({ type: 'remark', text: `The command "${command.type}" changed nothing at ${where}: ${refusal}` });

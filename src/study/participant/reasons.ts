@@ -2,11 +2,11 @@ import { reasonOf } from 'threepoint/core/errors/reasons';
 import { PhrasedError, type Phrases } from '../model/phrases/phrases';
 import { refusals } from '../model/progress/advance';
 
-/** What was thrown, for a participant to read; what has no words of its own is technical, and stays in English. */
+/** Returns an error in the participant's language. Technical errors stay in English. */
 export const reasonFor = (error: unknown, phrases: Phrases): string =>
   error instanceof PhrasedError ? error.in(phrases) : phrases.say('reason', { reason: reasonOf(error) });
 
-/** Why a session did not take an event, for a participant to read; null: it did. */
+/** Returns why a session refused an event, in the participant's language, or null. */
 export function refusalFor(refusal: string | null, { say }: Phrases): string | null {
   if (refusal === null) return null;
   if (refusal === refusals.paused) return say('refused.paused');

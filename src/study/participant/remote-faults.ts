@@ -2,7 +2,10 @@ import { setupFaults } from '../model/plan/remote-setup';
 import type { ParticipantSession } from './participant-session';
 import type { StudyHost } from './study-host';
 
-/** What keeps a participant with no one beside them from beginning on this device; `eyeHeight` [m], null: not measured yet. */
+/**
+ * Returns what prevents a participant who takes part alone from beginning on this device; `eyeHeight` [m], null: not
+ * measured yet.
+ */
 export function remoteFaults(
   { plan: { remote }, phrases }: Pick<ParticipantSession, 'plan' | 'phrases'>,
   host: Pick<StudyHost, 'inSession' | 'deviceFault' | 'room'>,

@@ -3,7 +3,7 @@ import type { StudyScreen } from './study-screen';
 import type { StudySituation } from './study-situation';
 import type { PlayedStep } from './study-trial';
 
-/** Of a round or a practice; null while it is played. */
+/** Returns the screen of a round or a practice, or null while it is played. */
 export function roundScreen(parts: ScreenParts, step: PlayedStep, situation: StudySituation): StudyScreen | null {
   const { base, phrases } = parts;
   const { say } = phrases;

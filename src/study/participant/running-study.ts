@@ -196,7 +196,7 @@ export class RunningStudy {
       ...{ kind: 'locked-out', phrases, participant: progress.participant, unsent: uploadStatus.unsent },
       contact: plan.remote?.contact ?? null,
       // A device whose storage fails returns nothing either: after a reload the page starts as on another device.
-      anew: () => void this.#forget().then(reload, reload),
+      restart: () => void this.#forget().then(reload, reload),
     };
   }
 

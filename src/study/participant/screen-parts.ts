@@ -3,13 +3,13 @@ import type { Phrases } from '../model/phrases/phrases';
 import type { ScreenButton, StudyScreen } from './study-screen';
 import type { ScreenActions } from './study-situation';
 
-/** What the screens of a step have in common, unless they say otherwise. */
+/** The parts that the screens of a step share by default. */
 export type ScreenBase = Pick<
   StudyScreen,
   'kicker' | 'phrases' | 'figure' | 'part' | 'question' | 'hint' | 'footnote' | 'trouble'
 >;
 
-/** What every screen is made from. */
+/** The input from which every screen is made. */
 export interface ScreenParts {
   readonly base: ScreenBase;
   readonly phrases: Phrases;

@@ -5,9 +5,9 @@ import type { SessionStore } from './session-store';
 type Send = (records: readonly StudyRecord[]) => Promise<readonly string[]>;
 
 /**
- * Sends what a session recorded, batch by batch; `send` answers with the ids that the server has. What the server will not take stays
- * and does not hold up the rest: the answer is why it was refused, null where nothing was. Rejects where there is no server, or none for
- * this device.
+ * Sends the records of a session in batches; `send` resolves with the ids that the server has. Refused records are kept
+ * and do not delay the others. Resolves with the reason of a refusal, or null; rejects if there is no server, or none
+ * for this device.
  */
 export async function sendRecords(store: SessionStore, send: Send): Promise<string | null> {
   const refused = new Set<string>();
@@ -15,7 +15,7 @@ export async function sendRecords(store: SessionStore, send: Send): Promise<stri
   for (let batch = store.nextBatch(refused); batch.length > 0; batch = store.nextBatch(refused)) {
     const refusal = await sendOrRefuse(store, send, batch);
     if (refusal === null) continue;
-    // One of them is at fault: each goes by itself.
+    // One of them is at fault, so each is sent separately.
     for (const record of batch) {
       const why = batch.length === 1 ? refusal : await sendOrRefuse(store, send, [record]);
       if (why === null) continue;
@@ -26,7 +26,7 @@ export async function sendRecords(store: SessionStore, send: Send): Promise<stri
   return reason;
 }
 
-/** Why the server takes none of these records; null: it has them. */
+/** Resolves with why the server takes none of these records, or with null if it has them. */
 async function sendOrRefuse(store: SessionStore, send: Send, records: readonly StudyRecord[]): Promise<string | null> {
   try {
     await store.acknowledge(await send(records));

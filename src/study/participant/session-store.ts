@@ -2,39 +2,45 @@ import { reasonOf } from 'threepoint/core/errors/reasons';
 import type { StudyRecord } from '../model/records/study-record';
 import { type KeptMotion, type KeptSession, SessionForgotten, type StudyVault } from './study-vault';
 
-/** What an earlier visit of the page left in the vault. */
+/** The data that an earlier visit of the page left in the vault. */
 export interface Unsent {
   readonly records: readonly StudyRecord[];
   readonly motion: readonly KeptMotion[];
 }
 
-/** Bodies of the server are 512 KiB at most; a batch stays well below [characters, records]. */
+/** The limits of a batch [characters, records], well below the 512 KiB that the server accepts. */
 const longestBatch = 300_000;
 const largestBatch = 100;
 
-/** Why a browser without IndexedDB stores nothing. */
+/** The reason why a browser without IndexedDB stores nothing. */
 export const noStorage = 'this browser offers no storage';
 
-/** A session and what it recorded, on this device until the server has it: in memory at once, in the vault as soon as that can be. */
+/**
+ * Keeps a session and its records on this device until the server has them: in memory at once, in the vault as soon as
+ * possible.
+ */
 export class SessionStore {
   readonly #vault: StudyVault | null;
   readonly #onChange: () => void;
   #session: KeptSession;
-  /** The session as the vault has it. */
+  /** The session in the vault. */
   #saved: KeptSession;
-  /** What the server has not acknowledged, by id and by trial. */
+  /** The records and recordings that the server has not acknowledged, by id and by trial. */
   readonly #records: Map<string, StudyRecord>;
   readonly #motion: Map<string, KeptMotion>;
-  /** What the vault does not have yet. */
+  /** The records that are not in the vault yet. */
   #unsaved: readonly StudyRecord[] = [];
   readonly #unsavedMotion = new Map<string, KeptMotion>();
   #fault: string | null;
-  /** Whether this page has stored the session, and whether another one has deleted it since: then nothing of it is stored any more. */
+  /** Whether this page has stored the session. If another page has deleted it since, it is not stored again. */
   #stored = false;
   #forgotten = false;
   #saving: Promise<void> = Promise.resolve();
 
-  /** `vault` null: this browser stores nothing. `onChange` hears of every change, and of every attempt to store it. */
+  /**
+   * `vault` null: the browser stores nothing. `onChange` is called after every change and after every attempt to store
+   * it.
+   */
   constructor(
     kept: KeptSession,
     { records, motion }: Unsent,
@@ -53,18 +59,18 @@ export class SessionStore {
     return this.#session;
   }
 
-  /** Records and recordings that the server has not acknowledged. */
+  /** The number of records and recordings that the server has not acknowledged. */
   get unsent(): number {
     return this.#records.size + this.#motion.size;
   }
 
-  /** Of these, how many are in the memory of the page alone. */
+  /** The number of these that are only in the memory of the page. */
   get unsaved(): number {
     if (this.#forgotten) return 0;
     return this.#vault ? this.#unsaved.length + this.#unsavedMotion.size : this.unsent;
   }
 
-  /** Why the device could not store; null: it can. */
+  /** Why the device could not store them; null: it could. */
   get fault(): string | null {
     return this.#fault;
   }
@@ -89,23 +95,26 @@ export class SessionStore {
     this.#onChange();
   }
 
-  /** One attempt after another; what fails stays unsaved and is tried again with the next. Resolves when this one is over; never rejects. */
+  /**
+   * Stores what is unsaved, one attempt after another; a failed one is repeated with the next. Resolves when this
+   * attempt is over; never rejects.
+   */
   save(): Promise<void> {
     this.#saving = this.#saving.then(() => this.#saveOnce());
     return this.#saving;
   }
 
-  /** Resolves when the device has stored everything so far, or has said that it cannot. */
+  /** Resolves when the device has stored everything so far or has reported that it cannot. */
   settled(): Promise<void> {
     return this.#saving;
   }
 
-  /** The device failed in another way than by a save, which goes on as before. */
+  /** Reports a fault of the device outside of a save. */
   noteFault(error: unknown): void {
     this.#fault = reasonOf(error);
   }
 
-  /** As many records as one request may hold, the oldest first; empty: there are none but those `left` out. */
+  /** Returns the oldest unsent records that fit one request, without those `left` out; empty: there are none. */
   nextBatch(left: ReadonlySet<string>): readonly StudyRecord[] {
     const batch: StudyRecord[] = [];
     let length = 0;
@@ -118,14 +127,14 @@ export class SessionStore {
     return batch;
   }
 
-  /** The server has these records. */
+  /** Removes records that the server has. */
   async acknowledge(ids: readonly string[]): Promise<void> {
     for (const id of ids) this.#records.delete(id);
     this.#unsaved = this.#unsaved.filter(({ id }) => !ids.includes(id));
     await this.#remove((vault, { study, participant }) => vault.removeRecords(study, participant, ids));
   }
 
-  /** The server has the recording of this trial. */
+  /** Removes the recording of a trial, which the server has. */
   async acknowledgeMotion(trial: string): Promise<void> {
     this.#motion.delete(trial);
     this.#unsavedMotion.delete(trial);

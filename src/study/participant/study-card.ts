@@ -6,11 +6,11 @@ import { dotNodes, questionNodes } from './questions/question-card';
 import type { StudyForm } from './study-form';
 import type { StudyScreen } from './study-screen';
 
-/** The study on the desktop: one card over the page. */
+/** The card of the study over the page on the desktop. */
 export interface StudyCard {
   /** null hides it. */
   show(screen: StudyScreen | null): void;
-  /** A form takes the screen's place; it is built once as long as nothing else is shown. */
+  /** Shows a form instead of a screen; it is built once until something else is shown. */
   ask(form: StudyForm): void;
 }
 
@@ -26,7 +26,10 @@ const put = (node: HTMLElement, text: string | null) => {
   if (text !== null && node.textContent !== text) node.textContent = text;
 };
 
-/** Puts another screen or form into the card. `held`: the one before had the focus of the keyboard, which goes to the new words; they are read out. */
+/**
+ * Replaces the content of the card. `held`: the keyboard focus was in the card and moves to the new heading, which
+ * screen readers read out.
+ */
 function fill(card: HTMLElement, nodes: readonly Node[], held: boolean): void {
   card.replaceChildren(...nodes);
   card.scrollTop = 0;
@@ -36,7 +39,7 @@ function fill(card: HTMLElement, nodes: readonly Node[], held: boolean): void {
   words.focus({ preventScroll: true });
 }
 
-/** `parent`: what the card lies over. */
+/** `parent` is the element that the card covers. */
 export function createStudyCard(parent: HTMLElement = document.body): StudyCard {
   const kicker = element('p', { class: 'kicker' });
   const content = element('div', { class: 'content' });
@@ -64,13 +67,13 @@ export function createStudyCard(parent: HTMLElement = document.body): StudyCard 
     show(screen) {
       layer.hidden = screen === null;
       if (!screen) {
-        // Answers may be given elsewhere meanwhile: what is shown next is built anew.
+        // Answers may be given elsewhere in the meantime, so the next screen is built again.
         shownKey = '';
         return;
       }
       const { question, text, title, buttons } = screen;
       speak(screen.phrases);
-      // The fields themselves show what is answered: a card built anew at every key would lose the place of the cursor.
+      // Fields show their answers themselves. Rebuilding the card at every key would lose the cursor.
       const key = JSON.stringify([screen.id, title, text, buttons.map(({ id, label, look }) => [id, label, look])]);
       if (key !== shownKey) {
         shownKey = key;
@@ -86,7 +89,7 @@ export function createStudyCard(parent: HTMLElement = document.body): StudyCard 
         if (another) fill(card, parts, held);
         else {
           card.replaceChildren(...parts);
-          // The same card built anew keeps the focus of the keyboard where it was.
+          // A rebuilt screen keeps the keyboard focus when its card is rebuilt.
           const again = focused && card.querySelector<HTMLElement>(`[data-id="${focused}"]`);
           if (again) again.focus({ preventScroll: true });
         }

@@ -12,19 +12,19 @@ type NewSession = Extract<Opened, { kind: 'new' }>;
 
 export interface StudyEntranceOptions {
   readonly page: Pick<StudyPage, 'display' | 'address' | 'languages'>;
-  /** Opens the session of this participant, as study-opening says. */
+  /** Opens the session of this participant. */
   readonly open: (participant: string) => Promise<Opened>;
-  /** The session that the study goes on with. */
+  /** Called with the session of the study. */
   readonly onSession: (session: ParticipantSession) => void;
 }
 
-/** From the address to a session: who takes part, with which invitation, and their consent. */
+/** Leads from the address to a session: participant, invitation and consent. */
 export class StudyEntrance {
   readonly #study: string;
   readonly #participant: string | null;
   readonly #options: StudyEntranceOptions;
 
-  /** What the address says; `participant` null: it names none. */
+  /** `participant` null: the address names none. */
   constructor(
     { study, participant }: { readonly study: string; readonly participant: string | null },
     options: StudyEntranceOptions,
@@ -34,7 +34,7 @@ export class StudyEntrance {
     this.#options = options;
   }
 
-  /** Resolves when the session is open or a form asks for what is missing; what goes wrong is shown. */
+  /** Resolves when the session is open or a form asks for missing input; faults are shown. */
   async enter(): Promise<void> {
     const participant = this.#participant;
     if (participant === null) {
@@ -52,7 +52,7 @@ export class StudyEntrance {
     }
   }
 
-  /** The study's language that the browser's user reads; where there is no study yet, one of the page's own. */
+  /** Returns the study's language that the user of the browser reads, or one of the page without a study. */
   #languageOf(study: PublicStudy | null): string {
     const [first = 'en', ...others] = shippedLanguages;
     return preferredLanguage(study?.languages ?? [first, ...others], this.#options.page.languages);
@@ -69,10 +69,13 @@ export class StudyEntrance {
     return { phrases, text };
   }
 
-  /** Participant and invitation, as far as the address does not say them; `complaint`: what was wrong with what it says, `phrases` its language. */
+  /**
+   * Asks for participant and invitation if the address lacks them. `complaint` is what was wrong with the address, in
+   * the language of `phrases`.
+   */
   #askWho(study: PublicStudy | null, phrases = this.#phrasesOf(study), complaint: string | null = null): void {
     const { display, address } = this.#options.page;
-    // A whole link put into the address of this tab may differ behind "#" alone.
+    // A link that is pasted into the address of this tab may change its fragment only.
     address.reloadWhenChanged();
     display.ask({
       kind: 'participant',

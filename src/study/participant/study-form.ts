@@ -1,71 +1,74 @@
 import type { Phrases } from '../model/phrases/phrases';
 import type { PublicStudy } from '../model/progress/study-api';
 
-/** Who takes part, and what shows that they were invited. */
+/** A participant and the invitation. */
 export interface Invited {
   readonly participant: string;
   readonly invitation: string;
 }
 
-/** What is chosen on the form of consent. */
+/** The choices on the form of consent. */
 export interface ConsentChoices {
   /** Whether tracked frames may be kept. */
   readonly motion: boolean;
-  /** In which the text was read; null: the study has only one. */
+  /** The language in which the text was read; null: the study has only one. */
   readonly language: string | null;
 }
 
-/** What is filled in or read at the desk alone, never in the headset; `kind` names it for tools, `phrases` say what the page says. */
+/**
+ * A form that is filled in or read at the desk, never in the headset. Tools know it by `kind`; `phrases` are those of
+ * the page.
+ */
 export type StudyForm = { readonly phrases: Phrases } & FormContent;
 
 type FormContent =
   | {
-      /** Asks for a participant's code and invitation, filled in as far as they are known. */
+      /** Asks for a participant's code and invitation; known values are filled in. */
       readonly kind: 'participant';
-      /** What was wrong with what the address says; null: nothing. */
+      /** What was wrong with the address; null: nothing. */
       readonly complaint: string | null;
       readonly known: { readonly [Part in keyof Invited]: string | null };
-      /** Gets both in capitals. */
+      /** Receives both in capitals. */
       go(invited: Invited): void;
       decline(): void;
     }
   | {
       readonly kind: 'consent';
       readonly study: PublicStudy;
-      /** Of the study's languages the one to read first. */
+      /** The language of the study that is shown first. */
       readonly language: string;
       readonly participant: string;
-      /** Answers with a complaint in the language chosen; null: all went well. */
+      /** Resolves with a complaint in the chosen language, or with null. */
       agree(choices: ConsentChoices): Promise<string | null>;
-      /** Gets what the page says in the language chosen. */
+      /** Receives the phrases of the chosen language. */
       decline(phrases: Phrases): void;
     }
   | { readonly kind: 'declined'; readonly title: string }
-  /** Shown until it is noted: the code with which everything can be deleted. */
+  /** Shows the code with which everything can be deleted, until the participant has noted it. */
   | {
       readonly kind: 'code';
       readonly code: string;
-      /** Address of the page where the code is entered. */
+      /** The address of the page where the code is entered. */
       readonly withdrawalPage: string;
       noted(): void;
-      /** The participant does not want to go on. */
+      /** Ends the session. */
       stop(): void;
     }
   | {
       readonly kind: 'demographics';
-      /** The participant does not want to go on. */
+      /** Ends the session. */
       stop(): void;
-      /** Answers with a complaint, or null. */
+      /** Returns a complaint, or null. */
       done(answers: Record<string, unknown>): string | null;
     }
-  /** The place is no longer this device's: the next participant here may begin anew. */
+  /** The place belongs to another device; the next participant may start on this one. */
   | {
       readonly kind: 'locked-out';
       readonly participant: string;
       readonly unsent: number;
-      /** Whom to ask with no one beside them; null: an experimenter is there. */
+      /** The contact for participants who take part alone; null: an experimenter is present. */
       readonly contact: string | null;
-      anew(): void;
+      restart(): void;
     }
-  /** The study cannot go on here. */
+  /** The study cannot continue on this device. */
   | { readonly kind: 'fault'; readonly text: string };

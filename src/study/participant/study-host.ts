@@ -5,19 +5,24 @@ import type { DeviceFault } from '../model/plan/remote-setup';
 import type { TrialHost } from './study-trial';
 import type { TaskRunner } from './task-runner';
 
-/** What the study needs of the page; the page decides how. */
+/** The interface of the page that the study needs. */
 export interface StudyHost extends TrialHost {
-  /** The games this page can play as tasks, by the name that plans call them. */
+  /** The games that this page can play as tasks, by their names in plans. */
   readonly runners: Readonly<Partial<Record<string, TaskRunner>>>;
   enterVr(): Promise<void>;
-  /** Why no headset can be worn on this device; null: one can. */
+  /** Returns why no headset can be worn on this device, or null. */
   deviceFault(): DeviceFault | null;
-  /** The room that the headset's boundary leaves [m]; null: it does not tell, or is not worn. */
+  /** Returns the room within the headset's boundary [m], or null if it is not reported or no headset is worn. */
   room(): { readonly width: number; readonly depth: number } | null;
   inSession(): boolean;
-  /** Of this participant, for this visit; not remembered for others. null: not measured yet, and what the page had is another person's. */
+  /**
+   * Sets the calibration of this participant for this visit only. null: not measured yet; the calibration of another
+   * person is discarded.
+   */
   setCalibration(calibration: Calibration | null): void;
-  /** Gives the participant this body; resolves when it is drawn, rejects with a sentence. `seed`: of what is random in it. */
+  /**
+   * Gives the participant a body; resolves when it is drawn, rejects with a sentence. `seed` decides its random parts.
+   */
   embody(embodiment: Embodiment, seed: number): Promise<void>;
   setActor(on: boolean): void;
   setBowSide(side: Side): void;

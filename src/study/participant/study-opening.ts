@@ -13,21 +13,21 @@ import type { Unsent } from './session-store';
 import type { ConsentChoices } from './study-form';
 import { type KeptSession, openStudyVault, type StudyVault } from './study-vault';
 
-/** Whose session, of which study. */
+/** A participant's place in a study. */
 export interface Place {
   readonly study: string;
   readonly participant: string;
 }
 
-/** A session that this device remembers goes on; without one, consent is asked for first. */
+/** A session that this device has stored is resumed; otherwise consent is asked for first. */
 export type Opened =
   | { readonly kind: 'resumed'; readonly session: ParticipantSession }
   | {
       readonly kind: 'new';
       readonly study: PublicStudy;
       /**
-       * Takes the place by its invitation and begins; `uninvited`: it was another invitation; `changed`: the text has changed since it was read;
-       * `why`: what was thrown instead.
+       * Takes the place and begins. Resolves with `uninvited` if the invitation is wrong, with `changed` if the text
+       * has changed since it was read, and with `why` after another error.
        */
       agree(
         choices: ConsentChoices,
@@ -36,8 +36,8 @@ export type Opened =
     };
 
 /**
- * A session that another device began, as it goes on here: in the language chosen now, and without motion where that is not agreed to
- * again. Agreed to for the first time it changes nothing, for the consent that is recorded says no.
+ * Returns a session that another device began with the language chosen here, and without motion unless consent to it is
+ * given again. A new consent to motion has no effect, because the recorded consent is without it.
  */
 function withChoices(session: KeptSession, { motion, language }: ConsentChoices): KeptSession {
   const { progress } = session;
@@ -70,15 +70,15 @@ async function readDevice({ study, participant }: Place): Promise<OnDevice> {
 }
 
 /**
- * One page per participant: two would send the server two sessions. A browser that lets the site store nothing refuses the lock too; its
- * pages share no session.
+ * Resolves with whether this is the only page of the participant: two pages would send two sessions to the server. A
+ * browser without storage refuses the lock too, and its pages share no session.
  */
 function alone({ study, participant }: Place): Promise<boolean> {
   if (!navigator.locks) return Promise.resolve(true);
   return new Promise((resolve, reject) => {
     const held = navigator.locks.request(`threepoint study ${study} ${participant}`, { ifAvailable: true }, (lock) => {
       resolve(lock !== null);
-      // Held until the page goes.
+      // The lock is held until the page closes.
       return lock && new Promise(() => undefined);
     });
     held.catch((error: unknown) => {
@@ -88,7 +88,10 @@ function alone({ study, participant }: Place): Promise<boolean> {
   });
 }
 
-/** What the server knows of a session; null: nothing, or it does not answer now. */
+/**
+ * Resolves with the progress that was reported to the server, or with null if there is none or the server does not
+ * answer.
+ */
 async function reportedProgress(
   client: ParticipantClient,
   { study, participant, token }: KeptSession,
@@ -102,8 +105,8 @@ async function reportedProgress(
 }
 
 /**
- * Opens a participant's session on this device: from its storage, whether the server answers or not; where it holds none, with the
- * server. Rejects with a sentence, or with what the server refused.
+ * Opens a participant's session on this device, from its storage whether the server answers or not, otherwise with the
+ * server. Rejects with a sentence or with the refusal of the server.
  */
 export async function openSession(place: Place, opening: OpeningOptions): Promise<Opened> {
   const { study: id, participant } = place;
@@ -136,8 +139,8 @@ export async function openSession(place: Place, opening: OpeningOptions): Promis
           if (claimed.progress.motion && !motion) session.apply({ type: 'remark', text: noMotionHere });
           return session;
         }
-        const said = session.apply({ type: 'consent', motion, version, ...(language !== null && { language }) });
-        return said === null ? session : { why: new Error(said) };
+        const refusal = session.apply({ type: 'consent', motion, version, ...(language !== null && { language }) });
+        return refusal === null ? session : { why: new Error(refusal) };
       } catch (error) {
         if (error instanceof ServerRefusal && error.field === 'invitation') return 'uninvited';
         if (error instanceof ServerRefusal && error.field === 'consent') return 'changed';
@@ -149,7 +152,7 @@ export async function openSession(place: Place, opening: OpeningOptions): Promis
   };
 }
 
-/** Everything of this participant leaves the device; rejects where its storage fails. */
+/** Deletes everything of this participant from the device; rejects if its storage fails. */
 export async function forgetSession({ study, participant }: Place): Promise<void> {
   const vault = await openStudyVault();
   await vault.forget(study, participant);

@@ -1,39 +1,42 @@
 import type { Invited, StudyForm } from './study-form';
 import type { StudyScreen } from './study-screen';
 
-/** Where a participant reads and answers. */
+/** The display on which a participant reads and answers. */
 export interface StudyDisplay {
-  /** The name of what is shown: a form's kind, a screen's id, "playing" where there is neither. */
+  /** The name of the content: a form's kind, a screen's id, or "playing". */
   readonly shown: string;
-  /** Shows the screen in the headset or on the desktop, where the other shows nothing; null: the participant plays. */
+  /** Shows a screen in the headset or on the desktop and clears the other; null: the participant plays. */
   show(screen: StudyScreen | null, inHeadset: boolean): void;
-  /** Shows a form on the desktop, built once as long as nothing else is shown; `inHeadset`: what a participant who wears it sees meanwhile. */
+  /**
+   * Shows a form on the desktop, built once until something else is shown; `inHeadset` is the screen for a participant
+   * who wears the headset.
+   */
   ask(form: StudyForm, inHeadset?: StudyScreen | null): void;
 }
 
-/** The address that the page was opened with. */
+/** The address with which the page was opened. */
 export interface StudyAddressBar {
-  /** What stands in it now; null: it holds none. */
+  /** Returns the invitation in the address, or null. */
   invitation(): string | null;
-  /** Loads the page of this place, also where the address says it already. */
+  /** Loads the page of this place, even if the address is unchanged. */
   goTo(place: Invited): void;
   reload(): void;
-  /** Where a participant withdraws from the study, whole. */
+  /** Returns the address of the withdrawal page. */
   withdrawalPage(): string;
-  /** From now on another invitation in the address loads the page anew, which a change behind "#" alone does not. */
+  /** Reloads the page when the invitation in the address changes, because a change of the fragment alone does not. */
   reloadWhenChanged(): void;
 }
 
-/** Runs `act` once, after so many milliseconds; what it returns calls that off. */
+/** Runs `act` once after a delay [ms]; the returned function cancels it. */
 export type After = (delayMs: number, act: () => void) => () => void;
 
-/** What the study needs of the browser. */
+/** The interface of the browser that the study needs. */
 export interface StudyPage {
-  /** Those that its user reads, the most wanted first. */
+  /** The languages of the user, the preferred one first. */
   readonly languages: readonly string[];
   readonly display: StudyDisplay;
   readonly address: StudyAddressBar;
-  /** Seconds since 1970, never back. */
+  /** Returns the time in seconds since 1970, never earlier than before. */
   readonly now: () => number;
   readonly after: After;
 }

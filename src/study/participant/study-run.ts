@@ -13,29 +13,29 @@ import type { After, StudyAddressBar, StudyDisplay } from './study-page';
 import { type AskedStudy, StudyVisit, type VisitState } from './study-visit';
 import { createVrStudyPanel, type VrStudyPanel } from './vr-study-panel';
 
-/** The study on the page, as its frame loop sees it. */
+/** The study on the page, for its frame loop. */
 export interface StudyRun {
-  /** For the scene. */
+  /** The object to add to the scene. */
   readonly object: VrStudyPanel['object'];
-  /** No trial is being played: hands that point at the sheet draw no bow. */
+  /** Whether no trial is being played, so that hands that point at the sheet draw no bow. */
   readonly idle: boolean;
-  /** Whether the round on the page stands still. */
+  /** Whether the round on the page is paused. */
   readonly paused: boolean;
-  /** Every frame drawn; null: the head was not seen. */
+  /** Takes a drawn frame into account; null: the head was not seen. */
   frame(time: number, frame: TrackingFrame | null): void;
   point(pointers: readonly Pointer[]): void;
   sessionChanged(): void;
   probe(): StudyProbe;
 }
 
-/** What tools may know of a study on the page. */
+/** The state of a study on the page, for tools. */
 export interface StudyProbe extends VisitState {
-  /** What can be pressed on the sheet in the headset, and where its middle is [m]. */
+  /** The target that a hand points at; null: none. */
   readonly pointedAt: string | null;
   readonly targets: readonly { readonly id: string; readonly at: readonly [number, number, number] }[];
 }
 
-/** Seconds since 1970, in order even where the system's clock is set back. */
+/** Seconds since 1970, monotonic even if the system's clock is set back. */
 const nowSeconds = neverBack(() => Date.now() / 1000);
 
 const after: After = (delayMs, act) => {
@@ -43,7 +43,7 @@ const after: After = (delayMs, act) => {
   return () => window.clearTimeout(timer);
 };
 
-/** The card on the desktop and the sheet in the headset, of which one at most shows something to be pressed. */
+/** Returns the display of the card on the desktop and the sheet in the headset, of which at most one can be pressed. */
 function createDisplay(card: StudyCard, sheet: VrStudyPanel): StudyDisplay {
   let shown = 'opening';
   return {
@@ -79,7 +79,7 @@ const addressBarOf = (study: string): StudyAddressBar => ({
   },
 });
 
-/** Opens the study that the address asks for; the page shows nothing of its own while it runs. */
+/** Opens the study in the address, which has the page to itself while it runs. */
 export function createStudyRun(asked: AskedStudy, host: StudyHost): StudyRun {
   document.body.classList.add('in-study');
   const sheet = createVrStudyPanel();

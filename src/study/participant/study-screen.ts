@@ -1,7 +1,7 @@
 import type { Phrases } from '../model/phrases/phrases';
 import type { ScreenField } from './questions/question-view';
 
-/** Something that a participant can press. */
+/** A button of a screen. */
 export interface ScreenButton {
   readonly id: string;
   readonly label: string;
@@ -9,20 +9,20 @@ export interface ScreenButton {
   act(): void;
 }
 
-/** One question of a questionnaire and where it stands among the others. */
+/** A question of a questionnaire and its position among the others. */
 export interface ScreenQuestion {
   readonly id: string;
   readonly text: string;
   readonly language: string;
-  /** From 1. */
+  /** Counted from 1. */
   readonly number: number;
-  /** "3 of 12", for where there is no room for a dot each. */
+  /** The position as "3 of 12", for questionnaires with too many questions for dots. */
   readonly place: string;
   readonly optional: boolean;
-  /** What the page says around the question. */
+  /** The phrases of the page around the question. */
   readonly phrases: Phrases;
   readonly field: ScreenField;
-  /** Of all questions in order. missing: handing in failed for want of it. optional: open, and may stay so. */
+  /** The states of all questions in order. missing: it prevented handing in. optional: it is open and may stay so. */
   readonly all: readonly {
     readonly id: string;
     readonly state: 'answered' | 'open' | 'missing' | 'optional';
@@ -30,26 +30,26 @@ export interface ScreenQuestion {
   goTo(index: number): void;
 }
 
-/** What a participant reads and may press now: the same in the headset and on the desktop. */
+/** The text and the actions for a participant, the same in the headset and on the desktop. */
 export interface StudyScreen {
-  /** Names the screen for tools: "calibration", "question-Q3". */
+  /** The name for tools: "calibration", "question-Q3". */
   readonly id: string;
-  /** What the page says around what the plan says. */
+  /** The phrases of the page around the texts of the plan. */
   readonly phrases: Phrases;
-  /** Above the title: "Round 1". */
+  /** The line above the title: "Round 1". */
   readonly kicker: string;
   readonly title: string;
   readonly text: readonly string[];
-  /** A number or a time to be read from afar; null: none. */
+  /** A number or a time in large letters; null: none. */
   readonly figure: string | null;
-  /** Part of something that is under way, 0 to 1; null: nothing. */
+  /** The completed part of an activity in [0, 1]; null: none. */
   readonly part: number | null;
   readonly question: ScreenQuestion | null;
-  /** Told above the buttons, in the accent colour; null: nothing. */
+  /** The hint above the buttons in the accent colour; null: none. */
   readonly hint: string | null;
   readonly buttons: readonly ScreenButton[];
-  /** Small, at the foot: where answers are kept, or that the participant is simulated. */
+  /** Small text at the foot: the upload status, and whether the participant is simulated. */
   readonly footnote: string;
-  /** Trouble rather than information. */
+  /** Whether the screen reports trouble. */
   readonly trouble: boolean;
 }

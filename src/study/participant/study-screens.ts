@@ -21,7 +21,10 @@ function storageReason(fault: string, say: Phrases['say']): string {
   return fault === silentStorage ? say('kept.silentStorage') : fault;
 }
 
-/** Where answers are, in a sentence; the second part says whether they are in danger. `remote`: of a participant who is alone. */
+/**
+ * Returns the upload status in a sentence, and whether data are at risk. `remote` is for a participant who takes part
+ * alone.
+ */
 export function uploadStatusText(
   { unsent, unsaved, storageFault, online, refusal }: UploadStatus,
   { say }: Phrases,
@@ -40,7 +43,7 @@ export function uploadStatusText(
   return [unsent > 0 ? say('kept.sending') : say('kept.all'), false];
 }
 
-/** Participants know rounds by number, never by condition. */
+/** Returns the line above the title. Participants know rounds by number, never by condition. */
 function kickerOf({ plan, phrases }: ShownSession, step: StudyStep): string {
   if (!('task' in step)) return inLanguage(plan.title, phrases.language);
   const title = taskTitle(plan, step.task, phrases.language);
@@ -48,7 +51,7 @@ function kickerOf({ plan, phrases }: ShownSession, step: StudyStep): string {
   return `${title} · ${practice ? phrases.say('practice') : phrases.say('round', { number: step.block })}`;
 }
 
-/** In the headset, when the place is no longer this device's; the page has more to say. */
+/** Returns the screen in the headset after the place was given to another device. The form on the page says more. */
 export const lockedOutScreen = ({ plan, phrases }: ShownSession): StudyScreen => ({
   id: 'locked-out',
   phrases,
@@ -64,7 +67,7 @@ export const lockedOutScreen = ({ plan, phrases }: ShownSession): StudyScreen =>
   trouble: true,
 });
 
-/** The screen of the step at hand, in the participant's language; null while the participant plays. */
+/** Returns the screen of the present step in the participant's language, or null while the participant plays. */
 export function screenOf(situation: StudySituation, actions: ScreenActions): StudyScreen | null {
   const { session, refusal } = situation;
   const { step, progress, phrases } = session;
@@ -116,7 +119,7 @@ const pausedScreen = (parts: ScreenParts): StudyScreen => ({
   ],
 });
 
-/** Whether to stop: asked because of answers, or because the participant wants to. */
+/** Asks whether to stop, because of answers or because the participant wants to. */
 function stopScreen(
   { base, phrases: { say }, actions }: ScreenParts,
   { unwell }: Progress,
@@ -132,7 +135,7 @@ function stopScreen(
       ...(unwell && remote ? [say('unwell.contact', { contact: remote.contact })] : []),
     ],
     buttons: [
-      // Where the wish to stop was pressed stands the way back: pressing twice stops nothing.
+      // The way back is where the button to stop was, so that pressing twice stops nothing.
       {
         id: 'go-on',
         label: unwell ? say('unwell.goOn') : say('stopping.goOn'),

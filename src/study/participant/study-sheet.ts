@@ -3,7 +3,7 @@ import { paintQuestion, questionTargets } from './questions/question-sheet';
 import { height, inner, margin, type Target, width } from './sheet-target';
 import type { ScreenButton, StudyScreen } from './study-screen';
 
-/** Everything of a screen that can be pressed, laid out. */
+/** Returns everything of a screen that can be pressed, laid out. */
 export const targetsOf = ({ question, buttons }: StudyScreen): readonly Target[] => [
   ...(question ? questionTargets(question) : []),
   ...buttonTargets(buttons),
@@ -31,7 +31,7 @@ const fillOf = (look: Target['look'], hovered: boolean): string => {
   return hovered || look === 'here' ? vrColors.liftMore : vrColors.lift;
 };
 
-/** Draws a screen with its targets; `hovered`: the id of the target that a hand points at, null: none. */
+/** Draws a screen with its targets; `hovered` is the id of the target that a hand points at, or null. */
 export function paintSheet(
   context: CanvasRenderingContext2D,
   screen: StudyScreen,
@@ -64,10 +64,10 @@ export function paintSheet(
   }
 }
 
-/** Of a sheet's paragraphs [pixels]: the largest that leaves free what lies below them. */
+/** Text sizes of a sheet's paragraphs [pixels]; the largest that fits is used. */
 const textSizes = [38, 34, 30, 26] as const;
 
-/** Draws paragraphs from y = 236 on, not beyond `bottom`; returns where they end. */
+/** Draws paragraphs from y = 236 to `bottom` at most; returns their lower end. */
 function paintParagraphs(context: CanvasRenderingContext2D, text: readonly string[], bottom: number): number {
   for (const size of textSizes) {
     context.font = `400 ${size}px ${vrFont}`;
@@ -88,7 +88,7 @@ function paintParagraphs(context: CanvasRenderingContext2D, text: readonly strin
   return bottom;
 }
 
-/** Title, paragraphs, a number to be read from afar, a bar. */
+/** Draws the title, the paragraphs, a large number and a progress bar. */
 function paintText(context: CanvasRenderingContext2D, { title, text, figure, part, hint }: StudyScreen): void {
   context.font = `650 60px ${vrFont}`;
   context.fillText(title, margin, 150, inner);
@@ -131,11 +131,11 @@ function paintTarget(context: CanvasRenderingContext2D, target: Target, hovered:
     context.fillText(figure, x + w / 2, y + (label ? 76 : h / 2));
   }
   if (label) {
-    // Narrow points have small words, in as many lines as they need.
+    // Narrow points have small text that is wrapped.
     context.font = kind === 'scale' && w < 180 ? `500 26px ${vrFont}` : fontOf(target);
     let lines = kind === 'scale' || kind === 'option' || kind === 'button' ? wrap(context, label, w - 16) : [label];
     if (kind === 'button' && lines.length > 1) {
-      // Languages have words of their own length: two smaller lines are read more easily than one that is squeezed.
+      // Long labels wrap into two smaller lines, which are easier to read than one condensed line.
       context.font = `600 34px ${vrFont}`;
       lines = wrap(context, label, w - 16);
     }

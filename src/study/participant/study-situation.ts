@@ -5,38 +5,38 @@ import type { Question } from '../model/questionnaires/questionnaire-schema';
 import type { ParticipantSession } from './participant-session';
 import type { Prepared } from './trial-preparation';
 
-/** What screens show of a session. */
+/** The parts of a session that screens show. */
 export type ShownSession = Pick<
   ParticipantSession,
   'plan' | 'phrases' | 'step' | 'progress' | 'simulated' | 'uploadStatus' | 'remaining'
 >;
 
-/** Everything that decides what a participant sees. */
+/** Everything that decides which screen a participant sees. */
 export interface StudySituation {
   readonly session: ShownSession;
   readonly inSession: boolean;
-  /** Index of the question shown. */
+  /** The index of the question on display. */
   readonly question: number;
-  /** What stands in the field of that question, where it has been typed in; null: nothing has. */
+  /** The typed text in the field of that question; null: nothing was typed. */
   readonly typed: string | null;
-  /** Handing in failed for want of an answer. */
+  /** Whether handing in failed because an answer is missing. */
   readonly triedToSubmit: boolean;
-  /** null: no one is being measured. */
+  /** The step of the measurement; null: nobody is being measured. */
   readonly calibration: CalibrationStep | null;
-  /** What is wrong with device, room or height of a participant who is alone; empty: nothing is known to be. */
+  /** What is wrong with device, room or height of a participant who takes part alone; empty: nothing. */
   readonly setupFaults: readonly string[];
-  /** Address of the page where everything can be deleted by the withdrawal code. */
+  /** The address of the page where everything can be deleted with the withdrawal code. */
   readonly withdrawalPage: string;
-  /** Of the step at hand; null: not asked for yet. */
+  /** How far the trial of the present step is prepared; null: not at all. */
   readonly prepared: Prepared | null;
-  /** Why the last wish changed nothing; null: it did. */
+  /** Why the last action changed nothing; null: it did. */
   readonly refusal: string | null;
   readonly playing: boolean;
-  /** Others without whom a trial that was started cannot begin, empty: not known who; null: it waits for no one. */
+  /** The participants that a started trial waits for, empty if unknown; null: none. */
   readonly waitingFor: readonly string[] | null;
-  /** The participant wants to stop and has not confirmed it yet. */
+  /** Whether the participant wants to stop and has not confirmed it yet. */
   readonly stopping: boolean;
-  /** The game stands because another of the group pauses. */
+  /** Whether the game is paused by another participant of the group. */
   readonly standing: boolean;
 }
 
@@ -44,12 +44,12 @@ export interface ScreenActions {
   apply(event: ProgressEvent): void;
   goTo(index: number): void;
   choose(question: string, value: Answer): void;
-  /** What stands in the field of a question now. */
+  /** Takes the text in the field of a question. */
   type(question: Question, typed: string): void;
   submit(): void;
   calibrate(): void;
   enterVr(): void;
   prepareAgain(): void;
-  /** Asks whether to stop; false: not any more. */
+  /** Asks whether to stop; false withdraws the question. */
   askToStop(on: boolean): void;
 }

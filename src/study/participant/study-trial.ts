@@ -13,7 +13,7 @@ export type PlayedStep = Extract<StudyStep, { kind: 'trial' | 'tutorial' }>;
 
 export const isPlayed = (step: StudyStep): step is PlayedStep => step.kind === 'trial' || step.kind === 'tutorial';
 
-/** What was played last before a step; undefined: nothing. */
+/** Returns the last trial or tutorial before a step, or undefined. */
 export const lastPlayedBefore = ({ steps }: Pick<Schedule, 'steps'>, { id }: StudyStep): PlayedStep | undefined =>
   steps
     .slice(
@@ -22,7 +22,7 @@ export const lastPlayedBefore = ({ steps }: Pick<Schedule, 'steps'>, { id }: Stu
     )
     .findLast(isPlayed);
 
-/** What a trial needs of the page. */
+/** The interface of the page that a trial needs. */
 export interface TrialHost {
   calibration(): Calibration;
   device(): TrialOutcome['device'];
@@ -30,54 +30,57 @@ export interface TrialHost {
   listenToFrames(listener: FrameListener | null): void;
 }
 
-/** What is left of a trial that was played to its end. */
+/** The result of a trial that was played to its end. */
 export interface FinishedTrial {
   readonly outcome: TrialOutcome;
-  /** The tracked frames; null: they were not to be kept, or there were none. */
+  /** The tracking frames; null: none were kept. */
   readonly recording: string | null;
 }
 
-/** A trial that is being played, and the log of it. */
+/** A trial under way and its log. */
 export interface PlayedTrial {
-  /** Step, run and attempt: when it changes under the trial, the trial is void. */
+  /** The step, run and attempt of the trial. When the session changes to another one, the trial is void. */
   readonly key: string;
-  /** Others without whom it cannot begin, empty: not known who; null: it waits for no one. */
+  /** The participants that the trial waits for, empty if unknown; null: none. */
   readonly waitingFor: readonly string[] | null;
-  /** The game's clock stands because another of the group pauses. */
+  /** Whether the game is paused by another participant of the group. */
   readonly standing: boolean;
-  /** The game was lost under it: the trial is void. */
+  /** Whether the game was lost, so that the trial is void. */
   readonly interrupted: boolean;
-  /** Stops game and clock, or lets them go on; nothing is counted in between. */
+  /** Pauses or resumes game and clock; nothing is counted in a pause. */
   pause(on: boolean): void;
-  /** Every frame drawn; `frame` null: the head was not seen. Answers once, when the end has been seen for a moment; until then null. */
+  /**
+   * Takes a drawn frame into account; `frame` null: the head was not seen. Returns the result once, when the end was on
+   * display for a moment, otherwise null.
+   */
   follow(time: number, frame: TrackingFrame | null): FinishedTrial | null;
-  /** Puts away a game whose end has been seen, be it shorter than a moment; null: it goes on. */
+  /** Ends a game whose end is on display, without the rest of the moment; returns null if the game goes on. */
   conclude(): FinishedTrial | null;
-  /** Puts the game away: the trial counts for nothing. */
+  /** Ends the game without a result. */
   abort(): void;
 }
 
-/** The end of a round is seen before the sheet comes [s]. */
+/** The time for which the end of a round is on display before the sheet [s]. */
 const afterglow = 2.5;
-/** What participants agree to have kept is the motion of head and wrists. */
+/** Participants consent to keeping the motion of head and wrists only. */
 const headAndWrists = ({ fingers: _, deviceBody: __, ...frame }: TrackingFrame): TrackingFrame => frame;
 
-/** Tracked frames kept per trial while it is played: what memory may take. What is sent is bounded by its bytes. */
+/** The most tracking frames that are kept per trial while it is played. Uploads are limited by their size. */
 const mostMotionFrames = 40_000;
-/** Eyes this far below where calibration found them are those of a person who sat down [m]. */
+/** The drop of the eyes below their calibrated height that indicates a seated participant [m]. */
 const seatedDrop = 0.25;
 
 export interface TrialOptions {
   readonly key: string;
-  /** Whether tracked frames are kept. */
+  /** Whether tracking frames are kept. */
   readonly motion: boolean;
-  /** Lays the trial out. */
+  /** The seed of the layout of the trial. */
   readonly seed: number;
-  /** Seconds since 1970. */
+  /** Returns the time in seconds since 1970. */
   readonly now: () => number;
 }
 
-/** Gives the start signal. */
+/** Starts a trial. */
 export const playTrial = (step: PlayedStep, runner: TaskRunner, host: TrialHost, options: TrialOptions): PlayedTrial =>
   new LoggedTrial(step, runner, host, options);
 
@@ -86,7 +89,7 @@ class LoggedTrial implements PlayedTrial {
   readonly #step: PlayedStep;
   readonly #runner: TaskRunner;
   readonly #host: TrialHost;
-  /** As they are at the start signal. */
+  /** The device and the calibration at the start. */
   readonly #device: TrialOutcome['device'];
   readonly #calibration: Calibration;
   readonly #log: TrialLog;
@@ -94,7 +97,7 @@ class LoggedTrial implements PlayedTrial {
   readonly #frames: TrackingFrame[] | null;
   readonly #seconds: TrialSeconds;
   #begun = false;
-  /** Second of the trial; null: not yet. */
+  /** The second of the trial at which it ended; null: it goes on. */
   #endedAt: number | null = null;
   #lastTime = -1;
   #fellBack = false;
@@ -168,14 +171,14 @@ class LoggedTrial implements PlayedTrial {
     return this.#paused || this.#runner.standing;
   }
 
-  /** The first frame of the trial. */
+  /** Takes the first frame of the trial into account. */
   #begin(frame: TrackingFrame | null): void {
     this.#begun = true;
     const { eyeHeight } = this.#host.calibration();
     if ((frame?.head.position.y ?? eyeHeight) < eyeHeight - seatedDrop) this.#log.assist('seated');
   }
 
-  /** What is seen and drawn in a frame of the trial, at this second of it. */
+  /** Records what was tracked and drawn at this second of the trial. */
   #note(time: number, frame: TrackingFrame | null): void {
     this.#log.tracked(time, {
       head: frame !== null,
@@ -200,7 +203,7 @@ class LoggedTrial implements PlayedTrial {
     return { outcome, recording: recorded?.text ?? null };
   }
 
-  /** What was tracked, as far as the server takes it at once; null: nothing. */
+  /** Returns the tracking frames that fit one upload, or null. */
   #record() {
     const frames = this.#frames ?? [];
     if (frames.length === 0) return null;

@@ -5,19 +5,19 @@ import type { ParticipantProfile } from '../model/records/participant-profile';
 import type { StudyRecord } from '../model/records/study-record';
 import { StoragePatience } from './storage-patience';
 
-/** A session as this device remembers it. */
+/** A session as this device stores it. */
 export interface KeptSession extends ParticipantProfile {
   readonly study: string;
   readonly participant: string;
   readonly token: string;
-  /** Shown until the participant has noted it; then null. */
+  /** The withdrawal code; null: the participant has noted it. */
   readonly withdrawalCode: string | null;
   readonly plan: StudyPlan;
   readonly simulated: boolean;
   readonly progress: Progress;
 }
 
-/** Tracked frames of a trial on their way to the server. */
+/** A recording of a trial that waits for its upload. */
 export interface KeptMotion {
   readonly trial: string;
   readonly recording: string;
@@ -32,32 +32,32 @@ interface Schema extends DBSchema {
   motion: { key: [string, string, string]; value: KeptMotion & { study: string; participant: string } };
 }
 
-/** The session was in the vault and is no more: another page of this browser has forgotten it, as when its participant withdrew there. */
+/** The session was deleted from the vault by another page of this browser, for example after a withdrawal. */
 export class SessionForgotten extends Error {}
 
 /**
- * What this device keeps until the server has it: sessions, records and tracked frames, in IndexedDB. Every request rejects where the
- * storage does not answer within five seconds.
+ * Stores sessions, records and recordings in IndexedDB until the server has them. Every request rejects if the storage does
+ * not answer within five seconds.
  */
 export interface StudyVault {
   session(study: string, participant: string): Promise<KeptSession | null>;
   /**
-   * The session and new records, both or neither; rejects where the device has no room, and with SessionForgotten where it is saved `again` and
-   * the vault holds it no more.
+   * Stores the session and new records in one transaction. Rejects if the device has no room, and with SessionForgotten
+   * if it is saved `again` after it was deleted.
    */
   save(session: KeptSession, records: readonly StudyRecord[], again?: boolean): Promise<void>;
-  /** Records that the server has not acknowledged, in the order in which they came about. */
+  /** Resolves with the records that the server has not acknowledged, in the order in which they were made. */
   records(study: string, participant: string): Promise<readonly StudyRecord[]>;
   removeRecords(study: string, participant: string, ids: readonly string[]): Promise<void>;
   saveMotion(study: string, participant: string, motion: KeptMotion): Promise<void>;
   motion(study: string, participant: string): Promise<readonly KeptMotion[]>;
   removeMotion(study: string, participant: string, trial: string): Promise<void>;
-  /** Everything of this participant leaves the device. */
+  /** Deletes everything of this participant from the device. */
   forget(study: string, participant: string): Promise<void>;
   close(): void;
 }
 
-/** What earlier pages kept: the number of the newest command that was followed stood beside the progress. */
+/** The format of earlier versions, in which the number of the newest command was stored next to the progress. */
 type EarlierSession = KeptSession & { readonly commandsSeen?: number };
 
 function broughtUpToDate({ commandsSeen, ...session }: EarlierSession): KeptSession {
@@ -68,7 +68,7 @@ function broughtUpToDate({ commandsSeen, ...session }: EarlierSession): KeptSess
 const everyOf = (study: string, participant: string) =>
   IDBKeyRange.bound([study, participant, ''], [study, participant, '\uffff']);
 
-/** Opens the vault; rejects where the browser offers none (some do not in private windows), or none that answers. */
+/** Opens the vault; rejects if the browser has none, as some in private windows. */
 export async function openStudyVault(name = 'threepoint-studies'): Promise<StudyVault> {
   const patience = new StoragePatience();
   const vault = databaseVault(
@@ -103,7 +103,7 @@ function databaseVault(database: IDBPDatabase<Schema>): StudyVault {
       return kept ? broughtUpToDate(kept) : null;
     },
     async save(session, records, again = false) {
-      // strict: resolved means written to the disk, not to its cache.
+      // With strict durability, resolved means written to the disk.
       const transaction = database.transaction(['sessions', 'records'], 'readwrite', { durability: 'strict' });
       const { study, participant } = session;
       const sessions = transaction.objectStore('sessions');
@@ -118,7 +118,7 @@ function databaseVault(database: IDBPDatabase<Schema>): StudyVault {
     },
     async records(study, participant) {
       const kept = await database.getAll('records', everyOf(study, participant));
-      // Ids carry no order. Records of one moment: consent goes first, for nothing may be stored before it.
+      // Ids have no order. Among records of one moment, consent is first, because nothing may be stored before it.
       const rank = ({ kind }: StudyRecord) => (kind === 'consent' ? 0 : kind === 'event' ? 2 : 1);
       return kept.map(({ record }) => record).toSorted((a, b) => a.at - b.at || rank(a) - rank(b));
     },

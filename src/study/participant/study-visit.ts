@@ -6,13 +6,13 @@ import type { StudyHost } from './study-host';
 import { forgetSession, openSession } from './study-opening';
 import type { StudyPage } from './study-page';
 
-/** The study that the address asks for; `participant` null: the address names none. */
+/** The study in the address; `participant` null: the address names none. */
 export interface AskedStudy {
   readonly study: string;
   readonly participant: string | null;
 }
 
-/** Where a visit is, for tools. */
+/** The state of a visit, for tools. */
 export interface VisitState {
   readonly screen: string;
   readonly step: string | null;
@@ -23,7 +23,7 @@ export interface VisitState {
   readonly online: boolean;
 }
 
-/** One visit of the page for a study: its entrance, then the session until the page goes. */
+/** A visit of the page for a study: its entrance, then the session until the page closes. */
 export class StudyVisit {
   readonly #page: StudyPage;
   readonly #entrance: StudyEntrance;
@@ -54,33 +54,33 @@ export class StudyVisit {
     return this.#entrance.enter();
   }
 
-  /** No trial is being played: hands that point at the sheet draw no bow. */
+  /** Whether no trial is being played, so that hands that point at the sheet draw no bow. */
   get idle(): boolean {
     return !this.#running?.playing;
   }
 
-  /** Whether the round on the page stands still. */
+  /** Whether the round on the page is paused. */
   get paused(): boolean {
     return this.#running?.paused ?? false;
   }
 
-  /** Whether answers would be lost if the page went now. */
+  /** Whether closing the page would lose answers. */
   get losesAnswers(): boolean {
     const { unsaved, unsent } = this.state();
     return unsaved > 0 && unsent > 0;
   }
 
-  /** Every frame drawn; null: the head was not seen. */
+  /** Takes a drawn frame into account; null: the head was not seen. */
   frame(time: number, frame: TrackingFrame | null): void {
     this.#running?.frame(time, frame);
   }
 
-  /** The headset was put on or taken off. */
+  /** Called when the headset was put on or taken off. */
   sessionChanged(): void {
     this.#running?.sessionChanged();
   }
 
-  /** Tells the server what is new at once; resolves when that is over. */
+  /** Exchanges with the server at once; resolves when that is over. */
   async exchange(): Promise<void> {
     await this.#running?.exchange();
   }

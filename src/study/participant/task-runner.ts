@@ -1,48 +1,54 @@
 import type { SignedSeat } from '../model/progress/study-api';
 import type { TrialEvent, TrialOutcome } from '../model/records/trial-log';
 
-/** What happened in a task: something sent off, or what became of it. */
+/** An event of a task: a shot or throw, or its result. */
 export type TaskEvent = { readonly type: 'shot' } | TrialEvent;
 
 export interface TaskEnd {
-  /** From the start signal [s]. */
+  /** The duration from the start [s]. */
   readonly seconds: number;
   readonly ended: TrialOutcome['ended'];
   readonly score: number;
   readonly maximum: number;
 }
 
-/** Who plays a trial, with whom, where. */
+/** The participant, the group and the room of a trial. */
 export interface TaskPlace {
-  /** A seat in the room of the whole group, which nothing else uses; asks the server for it anew each time. */
+  /**
+   * Resolves with a seat in the room of the group, which only this trial uses; requests it from the server on every
+   * call.
+   */
   seat(): Promise<SignedSeat>;
-  /** The participant's code, and those of the whole group, in the order of their seats. */
+  /** The participant's code, and those of the group in the order of their seats. */
   readonly participant: string;
   readonly members: readonly string[];
-  /** Time limit of the trial [s]. */
+  /** The time limit of the trial [s]. */
   readonly seconds: number;
 }
 
-/** A game as the study plays it, trial by trial. */
+/** A game as a task of a study. */
 export interface TaskRunner {
-  /** Loads it and brings the participant to it; resolves when a trial can start. Rejects with a sentence. */
+  /** Loads the game and moves the participant to it; resolves when a trial can start, rejects with a sentence. */
   prepare(place: TaskPlace): Promise<void>;
-  /** The start signal. `seed` lays the trial out; the time limit is in seconds. */
+  /** Starts a trial. `seed` decides its layout; the time limit is in seconds. */
   start(trial: { readonly seed: number; readonly seconds: number }): void;
-  /** What happened since it was last asked. */
+  /** Returns the events since the last call. */
   take(): readonly TaskEvent[];
-  /** Whom a trial that was started still waits for, by code, empty: not known who; null: no one, or no trial. */
+  /**
+   * The codes of the participants that a started trial waits for, empty if unknown; null: it waits for none, or there
+   * is no trial.
+   */
   readonly waitingFor: readonly string[] | null;
-  /** Whether the game's clock stands because one of the group pauses. */
+  /** Whether the clock of the game is paused by another participant of the group. */
   readonly standing: boolean;
-  /** null: no trial, or one that goes on. */
+  /** The end of the trial; null: there is no trial, or it goes on. */
   readonly end: TaskEnd | null;
-  /** What was started is lost, and has no end: the trial counts for nothing. */
+  /** Whether the started trial was lost, so that it has no result. */
   readonly interrupted: boolean;
-  /** Stops the game's clock for the whole group, or no longer wants it stopped. What is played alone stands with the page. */
+  /** Pauses or resumes the game's clock for the whole group. A game for one is paused with the page. */
   pause(on: boolean): void;
-  /** Puts the game away: after its end, or before it, when the trial counts for nothing. */
+  /** Ends the game, with or without a result. */
   abort(): void;
-  /** Aids that are on. */
+  /** Returns the names of the aids that are on. */
   assists(): readonly string[];
 }

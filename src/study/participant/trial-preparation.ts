@@ -1,27 +1,27 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import type { PlayedStep } from './study-trial';
 
-/** How far the game and the body of a step are. */
+/** How far the game and the body of a step are loaded. */
 export interface Prepared {
   readonly state: 'loading' | 'ready' | 'failed';
-  /** Why it failed, for a person to read; else empty. */
+  /** Why loading failed, in a sentence; otherwise empty. */
   readonly reason: string;
 }
 
-/** Gets one attempt after the other ready to be played; what an earlier one still loads no longer counts. */
+/** Loads the game and the body of one attempt after another; results of earlier attempts are ignored. */
 export class TrialPreparation {
   readonly #load: (step: PlayedStep) => Promise<void>;
   readonly #onChange: () => void;
   #attempt: string | null = null;
   #prepared: Prepared | null = null;
 
-  /** `load` rejects with a sentence; `onChange` hears when it succeeded or failed. */
+  /** `load` rejects with a sentence; `onChange` is called when it has succeeded or failed. */
   constructor(load: (step: PlayedStep) => Promise<void>, onChange: () => void) {
     this.#load = load;
     this.#onChange = onChange;
   }
 
-  /** Of the attempt with this key; null: not asked for yet. */
+  /** Returns the state of the attempt with this key, or null if it was not requested. */
   of(attempt: string): Prepared | null {
     return this.#attempt === attempt ? this.#prepared : null;
   }
@@ -42,7 +42,7 @@ export class TrialPreparation {
     this.#onChange();
   }
 
-  /** What is prepared, or was to be, is to be loaded again. */
+  /** Discards the state, so that everything is loaded again. */
   forget(): void {
     this.#attempt = null;
     this.#prepared = null;

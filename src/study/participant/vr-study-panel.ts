@@ -7,27 +7,29 @@ import { height, pixelsPerMetre, type Target, width } from './sheet-target';
 import type { StudyScreen } from './study-screen';
 import { paintSheet, targetsOf } from './study-sheet';
 
-/** The study in the headset: one sheet at arm's length and a bit, with targets as big as a palm. */
+/** The sheet of the study in the headset, a little beyond arm's length, with targets as large as a palm. */
 export interface VrStudyPanel {
   readonly object: Group;
   /** null hides it. */
   show(screen: StudyScreen | null): void;
-  /** Puts the sheet where a person with this head (floor frame) looks; call it with every frame. */
+  /** Places the sheet in front of a head (floor frame). Called with every frame. */
   follow(head: {
     readonly position: { x: number; y: number; z: number };
     readonly forward: { x: number; z: number };
   }): void;
   point(pointers: readonly Pointer[]): void;
-  /** What a hand points at; null: nothing that can be pressed. */
+  /** The id of the target that a hand points at; null: none. */
   readonly pointedAt: string | null;
-  /** Where the middle of each target is, in the world [m]. */
+  /** Returns the centre of each target in the world [m]. */
   targets(): readonly { readonly id: string; readonly at: readonly [number, number, number] }[];
 }
 
-/** How far before the eyes the sheet stands, how far below them its middle lies [m]. */
+/** The distance of the sheet from the eyes, and how far its centre is below them [m]. */
 const reach = 1.25;
 const below = 0.12;
-/** The sheet is placed anew before a person who turns [rad], steps [m], sits down or rises [m] further than this. */
+/**
+ * The sheet is moved in front of a participant who turns [rad], steps [m], sits down or rises [m] by more than this.
+ */
 const mostTurn = 0.7;
 const mostStep = 0.8;
 const mostRise = 0.3;
@@ -41,7 +43,7 @@ class StudySheet implements VrStudyPanel {
   readonly #centre = new Vector3();
   #screen: StudyScreen | null = null;
   #targets: readonly Target[] = [];
-  /** Those of the targets that can be pressed. */
+  /** The targets that can be pressed. */
   #open: readonly Target[] = [];
   #hovered: string | null = null;
   #drawn = '';
@@ -83,7 +85,7 @@ class StudySheet implements VrStudyPanel {
     }
     const { pointedAt, pressed } = this.#touch.follow(pointers, this.#open);
     this.#hovered = pointedAt?.id ?? null;
-    // One press, one action: the first may have changed the screen.
+    // Only the first press acts, because it may have changed the screen.
     pressed[0]?.act();
     this.#redraw();
   }
@@ -104,11 +106,14 @@ class StudySheet implements VrStudyPanel {
     });
   }
 
-  /** Whether a person with the eyes at this place [m, floor frame] who looks this way [rad] has the sheet no longer before them. */
+  /**
+   * Returns whether a participant at this eye position [m, floor frame] with this heading [rad] no longer faces the
+   * sheet.
+   */
   #isLeft({ x, y, z }: { readonly x: number; readonly y: number; readonly z: number }, yaw: number): boolean {
     const { position, rotation } = this.object;
     const turn = yaw - rotation.y;
-    // Where the person stood when the sheet was placed.
+    // The position of the participant when the sheet was placed.
     const fromX = position.x + reach * Math.sin(rotation.y);
     const fromZ = position.z + reach * Math.cos(rotation.y);
     const rise = y - below - position.y;
@@ -122,7 +127,7 @@ class StudySheet implements VrStudyPanel {
   #redraw(): void {
     const screen = this.#screen;
     if (!screen) return;
-    // A bar moves in hundredths: every upload of the texture costs.
+    // The progress bar moves in hundredths, because every upload of the texture takes time.
     const key = JSON.stringify([screen, this.#hovered], (_, value) =>
       typeof value === 'number' ? Math.round(value * 100) / 100 : value,
     );

@@ -8,7 +8,8 @@ import type { Call, Route, Service } from 'threepoint-http/router';
 import { shortageOf, startThread, ThreadCalls, ThreadUnavailable } from 'threepoint-http/thread-calls';
 import type { StudyDispatcher, StudyOutcome } from './routes/dispatcher';
 import type { StudyAccess } from './routes/guard';
-import { retryAfterSeconds, type StudyRequest, type StudyRoute } from './routes/routes';
+import type { StudyRequest, StudyRoute } from './routes/route';
+import { retryAfterSeconds } from './routes/routes';
 import type { OpenedStudies, StudyThreadApi, StudyThreadOptions } from './thread';
 
 export interface StudyServiceOptions extends StudyThreadOptions {
@@ -16,24 +17,24 @@ export interface StudyServiceOptions extends StudyThreadOptions {
   readonly thread: URL;
   /** Seconds since 1970. */
   readonly now: () => number;
-  /** Believe what a proxy in front says of a client's address. */
+  /** Whether the headers of a proxy about a client's address are trusted. */
   readonly trustProxy: boolean;
-  /** Receives faults, wrong guesses and deletions by the retention date, one line each. */
+  /** Called with a line about each fault, failed attempt and deletion by the retention date. */
   readonly log: (line: string) => void;
 }
 
 export interface StudyService {
   readonly service: Service;
-  /** Holds the token; null: it was given. */
+  /** The file with the generated token; null: the token was given. */
   readonly tokenFile: string | null;
   close(): Promise<void>;
 }
 
-/** Requests of two hundred participants while the disk hangs, with a recording each from a few of them. */
+/** Enough for the requests of two hundred participants while the disk hangs, with recordings of a few of them. */
 const limits = { mostCalls: 1024, mostBytes: 64 * 2 ** 20, deadlineMs: 10_000 } as const;
-/** A thread that ended is started again so often at most [ms]. */
+/** The shortest interval between two starts of the thread [ms]. */
 const restartMs = 1000;
-/** How long the end of the server waits for a disk [ms]. */
+/** How long closing the server waits for a disk [ms]. */
 const closingMs = 5000;
 const hourMs = 3_600_000;
 
@@ -41,12 +42,12 @@ const unavailable = (message: string): HttpError =>
   new HttpError(503, message, { headers: { 'retry-after': String(retryAfterSeconds) } });
 
 const sentences = {
-  full: 'the studies have too many requests at once: nothing of this was stored. Send it again in a few seconds',
-  late: 'the database did not answer in time, and whether this was stored is not known: send it again',
-  ended: 'the studies were interrupted, and whether this was stored is not known: send it again',
+  full: 'too many requests to the studies: nothing of this was stored. Send it again in a few seconds',
+  late: 'the database did not answer in time, and it is unknown whether this was stored. Send it again',
+  ended: 'the studies were interrupted, and it is unknown whether this was stored. Send it again',
 } as const;
 
-/** The thread of the studies; one that ends by a fault of its own, as for want of memory, is started again with the next request. */
+/** The thread of the studies. After a fault, such as a lack of memory, the next request starts it again. */
 class StudyThread {
   readonly #options: StudyServiceOptions;
   #worker: Worker | null = null;
@@ -57,7 +58,7 @@ class StudyThread {
     this.#options = options;
   }
 
-  /** Starts the thread; throws where it cannot open the folder. */
+  /** Starts the thread; throws if it cannot open the folder. */
   async open(): Promise<Exclude<OpenedStudies, { readonly problem: string }>> {
     const { directory, token, software, secret, now, log, thread } = this.#options;
     this.#startedAt = performance.now();
@@ -85,7 +86,7 @@ class StudyThread {
     }
   }
 
-  /** A call of the thread; rejects with an HttpError 503 where it has no room, no answer in time, or has ended. */
+  /** Calls the thread; rejects with an HttpError 503 if it is overloaded, late or ended. */
   async call<Name extends keyof StudyThreadApi>(
     name: Name,
     args: Parameters<StudyThreadApi[Name]>,
@@ -100,14 +101,14 @@ class StudyThread {
     }
   }
 
-  /** Ends the thread once the database is closed, or its disk has hung for too long. */
+  /** Ends the thread when the database is closed, or when its disk hangs for too long. */
   async close(): Promise<void> {
     const [worker, calls] = [this.#worker, this.#calls];
     if (!worker || !calls) return;
     const late = new Promise<void>((resolve) => setTimeout(resolve, closingMs).unref());
     await Promise.race([calls.call('close', [], { patient: true }), late]);
     this.#worker = this.#calls = null;
-    // A thread that the disk holds cannot be ended, and the process waits for it.
+    // A thread that waits for a disk cannot be ended, and the process waits for it.
     await Promise.race([worker.terminate(), late]);
   }
 
@@ -125,7 +126,9 @@ function bearerOf(request: IncomingMessage): string | null {
   return /^Bearer ([\w~+/.-]{1,256}=*)$/.exec(request.headers.authorization ?? '')?.[1] ?? null;
 }
 
-/** Resolves with what the other side waits for. Nothing moves on its connection meanwhile, which would be ended as a silent one. */
+/**
+ * Resolves with the answer that a client waits for. Its connection is silent until then and would be closed otherwise.
+ */
 async function awaited<T>({ socket }: IncomingMessage, answer: Promise<T>): Promise<T> {
   const silenceMs = socket.timeout ?? 0;
   socket.setTimeout(0);
@@ -136,7 +139,7 @@ async function awaited<T>({ socket }: IncomingMessage, answer: Promise<T>): Prom
   }
 }
 
-/** The answer of an outcome; throws where it is a refusal or a fault. */
+/** Returns the answer of an outcome; throws a refusal or a fault. */
 function answerOf(outcome: StudyOutcome): Answer {
   if ('answer' in outcome) return outcome.answer;
   if ('fault' in outcome) throw new Error(outcome.fault);
@@ -150,7 +153,7 @@ export interface ServiceOptions extends Pick<StudyServiceOptions, 'now' | 'trust
   readonly dispatcher: Pick<StudyDispatcher, 'admit' | 'handle'>;
 }
 
-/** The studies' part of the server: all below /api/studies. */
+/** Returns the service of the studies: all routes below /api/studies. */
 export function createStudyService({ routes, dispatcher, now, trustProxy, log }: ServiceOptions): Service<StudyAccess> {
   const requestOf = ({ request, names, query }: Omit<Call, 'body'>): StudyRequest => ({
     ...{ at: now(), token: bearerOf(request), address: findClientAddress(request, trustProxy) },
@@ -169,7 +172,7 @@ export function createStudyService({ routes, dispatcher, now, trustProxy, log }:
   return {
     routes: table,
     async admit(route, call) {
-      // Without a body there is nothing to keep out: it crosses once.
+      // Without a body, admission and handling are one call to the thread.
       if (route.bodyLimit === 0) return;
       answerOf(await dispatcher.admit(table.indexOf(route), requestOf(call)));
     },
@@ -179,7 +182,7 @@ export function createStudyService({ routes, dispatcher, now, trustProxy, log }:
   };
 }
 
-/** Opens the studies of this server: their thread, their routes and, once an hour, what their retention dates demand. */
+/** Opens the studies of this server: their thread, their routes and the hourly deletion by retention dates. */
 export async function openStudyService(options: StudyServiceOptions): Promise<StudyService> {
   const { now, trustProxy, log } = options;
   const thread = new StudyThread(options);

@@ -6,16 +6,17 @@ import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { answerCalls, logFrom } from 'threepoint-http/thread-calls';
 import { createExporter } from './export/exporter';
 import { StudyDispatcher, type StudyOutcome } from './routes/dispatcher';
-import { createStudyRoutes, type StudyRequest, type StudyRoute } from './routes/routes';
+import type { StudyRequest, StudyRoute } from './routes/route';
+import { createStudyRoutes } from './routes/routes';
 import { createStudySeats, type SignSeat } from './routes/seats';
 import { openStudyFolder, type StudyFolder, type StudyFolderOptions } from './storage/folder';
 import type { StudyStore } from './storage/store';
 
-// The thread that has the studies: their database, the secrets that open them and the rules of who may what. Nothing that takes it long, or
-// that a disk does not finish, holds up the thread of the sockets.
+// The thread of the studies has their database, their secrets and their access rules. Slow work and a hanging disk do
+// not block the thread of the sockets.
 
 export interface StudyThreadOptions extends StudyFolderOptions {
-  /** Signs participants into the rooms of their trials. */
+  /** The secret that signs participants into the rooms of their trials. */
   readonly secret: string;
 }
 
@@ -23,13 +24,13 @@ export type OpenedStudies =
   | { readonly problem: string }
   | {
       readonly routes: readonly Omit<StudyRoute, 'handle'>[];
-      /** Holds the token; null: it was given. */
+      /** The file with the generated token; null: the token was given. */
       readonly tokenFile: string | null;
     };
 
-/** What the thread does for others; `at` is seconds since 1970. */
+/** The calls of the thread; `at` is in seconds since 1970. */
 export type StudyThreadApi = {
-  /** The first call of all. */
+  /** Opens the studies, before any other call. */
   open(options: StudyThreadOptions, at: number): OpenedStudies;
   admit(route: number, request: StudyRequest): Promise<StudyOutcome>;
   handle(route: number, request: StudyRequest, body: Uint8Array<ArrayBuffer>): Promise<StudyOutcome>;
@@ -38,7 +39,7 @@ export type StudyThreadApi = {
   close(): void;
 };
 
-/** How often overwriting deleted data is tried again where it failed [ms]. */
+/** The interval at which failed overwriting of deleted data is repeated [ms]. */
 const forgetMs = 1000;
 
 const wrongGuess = ({ what, of, address, failures }: WrongGuess): string =>
@@ -58,11 +59,11 @@ function expire(store: StudyStore, at: number, log: Log): void {
       log(`study "${study}": ${participant} is past the retention date, ${records} records deleted`);
     }
   } catch (error) {
-    log(`study: who is past a retention date could not be read, ${again}: ${reasonOf(error)}`);
+    log(`study: the retention dates could not be read, ${again}: ${reasonOf(error)}`);
   }
 }
 
-/** Overwrites deleted data as soon as it can be. */
+/** Overwrites deleted data as soon as possible. */
 function keepForgetting(store: StudyStore, log: Log): NodeJS.Timeout {
   let isHeld = false;
   return setInterval(() => {
@@ -83,14 +84,14 @@ interface OpenFolder {
   readonly forgetting: NodeJS.Timeout;
 }
 
-/** Makes the signer of seats from the secret of the server; `now`: seconds since 1970. */
+/** Makes the signer of seats from the secret of the server; `now` returns seconds since 1970. */
 export type CreateSignSeat = (secret: string, now: () => number) => SignSeat;
 
-/** Answers the calls that arrive on the port of this thread until the process ends. */
+/** Answers the calls on the port of this thread until the process ends. */
 export function serveStudies(port: MessagePort, createSignSeat: CreateSignSeat): void {
   const log = logFrom(port);
   let serving: OpenFolder | null = null;
-  // The time of the newest request: the clock of the process is that of its main thread.
+  // The time of the newest request, because the main thread has the clock of the process.
   let newest = 0;
 
   function open({ secret, ...options }: StudyThreadOptions, at: number): OpenedStudies {

@@ -5,24 +5,27 @@ import type { Answers, Questionnaire } from '../model/questionnaires/questionnai
 import type { RandomSource } from './random-source';
 
 /**
- * How a simulated participant answers: a leaning [points of a scale from 1 to 5, stretched to the question's own], the person's own, the question's, the condition's, the place's
- * in the order, and chance, rounded to the scale. Stated, not fitted: no person's answers are imitated.
+ * The model of simulated answers. An answer is a latent value [points of a scale from 1 to 5, stretched to the
+ * question's scale], rounded to the scale. It is the sum of effects of person, question, condition and order, and of
+ * noise. The parameters are stated, not fitted to people.
  */
 export interface AnswerModel {
-  /** Where answers lie without any effect, per question; others: `elsewhere`. */
+  /** The latent value without effects, per question; others have `elsewhere`. */
   readonly base: Readonly<Record<string, number>>;
   readonly elsewhere: number;
-  /** Standard deviation between persons, alike in all of their answers. */
+  /** The standard deviation between persons, constant over the answers of each. */
   readonly personDeviation: number;
-  /** Standard deviation of one answer about its leaning. */
+  /** The standard deviation of one answer. */
   readonly answerDeviation: number;
-  /** Added under a condition, or in a cohort, to a question: effects[its id][question]; "*" is every question not named. */
+  /**
+   * The effect of a condition or a cohort on a question: effects[its id][question]; "*" stands for all other questions.
+   */
   readonly effects: Readonly<Record<string, Readonly<Record<string, number>>>>;
-  /** Added in the second and later blocks: practice, or weariness. */
+  /** The effect of the second and later blocks: practice or fatigue. */
   readonly orderEffect: number;
 }
 
-/** No condition differs from another. */
+/** The model without differences between conditions. */
 export const nullAnswerModel: AnswerModel = {
   base: {},
   elsewhere: 3.4,
@@ -32,22 +35,22 @@ export const nullAnswerModel: AnswerModel = {
   orderEffect: 0,
 };
 
-/** All questions better by so many points, by the id of a condition or a cohort. */
+/** Returns the model with this effect on all questions, by the id of a condition or a cohort. */
 export const answerModelWith = (effects: Readonly<Record<string, number>>): AnswerModel => ({
   ...nullAnswerModel,
   effects: Object.fromEntries(Object.entries(effects).map(([id, effect]) => [id, { '*': effect }])),
 });
 
-/** How this person leans, drawn once. */
+/** Draws the constant deviation of a person. */
 export const drawPerson = (model: AnswerModel, random: RandomSource): number => model.personDeviation * random.normal();
 
-/** What a leaning is as an answer to a question: on scales and numbers its place between the ends, turned round where these are. */
+/** Returns a latent value as an answer: its position between the ends of the scale, reversed if the question is. */
 function answerAt({ answer: form, reversed }: Question, leaning: number, random: RandomSource): Answer {
   const part = Math.min(1, Math.max(0, (leaning - 1) / 4));
   return questionKind(form).simulate(form, reversed ? 1 - part : part, () => random.uniform());
 }
 
-/** Who answers, and in which circumstances; `cohort` null: the plan has none. */
+/** The person and the circumstances of answers; `cohort` null: the plan has none. */
 export interface Answering {
   readonly person: number;
   readonly condition: string;
@@ -55,7 +58,7 @@ export interface Answering {
   readonly block: number;
 }
 
-/** All answers of a questionnaire. */
+/** Draws all answers to a questionnaire. */
 export function drawAnswers(
   model: AnswerModel,
   questionnaire: Questionnaire,

@@ -2,29 +2,29 @@ import { createTrialLog, type TrialOutcome } from '../model/records/trial-log';
 import type { RandomSource } from './random-source';
 
 /**
- * How well simulated participants play, and how smoothly a simulated headset runs. Stated, not fitted: the numbers are chosen so
- * that scores lie inside the scale, and no person's play is imitated.
+ * The model of simulated play and of the frame rate of a simulated headset. The parameters are stated, not fitted to
+ * people, and keep scores inside their scale.
  */
 export interface PerformanceModel {
-  /** Chance to hit each archery target with an arrow aimed at it, nearest first. */
+  /** The chance to hit each archery target, the nearest first. */
   readonly hitChance: readonly number[];
-  /** Chance that a thrown ball is caught. */
+  /** The chance that a thrown ball is caught. */
   readonly catchChance: number;
-  /** Standard deviation of skill between persons (groups, in the ball game), added to the chances. */
+  /** The standard deviation of skill between persons (groups in the ball game), added to the chances. */
   readonly skillDeviation: number;
-  /** Added to the chances under a condition, or in a cohort, by its id. */
+  /** The effect of a condition or a cohort on the chances, by its id. */
   readonly effects: Readonly<Record<string, number>>;
-  /** Added to the chances in the second and later blocks. */
+  /** The effect of the second and later blocks on the chances. */
   readonly practice: number;
   /** Seconds between two shots: mean and standard deviation. */
   readonly pace: { readonly mean: number; readonly deviation: number };
-  /** Work per frame [ms], by estimator: median; spread is the deviation of its logarithm. */
+  /** The median work per frame by estimator [ms]; the spread is the standard deviation of its logarithm. */
   readonly frameMs: Readonly<Record<string, number>>;
   readonly frameSpread: number;
   readonly refreshRateHz: number;
-  /** Chance per trial that a hand is lost, and for how many seconds. */
+  /** The chance per trial that a hand is lost, and for how many seconds. */
   readonly loss: { readonly chance: number; readonly seconds: number };
-  /** Chance per trial that the page is loaded again in the middle, and per block that the experimenter voids it. */
+  /** The chance per trial of a reload, and per block of being voided. */
   readonly mishaps: { readonly reload: number; readonly voided: number };
 }
 
@@ -48,13 +48,13 @@ const archeryArrows = 5;
 const balls = 20;
 
 export interface Player {
-  /** Added to every chance. */
+  /** A value added to every chance. */
   readonly skill: number;
   readonly eyeHeight: number;
   readonly armSpan: number;
 }
 
-/** A simulated participant's skill and measures. */
+/** Draws a simulated participant's skill and measures. */
 export function drawPlayer(model: PerformanceModel, random: RandomSource): Player {
   const eyeHeight = Math.min(1.9, Math.max(1.35, 1.58 + 0.09 * random.normal()));
   return { skill: model.skillDeviation * random.normal(), eyeHeight, armSpan: 0.945 * eyeHeight };
@@ -67,7 +67,7 @@ interface Circumstances {
   /** null: the plan has none. */
   readonly cohort: string | null;
   readonly block: number;
-  /** Time limit of the trial. */
+  /** The time limit of the trial [s]. */
   readonly seconds: number;
 }
 
@@ -86,7 +86,7 @@ function logFor(model: PerformanceModel, player: Player) {
   );
 }
 
-/** Frames and tracking of so many seconds. */
+/** Adds frames and tracking for a number of seconds. */
 function addFrames(
   log: ReturnType<typeof logFor>,
   model: PerformanceModel,
@@ -110,7 +110,7 @@ function addFrames(
 const pause = (model: PerformanceModel, random: RandomSource, among = 1) =>
   Math.max(1, model.pace.mean + model.pace.deviation * random.normal()) / among;
 
-/** One round of archery: at the farthest target not yet hit, as the points ask for. */
+/** Draws a round of archery, in which arrows are aimed at the farthest target that is not hit yet. */
 export function drawArchery(
   model: PerformanceModel,
   player: Player,
@@ -147,7 +147,7 @@ export function drawArchery(
   return log.finish({ seconds: time, ended, score, maximum, motionFrames: 0 });
 }
 
-/** One round of the ball game for a whole group: the last member holds the basket, the others throw in turn. */
+/** Draws a round of the ball game for a group; the last member holds the basket, and the others throw in turn. */
 export function drawBall(
   model: PerformanceModel,
   players: readonly Player[],

@@ -1,15 +1,15 @@
 import { nextRandom, type RandomState } from 'threepoint/core/math/random';
 import { randomFor } from '../model/plan/shuffle';
 
-/** A seeded source of numbers for the models: its state moves with every number taken. */
+/** A seeded source of random numbers, whose state advances with every number. */
 export interface RandomSource {
-  /** In [0, 1). */
+  /** Returns a number in [0, 1). */
   uniform(): number;
-  /** Standard normal. */
+  /** Returns a standard normal number. */
   normal(): number;
 }
 
-/** The same seed and purpose always give the same numbers. */
+/** Returns a source that depends on the seed and the purpose only. */
 export function randomSource(seed: number, purpose: string): RandomSource {
   let state: RandomState = randomFor(seed, purpose);
   const uniform = () => {
@@ -19,7 +19,7 @@ export function randomSource(seed: number, purpose: string): RandomSource {
   };
   return {
     uniform,
-    // Box and Muller; 1 − u is never 0.
+    // The method of Box and Muller; 1 − u is never 0.
     normal: () => Math.sqrt(-2 * Math.log(1 - uniform())) * Math.cos(2 * Math.PI * uniform()),
   };
 }

@@ -24,15 +24,15 @@ export interface SimulationModels {
   readonly performance: PerformanceModel;
 }
 
-/** What is put into a simulated study: added under a condition, or in a cohort, by its id. */
+/** The effects in a simulated study, by the id of a condition or a cohort. */
 export interface StatedEffects {
-  /** Points of a scale from 1 to 5, stretched to each question's own. */
+  /** The effect on answers in points of a scale from 1 to 5, stretched to each question's scale. */
   readonly answers: Readonly<Record<string, number>>;
-  /** Of a chance to hit or catch. */
+  /** The effect on the chance to hit or catch. */
   readonly scores: Readonly<Record<string, number>>;
 }
 
-/** The models with these effects; throws a ValidationError where the plan has no such condition or cohort. */
+/** Returns the models with these effects; throws a ValidationError if the plan has no such condition or cohort. */
 export function modelsWith(
   { conditions, cohorts = [] }: StudyPlan,
   { answers, scores }: StatedEffects,
@@ -45,7 +45,7 @@ export function modelsWith(
   return { answers: answerModelWith(answers), performance: { ...statedPerformanceModel, effects: scores } };
 }
 
-/** "answers +0.5 points under "late-100".": what was put in, or that nothing was. */
+/** Describes the effects: 'answers +0.5 points under "late-100".', or that there are none. */
 export function statedInWords({ answers, scores }: StatedEffects): string {
   const signed = (value: number) => `${value < 0 ? '−' : '+'}${Math.abs(value)}`;
   const parts = [
@@ -55,7 +55,7 @@ export function statedInWords({ answers, scores }: StatedEffects): string {
   return parts.length === 0 ? 'no effect: an analysis that finds one is wrong.' : `${parts.join('; ')}.`;
 }
 
-/** What one simulated participant leaves behind. */
+/** The session of a simulated participant. */
 export interface SimulatedParticipant {
   readonly participant: string;
   readonly progress: Progress;
@@ -98,8 +98,9 @@ const slotSeconds = 7200;
 const mostSteps = 10_000;
 
 /**
- * A whole study of simulated participants, one after the other, through the same sessions as people's, mishaps included: reloads in the
- * middle of trials, voided blocks. `at`: when the first one begins [s since 1970]. The same plan, models and seed give the same records.
+ * Yields the simulated participants of a whole study one after the other. They use the same sessions as people, with
+ * reloads in the middle of trials and voided blocks. `at` is the start of the first one [s since 1970]. The same plan,
+ * models and seed give the same study.
  */
 export function* simulatedParticipants(
   plan: StudyPlan,
@@ -113,12 +114,12 @@ export function* simulatedParticipants(
   }
 }
 
-/** The same, all at once. */
+/** Returns all simulated participants of a study. */
 export const simulateStudy = (...study: Parameters<typeof simulatedParticipants>): readonly SimulatedParticipant[] => [
   ...simulatedParticipants(...study),
 ];
 
-/** The players of a study and what their trials bring. */
+/** Draws the players of a study and the results of their trials. */
 class SimulatedRounds {
   readonly plan: StudyPlan;
   readonly seed: number;
@@ -147,7 +148,7 @@ class SimulatedRounds {
     return this.#cohorts.get(participant)?.id ?? null;
   }
 
-  /** What a trial brings; those who play together draw the same round. */
+  /** Returns the result of a trial; participants who play together share a round. */
   outcomeOf({ participant, groups }: Schedule, step: GameStep, run: number, attempt: number): TrialOutcome {
     const task = this.plan.tasks.find(({ id }) => id === step.task);
     const group = groups[step.task];
@@ -170,13 +171,13 @@ class SimulatedRounds {
   }
 }
 
-/** One participant from the consent to the end. */
+/** Simulates a participant from consent to the end. */
 class SimulatedSession {
   readonly #rounds: SimulatedRounds;
   readonly #models: SimulationModels;
   readonly #schedule: Schedule;
   readonly #random: RandomSource;
-  /** What sets this participant's answers apart from others'. */
+  /** The constant deviation of this participant's answers. */
   readonly #person: number;
   readonly #records: StudyRecord[] = [];
   #progress: Progress;
@@ -202,7 +203,7 @@ class SimulatedSession {
       this.#now += 5 + Math.round(10 * this.#random.uniform());
       this.#take(step);
     }
-    throw new Error(`${participant} does not come to an end`);
+    throw new Error(`${participant} does not reach the end`);
   }
 
   #tell(event: ProgressEvent): void {
@@ -252,7 +253,7 @@ class SimulatedSession {
     const outcome = this.#rounds.outcomeOf(this.#schedule, step, run, this.#progress.attempt);
     this.#now += outcome.seconds;
     this.#tell({ type: 'trial-finished', outcome });
-    // A group's block is voided for all or none; alone, mishaps are one's own.
+    // The block of a group is voided for all or none; single participants have separate mishaps.
     const alone = this.#schedule.groups[step.task]?.members.length === 1;
     if (step.kind === 'trial' && alone && this.#random.uniform() < mishaps.voided) {
       this.#tell({ type: 'void-block', reason: 'simulated mishap', repeat: true });

@@ -3,16 +3,16 @@ import { type Interval, meanOf } from './summaries';
 
 /** One effect of an analysis of variance. */
 export interface Effect {
-  /** null where there is no spread to measure the effect with; so is what follows from it. */
+  /** null if there is no variance to measure the effect with; so are the values that depend on it. */
   readonly f: number | null;
   readonly df: readonly [number, number];
   readonly p: number | null;
-  /** Greenhouse and Geisser's ε and the p with degrees of freedom times it; null for effects that have none: between participants. */
+  /** ε of Greenhouse and Geisser and the p with degrees of freedom times it; null for effects between participants. */
   readonly epsilon: number | null;
   readonly correctedP: number | null;
-  /** Partial η²: the share of the variance that is not of other effects. */
+  /** Partial η²: the share of the variance that other effects do not explain. */
   readonly partialEtaSquared: number | null;
-  /** Of 90 %, as is usual for a share that has but one side; null also where F is too large for it to be computed. */
+  /** The 90 % interval, as is usual for a one-sided share; null also if F is too large to compute it. */
   readonly interval: Interval | null;
 }
 
@@ -20,15 +20,15 @@ export interface Effect {
 export interface VarianceAnalysis {
   /** Participants. */
   readonly n: number;
-  /** Of the conditions that each participant met; null: there was one. */
+  /** The effect of the conditions that each participant met; null: there was one. */
   readonly within: Effect | null;
-  /** Of the cohorts; null: there is one. */
+  /** The effect of the cohorts; null: there is one. */
   readonly between: Effect | null;
   readonly interaction: Effect | null;
 }
 
 const confidence = 0.9;
-/** Spread this small against the values is rounding. */
+/** Variance this small relative to the values is rounding. */
 const constantBelow = 1e-20;
 
 interface Squares {
@@ -37,7 +37,7 @@ interface Squares {
   readonly df: readonly [number, number];
   /** ε; null: it does not apply. */
   readonly epsilon: number | null;
-  /** Of all values about 0: what rounding is measured by. */
+  /** The magnitude of all values, for the test of rounding. */
   readonly scale: number;
 }
 
@@ -58,7 +58,7 @@ function effectOf({ effect, error, df, epsilon, scale }: Squares): Effect {
   };
 }
 
-/** Helmert's contrasts of k values, orthonormal: what is left of them without their mean. */
+/** Returns Helmert's orthonormal contrasts of k values. */
 function contrasts(count: number): readonly (readonly number[])[] {
   return Array.from({ length: count - 1 }, (_, index) => {
     const before = index + 1;
@@ -70,12 +70,12 @@ function contrasts(count: number): readonly (readonly number[])[] {
 const dotOf = (a: readonly number[], b: readonly number[]) =>
   a.reduce((sum, value, index) => sum + value * (b[index] as number), 0);
 
-/** One contrast's value of every participant, cohort by cohort: the squares of its mean, of the cohorts about it, and within them. */
+/** Returns the sums of squares of one contrast, cohort by cohort: of its mean, between cohorts and within them. */
 function squaresOf(cohorts: readonly (readonly number[])[]) {
   const n = cohorts.reduce((sum, { length }) => sum + length, 0);
   const means = cohorts.map(meanOf);
   const weighted = meanOf(cohorts.flat());
-  // Cohorts count alike however large they are (type III).
+  // Cohorts have equal weights regardless of their size (type III).
   const unweighted = meanOf(means);
   const inverse = cohorts.reduce((sum, { length }) => sum + 1 / length, 0) / cohorts.length ** 2;
   return {
@@ -86,7 +86,10 @@ function squaresOf(cohorts: readonly (readonly number[])[]) {
   };
 }
 
-/** ε of the covariances of the contrasts: 1 where the differences of all conditions spread alike, at least 1 / (k − 1). */
+/**
+ * Returns ε of the covariances of the contrasts: 1 if all differences of conditions have equal variance, at least 1 /
+ * (k − 1).
+ */
 function greenhouseGeisser(residuals: readonly (readonly number[])[]): number {
   const covariance = residuals.map((a) => residuals.map((b) => dotOf(a, b)));
   const trace = covariance.reduce((sum, row, index) => sum + (row[index] as number), 0);

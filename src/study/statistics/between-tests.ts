@@ -8,7 +8,7 @@ export interface WelchTest {
   readonly n: readonly [number, number];
   readonly meanDifference: number;
   readonly interval: Interval | null;
-  /** null where there is no spread to measure the difference with; so are p and df. */
+  /** null if there is no variance to measure the difference with; so are p and df. */
   readonly t: number | null;
   readonly df: number | null;
   readonly p: number | null;
@@ -21,7 +21,7 @@ function refuseEmpty(first: readonly number[], second: readonly number[]): void 
   if (first.length === 0 || second.length === 0) throw new Error('two groups: one of them is empty');
 }
 
-/** Of the difference of two means, and its degrees of freedom by Welch and Satterthwaite. */
+/** Returns the standard error of the difference of two means, and its degrees of freedom by Welch and Satterthwaite. */
 export function standardError(
   variances: readonly [number, number],
   n: readonly [number, number],
@@ -31,7 +31,7 @@ export function standardError(
   return { error: Math.sqrt(sum), df: sum ** 2 / (shares[0] ** 2 / (n[0] - 1) + shares[1] ** 2 / (n[1] - 1)) };
 }
 
-/** As R's `t.test(first, second)`. Throws where a list is empty. */
+/** Computes R's `t.test(first, second)`. Throws if a list is empty. */
 export function welchTest(first: readonly number[], second: readonly number[], confidence = 0.95): WelchTest {
   refuseEmpty(first, second);
   const n = [first.length, second.length] as const;
@@ -46,7 +46,7 @@ export function welchTest(first: readonly number[], second: readonly number[], c
   const half = criticalT(confidence, df) * error;
   const pooledDf = n[0] + n[1] - 2;
   const pooled = Math.sqrt(((n[0] - 1) * variances[0] + (n[1] - 1) * variances[1]) / pooledDf);
-  // Student's t, whose noncentrality is the effect in these units.
+  // The factor from Student's t to its noncentrality, which is the effect.
   const unit = Math.sqrt(1 / n[0] + 1 / n[1]);
   const ds = meanDifference / pooled;
   const noncentrality = noncentralityOfT(ds / unit, pooledDf, confidence);
@@ -64,28 +64,28 @@ export function welchTest(first: readonly number[], second: readonly number[], c
 
 /** Wilcoxon's rank-sum test (Mann and Whitney's) of first − second, two-sided. */
 export interface RankSumTest {
-  /** Pairs of one value of each in which the first is larger, ties counting half: R's W. */
+  /** The number of pairs in which the first is larger, ties counting half: R's W. */
   readonly w: number;
   readonly method: 'exact' | 'normal';
-  /** null where all values are alike. */
+  /** null if all values are equal. */
   readonly p: number | null;
-  /** Rank-biserial correlation in [−1, 1]: how much likelier a value of the first is the larger than the smaller. */
+  /** The rank-biserial correlation in [−1, 1]: how much likelier a value of the first is larger than smaller. */
   readonly effect: number;
-  /** Its interval; null where no value of one is beyond one of the other. */
+  /** The interval of the effect; null if no value of one side is beyond one of the other. */
   readonly effectInterval: Interval | null;
 }
 
-/** From as many values on, or with ties, R takes the normal approximation. */
+/** From this many values on, or with ties, R uses the normal approximation. */
 const exactBelow = 50;
 
-/** How many of the ways to choose `first` ranks of first + second have each value of W. */
+/** Counts the ways to choose `first` of first + second ranks for each value of W. */
 export function rankSumCounts(first: number, second: number): readonly number[] {
-  // ways[i][w]: of i chosen among the ranks so far.
+  // ways[i][w] counts the ways to choose i of the ranks so far.
   const ways = Array.from({ length: first + 1 }, () => new Array<number>(first * second + 1).fill(0));
   (ways[0] as number[])[0] = 1;
   for (let rank = 1; rank <= first + second; rank++) {
     for (let chosen = Math.min(first, rank); chosen > 0; chosen--) {
-      // The chosen-th of them at this rank is larger than so many of the second kind.
+      // The number of values of the second kind that are smaller than this one.
       const wins = rank - chosen;
       const [without, withIt] = [ways[chosen] as number[], ways[chosen - 1] as number[]];
       for (let w = first * second; w >= wins; w--) (without[w] as number) += withIt[w - wins] as number;
@@ -94,7 +94,7 @@ export function rankSumCounts(first: number, second: number): readonly number[] 
   return ways[first] as number[];
 }
 
-/** The exact two-sided p of every W of so many values, which are counted once for all. */
+/** Returns a function from W to its exact two-sided p, which counts once for all W. */
 function exactPs(first: number, second: number): (w: number) => number {
   const counts = rankSumCounts(first, second);
   const all = counts.reduce((sum, count) => sum + count, 0);
@@ -103,13 +103,13 @@ function exactPs(first: number, second: number): (w: number) => number {
     sum += count;
     return sum;
   });
-  // Both ends are alike: the sum of the smaller one loses nothing to rounding.
+  // The distribution is symmetric; the sum of the smaller end loses nothing to rounding.
   return (w) => Math.min(1, 2 * ((upTo[Math.min(w, first * second - w)] as number) / all));
 }
 
 /**
- * As R's `wilcox.test(first, second)` up to R 4.5: exact for fewer than 50 values in each group without ties, else the normal approximation
- * with continuity correction. Throws where a list is empty.
+ * Computes R's `wilcox.test(first, second)` up to R 4.5: exact for fewer than 50 values in each group without ties,
+ * otherwise the normal approximation with continuity correction. Throws if a list is empty.
  */
 export function rankSumTest(first: readonly number[], second: readonly number[]): RankSumTest {
   refuseEmpty(first, second);
@@ -123,7 +123,7 @@ export function rankSumTest(first: readonly number[], second: readonly number[])
   return { w, method: exact ? 'exact' : 'normal', p, effect, effectInterval };
 }
 
-/** null where all values are tied. */
+/** Returns null if all values are tied. */
 function normalP(w: number, m: number, n: number, ties: readonly number[]): number | null {
   const all = m + n;
   const deviation = Math.sqrt(((m * n) / 12) * (all + 1 - cubesOf(ties) / (all * (all - 1))));
@@ -133,6 +133,6 @@ function normalP(w: number, m: number, n: number, ties: readonly number[]): numb
   return Math.min(1, 2 * normalCdf(-Math.abs(z), 0, 1));
 }
 
-/** The two-sided p of each W of m and n values that are all different. */
+/** Returns a function from W to its two-sided p for m and n values without ties. */
 export const rankSumPs = (m: number, n: number): ((w: number) => number) =>
   m < exactBelow && n < exactBelow ? exactPs(m, n) : (w) => normalP(w, m, n, []) as number;

@@ -1,6 +1,6 @@
 /**
- * Holm's adjusted p-values (Scandinavian Journal of Statistics 6, 1979) in the order given. A test without a p (null) stays
- * without one but counts in the family: it was planned, so leaving it out would make the others look better.
+ * Returns Holm's adjusted p-values (Scandinavian Journal of Statistics 6, 1979) in the given order. A test without a p
+ * (null) has none, but counts in the family: it was planned, and leaving it out would favour the others.
  */
 export function holm(pValues: readonly (number | null)[]): readonly (number | null)[] {
   const order = pValues
@@ -16,7 +16,7 @@ export function holm(pValues: readonly (number | null)[]): readonly (number | nu
   return adjusted;
 }
 
-/** Tests made together, each with its p and that of its test by ranks adjusted over all of them. */
+/** Returns tests of one family with the adjusted p of each, and of its test by ranks. */
 export function asFamily<T>(
   tests: readonly T[],
   pOf: (test: T) => number | null,

@@ -3,15 +3,15 @@ import normalCdf from '@stdlib/stats-base-dists-normal-cdf';
 import { bisect } from 'threepoint/core/math/bisection';
 import type { Interval } from './summaries';
 
-/** Terms of a series that are so small, behind its greatest, add nothing to a double. */
+/** Terms of a series this small relative to its greatest add nothing to a double. */
 const negligible = 1e-17;
 const halvings = 80;
 
-/** Probability of an F at least this large. */
+/** Returns the probability of an F at least this large. */
 export const fTail = (f: number, df1: number, df2: number): number =>
   f <= 0 ? 1 : betainc(df2 / (df2 + df1 * f), df2 / 2, df1 / 2);
 
-/** The values of a function of whole numbers, each computed once: a search for a noncentrality asks for the same over and over. */
+/** Caches a function of whole numbers, because the search for a noncentrality repeats its arguments. */
 function kept(value: (index: number) => number): (index: number) => number {
   const values: number[] = [];
   return (index) => {
@@ -20,7 +20,10 @@ function kept(value: (index: number) => number): (index: number) => number {
   };
 }
 
-/** The distribution function at t of the noncentral t with df degrees of freedom, of the noncentrality (Lenth 1989, AS 243). */
+/**
+ * Returns the distribution function at t of the noncentral t with df degrees of freedom, as a function of the
+ * noncentrality (Lenth 1989, AS 243).
+ */
 export function noncentralT(t: number, df: number): (noncentrality: number) => number {
   if (t < 0) {
     const mirrored = noncentralT(-t, df);
@@ -43,7 +46,10 @@ export function noncentralT(t: number, df: number): (noncentrality: number) => n
   };
 }
 
-/** The distribution function at F of the noncentral F, of the noncentrality λ: central ones weighted by Poisson's probabilities. */
+/**
+ * Returns the distribution function at F of the noncentral F, as a function of the noncentrality λ: central ones with
+ * Poisson weights.
+ */
 export function noncentralF(f: number, df1: number, df2: number): (noncentrality: number) => number {
   const x = (df1 * f) / (df1 * f + df2);
   const central = kept((j) => betainc(x, df1 / 2 + j, df2 / 2));
@@ -59,20 +65,20 @@ export function noncentralF(f: number, df1: number, df2: number): (noncentrality
   };
 }
 
-/** Noncentralities beyond these make the first weight of a series 0. */
+/** Beyond these noncentralities the first weight of a series is 0. */
 const mostOfT = 37;
 const mostOfF = 1400;
 
-/** Where a falling probability is `share`, between two ends; null: it is not reached there. */
+/** Finds the point between two ends at which a falling probability is `share`, or returns null if it is not reached. */
 function reached(probability: (at: number) => number, share: number, low: number, high: number): number | null {
   return probability(high) > share ? null : bisect(low, high, (at) => probability(at) < share, halvings);
 }
 
-/** Both ends; null: one of them is too far out to be computed. */
+/** Returns both ends, or null if one of them is too far out to compute it. */
 const between = (low: number | null, high: number | null): Interval | null =>
   low === null || high === null ? null : { low, high };
 
-/** The noncentralities under which a t as far out is not surprising; null: t, or an end, is too far out for it to be computed. */
+/** Returns the confidence interval of the noncentrality of a t, or null if t or an end is too far out to compute it. */
 export function noncentralityOfT(t: number, df: number, confidence = 0.95): Interval | null {
   if (Math.abs(t) > mostOfT / 2) return null;
   const below = noncentralT(t, df);
@@ -80,7 +86,10 @@ export function noncentralityOfT(t: number, df: number, confidence = 0.95): Inte
   return between(at((1 + confidence) / 2), at((1 - confidence) / 2));
 }
 
-/** The noncentralities λ under which an F as large is not surprising, at least 0; null: F, or an end, is too large for it to be computed. */
+/**
+ * Returns the confidence interval of the noncentrality λ of an F, at least 0, or null if F or an end is too large to
+ * compute it.
+ */
 export function noncentralityOfF(f: number, df1: number, df2: number, confidence: number): Interval | null {
   if (f * df1 > mostOfF / 2) return null;
   const below = noncentralF(f, df1, df2);

@@ -7,16 +7,16 @@ import { type Interval, meanSummary, roundingOf, twoSidedP } from './summaries';
 /** The two-sided paired t-test of first − second. */
 export interface PairedTTest {
   readonly n: number;
-  /** Of the differences. */
+  /** The mean of the differences. */
   readonly meanDifference: number;
   readonly interval: Interval | null;
   readonly df: number;
-  /** null where all differences are alike but for rounding (or there are fewer than two): there is no spread to measure the mean with. */
+  /** null if all differences are equal up to rounding or there are fewer than two, so that there is no variance. */
   readonly t: number | null;
   readonly p: number | null;
-  /** Cohen's d_z: mean of the differences in their standard deviations; null where t is. */
+  /** Cohen's d_z: the mean of the differences in their standard deviations; null if t is. */
   readonly dz: number | null;
-  /** null also where t is too far out for it to be computed. */
+  /** null also if t is too far out to compute it. */
   readonly dzInterval: Interval | null;
 }
 
@@ -27,7 +27,7 @@ function refuseUnpaired(first: readonly number[], second: readonly number[]): vo
   if (first.length === 0) throw new Error('paired values: there are none');
 }
 
-/** As R's `t.test(first, second, paired = TRUE)`. Throws where the lists differ in length or are empty. */
+/** Computes R's `t.test(first, second, paired = TRUE)`. Throws if the lists differ in length or are empty. */
 export function pairedTTest(first: readonly number[], second: readonly number[], confidence = 0.95): PairedTTest {
   refuseUnpaired(first, second);
   const differences = first.map((value, index) => value - (second[index] as number));
@@ -46,33 +46,34 @@ export function pairedTTest(first: readonly number[], second: readonly number[],
 
 /** Wilcoxon's signed-rank test of first − second, two-sided. */
 export interface SignedRankTest {
-  /** Pairs that differ; the others say nothing and are left out. */
+  /** The number of pairs that differ; the others are left out. */
   readonly n: number;
   readonly zeros: number;
-  /** Sum of the ranks of the positive differences: R's V. */
+  /** The sum of the ranks of the positive differences: R's V. */
   readonly v: number;
   /** exact: the distribution of V; normal: its approximation with correction for continuity and ties. */
   readonly method: 'exact' | 'normal';
-  /** null where no pair differs. */
+  /** null if no pair differs. */
   readonly p: number | null;
-  /** Rank-biserial correlation in [−1, 1]: (V − the ranks of the negative) / all ranks; null where no pair differs. */
+  /** The rank-biserial correlation in [−1, 1]: (V − the ranks of the negative) / all ranks; null if no pair differs. */
   readonly effect: number | null;
-  /** Its interval; null also where all differences have one sign. */
+  /** The interval of the effect; null also if all differences have one sign. */
   readonly effectInterval: Interval | null;
 }
 
-/** Below this many pairs R takes the exact distribution, if there are neither ties nor zeros. */
+/** Below this many pairs R uses the exact distribution, if there are neither ties nor zeros. */
 const exactBelow = 50;
 
 /**
- * As R's `wilcox.test(first, second, paired = TRUE)` up to R 4.5: exact for fewer than 50 pairs without ties and zeros, else the
- * normal approximation with continuity correction, zeros dropped (Wilcoxon's way). Differences that are equal but for rounding are tied
- * (R: with `digits.rank`), and those that are rounding alone are zeros. Throws where the lists differ in length or are empty.
+ * Computes R's `wilcox.test(first, second, paired = TRUE)` up to R 4.5: exact for fewer than 50 pairs without ties and
+ * zeros, otherwise the normal approximation with continuity correction, without zeros (Wilcoxon's method). Differences
+ * that are equal up to rounding are tied (R: with `digits.rank`), and those within rounding of 0 are zeros. Throws if the
+ * lists differ in length or are empty.
  */
 export function signedRankTest(first: readonly number[], second: readonly number[]): SignedRankTest {
   refuseUnpaired(first, second);
   const all = first.map((value, index) => value - (second[index] as number));
-  // Of the values: where they are large, rounding shows in a small difference.
+  // The rounding error of large values shows in their small differences.
   const rounding = roundingOf([...first, ...second]);
   const differences = all.filter((difference) => Math.abs(difference) > rounding);
   const n = differences.length;
@@ -89,7 +90,7 @@ export function signedRankTest(first: readonly number[], second: readonly number
 }
 
 function exactP(v: number, n: number): number {
-  // Both ends are alike: the smaller one loses nothing to rounding.
+  // The distribution is symmetric; the smaller end loses nothing to rounding.
   return Math.min(1, 2 * signedRankCdf(Math.min(v, (n * (n + 1)) / 2 - v), n));
 }
 
@@ -100,5 +101,5 @@ function normalP(v: number, n: number, ties: readonly number[]): number {
   return Math.min(1, 2 * normalCdf(-Math.abs(z), 0, 1));
 }
 
-/** The two-sided p of a V of n pairs that all differ by different amounts. */
+/** Returns the two-sided p of a V of n pairs without ties and zeros. */
 export const signedRankP = (v: number, n: number): number => (n < exactBelow ? exactP(v, n) : normalP(v, n, []));

@@ -4,26 +4,28 @@ import { signedRankP } from './paired-tests';
 import { ranksOf } from './ranks';
 import { criticalT, deviationOf, meanOf, twoSidedP } from './summaries';
 
-/** A study that is yet to be run, of two conditions or two cohorts. */
+/** A planned study of two conditions or two cohorts. */
 export interface PlannedTest {
-  /** paired: all meet both conditions; between: two cohorts of n each. */
+  /** paired: all participants meet both conditions; between: two cohorts of n each. */
   readonly design: 'paired' | 'between';
-  /** The true difference: paired in standard deviations of the differences (d_z), between in those of the values (d_s). */
+  /**
+   * The true difference: paired in standard deviations of the differences (d_z), between in those of the values (d_s).
+   */
   readonly effect: number;
-  /** Two-sided: how often a study without any effect may find one. */
+  /** The two-sided significance level. */
   readonly alpha: number;
 }
 
 export interface Simulation {
   readonly seed: number;
-  /** Studies that are simulated for each number of participants. */
+  /** The number of simulated studies for each number of participants. */
   readonly studies: number;
 }
 
 /** The share of simulated studies that find the effect. */
 export interface Power {
   readonly t: number;
-  /** Wilcoxon's tests: signed ranks where paired, rank sums between. */
+  /** The power of Wilcoxon's tests: signed ranks for paired designs, rank sums between cohorts. */
   readonly wilcoxon: number;
 }
 
@@ -33,7 +35,7 @@ interface Finding {
   readonly wilcoxon: boolean;
 }
 
-/** A p for each value of a statistic, each computed once. */
+/** Caches the p of each value of a statistic. */
 function remembered(pOf: (statistic: number) => number): (statistic: number) => number {
   const known = new Map<number, number>();
   return (statistic) => {
@@ -43,7 +45,7 @@ function remembered(pOf: (statistic: number) => number): (statistic: number) => 
   };
 }
 
-/** The rounding of drawn values: they are ranked as they are, since the p of a statistic holds where nothing is tied. */
+/** Drawn values are not rounded, since the p of a statistic holds without ties. */
 const untied = 0;
 
 function pairedStudy({ effect, alpha }: PlannedTest, n: number, normal: () => number): () => Finding {
@@ -71,7 +73,10 @@ function betweenStudy({ effect, alpha }: PlannedTest, n: number, normal: () => n
   };
 }
 
-/** The power of a study of n participants (between: n in each cohort, at least 2), values normally distributed. The same seed, the same power. */
+/**
+ * Returns the power of a study of n participants (between: n in each cohort, at least 2) with normally distributed
+ * values. The same seed gives the same power.
+ */
 export function simulatedPower(planned: PlannedTest, n: number, { seed, studies }: Simulation): Power {
   const study = (planned.design === 'paired' ? pairedStudy : betweenStudy)(planned, n, normalNumbers(seed + 7919 * n));
   const found = { t: 0, wilcoxon: 0 };
@@ -83,17 +88,17 @@ export function simulatedPower(planned: PlannedTest, n: number, { seed, studies 
   return { t: found.t / studies, wilcoxon: found.wilcoxon / studies };
 }
 
-/** A row of the table by which a number of participants is chosen. */
+/** A row of the table from which a number of participants is chosen. */
 export interface PowerRow extends Power {
   readonly n: number;
 }
 
-/** Participants (between: in each cohort) beyond which no study is simulated. */
+/** The most participants (between: in each cohort) of a simulated study. */
 export const mostSimulated = 1000;
 
 /**
- * The power of growing studies, from far too few participants to the first at which both tests reach `power` or there are `mostSimulated`.
- * Beyond a hundred, steps are a twentieth of the number.
+ * Returns the power of growing studies, from few participants to the first at which both tests reach `power`, or to
+ * `mostSimulated`. Beyond a hundred, steps are a twentieth of the number.
  */
 export function powerTable(planned: PlannedTest, power: number, simulation: Simulation): readonly PowerRow[] {
   const rows: PowerRow[] = [];

@@ -6,16 +6,18 @@ import { roundingOf } from './summaries';
 export interface RankAnalysis {
   readonly chiSquared: number | null;
   readonly df: number;
-  /** null where nothing differs. */
+  /** null if nothing differs. */
   readonly p: number | null;
-  /** In [0, 1]: Kendall's W, or for cohorts ε² = H / (n − 1); null where p is. */
+  /** The effect in [0, 1]: Kendall's W, or for cohorts ε² = H / (n − 1); null if p is. */
   readonly effect: number | null;
 }
 
-/** Of the χ² distribution: as the tail itself, since 1 less the rest would lose a small one to rounding. */
+/** The upper tail of the χ² distribution, computed directly: 1 minus the rest would round small tails away. */
 const upperTail = (chiSquared: number, df: number) => gammainc(chiSquared / 2, df / 2, true, true);
 
-/** As R's `friedman.test`: `participants[p][k]` of participant p under condition k. Throws where there are none. */
+/**
+ * Computes R's `friedman.test` of `participants[p][k]`, participant p under condition k. Throws without participants.
+ */
 export function friedmanTest(participants: readonly (readonly number[])[]): RankAnalysis {
   const n = participants.length;
   const k = participants[0]?.length ?? 0;
@@ -31,7 +33,7 @@ export function friedmanTest(participants: readonly (readonly number[])[]): Rank
   return { chiSquared, df, p: upperTail(chiSquared, df), effect: chiSquared / (n * df) };
 }
 
-/** As R's `kruskal.test`: the values of each cohort. Throws where one is empty. */
+/** Computes R's `kruskal.test` of the values of each cohort. Throws if one is empty. */
 export function kruskalWallisTest(cohorts: readonly (readonly number[])[]): RankAnalysis {
   if (cohorts.length < 2 || cohorts.some(({ length }) => length === 0)) {
     throw new Error("Kruskal and Wallis's test needs two cohorts and values in each");

@@ -28,7 +28,7 @@ export function ranksOf(
   return { ranks, ties };
 }
 
-/** Σ (size³ − size) over groups of ties: what they take from the spread of ranks. */
+/** Returns Σ (size³ − size) over groups of ties, by which they reduce the variance of ranks. */
 export const cubesOf = (ties: readonly number[]): number => ties.reduce((sum, size) => sum + size ** 3 - size, 0);
 
 /**

@@ -1,35 +1,35 @@
 import tCdf from '@stdlib/stats-base-dists-t-cdf';
 import tQuantile from '@stdlib/stats-base-dists-t-quantile';
 
-/** Both ends of a confidence interval. */
+/** The ends of a confidence interval. */
 export interface Interval {
   readonly low: number;
   readonly high: number;
 }
 
-/** A mean, and where it may lie; deviation and interval are null for fewer than two values. */
+/** A mean with its deviation and interval, which are null for fewer than two values. */
 export interface MeanSummary {
   readonly n: number;
   readonly mean: number;
-  /** Of the sample: divided by n − 1. */
+  /** The standard deviation of the sample, divided by n − 1. */
   readonly standardDeviation: number | null;
-  /** By Student's t with n − 1 degrees of freedom. */
+  /** The interval by Student's t with n − 1 degrees of freedom. */
   readonly interval: Interval | null;
 }
 
-/** The arithmetic mean; NaN for no values. */
+/** Returns the arithmetic mean, NaN for no values. */
 export const meanOf = (values: readonly number[]) => values.reduce((sum, value) => sum + value, 0) / values.length;
 
-/** Of the sample, divided by n − 1; NaN for fewer than two values. */
+/** Returns the standard deviation of the sample, divided by n − 1; NaN for fewer than two values. */
 export function deviationOf(values: readonly number[]): number {
   const mean = meanOf(values);
   return Math.sqrt(values.reduce((sum, value) => sum + (value - mean) ** 2, 0) / (values.length - 1));
 }
 
-/** t that a share `confidence` of Student's distribution lies within, both sides of 0. */
+/** Returns the t between ±which a share `confidence` of Student's distribution lies. */
 export const criticalT = (confidence: number, df: number) => tQuantile((1 + confidence) / 2, df);
 
-/** Mean with its confidence interval; throws for no values. */
+/** Returns the mean with its confidence interval; throws for no values. */
 export function meanSummary(values: readonly number[], confidence = 0.95): MeanSummary {
   const n = values.length;
   if (n === 0) throw new Error('the mean of no values is not defined');
@@ -40,10 +40,10 @@ export function meanSummary(values: readonly number[], confidence = 0.95): MeanS
   return { n, mean, standardDeviation, interval: { low: mean - half, high: mean + half } };
 }
 
-/** Probability of a t at least this far from 0, to either side, with df degrees of freedom. */
+/** Returns the probability of a t at least this far from 0 on either side, with df degrees of freedom. */
 export const twoSidedP = (t: number, df: number): number => Math.min(1, 2 * tCdf(-Math.abs(t), df));
 
-/** Values that lie no further apart than this share of the largest that they are computed from are equal but for rounding. */
+/** Values that differ by at most this share of the largest input are equal up to rounding. */
 const equalWithin = 1e-9;
 
 /**

@@ -61,7 +61,7 @@ describe('what is wrong with a plan', () => {
     expect(planComplaints(JSON.stringify({ ...paperPlan(), participants: 16 }), 'mine.json')).toEqual([
       'mine.json: tasks[1].groupSize: 16 participants cannot be divided into groups of 3',
     ]);
-    expect(planComplaints('{', 'mine.json')[0]).toContain('mine.json: this is no JSON');
+    expect(planComplaints('{', 'mine.json')[0]).toContain('mine.json: this is not JSON');
   });
 });
 
@@ -90,10 +90,10 @@ describe('npm run study:check', () => {
   const check = (...args: readonly string[]) =>
     spawnSync(process.execPath, ['scripts/study-check.mjs', ...args], { cwd: root, encoding: 'utf8' });
 
-  test('says what a participant sees and how long it takes, and that orders do not come out even', () => {
+  test('says what a participant sees and how long it takes, and that orders are not balanced', () => {
     const { status, stdout } = check('public/studies/paper.json', '--participant', 'P02');
     expect(stdout).toContain('A participant takes at most 41:00 min');
-    expect(stdout).toContain('orders do not come out even');
+    expect(stdout).toContain('orders are not balanced');
     expect(stdout).toContain('What P02 sees:');
     expect(stdout).toContain('1 of 7, Q1 (likert 1 to 5)');
     expect(status).toBe(0);
@@ -109,8 +109,8 @@ describe('npm run study:check', () => {
     writeFileSync(file, JSON.stringify({ ...paperPlan(), remote, askToStop }));
     const { status, stdout } = check(file);
     expect(stdout).toContain('(remote): device, 2.5 m of room and height are checked. They read: Call 555 0100.');
-    expect(stdout).toContain('(askToStop): those with "Q2" of "archery" from 4 on.');
-    expect(stdout).toContain('(askToStop): those with "Q3" of "archery" from 5 on.');
+    expect(stdout).toContain('(askToStop): participants with "Q2" of "archery" from 4 on.');
+    expect(stdout).toContain('(askToStop): participants with "Q3" of "archery" from 5 on.');
     const screens = stdout.slice(stdout.indexOf('What P01 sees:'));
     expect(screens).toMatch(
       /what is wrong with device, room \(2\.5 m\) or height, if anything\n.*measures of the body/,

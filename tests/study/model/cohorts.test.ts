@@ -75,19 +75,19 @@ describe('cohorts', () => {
 });
 
 describe('what should be known before the first participant', () => {
-  test('is which orders do not come out even, and how many participants would make them', () => {
+  test('is which orders are not balanced, and how many participants would balance them', () => {
     expect(remarksOn(paperPlan())).toEqual([
-      'Archery: the 2 orders do not come out even, some come 8 times, others 7 times; a multiple of 6 participants would make them even.',
-      'Ball game: the 2 orders do not come out even, some come 3 times, others 2 times; a multiple of 6 participants would make them even.',
+      'Archery: the 2 orders are not balanced: some occur 8 times, others 7 times; a multiple of 6 participants would balance them.',
+      'Ball game: the 2 orders are not balanced: some occur 3 times, others 2 times; a multiple of 6 participants would balance them.',
     ]);
     expect(remarksOn(paperPlan({ participants: 18 }))).toEqual([]);
   });
 
-  test('is which cohorts do not, which conditions are the same body, and where there is no mirror', () => {
+  test('is which cohorts do not, which conditions have the same body, and where there is no mirror', () => {
     const conditions = ['a', 'b'].map((id) => ({ id, label: id, estimator: 'ik' as const, mirror: true }));
     const remarks = remarksOn(checkedPlan(paperPlan({ participants: 9, cohorts: bodies(2), conditions })));
-    expect(remarks).toContainEqual(expect.stringMatching(/^The cohorts do not come out even: body-0 \d, body-1 \d/));
-    expect(remarks).toContain('Conditions "a" and "b" are the same body: ik, with a mirror.');
+    expect(remarks).toContainEqual(expect.stringMatching(/^The cohorts are not balanced: body-0 \d, body-1 \d/));
+    expect(remarks).toContain('Conditions "a" and "b" have the same body: ik, with a mirror.');
     expect(remarks).toContain('Ball game: the ball game has no mirror.');
   });
 });
@@ -113,7 +113,7 @@ describe('a plan whose bodies are not clear names field and reason', () => {
     [
       'the same said by conditions and cohorts',
       { cohorts: bodies(2), conditions: [ik, learned].map((one) => ({ ...one, avatar: 'man' as const })) },
-      'conditions[0].avatar: is said by cohorts already',
+      'conditions[0].avatar: is set by cohorts already',
     ],
     ['more cohorts than groups', { cohorts: bodies(6) }, 'cohorts: 5 groups of 3 do not fill 6 cohorts'],
     ['one condition and no cohorts', { conditions: [ik] }, 'conditions: expected at least two conditions to compare'],

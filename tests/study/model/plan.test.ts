@@ -287,7 +287,7 @@ describe('a study file with a mistake', () => {
   });
 
   test('that is no JSON says so', () => {
-    expect(() => parsePlan('{', 'mine.json')).toThrow('mine.json: this is no JSON');
+    expect(() => parsePlan('{', 'mine.json')).toThrow('mine.json: this is not JSON');
   });
 
   test('and a participant who is not in it has no schedule', () => {

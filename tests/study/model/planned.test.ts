@@ -69,7 +69,7 @@ test('without planned measures nothing is planned', () => {
 
 test('a measure that is nowhere is named', () => {
   const wrong = { ...plan, planned: ['archery/score', 'archery/embodiment/soul'] };
-  expect(() => checkedPlan(wrong)).toThrow('planned[1]: "archery/embodiment/soul" is measured nowhere');
+  expect(() => checkedPlan(wrong)).toThrow('planned[1]: "archery/embodiment/soul" is not measured');
 });
 
 test('an experimenter is told of a planned question that is answered by a choice or in words: no test takes it', () => {
@@ -82,7 +82,7 @@ test('an experimenter is told of a planned question that is answered by a choice
   ];
   const plan = checkedPlan({ ...examplePlan(), planned: named });
   expect(remarksOn(plan)).toEqual([
-    'Planned "archery/body/watched" is not answered with a number: it is tested nowhere.',
-    'Planned "archery/body/remarks" is not answered with a number: it is tested nowhere.',
+    'Planned "archery/body/watched" is not answered with a number and will not be tested.',
+    'Planned "archery/body/remarks" is not answered with a number and will not be tested.',
   ]);
 });

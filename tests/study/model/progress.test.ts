@@ -332,7 +332,7 @@ describe('a voided block', () => {
     one.doUntil(({ id }) => id === 'archery/2/calibration');
     const of = { task: 'archery', block: 1 };
     const late = { type: 'void-block', reason: 'controller died', repeat: true, of } as const;
-    expect(one.tell(late)).toBe('block 1 of "archery", which was meant, is not under way');
+    expect(one.tell(late)).toBe('block 1 of "archery", which the command is for, is not under way');
     expect(one.step.id).toBe('archery/2/calibration');
     expect(one.tell({ ...late, of: { ...of, block: 2 } })).toBeNull();
     expect(one.step.id).toBe('archery/2/calibration');
@@ -393,6 +393,6 @@ describe('a stored session', () => {
   });
 
   test('that is no JSON is refused', () => {
-    expect(() => resumed(schedule, '{"version":1')).toThrow('the stored session is no JSON');
+    expect(() => resumed(schedule, '{"version":1')).toThrow('the stored session is not JSON');
   });
 });

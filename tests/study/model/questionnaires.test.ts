@@ -217,7 +217,7 @@ describe('a questionnaire of one’s own', () => {
     [
       'steps that miss the end',
       { answer: { kind: 'likert', from: 0, to: 10, step: 3 } },
-      'answer.step: 0 to 10 is no whole',
+      'answer.step: 0 to 10 is not a whole',
     ],
     [
       'a label too few',
@@ -239,7 +239,7 @@ describe('a questionnaire of one’s own', () => {
       {
         questions: [{ id: 'a', text: 'A', reversed: true, answer: { kind: 'text', maxLength: 9 } }],
       },
-      'questions[0].reversed: a text has no other way round',
+      'questions[0].reversed: a text cannot be reversed',
     ],
     [
       'a scale of a question that is not there',
@@ -285,8 +285,6 @@ test.each(['constructor', 'toString', 'valueOf'])(
       answer: { kind: 'likert', from: 1, to: 5 },
       questions: [{ id, text: 'How was it?' }],
     };
-    expect(() => resolvedQuestionnaire(file)).toThrow(
-      `questions[0].id: "${id}" is a name that the program keeps for itself`,
-    );
+    expect(() => resolvedQuestionnaire(file)).toThrow(`questions[0].id: "${id}" is a reserved name`);
   },
 );

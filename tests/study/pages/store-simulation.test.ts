@@ -68,7 +68,7 @@ test('a simulated study goes at once and whole; one of people does not', async (
   await client.deleteSimulated('latency-simulated');
   expect((await client.studies()).map(({ id }) => id)).toEqual(['latency']);
   await expect(client.records('latency-simulated')).rejects.toThrow('there is no study');
-  await expect(client.deleteSimulated('latency')).rejects.toThrow('is of people');
+  await expect(client.deleteSimulated('latency')).rejects.toThrow('has data of people');
   expect(store.overview('latency', now)[0]?.claimed).toBe(true);
 });
 

@@ -41,8 +41,8 @@ test('an export of a plan with versions says which, so that what is saved from t
 });
 
 test.each<[string, Uint8Array, RegExp]>([
-  ['no zip', strToU8('hello'), /no export of a study/],
-  ['another zip', zipSync({ 'a.txt': strToU8('a') }), /holds no plan\.json/],
+  ['no zip', strToU8('hello'), /not an export of a study/],
+  ['another zip', zipSync({ 'a.txt': strToU8('a') }), /has no plan\.json/],
   ['a broken plan', zipSync({ 'plan.json': strToU8('{') }), /plan\.json/],
   [
     'records that are none',

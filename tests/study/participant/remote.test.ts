@@ -30,7 +30,7 @@ describe('what a participant has who is alone', () => {
     [{ deviceFault: { kind: 'no-webxr' } as const }, /no WebXR\. Open this link in the browser of your headset/],
     [{ room: { width: 3, depth: 1.2 } }, /leaves 3\.0 m by 1\.2 m, the games need 2\.0 m/],
     [{ eyeHeight: 0.8 }, /0\.8 m above the floor\. Stand up/],
-    [{ eyeHeight: 2.3 }, /2\.3 m above the floor: the headset has the floor too low/],
+    [{ eyeHeight: 2.3 }, /2\.3 m above the floor: the floor of the headset is too low/],
   ])('is told in words: %j', (change, words) => {
     const faults = setupFaults(remote, { ...sound, ...change }, english);
     expect(faults).toHaveLength(1);

@@ -226,7 +226,7 @@ describe('where answers are', () => {
   test.each([
     [{}, 'Everything is saved.', false],
     [{ unsent: 2 }, 'Sending …', false],
-    [{ unsent: 1, online: false }, 'No connection: 1 record kept on this device, sent later.', false],
+    [{ unsent: 1, online: false }, 'No connection: 1 record is kept on this device and sent later.', false],
     [{ unsaved: 3 }, 'Saving …', false],
     [
       { unsaved: 3, storageFault: 'the disk is full' },

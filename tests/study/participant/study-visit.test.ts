@@ -345,7 +345,7 @@ describe('a place that was released', () => {
     const form = tab.display.asked('locked-out');
     expect(form).toMatchObject({ participant: 'P01', unsent: 0 });
 
-    form.anew();
+    form.restart();
     expect(await tab.wentTo).toBe('reload');
     expect(await (await openStudyVault()).session('paper', 'P01')).toBeNull();
   });

@@ -27,7 +27,7 @@ describe('a place in a study', () => {
     const server = await servedPaperStudy();
     const { ask, invited } = server;
     const { status, json } = await ask('POST', claimPath('P01'), { json: {} });
-    expect([status, json.error]).toEqual([403, 'P01 is taken by invitation: it stands in the link of the participant']);
+    expect([status, json.error]).toEqual([403, 'P01 needs an invitation, which is in the participant’s link']);
     expect((await ask('POST', claimPath('P01'), { json: invited('P02') })).status).toBe(403);
     expect(taken(server)).toBe(0);
   });

@@ -81,7 +81,7 @@ describe('the folder of the studies', () => {
     renameSync(directory, `${directory}-moved`);
     const deleted = [await add('gone-1'), await add('gone-2')];
     const sentence =
-      'the folder of the studies was deleted or replaced while the server ran, and nothing is stored: it must be put back, or the server started again';
+      'the folder of the studies was deleted or replaced while the server ran, and nothing is stored. Put it back, or restart the server';
     expect(deleted).toEqual([1, 2].map(() => ({ status: 507, error: sentence })));
     expect(lines).toEqual([`study: ${sentence} (${directory}/studies.db was deleted)`]);
     mkdirSync(directory);
@@ -105,7 +105,7 @@ describe('the folder of the studies', () => {
     const directory = directoryWith();
     const first = await started(directory);
     await expect(started(directory)).rejects.toThrow(
-      `Another server has the folder ${directory}. End it, or name another folder with --studies.`,
+      `Another server uses the folder ${directory}. Stop it, or name another folder with --studies.`,
     );
     await first.stop();
     const second = await started(directory);
@@ -133,14 +133,14 @@ describe('a database that cannot be opened is refused with its file and what to 
   test('when it is no database', async () => {
     const directory = directoryWith({ 'studies.db': 'no database, but some text '.repeat(400) });
     await expect(started(directory)).rejects.toThrow(
-      /studies\.db is damaged, or no database \(file is not a database\)\. Put a copy of it back/,
+      /studies\.db is damaged or not a database \(file is not a database\)\. Restore a copy/,
     );
   });
 
   test('when its end is missing', async () => {
     const { directory, file } = studied();
     truncateSync(file, statSync(file).size / 2);
-    await expect(started(directory)).rejects.toThrow(/studies\.db is damaged.*[Pp]ut a copy of it back/);
+    await expect(started(directory)).rejects.toThrow(/studies\.db is damaged.*[Rr]estore a copy/);
   });
 
   test('when it is of a newer version', async () => {

@@ -103,7 +103,7 @@ describe('verifying an export', () => {
     const complaints = complaintsOf({ 'trials.csv': rows.join('\r\n') });
     expect(complaints).toContain(`trials.csv, row 4, score: "49", the records give "${before}".`);
     expect(complaints).toContain(
-      'trials.csv is not as it was exported: its SHA-256 is another than in checksums.sha256.',
+      'trials.csv has changed since the export: its SHA-256 differs from that in checksums.sha256.',
     );
     expect(complaints).toHaveLength(2);
   });
@@ -124,7 +124,7 @@ describe('verifying an export', () => {
         : record,
     );
     const complaints = complaintsOf({ 'records.json': `${JSON.stringify({ ...file, records }, null, 2)}\n` });
-    expect(complaints).toContainEqual(expect.stringMatching(/^records\.json is not as it was exported/));
+    expect(complaints).toContainEqual(expect.stringMatching(/^records\.json has changed since the export/));
     expect(complaints).toContainEqual(
       expect.stringMatching(/^trials\.csv, row \d+, score: "\d+", the records give "0"\.$/),
     );

@@ -127,8 +127,8 @@ describe('a database that the first version of the program wrote', () => {
     const claim = await ask('POST', `${pairs}/participants/P02/claim`, { token: experimenter, json: {} });
     expect([claim.status, claim.json.error]).toEqual([
       409,
-      'the plan of this study is of an older version of the program, and today it is refused: tasks[0].groupSize: archery is played alone: ' +
-        'expected 1. What was recorded can be exported and deleted; a study with another plan needs another id',
+      'the plan of this study is of an older version of the program and no longer valid: tasks[0].groupSize: archery is played alone: ' +
+        'expected 1. Its records can be exported and deleted. Give a study with another plan another id',
     ]);
     const receipt = await ask('POST', `${pairs}/withdraw`, { json: { code: withdrawalCode } });
     expect([receipt.status, receipt.json.records]).toEqual([200, records.length]);

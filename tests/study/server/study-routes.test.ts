@@ -3,7 +3,7 @@ import { writeRecording } from 'threepoint/core/tracking/recording';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { begin } from 'threepoint-study/model/progress/progress';
 import type { StudyRecord } from 'threepoint-study/model/records/study-record';
-import { bodyLimits } from 'threepoint-study/server/routes/routes';
+import { bodyLimits } from 'threepoint-study/server/routes/route';
 import { unpacked } from 'threepoint-study/server/storage/motion';
 import { describe, expect, test } from 'vitest';
 import { measured } from '../../reliability/measured';

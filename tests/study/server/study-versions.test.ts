@@ -57,7 +57,7 @@ describe('a plan that has participants', () => {
     const { status, json } = await change(later);
     expect(status).toBe(409);
     expect(json.field).toBe('newVersion');
-    expect(json.error).toContain('has begun: P01 keep its plan. What has changed can be version 2');
+    expect(json.error).toContain('has begun: P01 keep its plan. Add the plan as version 2');
     expect((await see('/records')).versions).toHaveLength(1);
   });
 

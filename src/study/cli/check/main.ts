@@ -25,14 +25,14 @@ function summary(plan: StudyPlan): readonly string[] {
   const lines = [
     `"${studyTitle(plan)}" (${plan.id}): ${plan.participants} participants, in ${languagesOf(plan).join(', ')}, seed ${plan.seed}.`,
     `A participant takes at most ${clock(played + rests + questionnaires)} min: ${clock(played)} of play, ${clock(rests)} of rest, ` +
-      `${clock(questionnaires)} of questionnaires; consent, measures and the questions about them come on top.`,
+      `${clock(questionnaires)} of questionnaires. Consent, measures and demographics take additional time.`,
   ];
-  for (const { id, label, ...said } of plan.conditions) {
-    lines.push(`Condition "${id}", ${label}: ${embodimentInWords(said) || 'as its cohort'}.`);
+  for (const { id, label, ...body } of plan.conditions) {
+    lines.push(`Condition "${id}", ${label}: ${embodimentInWords(body) || 'as its cohort'}.`);
   }
   const sizes = cohortCounts(plan);
-  for (const { id, label, ...said } of plan.cohorts ?? []) {
-    lines.push(`Cohort "${id}", ${label}, ${sizes.get(id)} participants: ${embodimentInWords(said)}.`);
+  for (const { id, label, ...body } of plan.cohorts ?? []) {
+    lines.push(`Cohort "${id}", ${label}, ${sizes.get(id)} participants: ${embodimentInWords(body)}.`);
   }
   for (const task of plan.tasks) {
     for (const cohort of plan.cohorts ?? [null]) {
@@ -43,11 +43,13 @@ function summary(plan: StudyPlan): readonly string[] {
   const { remote, askToStop = [] } = plan;
   if (remote) {
     lines.push(
-      `No one is beside the participants (remote): device, ${remote.freeSpace} m of room and height are checked. They read: ${remote.contact}`,
+      `Participants take part alone (remote): device, ${remote.freeSpace} m of room and height are checked. They read: ${remote.contact}`,
     );
   }
   for (const { questionnaire, measure, atLeast } of askToStop) {
-    lines.push(`Asked whether to stop (askToStop): those with "${measure}" of "${questionnaire}" from ${atLeast} on.`);
+    lines.push(
+      `Asked whether to stop (askToStop): participants with "${measure}" of "${questionnaire}" from ${atLeast} on.`,
+    );
   }
   return [...lines, ...remarksOn(plan).map((remark) => `Before you begin: ${remark}`)];
 }
@@ -67,7 +69,7 @@ function check(): void {
   const screens = outlineOf(plan, shown).map(
     ({ at, seconds, shows }) => `  ${at.padEnd(8)} ${(seconds === null ? '' : clock(seconds)).padStart(6)}  ${shows}`,
   );
-  console.log([`${file}: a sound plan.`, ...summary(plan), '', `What ${shown} sees:`, ...screens].join('\n'));
+  console.log([`${file}: the plan is valid.`, ...summary(plan), '', `What ${shown} sees:`, ...screens].join('\n'));
 }
 
 try {

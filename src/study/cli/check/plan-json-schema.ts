@@ -2,11 +2,11 @@ import { toJsonSchema } from '@valibot/to-json-schema';
 import { planSchema } from '../../model/plan/plan-schema';
 
 /**
- * The schema by which plans are read, as JSON Schema (draft 7), for completion in editors. What JSON Schema cannot say, such as that a
- * task names a questionnaire that is there, `npm run study:check` says.
+ * Returns the schema of plans as JSON Schema (draft 7), for completion in editors. `npm run study:check` also checks
+ * what JSON Schema cannot express, such as that the questionnaire of a task exists.
  */
 export const planJsonSchema = (): object => ({
-  // Trimming and finiteness have no word in JSON Schema and need none: JSON knows no infinite number.
+  // JSON Schema has no term for trimming and finiteness, and JSON has no infinite numbers.
   ...toJsonSchema(planSchema, { errorMode: 'ignore', target: 'draft-07' }),
   title: 'A study of threepoint',
 });

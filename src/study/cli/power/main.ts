@@ -18,10 +18,10 @@ const asked = v.object({
   seed: given(integerBetween(0, 2 ** 31 - 1), '1'),
 });
 
-/** Every row is shown whose power is nearer to the one wanted; below it every fifth. */
+/** Rows whose power is this near to the wanted one are all shown; below them every fifth. */
 const closeToIt = 0.05;
 
-/** The first row at which a test reaches the power, in words. */
+/** Returns the first row at which a test reaches the power, in words. */
 function needed(rows: readonly PowerRow[], test: 't' | 'wilcoxon', power: number): string {
   const row = rows.find((one) => one[test] >= power);
   return row ? `${row.n}` : `more than ${mostSimulated}`;
@@ -31,20 +31,20 @@ function tell(): void {
   const { design, power, seed, studies, ...planned } = checked(asked, JSON.parse(process.argv[2] ?? '{}'));
   const rows = powerTable({ design, ...planned }, power, { seed, studies });
   const paired = design === 'paired';
-  const whom = paired ? 'participants' : 'participants in each cohort';
+  const units = paired ? 'participants' : 'participants in each cohort';
   console.log(
     [
       `${paired ? 'Paired, d_z' : 'Between participants, d_s'} = ${planned.effect}, two-sided α = ${planned.alpha}: ${studies} simulated studies a row, normal values, seed ${seed}.`,
       '',
-      `${whom}   t-test   Wilcoxon`,
+      `${units}   t-test   Wilcoxon`,
       ...rows
         .filter((row) => row.n % 5 === 0 || row.t >= power - closeToIt)
         .map(
           ({ n, t, wilcoxon }) =>
-            `${String(n).padStart(whom.length)}   ${t.toFixed(3).padStart(6)}   ${wilcoxon.toFixed(3).padStart(8)}`,
+            `${String(n).padStart(units.length)}   ${t.toFixed(3).padStart(6)}   ${wilcoxon.toFixed(3).padStart(8)}`,
         ),
       '',
-      `For a power of ${power}: ${needed(rows, 't', power)} ${whom} by the t-test, ${needed(rows, 'wilcoxon', power)} by Wilcoxon’s.`,
+      `For a power of ${power}: ${needed(rows, 't', power)} ${units} by the t-test, ${needed(rows, 'wilcoxon', power)} by Wilcoxon’s.`,
     ].join('\n'),
   );
 }

@@ -14,16 +14,16 @@ import { modelsWith, simulatedPlan, simulateStudy, statedInWords } from '../../s
 import { simulateOptions } from './options';
 
 const root = fileURLToPath(new URL('../../../..', import.meta.url));
-/** When the first simulated participant begins: a fixed day, so that the same seed gives the same files. */
+/** The start of the first simulated participant, a fixed day so that the same seed gives the same files. */
 const firstSession = Date.UTC(2026, 0, 5, 9) / 1000;
 
-/** "p = 0.0123"; a p is never 0. */
+/** Formats p as "p = 0.0123", never as 0. */
 const pText = (p: number | null | undefined) =>
   p != null && p < 0.00005 ? 'p < 0.0001' : `p = ${p?.toFixed(4) ?? 'none'}`;
 
 const signed = (value: number | null | undefined) => value?.toFixed(2).replace('-', '−') ?? 'none';
 
-/** What is found between two cohorts by the mean of all conditions. */
+/** Returns the findings between two cohorts by the mean of all conditions. */
 function cohortFindings(
   { answers, points }: StudyMeasures,
   { conditions, cohorts = [] }: StudyPlan,
@@ -38,7 +38,7 @@ function cohortFindings(
   return [`${other.id} − ${baseline.id}, Welch’s t-tests between cohorts, Holm over all questions (scores):`, ...lines];
 }
 
-/** Everything that was found, line by line. */
+/** Returns all findings, line by line. */
 function findings(records: readonly StudyRecord[], plan: StudyPlan): readonly string[] {
   const [baseline, other] = plan.conditions;
   const measures = measuresIn(records, plan);
@@ -67,7 +67,7 @@ function findings(records: readonly StudyRecord[], plan: StudyPlan): readonly st
 function run(): void {
   const { out, plan: planFile, participants, seed: givenSeed, effectsOn } = simulateOptions();
   if (existsSync(out) && readdirSync(out).length > 0) {
-    throw new ValidationError('--out', `${out} is not empty: simulated files are never put among others`);
+    throw new ValidationError('--out', `${out} is not empty. Choose an empty folder for simulated files.`);
   }
   if (!existsSync(planFile)) throw new ValidationError('--plan', `there is no file ${planFile}`);
   const given = parsePlan(readFileSync(planFile, 'utf8'), planFile);

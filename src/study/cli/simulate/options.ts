@@ -3,7 +3,7 @@ import { ValidationError } from 'threepoint/core/validation/validation';
 import type { StudyPlan } from '../../model/plan/plan';
 import type { StatedEffects } from '../../simulation/simulate-study';
 
-/** What the command line asks for, read but for what the plan must say. */
+/** The parsed options of the command line, which are not checked against the plan yet. */
 export interface SimulateOptions {
   readonly plan: string;
   readonly out: string;
@@ -18,7 +18,7 @@ function wholeNumber(name: string, given: string | undefined): number | null {
   return Number(given);
 }
 
-/** "late-200=-0.8"; a number alone is of the second condition, where there is one, else of the second cohort. */
+/** Parses "late-200=-0.8"; a number alone belongs to the second condition, or else to the second cohort. */
 function effectsIn(name: string, given: readonly string[], plan: StudyPlan): Readonly<Record<string, number>> {
   const { conditions, cohorts = [] } = plan;
   const usual = (conditions[1] ?? cohorts[1])?.id ?? '';
@@ -34,7 +34,7 @@ function effectsIn(name: string, given: readonly string[], plan: StudyPlan): Rea
   );
 }
 
-/** Throws a ValidationError that names the option. */
+/** Throws a ValidationError with the name of the option. */
 export function simulateOptions(): SimulateOptions {
   const text = { type: 'string' } as const;
   const several = { type: 'string', multiple: true } as const;

@@ -1,4 +1,4 @@
-/** The cells of a table by RFC 4180, its heads first; a line break within quotation marks belongs to its cell. */
+/** Returns the cells of a table by RFC 4180, its heads first; a quoted cell may contain line breaks. */
 export function csvRows(csv: string): readonly (readonly string[])[] {
   const rows: string[][] = [];
   let row: string[] = [];

@@ -7,7 +7,7 @@ import { verifyExport } from './verify-export';
 
 const [path = ''] = process.argv.slice(2);
 const file = basename(path);
-/** What is wrong in so many places is one mistake many times. */
+/** More complaints than this have one cause. */
 const mostShown = 50;
 
 try {
@@ -24,7 +24,7 @@ try {
   }
   for (const complaint of complaints.slice(0, mostShown)) console.log(`${file}: ${complaint}`);
   if (complaints.length > mostShown) console.log(`… and ${complaints.length - mostShown} more.`);
-  const what = `${files} files, computed anew from ${records} records`;
+  const what = `${files} files, recomputed from ${records} records`;
   console.log(complaints.length === 0 ? `${file}: sound: ${what}.` : `${file}: ${complaints.length} faults; ${what}.`);
   process.exitCode = complaints.length === 0 ? 0 : 1;
 } catch (error) {

@@ -7,7 +7,7 @@ import { checksumsFile, type ExportContent, exportFiles, motionPath } from '../.
 import { csvRows } from './csv-rows';
 
 export interface Verdict {
-  /** What differs, each in a sentence; empty: nothing. */
+  /** The differences, each in a sentence; empty: none. */
   readonly complaints: readonly string[];
   readonly files: number;
   readonly records: number;
@@ -16,14 +16,14 @@ export interface Verdict {
 
 type Files = Readonly<Record<string, Uint8Array>>;
 
-/** The files of an export without the folder that they are all in; throws a sentence. */
+/** Returns the files of an export without their common folder; throws an Error with a sentence. */
 function unpacked(zip: Uint8Array): Files {
   let all: Files;
   try {
     all = unzipSync(zip);
   } catch (error) {
     throw new Error(
-      `this is no zip, or its end is missing (${reasonOf(error)}): copy it once more from where it was saved`,
+      `this is not a zip file, or its end is missing (${reasonOf(error)}): copy it again from its source`,
     );
   }
   const inFolder = ([path, bytes]: [string, Uint8Array]) => [path.replace(/^[^/]*\//, ''), bytes] as const;
@@ -36,11 +36,11 @@ function unpacked(zip: Uint8Array): Files {
 
 function textOf(files: Files, name: string): string {
   const bytes = files[name];
-  if (!bytes) throw new Error(`${name} is missing: without it nothing can be computed anew`);
+  if (!bytes) throw new Error(`${name} is missing: nothing can be recomputed without it`);
   return strFromU8(bytes);
 }
 
-/** What the export says of itself, beside its plan and its records. */
+/** The facts about an export in its records.json. */
 interface Envelope {
   readonly participant: string | null;
   readonly exportedAt: number;
@@ -49,7 +49,7 @@ interface Envelope {
 
 const rawFiles: readonly string[] = ['plan.json', 'records.json', 'software.json'];
 
-/** The raw part of an export: what everything else follows from. */
+/** The raw part of an export, from which everything else is computed. */
 function rawOf(zip: Uint8Array, files: Files): { readonly content: ExportContent; readonly envelope: Envelope } {
   textOf(files, 'plan.json');
   const envelope = JSON.parse(textOf(files, 'records.json')) as Envelope;
@@ -65,7 +65,7 @@ function rawOf(zip: Uint8Array, files: Files): { readonly content: ExportContent
   return { content: { plan, simulated, records, motion: inOrder, at, retentionUntil, software }, envelope };
 }
 
-/** Files that are not what they were when the export was made. */
+/** Returns complaints about files whose hash differs from that in the export. */
 function checksumComplaints(files: Files): readonly string[] {
   const listed = strFromU8(files[checksumsFile] ?? new Uint8Array())
     .split('\n')
@@ -75,13 +75,13 @@ function checksumComplaints(files: Files): readonly string[] {
     const bytes = files[path];
     if (!bytes) return [`${path} is missing.`];
     const changed = createHash('sha256').update(bytes).digest('hex') !== hash;
-    return changed ? [`${path} is not as it was exported: its SHA-256 is another than in ${checksumsFile}.`] : [];
+    return changed ? [`${path} has changed since the export: its SHA-256 differs from that in ${checksumsFile}.`] : [];
   });
 }
 
 const quoted = (cell: string | undefined): string => (cell === undefined ? 'nothing' : `"${cell}"`);
 
-/** Where two tables differ, cell by cell. */
+/** Compares two tables cell by cell. */
 function cellComplaints(path: string, found: string, computed: string): readonly string[] {
   const [theirs, ours] = [csvRows(found), csvRows(computed)];
   const [heads = []] = ours;
@@ -108,12 +108,12 @@ function lineComplaint(path: string, found: string, computed: string): string {
   return `${path}, line ${line + 1}: ${shown(theirs[line])}, the records give ${shown(ours[line])}.`;
 }
 
-/** Files that do not follow from the raw part. */
+/** Returns complaints about files that differ from those computed from the raw part. */
 function contentComplaints(files: Files, computed: Readonly<Record<string, string>>): readonly string[] {
   const complaints: string[] = [];
   for (const [path, text] of Object.entries(computed)) {
     const bytes = files[path];
-    // The raw part follows from nothing: its hashes speak for it.
+    // The raw part cannot be recomputed; only its hashes are checked.
     if (bytes && (rawFiles.includes(path) || path === checksumsFile)) continue;
     if (!bytes) {
       complaints.push(`${path} is missing.`);
@@ -130,7 +130,10 @@ function contentComplaints(files: Files, computed: Readonly<Record<string, strin
   return complaints;
 }
 
-/** Computes everything in the zip of an export anew from its raw records, its plan and its recordings. Throws a sentence where that cannot be done. */
+/**
+ * Recomputes every file of an export from its raw records, its plan and its recordings. Throws an Error with a sentence
+ * if that is impossible.
+ */
 export function verifyExport(zip: Uint8Array): Verdict {
   const files = unpacked(zip);
   const { content, envelope } = rawOf(zip, files);

@@ -1,9 +1,9 @@
 import type { english } from './english';
 
-/** A key of a phrase that the page says to participants. */
+/** The key of a phrase of the page. */
 export type PhraseKey = keyof typeof english;
 
-/** Of a phrase with a number, the forms that the language has, by the names of Unicode's plural rules. */
+/** The forms of a phrase with a number, by the names of Unicode's plural rules. */
 export interface PluralForms {
   readonly zero?: string;
   readonly one?: string;
@@ -15,5 +15,5 @@ export interface PluralForms {
 export type Phrase = string | PluralForms;
 /** The page's phrases in one language. */
 export type Catalogue = Readonly<Record<PhraseKey, Phrase>>;
-/** Some of them, as a plan gives them. */
+/** Phrases of a plan, which may leave out keys. */
 export type GivenPhrases = Readonly<Record<string, Phrase | undefined>>;

@@ -1,11 +1,11 @@
 import { calibrationFaults } from 'threepoint/core/tracking/calibration-faults';
 
 /**
- * Every phrase that the page itself says to participants, by key. What stands in braces is filled in; a phrase with a number has the plural
- * forms of its language, chosen by {count}.
+ * The phrases of the page for participants, by key. Names in braces are filled in. A phrase with a number has the
+ * plural forms of its language, chosen by {count}.
  */
 export const english = {
-  // Buttons that several screens have.
+  // Buttons of several screens.
   next: 'Next',
   back: 'Back',
   pause: 'Pause',
@@ -19,7 +19,7 @@ export const english = {
   measureAgain: 'Measure again',
   tryAgain: 'Try again',
 
-  // What screens have in common.
+  // Texts of several screens.
   study: 'Study',
   progress: 'Progress',
   language: 'Language',
@@ -30,42 +30,41 @@ export const english = {
   callExperimenter: 'Please call the experimenter',
   askExperimenter: 'Ask the experimenter.',
 
-  // Before a session: who takes part, and consent.
+  // Entrance and consent.
   'entrance.title': 'Who takes part?',
   'entrance.code': 'Your code: a P and two or three digits',
   'entrance.invitation': 'Your invitation: sixteen letters and digits',
   'entrance.wrongCode': 'Your code is a P with two or three digits, such as P01.',
-  'entrance.noInvitation': 'Without the invitation the place cannot be taken.',
+  'entrance.noInvitation': 'The place needs an invitation. Enter it, or open your link.',
   'entrance.wrongInvitation':
     'This is not the invitation of {participant}. Compare it with your link, or ask the experimenter.',
   'entrance.wrongInvitationRemote': 'This is not the invitation of {participant}. Compare it with your link. {contact}',
   'entrance.taken': '{participant} is taken by another device: go on there, or ask for the place to be released.',
   'entrance.otherTab': '{participant} is open in another tab of this browser. Go on there, or close it.',
   'entrance.noStudy': 'There is no study "{study}" on this server. Compare the address with your link.',
-  'entrance.fault': 'The study cannot go on here',
+  'entrance.fault': 'The study cannot continue here',
   'consent.kicker': 'Consent · text of {version}',
-  'consent.simulated': 'This study is SIMULATED: what is recorded is marked as made by a program.',
+  'consent.simulated': 'This study is SIMULATED: its records are marked as made by a program.',
   'consent.understood': 'I have read this, I am old enough to decide for myself, and I want to take part.',
   'consent.nothingRecorded': 'Nothing is recorded before you agree.',
   'consent.agree': 'I agree',
   'consent.decline': 'I do not want to take part',
-  'declined.title': 'Thank you all the same',
+  'declined.title': 'Thank you anyway',
   'declined.text': 'Nothing was recorded. You can close this page, or open your link again.',
 
-  // The code with which everything can be deleted.
+  // The withdrawal code.
   'code.kicker': 'Your withdrawal code',
   'code.title': 'Please write this down',
-  'code.use':
-    'With this code you can have everything deleted that is recorded of you, at any time and without saying why:',
+  'code.use': 'With this code you can have all your data deleted, at any time and without giving a reason:',
   'code.once': 'It is shown only now and cannot be looked up later: note it, also if you stop here.',
   'code.noted': 'I have noted it',
   'code.save': 'Save both as a file',
   'code.file': 'Withdrawal code: {code}\nTo have everything deleted, enter it at {address}',
 
-  // What is asked about participants.
+  // Questions about participants.
   'about.kicker': 'About you',
   'about.title': 'Before you play',
-  'about.missing': 'What is marked still needs an answer.',
+  'about.missing': 'The marked questions still need an answer.',
   'about.ageRange': 'Your age: a whole number from {from} to {to}.',
   'about.gender': 'Gender',
   'about.gender.woman': 'Woman',
@@ -91,27 +90,27 @@ export const english = {
   'about.vision.corrected': 'Well with glasses or lenses',
   'about.vision.impaired': 'Impaired, also in the headset',
 
-  // Putting the headset on, and what keeps a participant who is alone from beginning.
+  // Putting the headset on, and faults of the set-up of participants who take part alone.
   'headset.title': 'Put on the headset',
   'headset.measures':
     'Press the button, put the headset on and take both controllers. You are measured first: it takes five seconds.',
   'headset.round': 'The next part is played in the headset.',
   'setup.title': 'Not quite ready',
   'setup.device': 'This device cannot be used',
-  'setup.contact': 'Does it not help? {contact}',
+  'setup.contact': 'If this does not help: {contact}',
   'setup.insecure': 'VR needs a secure page: its address has to begin with https://.',
   'setup.noWebxr': 'This browser has no WebXR.',
   'setup.noHeadset': 'No headset is connected to this browser.',
   'setup.refused': 'WebXR is not allowed here ({reason}).',
   'setup.openThere': '{fault} Open this link in the browser of your headset.',
   'setup.room':
-    'Your boundary leaves {width} by {depth}, the games need {needed} on either side. Clear more room and draw the boundary anew.',
+    'Your boundary leaves {width} by {depth}, the games need {needed} on either side. Clear more room and draw the boundary again.',
   'setup.low':
-    'Your eyes were measured {height} above the floor. Stand up; if you do, the headset has the floor too high: set it anew in its settings.',
+    'Your eyes were measured {height} above the floor. Stand up. If you are standing, the floor of the headset is too high: set it again in its settings.',
   'setup.high':
-    'Your eyes were measured {height} above the floor: the headset has the floor too low. Set it anew in its settings.',
+    'Your eyes were measured {height} above the floor: the floor of the headset is too low. Set it again in its settings.',
 
-  // Being measured.
+  // Measurement of the body.
   'measures.title': 'Your measures',
   'measures.stance':
     'Stand straight inside the marked zone, look ahead and stretch both arms forward, wrists straight, when the countdown begins.',
@@ -131,11 +130,11 @@ export const english = {
   'measuring.handsUnseen': calibrationFaults.handsUnseen,
   'measuring.elsewhere': calibrationFaults.elsewhere,
   'measuring.bent':
-    'Your arms were not stretched. Stretch them straight forward; if they were, the headset has the floor too low: set it anew in its settings.',
+    'Your arms were not stretched. Stretch them straight forward. If they were stretched, the floor of the headset is too low: set it again in its settings.',
   'measuring.tooLong': calibrationFaults.tooLong,
   'measuring.uneven': calibrationFaults.uneven,
   'measuring.unlikely':
-    'These measures cannot be right. Stand up straight; the headset may have the floor at the wrong height.',
+    'These measures cannot be right. Stand up straight. The floor of the headset may be at the wrong height.',
 
   // Rounds.
   'ready.title': 'Ready?',
@@ -164,9 +163,9 @@ export const english = {
     other: 'It begins as soon as {names} are ready too.',
   },
   'waiting.others': 'It begins as soon as the others are ready too.',
-  'standing.text': 'One of your group pauses. The game goes on where it stopped.',
+  'standing.text': 'One of your group has paused. The game will continue where it stopped.',
   'rest.title': 'A rest',
-  'rest.text': 'Relax your arms. It goes on by itself.',
+  'rest.text': 'Relax your arms. The study continues by itself.',
 
   // Questions.
   'question.all': 'Questions',
@@ -192,19 +191,19 @@ export const english = {
   },
   'question.timeLeft': '{time} left',
   'question.takeTime': 'Take the time you need.',
-  /** Rows of letters of the keyboard in the headset, with spaces between them; at most twelve in each of four. */
+  /** Rows of letters of the keyboard in the headset, separated by spaces; at most twelve in each of four. */
   'keys.rows': "1234567890 qwertyuiop asdfghjkl' zxcvbnm,.-",
   'keys.space': 'Space',
   'keys.delete': 'Delete',
 
   // Pausing and stopping.
   'paused.title': 'Paused',
-  'paused.text': 'Nothing runs on. Take the headset off if you like.',
+  'paused.text': 'Everything is stopped. Take the headset off if you like.',
   'stopping.title': 'Stop here?',
-  'stopping.text': 'If you stop, your part is over. You need not say why, and what you have done until now is kept.',
+  'stopping.text': 'If you stop, your part is over. You need not give a reason. Your data so far are kept.',
   'stopping.goOn': 'Go on',
   'unwell.title': 'How are you?',
-  'unwell.text': 'Your answers say that you may not feel well. Take the headset off if you like.',
+  'unwell.text': 'Your answers suggest that you may not feel well. Take the headset off if you like.',
   'unwell.contact': 'If it does not pass: {contact}',
   'unwell.goOn': 'I am well: go on',
   'refused.paused': 'The session is paused.',
@@ -212,13 +211,13 @@ export const english = {
   /** A technical reason, which is in English in every language. */
   reason: '{reason}',
 
-  // Where answers are.
+  // Upload status.
   'kept.all': 'Everything is saved.',
   'kept.saving': 'Saving …',
   'kept.sending': 'Sending …',
   'kept.offline': {
-    one: 'No connection: {count} record kept on this device, sent later.',
-    other: 'No connection: {count} records kept on this device, sent later.',
+    one: 'No connection: {count} record is kept on this device and sent later.',
+    other: 'No connection: {count} records are kept on this device and sent later.',
   },
   'kept.noRoom': {
     one: 'Keep this page open: {count} record cannot be stored on this device ({reason}).',
@@ -235,40 +234,40 @@ export const english = {
     other: 'They stay on this device: the server refuses {count} records ({reason}). You can go on. {contact}',
   },
 
-  // The end, and a place that is another device's.
+  // The end, and a place that belongs to another device.
   'end.title': 'Thank you',
   'end.stopped': 'Your part is over. Take the headset off and rest.',
   'end.done': 'You have done everything.',
   'end.arrived': 'All your answers have arrived. You can close this page.',
   'end.keepOpen': 'Please keep this page open until your answers have arrived.',
   'end.withdraw': 'With your withdrawal code you can have everything deleted: {address}',
-  'lockedOut.title': 'It does not go on here',
+  'lockedOut.title': 'The study continues elsewhere',
   'lockedOut.released': 'Your place was released for another device. Take the headset off, please.',
   'lockedOut.deleted': 'Your place was released for another device, or deleted. Take the headset off, please.',
-  'lockedOut.silent': 'This device sends nothing more.',
+  'lockedOut.silent': 'This device no longer sends data.',
   'lockedOut.place':
-    '{participant} was released for another device, or what was recorded was deleted. This device sends nothing more.',
-  'lockedOut.contact': 'Have you neither withdrawn nor gone on elsewhere? {contact}',
+    '{participant} was released for another device, or its data were deleted. This device no longer sends data.',
+  'lockedOut.contact': 'If you have not withdrawn or continued elsewhere: {contact}',
   'lockedOut.unsent': {
-    one: '{count} record was never sent. Beginning anew deletes it from this device.',
-    other: '{count} records were never sent. Beginning anew deletes them from this device.',
+    one: '{count} record was never sent. Starting again deletes it from this device.',
+    other: '{count} records were never sent. Starting again deletes them from this device.',
   },
-  'lockedOut.anew': 'Forget it here and begin anew',
+  'lockedOut.restart': 'Delete it here and start again',
 
-  // The page on which participants withdraw.
+  // The withdrawal page.
   'withdrawal.title': 'Withdraw from a study',
   'withdrawal.study': 'The study, as it stands in your link',
   'withdrawal.code': 'Your withdrawal code',
   'withdrawal.explained':
-    'Everything that was recorded of you in this study is deleted at once: answers, results, movements, where you stopped. What stays is a receipt that says when how much was deleted. You need not say why. It cannot be undone, and your place is not given to you again.',
-  'withdrawal.sure': 'I want everything deleted that is recorded of me.',
+    'All your data in this study are deleted at once: answers, results, movements and progress. Only a receipt stays, with the time and the number of deleted records. You need not give a reason. The deletion cannot be undone, and you cannot take part again.',
+  'withdrawal.sure': 'I want all my data deleted.',
   'withdrawal.delete': 'Delete everything',
   'withdrawal.lookUp': 'The code was shown to you after you agreed to take part; no one can look it up.',
-  'withdrawal.contact': 'Does something not work? {contact}',
+  'withdrawal.contact': 'If something does not work: {contact}',
   'withdrawal.unknownCode':
     'Nothing is recorded under this code. Compare it with your note; if you have sent it before, everything is deleted already.',
   'withdrawal.unheard':
-    'It is not known whether everything is deleted: {reason}. Send the code again; if it was, nothing is recorded under it any more.',
+    'It is unknown whether your data were deleted: {reason}. Send the code again. If they were, the code is no longer known.',
   'withdrawal.failed': 'Nothing was deleted: {reason}.',
   'receipt.name': 'Receipt',
   'receipt.title': 'Everything is deleted',
@@ -278,9 +277,9 @@ export const english = {
   'receipt.recordings': { one: '{count} recording of movements', other: '{count} recordings of movements' },
   'receipt.when': '{time}, by the withdrawal code, at {address}',
   'receipt.hereToo':
-    'So is what this browser still held. On another device that you used, open your link: it offers to forget what is left there.',
-  'receipt.elsewhere': 'Where you took part on another device, open your link there: it offers to forget what is left.',
+    'The data in this browser are deleted too. If you used another device, open your link there to delete the rest.',
+  'receipt.elsewhere': 'If you took part on another device, open your link there to delete the rest.',
   'receipt.copies':
-    'Copies that were handed on before are no longer on this server: with the number of this receipt you can have them deleted too.',
+    'Copies that were passed on before are not on this server. With the number of this receipt you can have them deleted too.',
   'receipt.save': 'Save the receipt',
 } as const;

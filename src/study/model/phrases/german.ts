@@ -1,6 +1,6 @@
 import type { Catalogue } from './catalogue';
 
-/** The page's phrases in German, in the words of a laboratory to its participants. */
+/** The German phrases of the page. */
 export const german = {
   next: 'Weiter',
   back: 'Zurück',
@@ -256,7 +256,7 @@ export const german = {
     one: '{count} Eintrag wurde nie gesendet. Wenn Sie neu beginnen, wird er von diesem Gerät gelöscht.',
     other: '{count} Einträge wurden nie gesendet. Wenn Sie neu beginnen, werden sie von diesem Gerät gelöscht.',
   },
-  'lockedOut.anew': 'Hier löschen und neu beginnen',
+  'lockedOut.restart': 'Hier löschen und neu beginnen',
 
   'withdrawal.title': 'Teilnahme widerrufen',
   'withdrawal.study': 'Die Studie, wie sie in Ihrem Link steht',

@@ -8,7 +8,10 @@ import { languageTag } from './words';
 const longest = 600;
 const form = v.exactOptional(text(longest));
 
-/** Other for every language; the others where the language has them. A language that knows no plurals gives a text alone. */
+/**
+ * The form "other" is needed in every language, further ones where the language has them. A language without plurals
+ * has a text only.
+ */
 const pluralForms = v.union(
   [text(longest), v.strictObject({ zero: form, one: form, two: form, few: form, many: form, other: text(longest) })],
   'expected text, or its plural forms as {"one": "{count} record", "other": "{count} records"}',
@@ -16,15 +19,15 @@ const pluralForms = v.union(
 
 const inEnglish = (phrase: Phrase): string => (typeof phrase === 'string' ? phrase : phrase.other);
 
-/** A phrase may be left out; editors show the English. */
+/** A phrase may be left out; editors show the English one. */
 const schemaOf = (key: PhraseKey) => {
   const phrase: Phrase = english[key];
-  const said = inEnglish(phrase);
-  const plain: v.GenericSchema<Phrase> = v.pipe(text(longest), v.description(said));
-  return v.exactOptional(typeof phrase === 'string' ? plain : v.pipe(pluralForms, v.description(said)));
+  const phraseText = inEnglish(phrase);
+  const plain: v.GenericSchema<Phrase> = v.pipe(text(longest), v.description(phraseText));
+  return v.exactOptional(typeof phrase === 'string' ? plain : v.pipe(pluralForms, v.description(phraseText)));
 };
 
-/** The schema of the page's phrases in other languages, or in other words: {"fr": {"next": "Suivant"}}. */
+/** The schema of phrases in other languages or of the study's choice: {"fr": {"next": "Suivant"}}. */
 export const phrasesSchema = v.record(
   languageTag,
   v.strictObject(Object.fromEntries(phraseKeys.map((key) => [key, schemaOf(key)]))),
@@ -35,7 +38,7 @@ const fieldOf = (language: string, key: string, form: string | null): string =>
 
 const braced = (names: Iterable<string>) => [...names].map((name) => `{${name}}`).join(', ');
 
-/** Letters that stand for rows of keys: at most so many rows, and keys in each, fit on the sheet. */
+/** The letters of a keyboard, limited to the rows and keys that fit the sheet. */
 const mostKeys = { rows: 4, inRow: 12 };
 
 function refuseRows(rows: string, field: string): void {
@@ -44,10 +47,10 @@ function refuseRows(rows: string, field: string): void {
   throw new ValidationError(field, `expected at most ${mostKeys.rows} rows of at most ${mostKeys.inRow} letters`);
 }
 
-/** Of a form the number may be left out, as in "one record"; in what is said otherwise all that is filled in must stand. */
-function refuseGaps(key: PhraseKey, said: string, field: string, mayLeaveOut: ReadonlySet<string>): void {
+/** A plural form may leave the number out, as in "one record"; other texts need all their placeholders. */
+function refuseGaps(key: PhraseKey, phraseText: string, field: string, mayLeaveOut: ReadonlySet<string>): void {
   const wanted = gapsIn(inEnglish(english[key]));
-  const found = gapsIn(said);
+  const found = gapsIn(phraseText);
   const missing = [...wanted].filter((name) => !found.has(name) && !mayLeaveOut.has(name));
   if (missing.length > 0) throw new ValidationError(field, `lacks ${braced(missing)}`);
   const unknown = [...found].filter((name) => !wanted.has(name));
@@ -57,7 +60,7 @@ function refuseGaps(key: PhraseKey, said: string, field: string, mayLeaveOut: Re
   }
 }
 
-/** Throws a ValidationError for phrases of a language that the study is not in, and for those that lack what is filled in. */
+/** Throws a ValidationError for phrases in a language that the study does not have, and for missing placeholders. */
 export function refusePhrases(phrases: Readonly<Record<string, GivenPhrases>>, languages: readonly string[]): void {
   const whole = new Set<string>();
   const number = new Set(['count']);
@@ -74,8 +77,8 @@ export function refusePhrases(phrases: Readonly<Record<string, GivenPhrases>>, l
         if (key === 'keys.rows') refuseRows(phrase, fieldOf(language, key, null));
         continue;
       }
-      for (const [name, said] of Object.entries(phrase) as [string, string][]) {
-        refuseGaps(key, said, fieldOf(language, key, name), name === 'other' ? whole : number);
+      for (const [name, phraseText] of Object.entries(phrase) as [string, string][]) {
+        refuseGaps(key, phraseText, fieldOf(language, key, name), name === 'other' ? whole : number);
       }
     }
   }

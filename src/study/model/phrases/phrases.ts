@@ -5,35 +5,38 @@ import { german } from './german';
 type TextsOf<Said> = Said extends string ? Said : Said[keyof Said];
 type NamesIn<Text> = Text extends `${string}{${infer Name}}${infer Rest}` ? Name | NamesIn<Rest> : never;
 type Gap<Key extends PhraseKey> = NamesIn<TextsOf<(typeof english)[Key]>>;
-/** A key of a phrase that nothing is filled into. */
+/** A key of a phrase without placeholders. */
 export type PlainKey = { [Key in PhraseKey]: [Gap<Key>] extends [never] ? Key : never }[PhraseKey];
-/** What is filled into a phrase: nothing, or a value for each of its gaps. */
+/** The values of a phrase's placeholders; nothing if it has none. */
 export type Values<Key extends PhraseKey> = [Gap<Key>] extends [never]
   ? readonly []
   : readonly [{ readonly [Name in Gap<Key>]: Name extends 'count' ? number : string | number }];
 
 export const phraseKeys = Object.keys(english) as readonly PhraseKey[];
 
-/** What the page itself has, by language. */
+/** The phrases of the page by language. */
 export const shippedPhrases: Readonly<Record<string, Catalogue>> = { en: english, de: german };
-/** The languages that the page itself has every phrase in. */
+/** The languages in which the page has every phrase. */
 export const shippedLanguages = Object.keys(shippedPhrases) as readonly string[];
 
-/** The names of the gaps in a text: "{count} of {total}" has count and total. */
+/** The names of the placeholders in a text: "{count} of {total}" has count and total. */
 export const gapsIn = (text: string): ReadonlySet<string> =>
   new Set([...text.matchAll(/\{(\w+)\}/g)].map(([, name]) => name as string));
 
-/** de of de-AT. */
+/** Returns de for de-AT. */
 const baseOf = (language: string): string => language.split('-')[0] as string;
 
 const shippedIn = (language: string): Catalogue | undefined =>
   shippedPhrases[language] ?? shippedPhrases[baseOf(language)];
 
-/** The keys that neither the page nor these phrases of a plan give in a language: they are said in English. */
+/** Returns the keys that neither the page nor these phrases of a plan have in a language, so that English is shown. */
 export const missingKeys = (language: string, given: GivenPhrases = {}): readonly PhraseKey[] =>
   shippedIn(language) ? [] : phraseKeys.filter((key) => !Object.hasOwn(given, key));
 
-/** Of the languages offered the one that a reader wants most, the most wanted first; the first offered where none is. */
+/**
+ * Returns the offered language that a reader prefers, with the preferred ones in order; otherwise the first offered
+ * one.
+ */
 export function preferredLanguage(offered: readonly [string, ...string[]], wanted: readonly string[]): string {
   for (const want of wanted.map((one) => one.toLowerCase())) {
     const alike = (match: (language: string) => boolean) => offered.find((one) => match(one.toLowerCase()));
@@ -43,16 +46,16 @@ export function preferredLanguage(offered: readonly [string, ...string[]], wante
   return offered[0];
 }
 
-/** What the page says to participants, in one language. */
+/** The phrases of the page in one language. */
 export class Phrases {
-  /** The participant's. */
+  /** The language of the participant. */
   readonly language: string;
-  /** The language of what is said: English where the page has nothing in the participant's. */
+  /** The language of the phrases: English if the page has none in the participant's language. */
   readonly spoken: string;
-  /** Those of the plan, then those of the page, each with the plural rules of its language. */
+  /** The phrases of the plan and then of the page, each with the plural rules of its language. */
   readonly #sources: readonly (readonly [GivenPhrases, Intl.PluralRules])[];
 
-  /** `given`: the plan's own phrases in this language, which go before the page's. */
+  /** `given` are the phrases of the plan in this language, which have priority. */
   constructor(language: string, given: GivenPhrases = {}) {
     const ours = shippedIn(language);
     this.language = language;
@@ -63,7 +66,7 @@ export class Phrases {
     ];
   }
 
-  /** A phrase with its gaps filled in; what stands in braces in a value stays as it is. */
+  /** Returns a phrase with its placeholders filled in; braces in values are kept. */
   say = <Key extends PhraseKey>(key: Key, ...[values]: Values<Key>): string => {
     const filled: Readonly<Record<string, string | number>> = values ?? {};
     const [source, plurals] = this.#sources.find(([phrases]) => Object.hasOwn(phrases, key)) ?? [];
@@ -75,29 +78,29 @@ export class Phrases {
     );
   };
 
-  /** A length [m] to a tenth: "1.2 m", "1,2 m". */
+  /** Formats a length [m] to a tenth: "1.2 m", "1,2 m". */
   metres(length: number): string {
     const digits = { minimumFractionDigits: 1, maximumFractionDigits: 1 };
     return this.say('metres', { length: new Intl.NumberFormat(this.spoken, digits).format(length) });
   }
 
-  /** Names in a row: "P02 and P03", "P02 und P03". */
+  /** Formats a list of names: "P02 and P03", "P02 und P03". */
   list(names: readonly string[]): string {
     return new Intl.ListFormat(this.spoken).format(names);
   }
 }
 
-/** A study as far as its languages go; `languages` absent: English alone. */
+/** The languages and phrases of a study; `languages` absent: English only. */
 export interface Speaking {
   readonly languages?: readonly string[];
   readonly phrases?: Readonly<Record<string, GivenPhrases>>;
 }
 
-/** What the page says in a study to those who read this language. */
+/** Returns the phrases of a study for readers of this language. */
 export const phrasesOf = ({ phrases = {} }: Speaking, language: string): Phrases =>
   new Phrases(language, Object.hasOwn(phrases, language) ? phrases[language] : {});
 
-/** An error for participants to read in their language; its message is the English of it. */
+/** An error for participants in their language; its message is in English. */
 export class PhrasedError<Key extends PhraseKey = PhraseKey> extends Error {
   readonly #key: Key;
   readonly #values: Values<Key>;

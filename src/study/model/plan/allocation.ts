@@ -8,7 +8,7 @@ import {
 } from './plan';
 import { randomFor, shuffle } from './shuffle';
 
-/** Every order of the items, in the order of the items. */
+/** Returns every order of the items. */
 function permutations<T>(items: readonly T[]): readonly (readonly T[])[] {
   if (items.length < 2) return [items];
   return items.flatMap((first, index) =>
@@ -17,8 +17,8 @@ function permutations<T>(items: readonly T[]): readonly (readonly T[])[] {
 }
 
 /**
- * Williams' Latin square (Australian Journal of Scientific Research 2, 1949): each item at each place equally often and each
- * directly after each other equally often. An odd number needs the mirrored square too.
+ * Returns the orders of a Latin square of Williams (Australian Journal of Scientific Research 2, 1949): each item is at
+ * each place equally often, and directly after each other equally often. An odd number needs the mirrored square too.
  */
 function williams<T>(items: readonly T[]): readonly (readonly T[])[] {
   const count = items.length;
@@ -30,12 +30,12 @@ function williams<T>(items: readonly T[]): readonly (readonly T[])[] {
   return count % 2 === 0 ? rows : [...rows, ...rows.map((row) => row.toReversed())];
 }
 
-/** The orders of conditions among which participants and groups are divided. */
+/** Returns the orders of conditions to which participants and groups are allocated. */
 export function ordersOf(plan: Pick<StudyPlan, 'orders' | 'conditions'>): readonly (readonly StudyCondition[])[] {
   return plan.orders === 'all' ? permutations(plan.conditions) : williams(plan.conditions);
 }
 
-/** Items for so many, drawn in blocks: each block is every item once in random sequence, so that counts differ by at most one. */
+/** Draws items in blocks, each with every item once in random order, so that counts differ by one at most. */
 function drawnInBlocks<T>(items: readonly T[], count: number, { seed }: StudyPlan, purpose: string): readonly T[] {
   const drawn: T[] = [];
   let random = randomFor(seed, purpose);
@@ -47,7 +47,10 @@ function drawnInBlocks<T>(items: readonly T[], count: number, { seed }: StudyPla
   return drawn.slice(0, count);
 }
 
-/** Who plays a task together: groups drawn by the seed, alike for all tasks of the same size; alone: one each, in order. */
+/**
+ * Returns the groups of a task, drawn from the seed and equal for all tasks of the same size; tasks for one have groups
+ * of one.
+ */
 export function groupsOf(plan: StudyPlan, groupSize: number): readonly (readonly string[])[] {
   const participants = participantsOf(plan);
   if (groupSize === 1) return participants.map((participant) => [participant]);
@@ -57,18 +60,18 @@ export function groupsOf(plan: StudyPlan, groupSize: number): readonly (readonly
   );
 }
 
-/** All whom a participant meets in some task, directly or through others, and the participant. */
+/** Returns the participant and everyone who plays with them in a task, directly or through others. */
 export function togetherWith(plan: StudyPlan, participant: string): ReadonlySet<string> {
   const groups = [...new Set(plan.tasks.map(({ groupSize }) => groupSize))].flatMap((size) => groupsOf(plan, size));
   const met = new Set([participant]);
-  // Iteration over a set reaches what is added meanwhile.
+  // The iteration over a set includes members that are added during it.
   for (const member of met) {
     for (const group of groups) if (group.includes(member)) for (const other of group) met.add(other);
   }
   return met;
 }
 
-/** The cohort of every participant, those who play together in one; empty: the plan has none. */
+/** Returns the cohort of every participant, equal in a group; empty: the plan has none. */
 export function cohortsByParticipant(plan: StudyPlan): ReadonlyMap<string, StudyCohort> {
   const { cohorts = [] } = plan;
   if (cohorts.length === 0) return new Map();
@@ -77,7 +80,7 @@ export function cohortsByParticipant(plan: StudyPlan): ReadonlyMap<string, Study
   return new Map(groups.flatMap((members, index) => members.map((member) => [member, drawn[index] as StudyCohort])));
 }
 
-/** The order of conditions for each group of a task: drawn in blocks, in each cohort for itself. */
+/** Returns the order of conditions for each group of a task, drawn in blocks and separately in each cohort. */
 export function ordersByGroup(plan: StudyPlan, task: StudyTask): readonly (readonly StudyCondition[])[] {
   const orders = ordersOf(plan);
   const groups = groupsOf(plan, task.groupSize);

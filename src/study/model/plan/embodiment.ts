@@ -4,52 +4,54 @@ import { mostLatencyMs } from 'threepoint/core/tracking/tracking-degradation';
 import { numberBetween } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
 
-/** A method by the name that plans call it. */
+/** An estimator by its name in plans. */
 export const estimatorSchema = v.picklist(threePointNames, `expected one of ${threePointNames.join(', ')}`);
 
 const trueOrFalse = v.boolean('expected true or false');
 
-/** How a body is presented: what a condition, or a cohort, may say of it. */
+/** The properties of a body that a condition or a cohort may set. */
 export const embodimentFields = {
-  /** The method that draws the body. */
+  /** The estimator of the body. */
   estimator: v.exactOptional(estimatorSchema),
-  /** Which of our own bodies is worn. */
+  /** The avatar, one of those of this project. */
   avatar: v.exactOptional(v.picklist(ownBodies, `expected one of ${ownBodies.join(', ')}`)),
-  /** Whether a mirror stands there; the ball game has none. */
+  /** Whether there is a mirror; the ball game has none. */
   mirror: v.exactOptional(trueOrFalse),
   /** Whether the body ends at the hips. */
   upperBodyOnly: v.exactOptional(trueOrFalse),
-  /** By how much the body follows its wearer later than it could [ms]. */
+  /** The additional latency of the body [ms]. */
   latencyMs: v.exactOptional(numberBetween(0, mostLatencyMs)),
-  /** Added to head and hands in every frame: standard deviation along and about each axis. */
+  /** Noise on head and hands in every frame: standard deviation along and about each axis. */
   trackerNoise: v.exactOptional(
     v.strictObject({ positionMm: numberBetween(0, 100), rotationDegrees: numberBetween(0, 30) }),
   ),
-  /** Each hand is lost so often, at random, for so long each time. */
+  /** Random losses of each hand: their frequency and their duration. */
   dropouts: v.exactOptional(v.strictObject({ perMinute: numberBetween(0, 60), seconds: numberBetween(0.1, 10) })),
 };
 
 const fields = Object.keys(embodimentFields) as (keyof PartialEmbodiment)[];
 
-/** What a condition or a cohort says of the body; what neither says stays as the page has it. */
+/** The properties of a body that a condition or a cohort sets; others have the default of the page. */
 export type PartialEmbodiment = v.InferOutput<v.StrictObjectSchema<typeof embodimentFields, undefined>>;
 
-/** How a participant is embodied in a round. */
+/** The body of a participant in a round. */
 export type Embodiment = PartialEmbodiment & { readonly estimator: ThreePointName };
 
-/** The fields of the body that are said here. */
-export const embodimentFieldsOf = (said: PartialEmbodiment): readonly (keyof PartialEmbodiment)[] =>
-  fields.filter((field) => said[field] !== undefined);
+/** Returns the properties that are set. */
+export const embodimentFieldsOf = (properties: PartialEmbodiment): readonly (keyof PartialEmbodiment)[] =>
+  fields.filter((field) => properties[field] !== undefined);
 
-/** What cohort and condition say together; an estimator is among it, as `checkedPlan` sees to. */
+/** Returns the properties of cohort and condition together; `checkedPlan` ensures that they include an estimator. */
 export function embodimentOf(cohort: PartialEmbodiment, condition: PartialEmbodiment): Embodiment {
-  const said = [cohort, condition].flatMap((of) => embodimentFieldsOf(of).map((field) => [field, of[field]] as const));
-  return Object.fromEntries(said) as Embodiment;
+  const properties = [cohort, condition].flatMap((of) =>
+    embodimentFieldsOf(of).map((field) => [field, of[field]] as const),
+  );
+  return Object.fromEntries(properties) as Embodiment;
 }
 
-/** "learned, 100 ms later, no mirror". */
-export function embodimentInWords(said: PartialEmbodiment): string {
-  const { estimator, avatar, mirror, upperBodyOnly, latencyMs, trackerNoise: noise, dropouts } = said;
+/** Describes a body: "learned, 100 ms later, no mirror". */
+export function embodimentInWords(properties: PartialEmbodiment): string {
+  const { estimator, avatar, mirror, upperBodyOnly, latencyMs, trackerNoise: noise, dropouts } = properties;
   return [
     estimator,
     avatar && `as ${avatar}`,

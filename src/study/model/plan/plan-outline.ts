@@ -4,14 +4,14 @@ import type { Question } from '../questionnaires/questionnaire-schema';
 import { languagesOf, type StudyPlan, taskTitle } from './plan';
 import { blindLabel, type StudyStep, scheduleFor } from './schedule';
 
-/** One screen that a participant meets. */
+/** A screen of a participant. */
 export interface OutlinedScreen {
-  /** Step of the schedule: "archery/1/questionnaire". */
+  /** The step of the schedule: "archery/1/questionnaire". */
   readonly step: string;
   readonly shows: string;
-  /** Where it is: a questionnaire can be answered at either. */
+  /** The place of the screen; questionnaires can be answered at either. */
   readonly at: 'desk' | 'headset' | 'either';
-  /** The longest that it lasts by the plan; null: as long as the participant takes. */
+  /** The time limit in the plan; null: none. */
   readonly seconds: number | null;
 }
 
@@ -77,19 +77,19 @@ function screensOf(plan: StudyPlan, step: StudyStep): readonly OutlinedScreen[] 
   }
 }
 
-/** Every screen that a participant meets, in order; throws where the plan has no such participant. */
+/** Returns every screen of a participant in order; throws if the plan has no such participant. */
 export const outlineOf = (plan: StudyPlan, participant: string): readonly OutlinedScreen[] =>
   scheduleFor(plan, participant).steps.flatMap((step) => screensOf(plan, step));
 
-/** How long a participant takes at most [s], apart from what has no limit: consent, measures, what is asked about them. */
+/** The most that a participant takes [s], without steps that have no limit: consent, measures, demographics. */
 export interface PlanDuration {
   readonly played: number;
   readonly rests: number;
-  /** If every questionnaire takes the time that it is given. */
+  /** The sum of the time limits of all questionnaires. */
   readonly questionnaires: number;
 }
 
-/** The same for every participant: they differ in the order alone. */
+/** Returns the duration, which is equal for all participants because they differ in the order only. */
 export function durationOf(plan: StudyPlan): PlanDuration {
   const total = { played: 0, rests: 0, questionnaires: 0 };
   for (const step of scheduleFor(plan, plan.participants > 99 ? 'P001' : 'P01').steps) {

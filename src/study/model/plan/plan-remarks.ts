@@ -4,7 +4,7 @@ import { cohortsByParticipant, groupsOf, ordersByGroup, ordersOf } from './alloc
 import { embodimentFieldsOf, embodimentInWords, type PartialEmbodiment } from './embodiment';
 import { languagesOf, type StudyCohort, type StudyPlan, type StudyTask, taskTitle } from './plan';
 
-/** How many participants each cohort has, by its id. */
+/** Returns the number of participants in each cohort, by its id. */
 export function cohortCounts(plan: StudyPlan): ReadonlyMap<string, number> {
   const counts = new Map((plan.cohorts ?? []).map(({ id }) => [id, 0]));
   for (const { id } of cohortsByParticipant(plan).values()) counts.set(id, (counts.get(id) ?? 0) + 1);
@@ -12,8 +12,8 @@ export function cohortCounts(plan: StudyPlan): ReadonlyMap<string, number> {
 }
 
 /**
- * How often each order of conditions comes in a task, by the names of the conditions in order; those that never come too. `cohort`: in this
- * one alone; null: in all.
+ * Counts how often each order of conditions occurs in a task, by the names of the conditions in order, including those
+ * that never occur. `cohort` restricts the count to one cohort; null: all.
  */
 export function orderCounts(
   plan: StudyPlan,
@@ -37,20 +37,22 @@ const even = (counts: ReadonlyMap<string, number>) => new Set(counts.values()).s
 const greatestCommonDivisor = (a: number, b: number): number => (b === 0 ? a : greatestCommonDivisor(b, a % b));
 const leastCommonMultiple = (a: number, b: number) => (a / greatestCommonDivisor(a, b)) * b;
 
-/** The participants that a task needs, or a multiple of them, for its orders to come equally often in every cohort. */
+/**
+ * Returns the number of participants (or of a multiple) with which the orders of a task are balanced in every cohort.
+ */
 const evenParticipants = ({ tasks, cohorts, ...plan }: StudyPlan, { groupSize }: StudyTask): number =>
   (cohorts?.length ?? 1) *
   tasks.reduce((all, task) => leastCommonMultiple(all, task.groupSize), groupSize * ordersOf(plan).length);
 
 const timesText = (count: number) => (count === 0 ? 'never' : count === 1 ? 'once' : `${count} times`);
 
-/** The cohorts and orders that do not come out even, in sentences. */
+/** Returns remarks about unbalanced cohorts and orders. */
 function unevenness(plan: StudyPlan): readonly string[] {
   const remarks: string[] = [];
   const sizes = cohortCounts(plan);
   if (!even(sizes)) {
     const listed = [...sizes].map(([id, count]) => `${id} ${count}`).join(', ');
-    remarks.push(`The cohorts do not come out even: ${listed} participants.`);
+    remarks.push(`The cohorts are not balanced: ${listed} participants.`);
   }
   for (const task of plan.tasks) {
     for (const cohort of plan.cohorts ?? [null]) {
@@ -58,49 +60,51 @@ function unevenness(plan: StudyPlan): readonly string[] {
       if (even(counts)) continue;
       const [least, most] = [Math.min(...counts.values()), Math.max(...counts.values())];
       remarks.push(
-        `${taskTitle(plan, task.id)}${cohort ? `, cohort ${cohort.id}` : ''}: the ${counts.size} orders do not come out even, some come ${timesText(most)}, ` +
-          `others ${timesText(least)}; a multiple of ${evenParticipants(plan, task)} participants would make them even.`,
+        `${taskTitle(plan, task.id)}${cohort ? `, cohort ${cohort.id}` : ''}: the ${counts.size} orders are not balanced: some occur ${timesText(most)}, ` +
+          `others ${timesText(least)}; a multiple of ${evenParticipants(plan, task)} participants would balance them.`,
       );
     }
   }
   return remarks;
 }
 
-/** Of what cannot be told apart by what it says of the body. */
+/** Returns remarks about conditions or cohorts with identical bodies. */
 function alikeRemarks(
   list: string,
   entries: readonly (PartialEmbodiment & { readonly id: string })[],
 ): readonly string[] {
-  const said = entries.map((entry) => JSON.stringify(embodimentFieldsOf(entry).map((field) => [field, entry[field]])));
+  const described = entries.map((entry) =>
+    JSON.stringify(embodimentFieldsOf(entry).map((field) => [field, entry[field]])),
+  );
   return entries.flatMap(({ id }, index) => {
-    const first = entries[said.indexOf(said[index] as string)];
+    const first = entries[described.indexOf(described[index] as string)];
     return first && first.id !== id
-      ? [`${list} "${first.id}" and "${id}" are the same body: ${embodimentInWords(first)}.`]
+      ? [`${list} "${first.id}" and "${id}" have the same body: ${embodimentInWords(first)}.`]
       : [];
   });
 }
 
-/** Of the languages in which the page itself says some things in English. */
+/** Returns remarks about languages in which the page shows some phrases in English. */
 const unspokenRemarks = (plan: StudyPlan): readonly string[] =>
   languagesOf(plan).flatMap((language) => {
     const missing = missingKeys(language, plan.phrases?.[language]);
     if (missing.length === 0) return [];
     const named = missing.length > 5 ? `${missing.slice(0, 5).join(', ')} …` : missing.join(', ');
     return [
-      `Language ${language} lacks ${missing.length} of ${phraseKeys.length} phrases of the page (${named}): they are said in English.`,
+      `Language ${language} lacks ${missing.length} of ${phraseKeys.length} phrases of the page (${named}): they are shown in English.`,
     ];
   });
 
-/** Of what the plan names as planned though no table of results can hold it. */
+/** Returns remarks about planned measures that no table of results can contain. */
 const untestedRemarks = (plan: StudyPlan): readonly string[] =>
   (plan.planned ?? []).flatMap((measure) => {
     const [, of = '', id] = measure.split('/');
     const questionnaire = id === undefined ? null : questionnaireNamed(plan, of);
     if (!questionnaire || isNumeric(questionnaire, id ?? '')) return [];
-    return [`Planned "${measure}" is not answered with a number: it is tested nowhere.`];
+    return [`Planned "${measure}" is not answered with a number and will not be tested.`];
   });
 
-/** What experimenters should know before the first participant comes, in sentences; empty: nothing. */
+/** Returns the remarks for experimenters to read before the first participant comes; empty: none. */
 export function remarksOn(plan: StudyPlan): readonly string[] {
   const { conditions, cohorts = [], tasks } = plan;
   const mirrored = [...conditions, ...cohorts].some(({ mirror }) => mirror);

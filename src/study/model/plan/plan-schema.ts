@@ -14,21 +14,21 @@ const seconds = (max: number) => numberBetween(0, max);
 
 const conditionSchema = v.strictObject({
   id: identifier,
-  /** For the experimenter and the results; participants never see it. */
+  /** The name for the experimenter and the results; participants never see it. */
   label: text(60),
   ...embodimentFields,
 });
 
 const taskSchema = v.strictObject({
   id: identifier,
-  /** As participants read it above each sheet. */
+  /** The title that participants read above each sheet. */
   title: words(60),
   game: v.picklist(['archery', 'ball'], 'expected archery or ball'),
-  /** How many play together; they share the order of conditions. */
+  /** The number of participants who play together; they share the order of conditions. */
   groupSize: integerBetween(1, 6),
-  /** Trials of one block, all under its condition. */
+  /** The number of trials in a block, all under its condition. */
   repetitions: integerBetween(1, 20),
-  /** Time limit of one trial. */
+  /** The time limit of a trial [s]. */
   trialSeconds: numberBetween(1, 3600),
   tutorial: v.strictObject({
     estimator: estimatorSchema,
@@ -38,9 +38,9 @@ const taskSchema = v.strictObject({
     restSeconds: seconds(3600),
   }),
   calibrateBeforeBlock: v.boolean('expected true or false'),
-  /** Between the last trial of a block and its questionnaire. */
+  /** The rest between the last trial of a block and its questionnaire [s]. */
   restSeconds: seconds(3600),
-  /** Ids of the plan's own questionnaires or of shipped ones, asked in this order. */
+  /** The ids of the plan's questionnaires or of shipped ones, in the order asked. */
   questionnaire: v.union(
     [
       identifier,
@@ -48,31 +48,34 @@ const taskSchema = v.strictObject({
     ],
     'expected the id of a questionnaire, or a list of ids',
   ),
-  /** Time to answer each; who needs longer may finish, and it is recorded. */
+  /** The time to answer each [s]; participants may take longer, which is recorded. */
   questionnaireSeconds: numberBetween(10, 7200),
 });
 
-/** The schema of a plan, but for what its parts demand of each other. */
+/** The schema of a plan, without the consistency of its parts. */
 export const planSchema = v.strictObject({
-  /** Where editors find the schema; the program does not ask for it. */
+  /** The address of the schema for editors; the program ignores it. */
   $schema: v.exactOptional(text(500)),
-  format: v.literal(planFormat, `expected "${planFormat}": this is no study file`),
+  format: v.literal(planFormat, `expected "${planFormat}": this is not a study file`),
   version: v.literal(planVersion, `expected ${planVersion}, the version that this program reads`),
   id: identifier,
   title: words(120),
-  /** Decides groups, cohorts, orders and layouts: the same seed gives the same study. */
+  /** The seed of groups, cohorts, orders and layouts: the same seed gives the same study. */
   seed: integerBetween(0, 2 ** 31 - 1),
   participants: integerBetween(1, 999),
-  /** Who may take a place: the holder of its own invitation (invited, where nothing is said), or of the study's one (open). */
+  /** Whether each place has its own invitation (invited, the default), or all places have one (open). */
   entry: v.exactOptional(v.picklist(['invited', 'open'], 'expected invited or open')),
-  /** all: every order of the conditions; williams: a Latin square, for odd numbers two, each after each equally often. */
+  /**
+   * all: every order of the conditions; williams: a Latin square, two for odd numbers, with each condition after each
+   * other equally often.
+   */
   orders: v.picklist(['all', 'williams'], 'expected all or williams'),
   conditions: v.pipe(
     v.array(conditionSchema, 'expected a list'),
     v.minLength(1, 'expected at least one condition'),
     v.maxLength(20, 'expected at most twenty conditions'),
   ),
-  /** Compared between participants, who are divided among them: what each says holds under all conditions. */
+  /** Groups that are compared between participants; the properties of a cohort hold under all conditions. */
   cohorts: v.exactOptional(
     v.pipe(
       v.array(conditionSchema, 'expected a list'),
@@ -85,22 +88,25 @@ export const planSchema = v.strictObject({
     v.minLength(1, 'expected at least one task'),
     v.maxLength(8, 'expected at most eight tasks'),
   ),
-  /** Those that participants may choose from; the first is the one that is chosen. One, English, where nothing is said. */
+  /** The languages that participants may choose, the first as default; English if absent. */
   languages: v.exactOptional(
     v.pipe(v.array(languageTag, 'expected a list of languages'), v.minLength(1, 'expected at least one language')),
   ),
-  /** What the page itself says, in languages that it does not have, or in the study's own words; English where a key is not given. */
+  /** Phrases of the page in further languages, or of the study's choice; English for keys without one. */
   phrases: v.exactOptional(phrasesSchema),
   questionnaires: v.exactOptional(
     v.pipe(v.array(questionnaireSchema, 'expected a list'), v.maxLength(20, 'expected at most twenty')),
   ),
-  /** Participants take part elsewhere, with no one beside them; absent: an experimenter is there. */
+  /** The terms for participants who take part elsewhere and alone; absent: an experimenter is present. */
   remote: v.exactOptional(remoteSchema),
-  /** Who reaches one of these values is asked whether to stop. */
+  /** The values from which a participant is asked whether to stop. */
   askToStop: v.exactOptional(
     v.pipe(v.array(stoppingRuleSchema, 'expected a list'), v.maxLength(8, 'expected at most eight')),
   ),
-  /** Measures that are tested as planned, a family for Holm's correction; all else is exploratory. "archery/nasa-tlx/raw", "archery/score". */
+  /**
+   * The planned measures, a family for Holm's correction; all others are exploratory. "archery/nasa-tlx/raw",
+   * "archery/score".
+   */
   planned: v.exactOptional(
     v.pipe(v.array(text(200), 'expected a list of measures'), v.maxLength(40, 'expected at most forty measures')),
   ),
@@ -113,9 +119,9 @@ export const planSchema = v.strictObject({
       v.minLength(1, 'expected at least one paragraph'),
       v.maxLength(40, 'expected at most forty paragraphs'),
     ),
-    /** Asked apart: whether tracked frames may be kept; null: this study never records them. */
+    /** The separate question whether tracking frames may be kept; null: this study never records them. */
     motion: v.nullable(words(1000)),
   }),
-  /** After this many days the server deletes what was recorded. */
+  /** The number of days after which the server deletes the records. */
   retentionDays: integerBetween(1, 36_500),
 });

@@ -13,23 +13,26 @@ import { checkStoppingRules } from '../questionnaires/stopping-rule';
 import { embodimentFieldsOf } from './embodiment';
 import { planSchema } from './plan-schema';
 
-/** A study as its file says it. */
+/** A study as its file has it. */
 export type StudyPlan = v.InferOutput<typeof planSchema>;
 export type StudyTask = StudyPlan['tasks'][number];
 export type StudyCondition = StudyPlan['conditions'][number];
 export type StudyCohort = NonNullable<StudyPlan['cohorts']>[number];
 
 const mostOrdersListed = 4;
-/** What one condition says, all must say: else what is seen would follow from what a headset remembers. */
+/** Properties that all conditions set if one does: the default of the page depends on the headset. */
 const saidByAllOrNone = ['estimator', 'avatar', 'mirror', 'upperBodyOnly'] as const;
 
-/** How many play a game together: a score of archery would count for all of a group, and a ball game of a study waits for every seat. */
+/**
+ * The number of participants in each game. A score of archery would count for all of a group, and a ball game of a
+ * study waits for every seat.
+ */
 const groupsOfGame: Record<StudyTask['game'], { readonly size: number; readonly because: string }> = {
   archery: { size: 1, because: 'archery is played alone' },
   ball: { size: 3, because: 'the ball game is played by three' },
 };
 
-/** How many play together at most. */
+/** Returns the size of the largest group. */
 export const largestGroup = ({ tasks }: Pick<StudyPlan, 'tasks'>): number =>
   Math.max(...tasks.map(({ groupSize }) => groupSize));
 
@@ -40,27 +43,27 @@ function refuseRepeated(names: readonly string[], fieldOf: (index: number) => st
   });
 }
 
-/** The languages that participants may choose from, the first of them chosen. */
+/** Returns the languages that participants may choose, the default first. */
 export const languagesOf = ({ languages }: Pick<StudyPlan, 'languages'>): readonly [string, ...string[]] => {
   const [first = 'en', ...others] = languages ?? [];
   return [first, ...others];
 };
 
-/** What a study is called by those who run it: its title in its first language. */
+/** Returns the title of a study for experimenters, in its first language. */
 export const studyTitle = (plan: Pick<StudyPlan, 'title' | 'languages'>): string =>
   inLanguage(plan.title, languagesOf(plan)[0]);
 
-/** A task's title in a language, the study's first unless told; what the plan does not have goes by its id. */
+/** Returns a task's title in a language, by default the study's first one; an unknown task has its id. */
 export function taskTitle(plan: StudyPlan, id: string, language: string = languagesOf(plan)[0]): string {
   const task = plan.tasks.find((one) => one.id === id);
   return task ? inLanguage(task.title, language) : id;
 }
 
-/** The ids of the questionnaires after each block of a task, in the order asked. */
+/** Returns the ids of the questionnaires after each block of a task, in the order asked. */
 export const questionnairesAfter = ({ questionnaire }: Pick<StudyTask, 'questionnaire'>): readonly string[] =>
   typeof questionnaire === 'string' ? [questionnaire] : questionnaire;
 
-/** Every questionnaire that the study asks, once, in the order first met. */
+/** Returns every questionnaire of the study once, in the order of its first use. */
 export const questionnairesOf = (plan: StudyPlan): readonly Questionnaire[] =>
   [...new Set(plan.tasks.flatMap(questionnairesAfter))].map((id) => questionnaireNamed(plan, id) as Questionnaire);
 
@@ -96,22 +99,25 @@ function refuseQuestionnaires(plan: StudyPlan): void {
   });
 }
 
-/** What is said of the body by some conditions only, by conditions and cohorts, or by none. */
+/**
+ * Throws a ValidationError if only some conditions set a property, if conditions and cohorts both do, or if no one sets
+ * the estimator.
+ */
 function refuseUnclearBodies({ conditions, cohorts = [] }: StudyPlan): void {
   const lists = { conditions, cohorts };
   for (const [list, entries] of Object.entries(lists)) {
     for (const field of saidByAllOrNone) {
       const missing = entries.findIndex((entry) => entry[field] === undefined);
-      const said = entries.findIndex((entry) => entry[field] !== undefined);
-      if (missing >= 0 && said >= 0) {
-        throw new ValidationError(`${list}[${missing}].${field}`, `is missing, and ${list}[${said}] has it`);
+      const present = entries.findIndex((entry) => entry[field] !== undefined);
+      if (missing >= 0 && present >= 0) {
+        throw new ValidationError(`${list}[${missing}].${field}`, `is missing, and ${list}[${present}] has it`);
       }
     }
   }
   const ofCohorts = new Set(cohorts.flatMap(embodimentFieldsOf));
   conditions.forEach((condition, index) => {
     const twice = embodimentFieldsOf(condition).find((field) => ofCohorts.has(field));
-    if (twice) throw new ValidationError(`conditions[${index}].${twice}`, 'is said by cohorts already');
+    if (twice) throw new ValidationError(`conditions[${index}].${twice}`, 'is set by cohorts already');
     if (condition.estimator === undefined && !ofCohorts.has('estimator')) {
       throw new ValidationError(`conditions[${index}].estimator`, 'is missing');
     }
@@ -132,8 +138,8 @@ function refuseUnfilledCohorts(plan: StudyPlan): void {
   );
   const together = largestGroup(plan);
   if (participants / together < cohorts.length) {
-    const whom = together === 1 ? 'participants' : `groups of ${together}`;
-    throw new ValidationError('cohorts', `${participants / together} ${whom} do not fill ${cohorts.length} cohorts`);
+    const units = together === 1 ? 'participants' : `groups of ${together}`;
+    throw new ValidationError('cohorts', `${participants / together} ${units} do not fill ${cohorts.length} cohorts`);
   }
 }
 
@@ -154,7 +160,10 @@ function refuseUntranslated(plan: StudyPlan): void {
   }
 }
 
-/** What a plan may name as planned: "archery/embodiment/ownership", a question or a scale of a task; "archery/score". */
+/**
+ * Returns the measures that a plan may name as planned: "archery/embodiment/ownership", a question or a scale of a
+ * task, or "archery/score".
+ */
 export function measuresOf(plan: StudyPlan): readonly string[] {
   return plan.tasks.flatMap(({ id, questionnaire }) => {
     const asked = questionnairesAfter({ questionnaire }).flatMap((one) => questionnaireNamed(plan, one) ?? []);
@@ -173,18 +182,18 @@ function refuseUnknownMeasures(plan: StudyPlan): void {
     if (known.includes(measure)) return;
     throw new ValidationError(
       `planned[${index}]`,
-      `"${measure}" is measured nowhere: expected task/questionnaire/question, task/questionnaire/scale or task/score, as "${known[0]}"`,
+      `"${measure}" is not measured: expected task/questionnaire/question, task/questionnaire/scale or task/score, as "${known[0]}"`,
     );
   });
 }
 
 /**
- * A plan that was checked before it was stored; throws a ValidationError where it has not the form of a plan. What its parts demand of each
- * other is not checked again: a rule that came later must not lock people out of what they recorded.
+ * Returns a plan that was checked before it was stored; throws a ValidationError if it does not match the schema. The
+ * consistency of its parts is not checked again: a later rule must not make records inaccessible.
  */
 export const storedPlan = (value: unknown): StudyPlan => checked(planSchema, value);
 
-/** A new study from parsed JSON; throws a ValidationError that names the field. */
+/** Returns a new study from parsed JSON; throws a ValidationError that names the field. */
 export function checkedPlan(value: unknown): StudyPlan {
   const plan = checked(planSchema, value);
   refuseRepeated(
@@ -221,25 +230,28 @@ export function checkedPlan(value: unknown): StudyPlan {
   return plan;
 }
 
-/** A study from the text of its file; throws an Error that names the file and, where there is one, the field. */
+/** Returns a study from the text of its file; throws an Error that names the file and, if known, the field. */
 export function parsePlan(json: string, file: string): StudyPlan {
   try {
     return checkedPlan(JSON.parse(json));
   } catch (error) {
     if (error instanceof ValidationError) throw new ValidationError(error.field, error.complaint, file);
-    if (error instanceof SyntaxError) throw new ValidationError('', `this is no JSON: ${error.message}`, file);
+    if (error instanceof SyntaxError) throw new ValidationError('', `this is not JSON: ${error.message}`, file);
     throw error;
   }
 }
 
-/** Everything that is wrong with the text of a study's file, each with file, field and reason; empty: it is sound. */
+/**
+ * Returns everything that is wrong with the text of a study's file, each with file, field and reason; empty: it is
+ * valid.
+ */
 export function planComplaints(json: string, file: string): readonly string[] {
   let value: unknown;
   try {
     value = JSON.parse(json);
   } catch (error) {
     if (!(error instanceof SyntaxError)) throw error;
-    return [`${file}: this is no JSON: ${error.message}`];
+    return [`${file}: this is not JSON: ${error.message}`];
   }
   const complaints = complaintsAbout(planSchema, value).map(({ field, complaint }) =>
     [file, field, complaint].filter(Boolean).join(': '),
@@ -254,7 +266,7 @@ export function planComplaints(json: string, file: string): readonly string[] {
   }
 }
 
-/** P01, P02 … in the order of the plan. */
+/** Returns the codes P01, P02 … of a plan. */
 export function participantsOf(plan: Pick<StudyPlan, 'participants'>): readonly string[] {
   const digits = plan.participants > 99 ? 3 : 2;
   return Array.from({ length: plan.participants }, (_, index) => `P${String(index + 1).padStart(digits, '0')}`);

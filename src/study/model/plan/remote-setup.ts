@@ -2,9 +2,9 @@ import { numberBetween, text } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
 import type { Phrases } from '../phrases/phrases';
 
-/** How a participant takes part with no one beside them. */
+/** The terms for a participant who takes part alone. */
 export const remoteSchema = v.strictObject({
-  /** Whom they write to or call when something goes wrong, as it is shown to them. */
+  /** The contact in case of trouble, as participants read it. */
   contact: text(120),
   /** The room that the games need on either side [m]. */
   freeSpace: numberBetween(0.5, 5),
@@ -12,25 +12,28 @@ export const remoteSchema = v.strictObject({
 
 export type RemoteTerms = v.InferOutput<typeof remoteSchema>;
 
-/** Why nothing can be played on a device; `reason`: as the browser says it. */
+/** Why nothing can be played on a device; `reason` is the message of the browser. */
 export type DeviceFault =
   | { readonly kind: 'insecure' | 'no-webxr' | 'no-headset' }
   | { readonly kind: 'refused'; readonly reason: string };
 
-/** What the device knows of a participant who is about to begin. */
+/** The set-up of a participant who is about to begin. */
 export interface RemoteSetup {
-  /** null: it can be played on. */
+  /** null: the device can be used. */
   readonly deviceFault: DeviceFault | null;
-  /** The room that the headset's boundary leaves [m]; null: the headset does not tell. */
+  /** The room within the headset's boundary [m]; null: it is not reported. */
   readonly room: { readonly width: number; readonly depth: number } | null;
-  /** Above the floor as just seen [m]; null: not yet. */
+  /** The measured height of the eyes above the floor [m]; null: not measured yet. */
   readonly eyeHeight: number | null;
 }
 
-/** Eyes of people who stand are within these heights [m]: below, the floor is wrong or they sit; above, the floor is wrong. */
+/** The range of eye heights of standing people [m]: outside of it the floor is wrong, or the participant sits. */
 const standing = { least: 1.1, most: 2.05 };
 
-/** What is wrong before the start and what to do about it, a sentence each in the participant's language; empty: nothing. */
+/**
+ * Returns what is wrong with a set-up and how to repair it, each in a sentence in the participant's language; empty:
+ * nothing.
+ */
 export function setupFaults(
   { freeSpace }: RemoteTerms,
   { deviceFault, room, eyeHeight }: RemoteSetup,

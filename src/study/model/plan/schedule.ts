@@ -11,14 +11,17 @@ interface StepOf<Kind extends string> {
   readonly id: string;
 }
 
-/** A step that belongs to a block: one condition of one task. */
+/** A step of a block, which is one condition of one task. */
 interface BlockStep {
   readonly task: string;
-  /** From 1, in the order in which the participant meets the conditions. The tutorial before them all belongs to block 1. */
+  /**
+   * Counted from 1 in the order in which the participant meets the conditions. A tutorial before all of them belongs to
+   * block 1.
+   */
   readonly block: number;
 }
 
-/** One thing that a participant does. */
+/** A step of a participant. */
 export type StudyStep =
   | StepOf<'consent'>
   | StepOf<'demographics'>
@@ -28,7 +31,7 @@ export type StudyStep =
       BlockStep & {
         readonly condition: string;
         readonly embodiment: Embodiment;
-        /** From 1. */
+        /** Counted from 1. */
         readonly repetition: number;
         readonly seconds: number;
       })
@@ -37,24 +40,24 @@ export type StudyStep =
       BlockStep & { readonly condition: string; readonly questionnaire: Questionnaire; readonly seconds: number })
   | StepOf<'end'>;
 
-/** What one participant does, from consent to the end. */
+/** The steps of one participant, from consent to the end. */
 export interface Schedule {
   readonly study: string;
   readonly participant: string;
   /** null: the plan has none. */
   readonly cohort: string | null;
   readonly consentVersion: string;
-  /** From which answers on a participant is asked whether to stop. */
+  /** The stopping rules of the plan. */
   readonly askToStop: readonly StoppingRule[];
-  /** Per task: with whom, and the group's number from 1 (for tasks alone: the participant's). */
+  /** The group of each task: its members and its number from 1 (for tasks alone: the participant's). */
   readonly groups: Readonly<Record<string, { readonly number: number; readonly members: readonly string[] }>>;
   readonly steps: readonly StudyStep[];
 }
 
-/** What stands for a condition's name in lists for researchers, as participants read it (English). */
+/** Returns the name of a condition that participants read, for lists of researchers (English). */
 export const blindLabel = (step: { readonly block: number }): string => `Round ${step.block}`;
 
-/** The steps of one participant; throws where the plan has no such participant. */
+/** Returns the steps of a participant; throws if the plan has no such participant. */
 export function scheduleFor(plan: StudyPlan, participant: string): Schedule {
   if (!participantsOf(plan).includes(participant)) {
     throw new ValidationError(
@@ -96,7 +99,7 @@ interface Block {
   readonly task: StudyTask;
   readonly condition: StudyCondition;
   readonly cohort: PartialEmbodiment;
-  /** From 1. */
+  /** Counted from 1. */
   readonly block: number;
   readonly asked: readonly Questionnaire[];
 }

@@ -1,13 +1,16 @@
 import { nextRandom, type RandomState } from 'threepoint/core/math/random';
 
-/** A generator for one purpose: what is drawn for one task does not move when another task is added. */
+/** Returns a generator for one purpose, so that a new task does not change what is drawn for others. */
 export function randomFor(seed: number, purpose: string): RandomState {
   let hash = 0x811c9dc5 ^ seed;
   for (const character of purpose) hash = Math.imul(hash ^ (character.codePointAt(0) as number), 0x01000193);
   return { seed: hash | 0 };
 }
 
-/** The items in random order, every order equally likely (Fisher and Yates), and the generator after it. */
+/**
+ * Returns the items in random order, every order equally likely (Fisher and Yates), and the next state of the
+ * generator.
+ */
 export function shuffle<T>(
   items: readonly T[],
   random: RandomState,

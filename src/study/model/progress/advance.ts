@@ -11,45 +11,48 @@ import { checkedOutcome, type TrialOutcome } from '../records/trial-log';
 import { currentStep, elapsedSeconds, type Progress, placeOf, runningOn } from './progress';
 import type { MeantBlock } from './study-api';
 
-/** What participant, experimenter, game or clock report. */
+/** An event from participant, experimenter, game or clock. */
 export type ProgressEvent =
-  /** `language`: in which the text was read; absent: the study has only one. */
+  /** `language` is that of the text that was read; absent: the study has only one. */
   | { readonly type: 'consent'; readonly motion: boolean; readonly version: string; readonly language?: string }
   | { readonly type: 'demographics'; readonly demographics: unknown }
   | { readonly type: 'calibrated'; readonly calibration: Calibration }
-  /** Starts the tutorial or trial that waits. */
+  /** Starts the waiting tutorial or trial. */
   | { readonly type: 'start' }
   | { readonly type: 'trial-finished'; readonly outcome: TrialOutcome }
-  /** null takes the answer back. */
+  /** null removes the answer. */
   | { readonly type: 'answer'; readonly question: string; readonly value: Answer | null }
   /** Hands the questionnaire in. */
   | { readonly type: 'submit' }
-  /** Time has passed. */
+  /** Lets time pass. */
   | { readonly type: 'tick' }
   | { readonly type: 'pause' }
-  /** Ends the session here and now, at any step. */
+  /** Ends the session at any step. */
   | { readonly type: 'stop'; readonly by: 'participant' | 'experimenter'; readonly reason?: string }
-  /** Asked for their answers whether to stop, the participant goes on. */
+  /** Continues after the participant was asked, because of answers, whether to stop. */
   | { readonly type: 'go-on' }
   | { readonly type: 'resume' }
-  /** The present block, if it is the one that is meant, counts for nothing; repeat: it starts again, otherwise the next one follows. */
+  /** Voids the present block if it is the intended one; repeat: it starts again, otherwise the next one follows. */
   | { readonly type: 'void-block'; readonly reason: string; readonly repeat: boolean; readonly of?: MeantBlock }
   | { readonly type: 'remark'; readonly text: string }
-  /** The page was loaded again, here or on another device: a trial that ran is lost and is tried again; everything else goes on. */
+  /**
+   * Reports that the page was reloaded, here or on another device. A running trial is void and repeated; everything
+   * else continues.
+   */
   | { readonly type: 'reload' };
 
-/** What follows from an event. */
+/** The result of an event. */
 export interface Advance {
   readonly progress: Progress;
-  /** To be stored and sent, in this order. */
+  /** The records to store and send, in this order. */
   readonly records: readonly StudyRecord[];
-  /** Why nothing changed, for a person to read; null: the event was taken. */
+  /** Why nothing changed, in a sentence; null: the event was accepted. */
   readonly refusal: string | null;
 }
 
 type EventOf<Type extends ProgressEvent['type']> = Extract<ProgressEvent, { type: Type }>;
 
-/** What is taken in a pause too: the rest waits for its end. */
+/** The events that are accepted during a pause. */
 const takenInPause: readonly ProgressEvent['type'][] = [
   'resume',
   'remark',
@@ -61,16 +64,19 @@ const takenInPause: readonly ProgressEvent['type'][] = [
   'go-on',
 ];
 
-/** Why events are refused that participants may press at the wrong moment. */
+/** The reasons for refusals that participants can cause by pressing at the wrong moment. */
 export const refusals = {
   paused: 'the session is paused',
   asked: 'the participant is asked whether to stop',
 } as const;
 
-/** What waits until a participant who may be unwell has decided. */
+/** The events that wait until a participant who may be unwell has decided. */
 const notWhileAsked: readonly ProgressEvent['type'][] = ['start', 'calibrated', 'answer', 'submit'];
 
-/** What an event makes of a session at `now` [s since 1970]. Events out of place change nothing and say why. */
+/**
+ * Applies an event to a session at `now` [s since 1970]. An event that does not fit the step changes nothing and is
+ * refused with a reason.
+ */
 export function advance(schedule: Schedule, progress: Progress, event: ProgressEvent, now: number): Advance {
   const at = new Moment(schedule, progress, now);
   if (progress.paused && !takenInPause.includes(event.type)) return at.refused(refusals.paused);
@@ -78,7 +84,7 @@ export function advance(schedule: Schedule, progress: Progress, event: ProgressE
     return at.refused(refusals.asked);
   }
   try {
-    const next = follow(at, event) ?? at.refused(`"${event.type}" has no place in the step "${at.step.id}"`);
+    const next = follow(at, event) ?? at.refused(`"${event.type}" does not fit the step "${at.step.id}"`);
     if (next.progress === progress) return next;
     return { ...next, progress: { ...next.progress, changes: (progress.changes ?? 0) + 1 } };
   } catch (error) {
@@ -87,7 +93,7 @@ export function advance(schedule: Schedule, progress: Progress, event: ProgressE
   }
 }
 
-/** null: the event has no place in this step. Throws a ValidationError where it says something that cannot be recorded. */
+/** Returns null if the event does not fit this step. Throws a ValidationError for invalid content. */
 function follow(at: Moment, event: ProgressEvent): Advance | null {
   switch (event.type) {
     case 'consent':
@@ -123,14 +129,14 @@ function follow(at: Moment, event: ProgressEvent): Advance | null {
   }
 }
 
-/** A session at the moment of an event, and the ways in which it goes on. */
+/** A session at the time of an event, and its possible continuations. */
 class Moment {
   readonly schedule: Schedule;
   readonly progress: Progress;
-  /** Seconds since 1970. */
+  /** The time in seconds since 1970. */
   readonly now: number;
   readonly step: StudyStep;
-  /** null: outside of the tasks. */
+  /** null outside of the tasks. */
   readonly place: Place | null;
 
   constructor(schedule: Schedule, progress: Progress, now: number) {
@@ -141,13 +147,13 @@ class Moment {
     this.place = placeOf(schedule, progress);
   }
 
-  /** What every record of this moment says. */
+  /** The fields that every record of this moment has. */
   get envelope() {
     const { study, participant } = this.schedule;
     return { version: recordVersion, study, participant, simulated: this.progress.simulated, at: this.now } as const;
   }
 
-  /** The id of the record of this attempt at the step: sending it twice stores it once. */
+  /** Returns the id of a record of this attempt at the step, so that sending it twice stores it once. */
   recordId(kind: string): string {
     const suffix = this.place ? `@${this.place.run}.${this.place.attempt}` : '';
     return `${this.step.id}${suffix}:${kind}`;
@@ -161,14 +167,14 @@ class Moment {
     return { progress, records, refusal: null };
   }
 
-  /** With a record of what happened; before consent nothing is recorded, not even a pause. */
+  /** Returns the session with a record of what happened; nothing is recorded before consent, not even a pause. */
   withEvent(next: Progress, body: StudyEvent): Advance {
     if (next.motion === null) return this.taken(next);
     const counted = { ...next, events: next.events + 1 };
     return this.taken(counted, [{ ...this.envelope, kind: 'event', id: `event-${counted.events}`, body }]);
   }
 
-  /** To the step after this one. */
+  /** Returns the session at the next step. */
   moveOn(from: Progress, records: readonly StudyRecord[] = []): Advance {
     return this.enter(from, this.schedule.steps[this.schedule.steps.indexOf(this.step) + 1] as StudyStep, records);
   }
@@ -180,7 +186,7 @@ class Moment {
     return this.taken(finished.progress, [...records, ...finished.records]);
   }
 
-  /** Rests and questionnaires run from their first moment; games and calibration wait to be started. */
+  /** The clocks of rests and questionnaires start at once; games and calibration wait for a start. */
   entered(from: Progress, step: StudyStep): Progress {
     const running = step.kind === 'rest' || step.kind === 'questionnaire';
     const since = running && !from.paused ? this.now : null;
@@ -266,8 +272,11 @@ function submit(at: Moment): Advance | null {
   const unwell = reachedRule(at.schedule.askToStop, step.questionnaire, body.answers);
   if (!unwell) return at.moveOn(progress, handedIn);
   const { questionnaire, measure, value } = unwell;
-  const told = at.withEvent({ ...progress, unwell: true }, { type: 'unwell', place, questionnaire, measure, value });
-  return at.moveOn(told.progress, [...handedIn, ...told.records]);
+  const recorded = at.withEvent(
+    { ...progress, unwell: true },
+    { type: 'unwell', place, questionnaire, measure, value },
+  );
+  return at.moveOn(recorded.progress, [...handedIn, ...recorded.records]);
 }
 
 function tick(at: Moment): Advance {
@@ -288,15 +297,18 @@ function stop(at: Moment, { by, reason }: EventOf<'stop'>): Advance | null {
   if (step.kind === 'end') return null;
   if (progress.motion === null) return at.refused('nothing is recorded before consent');
   const { unwell: _, ...decided } = progress;
-  const said = reason === undefined ? {} : { reason: checked(text(500), reason) };
-  const told = at.withEvent(
+  const stated = reason === undefined ? {} : { reason: checked(text(500), reason) };
+  const recorded = at.withEvent(
     { ...decided, stopped: true, paused: false },
-    { type: 'stop', by, ...said, place, step: step.id },
+    { type: 'stop', by, ...stated, place, step: step.id },
   );
-  return at.taken(at.entered(told.progress, schedule.steps.at(-1) as StudyStep), told.records);
+  return at.taken(at.entered(recorded.progress, schedule.steps.at(-1) as StudyStep), recorded.records);
 }
 
-/** Questions that stood behind the one whether to stop have not been seen yet: their clock begins now. A rest has run meanwhile. */
+/**
+ * Questions after the question whether to stop were not shown yet, so their clock starts now. A rest has run in the
+ * meantime.
+ */
 function goOn(at: Moment): Advance | null {
   const { unwell, ...decided } = at.progress;
   if (!unwell) return null;
@@ -315,7 +327,7 @@ function voidBlock(at: Moment, event: EventOf<'void-block'>): Advance | null {
   const { repeat, of } = event;
   const { task, block, run } = at.place;
   if (of && (of.task !== task || of.block !== block)) {
-    return at.refused(`block ${of.block} of "${of.task}", which was meant, is not under way`);
+    return at.refused(`block ${of.block} of "${of.task}", which the command is for, is not under way`);
   }
   const { steps } = at.schedule;
   const { runs } = at.progress;

@@ -16,7 +16,7 @@ import type { Place } from '../records/study-record';
 export const progressVersion = 1;
 
 const moment = numberBetween(0, 1e11);
-/** A step that lasts longer than this [s] is a page that was left open. */
+/** A longer step is a page that was left open [s]. */
 const longestStep = 1e7;
 
 const progressSchema = v.object({
@@ -24,41 +24,47 @@ const progressSchema = v.object({
   study: identifier,
   participant: participantId,
   simulated: v.boolean(),
-  /** Id of the step that the participant is at. */
+  /** The id of the present step. */
   step: text(120),
-  /** Whether the step's clock has been started. */
+  /** Whether the clock of the step was started. */
   running: v.boolean(),
   paused: v.boolean(),
-  /** Since when the clock runs, by the clock of this device [s since 1970]; null: it stands, or this is a report. */
+  /** The start of the clock by the clock of this device [s since 1970]; null: it is stopped, or this is a report. */
   since: v.nullable(moment),
-  /** Seconds that it ran before. */
+  /** The seconds of earlier runs of the clock. */
   elapsed: numberBetween(0, longestStep),
-  /** The answers given so far in the questionnaire of this step. */
+  /** The answers so far to the questionnaire of this step. */
   draft: v.record(v.string(), v.union([v.number(), v.string()])),
-  /** Whether tracked frames may be kept; null: consent has not been given, so nothing may be recorded. */
+  /** Whether tracking frames may be kept; null: there is no consent yet, so nothing may be recorded. */
   motion: v.nullable(v.boolean()),
-  /** In which the participant reads; absent: the study has only one. */
+  /** The language of the participant; absent: the study has only one. */
   language: v.exactOptional(languageTag),
-  /** "task/block" to its run, where that is not the first. */
+  /** The run of a block by "task/block", if it is not the first. */
   runs: v.record(v.string(), integerBetween(1, 1000)),
-  /** What was answered says that the participant may be unwell, and whether to stop is not decided yet; absent: no such question. */
+  /** Whether the participant is asked, because of answers, whether to stop; absent: not. */
   unwell: v.exactOptional(v.boolean()),
-  /** The participant stopped, or was stopped, before the end; absent: not. */
+  /** Whether the participant stopped, or was stopped, before the end; absent: not. */
   stopped: v.exactOptional(v.boolean()),
-  /** Number of the newest of the experimenter's commands that was followed; absent: none, or told by a program that did not say. */
+  /**
+   * The number of the newest command of the experimenter that was followed; absent: none, or the report of an older
+   * program.
+   */
   commandsSeen: v.exactOptional(integerBetween(0, Number.MAX_SAFE_INTEGER)),
-  /** How often this session has changed: of two states of it, which is the later; absent: never, or told by a program that did not count. */
+  /**
+   * The number of changes of this session, by which states are ordered; absent: none, or the report of an older
+   * program.
+   */
   changes: v.exactOptional(integerBetween(0, Number.MAX_SAFE_INTEGER)),
-  /** Attempts at the present step, from 1. */
+  /** The attempt at the present step, from 1. */
   attempt: integerBetween(1, 1000),
-  /** Events recorded so far: their ids count on after a reload. */
+  /** The number of recorded events, which continue their ids after a reload. */
   events: integerBetween(0, 1_000_000),
 });
 
-/** Where a participant is in the schedule: plain JSON, so that it survives reloads and crashes. */
+/** The progress of a participant in the schedule, as plain JSON that survives reloads and crashes. */
 export type Progress = v.InferOutput<typeof progressSchema>;
 
-/** The beginning of a session. */
+/** Returns the progress at the beginning of a session. */
 export function begin(schedule: Schedule, simulated = false): Progress {
   return {
     version: progressVersion,
@@ -78,7 +84,7 @@ export function begin(schedule: Schedule, simulated = false): Progress {
   };
 }
 
-/** The step that the participant is at; throws where the schedule has no such step. */
+/** Returns the present step; throws if the schedule does not have it. */
 export function currentStep(schedule: Schedule, progress: Progress): StudyStep {
   const step = schedule.steps.find(({ id }) => id === progress.step);
   if (!step)
@@ -86,14 +92,17 @@ export function currentStep(schedule: Schedule, progress: Progress): StudyStep {
   return step;
 }
 
-/** A session from its serialised state; throws a ValidationError that names the field, also where it is another participant's. */
+/**
+ * Returns the progress from its serialised form; throws a ValidationError that names the field, also for that of
+ * another participant.
+ */
 export function resumed(schedule: Schedule, json: string): Progress {
   let value: unknown;
   try {
     value = JSON.parse(json);
   } catch (error) {
     if (!(error instanceof SyntaxError)) throw error;
-    throw new ValidationError('', `the stored session is no JSON: ${error.message}`);
+    throw new ValidationError('', `the stored session is not JSON: ${error.message}`);
   }
   const progress = checked(progressSchema, value);
   for (const field of ['study', 'participant'] as const) {
@@ -106,32 +115,36 @@ export function resumed(schedule: Schedule, json: string): Progress {
   return progress;
 }
 
-/** Seconds on the clock of this step, pauses left out; a clock that was set back counts as standing. */
+/** Returns the seconds on the clock of this step without pauses; a clock that was set back counts as stopped. */
 export const elapsedSeconds = (progress: Progress, now: number): number =>
   Math.min(longestStep, progress.elapsed + (progress.since === null ? 0 : Math.max(0, now - progress.since)));
 
 /**
- * What the server is told at `now` [s since 1970]: seconds that ran until now, and no moment, for clocks of devices and servers differ by
- * minutes.
+ * Returns the progress as it is reported to the server at `now` [s since 1970]: with elapsed seconds instead of times,
+ * because the clocks of devices and servers differ by minutes.
  */
 export const reported = (progress: Progress, now: number): Progress =>
   progress.since === null ? progress : { ...progress, elapsed: elapsedSeconds(progress, now), since: null };
 
 const runs = ({ running, paused }: Progress): boolean => running && !paused;
 
-/** A report so many seconds later: the clock ran on. */
+/** Returns a report a number of seconds later, with its clock advanced. */
 export const sinceReport = (report: Progress, seconds: number): Progress =>
   runs(report) && report.since === null
     ? { ...report, elapsed: Math.min(longestStep, report.elapsed + Math.max(0, seconds)) }
     : report;
 
-/** The clock runs on by that of this device, which says `now` [s since 1970]: after a report, or where it was set back behind `since`. */
+/**
+ * Returns the progress with its clock running by that of this device at `now` [s since 1970], after a report or if the
+ * clock was set back behind `since`.
+ */
 export const runningOn = (progress: Progress, now: number): Progress =>
   runs(progress) && (progress.since === null || progress.since > now) ? { ...progress, since: now } : progress;
 
 /**
- * Whether one state of a session came after another one. Devices and reports can be late: a device whose storage was full resumes an older
- * state, and a request may arrive after its successor. Blocks that run again count first, then the step, its attempt, and what changed within it.
+ * Returns whether one state of a session is later than another. Devices and reports can be late: a device with full
+ * storage resumes an older state, and a request may arrive after its successor. Repeated blocks are compared first,
+ * then the step, its attempt, and the changes within it.
  */
 export function isLater(schedule: Schedule, state: Progress, than: Progress): boolean {
   const order = ({ runs, step, attempt, changes = 0 }: Progress) => [
@@ -145,19 +158,19 @@ export function isLater(schedule: Schedule, state: Progress, than: Progress): bo
   return differing >= 0 && (one[differing] as number) > (other[differing] as number);
 }
 
-/** Seconds left of this step, at least 0; null: it has no time limit. */
+/** Returns the seconds left of this step, at least 0, or null if it has no limit. */
 export function remainingSeconds(schedule: Schedule, progress: Progress, now: number): number | null {
   const step = currentStep(schedule, progress);
   return 'seconds' in step ? Math.max(0, step.seconds - elapsedSeconds(progress, now)) : null;
 }
 
-/** Seconds that are left as minutes and seconds, "7:00"; a second that has begun counts whole. */
+/** Formats seconds as minutes and seconds, "7:00", rounded up. */
 export function clockText(seconds: number): string {
   const whole = Math.ceil(seconds);
   return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, '0')}`;
 }
 
-/** Where in the study the participant is; null outside of the tasks. */
+/** Returns the place in the study, or null outside of the tasks. */
 export function placeOf(schedule: Schedule, progress: Progress): Place | null {
   const step = currentStep(schedule, progress);
   if (!('task' in step)) return null;

@@ -9,7 +9,10 @@ export interface MeantBlock {
   readonly block: number;
 }
 
-/** What an experimenter asks of a participant's page; `of`: the block that was under way when it was asked, absent: the present one. */
+/**
+ * A command of the experimenter to a participant's page; `of` is the block that was under way when it was given;
+ * absent: the present one.
+ */
 export type StudyCommand =
   | { readonly type: 'start' }
   | { readonly type: 'pause' }
@@ -17,10 +20,10 @@ export type StudyCommand =
   | { readonly type: 'stop'; readonly by: 'experimenter'; readonly reason: string }
   | { readonly type: 'void-block'; readonly reason: string; readonly repeat: boolean; readonly of?: MeantBlock };
 
-/** A recording of tracked frames that the server takes at once [bytes]. */
+/** The largest recording that the server accepts [bytes]. */
 export const mostMotionBytes = 16 * 2 ** 20;
 
-/** Proof that something was deleted; it holds nothing of what was. */
+/** The receipt of a deletion, without any deleted data. */
 export interface Receipt {
   readonly number: number;
   readonly study: string;
@@ -32,67 +35,70 @@ export interface Receipt {
   readonly at: number;
 }
 
-/** What the experimenter sees of a participant. */
+/** The state of a participant for the experimenter. */
 export interface ParticipantState {
   readonly participant: string;
-  /** Of the plan that this participant follows. */
+  /** The version of the plan that this participant follows. */
   readonly version: number;
-  /** What takes the place; null: the participant has withdrawn. */
+  /** The invitation to the place; null: the participant has withdrawn. */
   readonly invitation: string | null;
   readonly claimed: boolean;
   readonly withdrawn: boolean;
   readonly records: number;
-  /** Where the session is; null: it has not begun. */
+  /** The state of the session; null: it has not begun. */
   readonly session: {
     readonly step: string;
     readonly kind: string;
     readonly running: boolean;
     readonly paused: boolean;
-    /** Asked whether to stop, because of what was answered. */
+    /** Whether the participant is asked, because of answers, whether to stop. */
     readonly unwell: boolean;
-    /** Ended before its end. */
+    /** Whether the session was ended before its end. */
     readonly stopped: boolean;
     /** null: the step has no time limit. */
     readonly remainingSeconds: number | null;
-    /** Since when the page has not reported, by the server's clock [s]: that of the experimenter's computer may be minutes off. */
+    /**
+     * The time since the page last reported, by the server's clock [s], because that of the experimenter's computer may
+     * be wrong by minutes.
+     */
     readonly silence: number;
   } | null;
 }
 
-/** A plan as it was for some of a study's participants: those who began with it stay with it. */
+/** A version of a plan; participants who began with it keep it. */
 export interface PlanVersion {
-  /** From 1. */
+  /** Counted from 1. */
   readonly version: number;
   readonly plan: StudyPlan;
   /** Seconds since 1970. */
   readonly since: number;
-  /** Who began with it, and who plays with them. */
+  /** The participants who began with it, and those who play with them. */
   readonly participants: readonly string[];
 }
 
 export interface StudyInfo {
   readonly plan: StudyPlan;
-  /** Of the plan. */
+  /** The version of the plan. */
   readonly version: number;
-  /** Every version, the oldest first. */
+  /** All versions, the oldest first. */
   readonly versions: readonly PlanVersion[];
   readonly simulated: boolean;
   readonly createdAt: number;
   readonly retentionUntil: number;
 }
 
-/** What is public of a study. */
+/** The public part of a study. */
 export interface PublicStudy extends Pick<StudyPlan, 'id' | 'title' | 'consent'> {
-  /** Those that participants may choose from. */
+  /** The languages that participants may choose. */
   readonly languages: readonly [string, ...string[]];
-  /** What the page says in them, where the plan gives it. */
+  /** The phrases of the plan in these languages. */
   readonly phrases: NonNullable<StudyPlan['phrases']>;
   readonly simulated: boolean;
-  /** Whom participants ask who have no one beside them; null: an experimenter is there. */
+  /** The contact for participants who take part alone; null: an experimenter is present. */
   readonly contact: string | null;
 }
 
-/** A trial that a group plays together: a step of the schedule, and the how many-eth run of its block. */
+/** A trial that a group plays together: a step of the schedule and the run of its block. */
 export interface PlayedTogether {
   readonly step: string;
   readonly run: number;
@@ -104,32 +110,32 @@ export interface SignedSeat {
   readonly token: string;
 }
 
-/** What a device is given that takes a participant's place; of the wearer what an earlier device sent. */
+/** The data for a device that takes a participant's place, with the profile from an earlier device. */
 export interface Claim extends ParticipantProfile {
   readonly token: string;
-  /** With the first claim, and again while nothing was recorded; null later. */
+  /** The withdrawal code, given with the first claim and again while nothing is recorded; null later. */
   readonly withdrawalCode: string | null;
   readonly plan: StudyPlan;
   readonly simulated: boolean;
-  /** Where another device left off; null: at the beginning. */
+  /** The progress on an earlier device; null: none. */
   readonly progress: Progress | null;
 }
 
-/** A line of the list of studies. */
+/** An entry in the list of studies. */
 export interface StudyListing extends Pick<StudyPlan, 'id' | 'participants'> {
-  /** In the study's first language. */
+  /** The title in the study's first language. */
   readonly title: string;
   readonly simulated: boolean;
   readonly createdAt: number;
   readonly retentionUntil: number;
 }
 
-/** Everything recorded in a study. */
+/** All records of a study. */
 export interface RecordedStudy extends StudyInfo {
   readonly records: readonly StudyRecord[];
 }
 
-/** A command as it is stored: numbers rise. */
+/** A stored command; numbers increase. */
 export interface NumberedCommand {
   readonly number: number;
   readonly at: number;

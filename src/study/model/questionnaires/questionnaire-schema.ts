@@ -14,16 +14,19 @@ const question = v.strictObject({
   answer: v.exactOptional(answerFormSchema),
   /** Whether it may stay without an answer. */
   optional: v.exactOptional(flag),
-  /** Counts turned round in scales: from + to − answer. What is recorded is the answer as given. */
+  /** Whether scales count from + to − answer. The answer is recorded as given. */
   reversed: v.exactOptional(flag),
 });
 
 const scale = v.strictObject({
   id: code,
   label: text(60),
-  /** count: how many answers are at least `atLeast`; weighted-mean: each weighted by how often `choices` chose its id. */
+  /**
+   * count: the number of answers of at least `atLeast`; weighted-mean: each answer weighted by how often `choices`
+   * chose its id.
+   */
   method: v.picklist(['mean', 'sum', 'count', 'weighted-mean'], 'expected mean, sum, count or weighted-mean'),
-  /** Ids; a question named twice counts twice. */
+  /** The ids of the questions; a repeated one counts twice. */
   questions: v.pipe(v.array(code, 'expected a list of questions'), v.minLength(1, 'expected at least one question')),
   /** The result is factor × (mean, sum or count) + offset; 1 and 0 if absent. */
   factor: v.exactOptional(limitedNumber),

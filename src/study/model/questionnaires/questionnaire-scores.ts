@@ -2,7 +2,7 @@ import { questionKind } from './question-kinds';
 import type { Question, Scale } from './questionnaire-schema';
 import type { Answers, Questionnaire } from './questionnaires';
 
-/** An answer as a number that counts: turned round where the question is reversed; null: none was given, or it is no number. */
+/** Returns an answer as a number, reversed if the question is, or null if there is none or it is no number. */
 function counted({ id, answer, reversed }: Question, answers: Answers): number | null {
   const given = answers[id];
   if (typeof given !== 'number') return null;
@@ -12,11 +12,11 @@ function counted({ id, answer, reversed }: Question, answers: Answers): number |
 
 const sum = (values: readonly number[]) => values.reduce((total, value) => total + value, 0);
 
-/** The questions of a scale, one that is named twice twice. */
+/** Returns the questions of a scale, with repetitions. */
 const questionsOf = (questionnaire: Questionnaire, scale: Scale): readonly Question[] =>
   scale.questions.flatMap((id) => questionnaire.questions.find((question) => question.id === id) ?? []);
 
-/** The value of a scale; null: a question that it needs has no answer. */
+/** Returns the value of a scale, or null if a question has no answer. */
 export function scaleScore(questionnaire: Questionnaire, scale: Scale, answers: Answers): number | null {
   const { method, factor = 1, offset = 0, atLeast = 0, choices = [] } = scale;
   const values: number[] = [];
@@ -43,7 +43,7 @@ export function scaleScore(questionnaire: Questionnaire, scale: Scale, answers: 
   }
 }
 
-/** The least and the greatest value that a scale can have. */
+/** Returns the least and the greatest value that a scale can have. */
 export function scaleRange(questionnaire: Questionnaire, scale: Scale): readonly [number, number] {
   const ranges = questionsOf(questionnaire, scale).flatMap(({ answer }) => {
     const range = questionKind(answer).range(answer);

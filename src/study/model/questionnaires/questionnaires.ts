@@ -12,7 +12,7 @@ import nasaTlxRaw from './shipped/nasa-tlx-raw.json' with { type: 'json' };
 import ssq from './shipped/ssq.json' with { type: 'json' };
 import systemUsability from './shipped/system-usability.json' with { type: 'json' };
 
-/** A questionnaire whose questions all say how they are answered. */
+/** A questionnaire with a form of the answer to every question. */
 export interface Questionnaire {
   readonly id: string;
   readonly title: Words;
@@ -21,7 +21,7 @@ export interface Questionnaire {
   readonly scales: readonly Scale[];
 }
 
-/** Question id to answer, as given: reversed questions are not turned round. */
+/** The answers by the id of the question, as given: reversed questions are not converted. */
 export type Answers = Readonly<Record<string, Answer>>;
 
 function refuseScale(scale: Scale, questions: readonly Question[], field: string): void {
@@ -32,7 +32,7 @@ function refuseScale(scale: Scale, questions: readonly Question[], field: string
       if (!found) throw new ValidationError(at, `there is no question "${id}"`);
       const kind = questionKind(found.answer);
       if (list === 'choices' && kind.options(found.answer) === null) {
-        throw new ValidationError(at, `"${id}" is no choice`);
+        throw new ValidationError(at, `"${id}" is not a choice`);
       }
       if (list === 'questions' && kind.range(found.answer) === null) {
         throw new ValidationError(at, `"${id}" is not answered with a number`);
@@ -45,7 +45,10 @@ function refuseScale(scale: Scale, questions: readonly Question[], field: string
   if (scale.method === 'weighted-mean' && !scale.choices) throw new ValidationError(`${field}.choices`, 'is missing');
 }
 
-/** A questionnaire with how each question is answered; throws a ValidationError with the field below `field`. */
+/**
+ * Returns a questionnaire with the form of every question's answer; throws a ValidationError with the field below
+ * `field`.
+ */
 export function resolvedQuestionnaire(file: QuestionnaireFile, field = ''): Questionnaire {
   const at = (way: string) => (field ? `${field}.${way}` : way);
   if (file.answer) questionKind(file.answer).check?.(file.answer, at('answer'));
@@ -54,14 +57,14 @@ export function resolvedQuestionnaire(file: QuestionnaireFile, field = ''): Ques
     const first = file.questions.findIndex(({ id }) => id === question.id);
     if (first !== index)
       throw new ValidationError(`${way}.id`, `"${question.id}" is the name of question ${first} too`);
-    // Answers are kept by name: such a one would be there before anything is answered.
-    if (question.id in {})
-      throw new ValidationError(`${way}.id`, `"${question.id}" is a name that the program keeps for itself`);
+    // Answers are properties of an object, so an id must not be one of its prototype.
+    if (question.id in {}) throw new ValidationError(`${way}.id`, `"${question.id}" is a reserved name`);
     const answer = question.answer ?? file.answer;
-    if (!answer) throw new ValidationError(`${way}.answer`, 'is missing, and the questionnaire says none for all');
+    if (!answer)
+      throw new ValidationError(`${way}.answer`, 'is missing, and the questionnaire has none for all questions');
     if (question.answer) questionKind(question.answer).check?.(question.answer, `${way}.answer`);
     if (question.reversed && questionKind(answer).range(answer) === null) {
-      throw new ValidationError(`${way}.reversed`, `a ${answer.kind} has no other way round`);
+      throw new ValidationError(`${way}.reversed`, `a ${answer.kind} cannot be reversed`);
     }
     return { ...question, answer };
   });
@@ -75,7 +78,7 @@ export function resolvedQuestionnaire(file: QuestionnaireFile, field = ''): Ques
   return { id: file.id, title: file.title, ...(file.source && { source: file.source }), questions, scales };
 }
 
-/** Every text of a questionnaire that participants read, with its field below `field`. */
+/** Returns every text of a questionnaire that participants read, with its field below `field`. */
 function textsOf(
   { title, answer, questions }: QuestionnaireFile,
   field: string,
@@ -110,12 +113,12 @@ const shipped = (file: unknown): readonly [string, Questionnaire] => {
   return [questionnaire.id, questionnaire];
 };
 
-/** The questionnaires that come with the program, by id: a plan names them. */
+/** The questionnaires of this package by id; plans use them by name. */
 export const shippedQuestionnaires: Readonly<Record<string, Questionnaire>> = Object.fromEntries(
   [archery, ball, nasaTlx, nasaTlxRaw, ssq, systemUsability].map(shipped),
 );
 
-/** The questionnaire of this id: the plan's own, or one of the shipped; null: there is none. */
+/** Returns the questionnaire of this id, of the plan or shipped, or null. */
 export function questionnaireNamed(
   plan: { readonly questionnaires?: readonly QuestionnaireFile[] },
   id: string,
@@ -125,7 +128,7 @@ export function questionnaireNamed(
   return Object.hasOwn(shippedQuestionnaires, id) ? (shippedQuestionnaires[id] as Questionnaire) : null;
 }
 
-/** Whether this is one of its scales, or a question that is answered with a number. */
+/** Returns whether this is a scale or a question with a numeric answer. */
 export const isNumeric = ({ questions, scales }: Questionnaire, id: string): boolean =>
   scales.some((scale) => scale.id === id) ||
   questions.some(({ id: own, answer }) => own === id && questionKind(answer).range(answer) !== null);
@@ -141,7 +144,7 @@ export function typedAnswer(form: AnswerForm, typed: string): Answer | null {
 
 const loose = v.record(v.string(), v.union([v.number(), v.string()], 'expected a number or a text'));
 
-/** The answers as given so far, some perhaps missing; throws for a question that is not asked or a value off its scale. */
+/** Returns answers that may be incomplete; throws for unknown questions and invalid values. */
 export function checkedDraft(questionnaire: Questionnaire, value: unknown): Answers {
   const answers = checked(loose, value);
   for (const [id, answer] of Object.entries(answers)) {
@@ -153,11 +156,11 @@ export function checkedDraft(questionnaire: Questionnaire, value: unknown): Answ
   return answers;
 }
 
-/** The ids of the questions that still need an answer, in the order asked. */
+/** Returns the ids of the questions that still need an answer, in the order asked. */
 export const unanswered = ({ questions }: Pick<Questionnaire, 'questions'>, answers: Answers): readonly string[] =>
   questions.filter(({ id, optional }) => !optional && answers[id] === undefined).map(({ id }) => id);
 
-/** Complete answers; throws for what `checkedDraft` refuses and for the first question left out. */
+/** Returns complete answers; throws as `checkedDraft` does and for the first missing answer. */
 export function checkedAnswers(questionnaire: Questionnaire, value: unknown): Answers {
   const answers = checkedDraft(questionnaire, value);
   const [missing] = unanswered(questionnaire, answers);

@@ -9,22 +9,22 @@ const measure = v.pipe(
   v.regex(/^[A-Za-z0-9][A-Za-z0-9_-]{0,31}$/, 'expected the id of a scale or a question'),
 );
 
-/** From which value of which scale or question on a participant is asked whether to stop. */
+/** A stopping rule: the value of a scale or question from which a participant is asked whether to stop. */
 export const stoppingRuleSchema = v.strictObject({
   questionnaire: identifier,
-  /** Id of one of its scales, or of a question that is answered with a number. */
+  /** The id of a scale, or of a question with a numeric answer. */
   measure,
   atLeast: numberBetween(-limit, limit),
 });
 
 export type StoppingRule = v.InferOutput<typeof stoppingRuleSchema>;
 
-/** A measure that says that a participant may be unwell. */
+/** A stopping rule that was reached, with the value. */
 export interface ReachedRule extends StoppingRule {
   readonly value: number;
 }
 
-/** Throws a ValidationError where a limit is of something that the study does not ask. */
+/** Throws a ValidationError if a rule is about something that the study does not ask. */
 export function checkStoppingRules(limits: readonly StoppingRule[], asked: readonly Questionnaire[]): void {
   limits.forEach((one, index) => {
     const field = `askToStop[${index}]`;
@@ -39,7 +39,7 @@ export function checkStoppingRules(limits: readonly StoppingRule[], asked: reado
   });
 }
 
-/** The first of the limits that these answers reach; null: none. */
+/** Returns the first of the rules that these answers reach, or null. */
 export function reachedRule(
   limits: readonly StoppingRule[],
   asked: Questionnaire,

@@ -2,7 +2,7 @@ import { checked, integerBetween, text } from 'threepoint/core/validation/valida
 import * as v from 'valibot';
 import type { PlainKey } from '../phrases/phrases';
 
-/** A question about participants; the page's phrases have its words. */
+/** A question about participants; its text is in the phrases of the page. */
 export type DemographicField = { readonly id: keyof Demographics; readonly phrase: PlainKey } & (
   | {
       readonly kind: 'choice';
@@ -26,7 +26,7 @@ const demographicsSchema = v.object({
   /** Field of study or work. */
   major: text(longest.major),
   vrExperience: v.picklist(experiences, `expected one of ${experiences.join(', ')}`),
-  /** Which systems were used before; may be empty. */
+  /** The systems that were used before; may be empty. */
   vrSystems: v.pipe(
     v.string('expected text'),
     v.trim(),
@@ -36,13 +36,13 @@ const demographicsSchema = v.object({
   vision: v.picklist(visions, `expected one of ${visions.join(', ')}`),
 });
 
-/** What the paper asked of its participants before they played, and which hand they prefer. */
+/** The answers to the questions that the paper asked before play, and the preferred hand. */
 export type Demographics = v.InferOutput<typeof demographicsSchema>;
 
 /** Throws a ValidationError that names the field. */
 export const checkedDemographics = (value: unknown): Demographics => checked(demographicsSchema, value);
 
-/** A choice, with the phrase of every value. */
+/** Returns a choice with the phrase of every value. */
 const choiceOf = <Id extends 'gender' | 'vrExperience' | 'handedness' | 'vision'>(
   id: Id,
   values: readonly Demographics[Id][],
@@ -53,7 +53,7 @@ const choiceOf = <Id extends 'gender' | 'vrExperience' | 'handedness' | 'vision'
   options: values.map((value) => ({ value, phrase: `about.${id}.${value}` as PlainKey })),
 });
 
-/** The form, in the order asked. Everything but the systems used must be answered; gender need not be told. */
+/** The fields of the form in order. Everything but the systems must be answered; gender has an option not to say. */
 export const demographicFields: readonly DemographicField[] = [
   choiceOf('gender', genders),
   { id: 'age', phrase: 'about.age', kind: 'age', ...ages },

@@ -17,21 +17,21 @@ import { checkedConsent } from './consent';
 import { checkedDemographics } from './demographics';
 import { checkedOutcome } from './trial-log';
 
-/** Of what is sent and stored; grows with every change of meaning. */
+/** The version of stored records, which increases with every change of meaning. */
 export const recordVersion = 1;
 /** The longest record as JSON [characters]. */
 export const longestRecord = 65_536;
 
 const blockNumber = integerBetween(1, 1000);
 
-/** Where in the study something happened. */
+/** The place of a record in the study. */
 const placeSchema = v.object({
   task: identifier,
-  /** Order of the condition: 1 is the first that the participant met. */
+  /** The position of the condition in the participant's order, from 1. */
   block: blockNumber,
-  /** From 1; a block that is voided and repeated runs again. */
+  /** Counted from 1; a voided and repeated block has another run. */
   run: blockNumber,
-  /** From 1; an interrupted trial is tried again. */
+  /** Counted from 1; an interrupted trial has another attempt. */
   attempt: blockNumber,
 });
 
@@ -47,7 +47,7 @@ const eventSchema = v.variant('type', [
     repeat: v.boolean(),
   }),
   v.object({ type: v.literal('interrupted'), place: placeSchema, step: text(120) }),
-  /** Answers reached a value at which the plan asks whether to stop. */
+  /** Answers reached a stopping rule of the plan. */
   v.object({
     type: v.literal('unwell'),
     place: placeSchema,
@@ -55,9 +55,9 @@ const eventSchema = v.variant('type', [
     measure: v.string(),
     value: v.number(),
   }),
-  /** Asked so, the participant wanted to go on. */
+  /** The participant continued after that. */
   v.object({ type: v.literal('go-on') }),
-  /** The session is over before its end, at this step. */
+  /** The session was ended at this step, before its end. */
   v.object({
     type: v.literal('stop'),
     by: v.picklist(['participant', 'experimenter']),
@@ -72,7 +72,7 @@ const eventSchema = v.variant('type', [
   v.object({ type: v.literal('finished') }),
 ]);
 
-/** What can happen in a session beside what is asked and played. */
+/** The types of events in a session, apart from questions and trials. */
 export const eventTypes = eventSchema.options.map(({ entries }) => entries.type.literal);
 
 const bodies = {
@@ -88,7 +88,7 @@ const bodies = {
   }),
   trial: v.object({
     place: placeSchema,
-    /** null: a tutorial, which is never evaluated. */
+    /** null: a tutorial, which is not evaluated. */
     condition: v.nullable(identifier),
     estimator: v.picklist(threePointNames),
     repetition: blockNumber,
@@ -99,10 +99,10 @@ const bodies = {
     place: placeSchema,
     ...condition.entries,
     questionnaire: identifier,
-    /** In which it was read; absent: the study has only one. */
+    /** The language of the questionnaire; absent: the study has only one. */
     language: v.exactOptional(languageTag),
     answers: v.record(v.string(), v.union([v.number(), v.string()], 'expected a number or a text')),
-    /** From the first question to handing in, pauses left out. */
+    /** The time from the first question to handing in, without pauses. */
     seconds: numberBetween(0, 1e7),
     overtime: v.boolean(),
   }),
@@ -113,16 +113,16 @@ export type RecordKind = keyof typeof bodies;
 
 const envelope = {
   version: v.literal(recordVersion, `expected ${recordVersion}, the version that this program reads`),
-  /** Unique for the participant: sending twice stores once. */
+  /** Unique for the participant, so that a record that is sent twice is stored once. */
   id: v.pipe(
     v.string('expected text'),
     v.regex(/^[a-z0-9][a-z0-9/.:@-]{0,119}$/, 'expected small letters, digits and / . : @ -'),
   ),
   study: identifier,
   participant: participantId,
-  /** Made by a program, not by a person. */
+  /** Whether a program made it instead of a person. */
   simulated: v.boolean('expected true or false'),
-  /** Seconds since 1970, on the participant's device. */
+  /** The time on the participant's device, in seconds since 1970. */
   at: numberBetween(0, 1e11),
 };
 
@@ -154,7 +154,7 @@ export type TrialRecord = RecordOf<
 export type AnswersRecord = Extract<LooseRecord, { kind: 'answers' }>;
 export type EventRecord = Extract<LooseRecord, { kind: 'event' }>;
 
-/** One thing that is stored about a participant, complete in itself. */
+/** A record about a participant, complete in itself. */
 export type StudyRecord =
   | ConsentRecord
   | DemographicsRecord
@@ -172,10 +172,13 @@ function within<T>(field: string, check: () => T): T {
   }
 }
 
-/** What of a plan decides whether a record fits it. */
+/** The part of a plan that decides whether a record fits it. */
 export type RecordedBy = Pick<StudyPlan, 'questionnaires'>;
 
-/** A record of this study that may be stored; throws a ValidationError that names the field, also where it is too long. */
+/**
+ * Returns a record of this study that may be stored; throws a ValidationError that names the field, also for one that
+ * is too long.
+ */
 export function checkedRecord(value: unknown, plan: RecordedBy): StudyRecord {
   const record = checked(recordSchema, value);
   const length = JSON.stringify(record).length;

@@ -1,17 +1,17 @@
 import { numberBetween } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
 
-/** Pauses kept per trial; of a trial with more, no clock is told: a way from one to the other with gaps is none. */
+/** The most pauses of a trial; a trial with more has no clock, because gaps would make the conversion wrong. */
 export const mostTrialPauses = 200;
 
 const seconds = numberBetween(0, 1e11);
 
-/** How the seconds of a trial, which stand in pauses, lie on the clock of its recording, which does not. */
+/** The relation of the seconds of a trial, without pauses, to the clock of its recording, with pauses. */
 export const trialClockSchema = v.object({
-  /** Second 0 of the trial: seconds since 1970 by the device's clock, and the time of a frame recorded then. */
+  /** Second 0 of the trial by the device's clock in seconds since 1970, and the time of its frame in the recording. */
   epoch: seconds,
   start: seconds,
-  /** At which second of the trial it stood, and for how long; times never fall. */
+  /** The second of the trial and the duration of each pause, in ascending order. */
   pauses: v.pipe(
     v.array(v.object({ time: seconds, seconds })),
     v.maxLength(mostTrialPauses, `expected at most ${mostTrialPauses} pauses`),
@@ -20,14 +20,14 @@ export const trialClockSchema = v.object({
 
 export type TrialClock = v.InferOutput<typeof trialClockSchema>;
 
-/** What adding and subtracting leaves of two times that are the same [s]; no frame is as short. */
+/** The rounding error of two equal times after addition and subtraction [s], shorter than any frame. */
 const rounding = 1e-6;
 
-/** When a second of the trial is on the clock of its recording; of a second at which the trial stood, when it went on. */
+/** Returns the time of a second of the trial in the recording; for the second of a pause, its end. */
 export const recordingTime = ({ start, pauses }: TrialClock, second: number): number =>
   pauses.reduce((time, pause) => (pause.time <= second + rounding ? time + pause.seconds : time), start + second);
 
-/** Counts the seconds of one trial, frame by frame of the page's clock [s], which is that of recordings. */
+/** Counts the seconds of a trial by the page's clock [s] of each frame, which is also that of recordings. */
 export class TrialSeconds {
   readonly #now: () => number;
   #clock: { readonly epoch: number; readonly start: number } | null = null;
@@ -35,17 +35,17 @@ export class TrialSeconds {
   #stood = 0;
   #stoppedAt: number | null = null;
 
-  /** `now`: seconds since 1970. */
+  /** `now` returns seconds since 1970. */
   constructor(now: () => number) {
     this.#now = now;
   }
 
-  /** A frame in which the trial stands. */
+  /** Counts a frame in a pause. */
   stand(pageTime: number): void {
     if (this.#clock) this.#stoppedAt ??= pageTime;
   }
 
-  /** A frame in which it runs; the first is second 0. Returns the second of the trial. */
+  /** Counts a frame outside of pauses, the first as second 0; returns the second of the trial. */
   run(pageTime: number): number {
     this.#clock ??= { epoch: this.#now(), start: pageTime };
     const { start } = this.#clock;
@@ -58,7 +58,7 @@ export class TrialSeconds {
     return pageTime - this.#stood - start;
   }
 
-  /** null: it has not begun, or stood too often. */
+  /** null: the trial has not begun, or had too many pauses. */
   get clock(): TrialClock | null {
     if (!this.#clock || this.#pauses.length > mostTrialPauses) return null;
     return { ...this.#clock, pauses: this.#pauses };

@@ -3,9 +3,9 @@ import { checked, handTiltsSchema, integerBetween, numberBetween, text } from 't
 import * as v from 'valibot';
 import { type TrialClock, trialClockSchema } from './trial-clock';
 
-/** Of what is recorded per trial; grows with every change of meaning. */
+/** The version of trial outcomes, which increases with every change of meaning. */
 export const trialVersion = 1;
-/** Scoring events kept per trial; a trial with more keeps the first ones and says how many there were. */
+/** The most scoring events that are kept per trial; a trial with more keeps the first ones and their number. */
 export const mostTrialEvents = 200;
 export const mostTrialStages = 16;
 
@@ -26,27 +26,30 @@ const lossSchema = v.object({ losses: count, seconds: duration });
 
 const outcomeSchema = v.object({
   version: v.literal(trialVersion, `expected ${trialVersion}, the version that this program reads`),
-  /** From the start signal to the end. */
+  /** The time from the start to the end. */
   seconds: duration,
-  /** Why it was over; stopped: it was ended early. */
+  /** Why it ended; stopped: early. */
   ended: v.picklist(
     ['arrows', 'targets', 'balls', 'time', 'stopped'],
     'expected arrows, targets, balls, time or stopped',
   ),
-  /** Points; in a group the group's. */
+  /** Points; for a group, those of the group. */
   score: numberBetween(0, 100_000),
-  /** The most that can be had. */
+  /** The highest possible score. */
   maximum: numberBetween(1, 100_000),
-  /** Arrows or balls sent off by this participant, and how many of them counted. */
+  /** Arrows or balls of this participant, and how many of them scored. */
   shots: count,
   hits: count,
-  /** What scored or missed, for how many points. */
+  /** Hits and misses with their points. */
   events: v.pipe(
     v.array(
       v.object({
-        /** On the game's clock, which also stands while the head is lost. */
+        /** The time on the game's clock, which also pauses while the head is lost. */
         time: duration,
-        /** Second of the trial at the frame that showed it: `clock` leads from there to the recording. Absent in older records. */
+        /**
+         * The second of the trial at the frame that showed it; `clock` converts it to the recording. Absent in older
+         * records.
+         */
         onset: v.exactOptional(duration),
         type: v.picklist(['hit', 'miss', 'catch']),
         points: numberBetween(0, 100_000),
@@ -54,13 +57,13 @@ const outcomeSchema = v.object({
     ),
     v.maxLength(mostTrialEvents, `expected at most ${mostTrialEvents} events`),
   ),
-  /** Including those not kept. */
+  /** The number of events, including those that are not kept. */
   eventCount: count,
   frames: v.object({
     count,
-    /** Shown later than the device wanted. */
+    /** The number of frames that were shown late. */
     missed: count,
-    /** Work per frame, stage by stage; "frame" is the whole. */
+    /** The work per frame by stage; "frame" is the total. */
     stages: v.pipe(
       v.record(
         v.pipe(v.string(), v.regex(/^[a-z][a-z-]{0,31}$/, 'expected a name of small letters and hyphens')),
@@ -71,11 +74,11 @@ const outcomeSchema = v.object({
   }),
   device: v.object({
     name: text(160),
-    /** null: the device does not say. */
+    /** null: the device does not report it. */
     refreshRateHz: v.nullable(numberBetween(1, 1000)),
     input: v.picklist(['controllers', 'hands', 'mixed', 'emulated', 'simulated']),
   }),
-  /** Of the body; null: none was made. */
+  /** The measures of the body; null: not measured. */
   calibration: v.nullable(
     v.object({
       eyeHeight: numberBetween(0.3, 2.5),
@@ -86,15 +89,15 @@ const outcomeSchema = v.object({
     }),
   ),
   tracking: v.object({ head: lossSchema, leftHand: lossSchema, rightHand: lossSchema }),
-  /** Aids that were on: aim assistance, seated play, one hand. */
+  /** The aids that were on: aim assistance, seated play, one hand. */
   assists: v.pipe(v.array(text(60)), v.maxLength(16, 'expected at most sixteen assists')),
-  /** Tracked frames recorded beside this; 0 without consent to it. */
+  /** The number of recorded tracking frames; 0 without consent. */
   motionFrames: count,
-  /** Absent: of an older record, or not known. */
+  /** Absent in older records, or unknown. */
   clock: v.exactOptional(trialClockSchema),
 });
 
-/** What happened in one trial, measured on the participant's device. */
+/** The outcome of a trial, measured on the participant's device. */
 export type TrialOutcome = v.InferOutput<typeof outcomeSchema>;
 export type StageSummary = v.InferOutput<typeof stageSchema>;
 export type TrialEvent = TrialOutcome['events'][number];
@@ -105,10 +108,13 @@ export const checkedOutcome = (value: unknown): TrialOutcome => checked(outcomeS
 const binMs = 0.05;
 const bins = 4000;
 
-/** Durations [ms] in bounded memory: percentiles are right to 0.05 ms, and from 200 ms on they are the maximum. */
+/**
+ * Statistics of durations [ms] in bounded memory: percentiles are exact to 0.05 ms, and above 200 ms they are the
+ * maximum.
+ */
 export interface DurationStatistics {
   add(ms: number): void;
-  /** null while there is nothing. */
+  /** null without values. */
   summary(): StageSummary | null;
 }
 
@@ -146,14 +152,17 @@ export function createDurationStatistics(): DurationStatistics {
 
 type Tracked = 'head' | 'leftHand' | 'rightHand';
 
-/** Hears of each frame the time spent by stage [ms], the whole under "frame", and whether the device showed it late. */
+/**
+ * Called with the time spent in each frame by stage [ms], with the total as "frame", and whether the device showed it
+ * late.
+ */
 export type FrameListener = (spentMs: Readonly<Record<string, number>>, late: boolean) => void;
 
-/** Collects one trial. Per frame it writes numbers; everything else is left to `finish`. */
+/** Collects a trial. Frames only write numbers; `finish` computes the rest. */
 export interface TrialLog {
-  /** One frame: milliseconds per stage, and whether it was shown late. */
+  /** Counts a frame: milliseconds per stage, and whether it was shown late. */
   readonly frame: FrameListener;
-  /** What was tracked at this second of the trial; times rise. */
+  /** Counts what was tracked at this second of the trial; times increase. */
   tracked(time: number, seen: Readonly<Record<Tracked, boolean>>): void;
   shot(): void;
   event(event: TrialEvent): void;
@@ -164,7 +173,7 @@ export interface TrialLog {
     readonly score: number;
     readonly maximum: number;
     readonly motionFrames: number;
-    /** null: not known. */
+    /** null: unknown. */
     readonly clock?: TrialClock | null;
   }): TrialOutcome;
 }

@@ -23,9 +23,14 @@ function columnsOf(facts: TableFacts): readonly Column[] {
   const family = familyText(facts, 'two cohorts, condition');
   return [
     ...measureColumns,
-    text('first', ids, cohorts, 'Cohort whose mean the difference begins with.'),
+    text('first', ids, cohorts, 'Cohort from which the other is subtracted.'),
     text('second', ids, cohorts, 'Cohort that is subtracted.'),
-    text('condition', ids, 'plan.json: conditions', 'Condition; empty: what each had under all of them, as a mean.'),
+    text(
+      'condition',
+      ids,
+      'plan.json: conditions',
+      'Condition; empty: the mean of each participant over all conditions.',
+    ),
     number('n_first', '', '0, 1, 2 …', 'computed', 'Participants of the first (groups, where a group has one score).'),
     number('n_second', '', '0, 1, 2 …', 'computed', 'Of the second.'),
     ...meanColumns('first', 'of the first cohort', ofEach),
@@ -77,7 +82,7 @@ export interface ComparedCohortPair {
   readonly comparisons: readonly CohortComparison[];
 }
 
-/** Comparisons of cohorts as a tidy table, full precision. */
+/** Returns comparisons of cohorts as a tidy table in full precision. */
 export const cohortTable = (name: string, pairs: readonly ComparedCohortPair[], facts: TableFacts): Table => ({
   name,
   columns: columnsOf(facts),

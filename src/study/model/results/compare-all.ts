@@ -3,21 +3,26 @@ import { asFamily } from '../../statistics/holm';
 import { friedmanTest, kruskalWallisTest, type RankAnalysis } from '../../statistics/rank-analyses';
 import type { Measure, Measured } from './measures';
 
-/** One measure under all conditions and in all cohorts. */
+/** The comparison of a measure under all conditions and in all cohorts. */
 export interface OverallComparison extends Measured {
-  /** Participants (or groups) who have a valid value under every condition; the others are left out. */
+  /** Participants (or groups) with a valid value under every condition; others are left out. */
   readonly n: number;
   readonly leftOut: readonly string[];
-  /** null: a cohort has no one whose values are complete. */
+  /** null: a cohort has no complete values. */
   readonly variance: VarianceAnalysis | null;
-  /** Friedman's test of the conditions; with one condition, Kruskal and Wallis's of the cohorts; null as above. */
+  /**
+   * Friedman's test of the conditions; with one condition, that of Kruskal and Wallis of the cohorts; null as above.
+   */
   readonly ranks: RankAnalysis | null;
-  /** Of the conditions' effect (with one condition: the cohorts'), as corrected, adjusted over all that is compared here. */
+  /**
+   * The corrected p of the conditions' effect (with one condition: the cohorts'), adjusted over all measures in this
+   * comparison.
+   */
   readonly holmP: number | null;
   readonly ranksHolmP: number | null;
 }
 
-/** The values of those who have one under every condition, cohort by cohort. */
+/** Returns the complete values, cohort by cohort. */
 export function completeValues({ means, cohorts }: Measure, conditions: readonly string[]) {
   const values = [...cohorts.keys()].toSorted().map((who) => ({
     who,
@@ -47,7 +52,10 @@ function analysed(measure: Measure, conditions: readonly string[]) {
   return { n, leftOut, variance: varianceAnalysis(cohorts), ranks };
 }
 
-/** Measures under all conditions (ids in the order of the plan) and in all cohorts at once, as one family for Holm's correction. */
+/**
+ * Compares measures under all conditions (ids in the order of the plan) and in all cohorts, as one family for Holm's
+ * correction.
+ */
 export function compareAll(measures: readonly Measure[], conditions: readonly string[]): readonly OverallComparison[] {
   const single = measures.map((measure) => {
     const { of, asked, unit } = measure;

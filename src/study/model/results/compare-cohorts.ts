@@ -4,9 +4,9 @@ import { type MeanSummary, meanOf, meanSummary } from '../../statistics/summarie
 import { completeValues } from './compare-all';
 import type { Measure, Measured } from './measures';
 
-/** One measure in two cohorts. */
+/** The comparison of a measure between two cohorts. */
 export interface CohortComparison extends Measured {
-  /** What each participant (or group) has, in the order of the participants: for strip charts. */
+  /** The value of each participant (or group) in order, for strip charts. */
   readonly values: { readonly first: readonly number[]; readonly second: readonly number[] };
   /** null: no one of the cohort has a value. */
   readonly first: MeanSummary | null;
@@ -14,12 +14,12 @@ export interface CohortComparison extends Measured {
   /** null: a cohort is empty. */
   readonly test: WelchTest | null;
   readonly rankSum: RankSumTest | null;
-  /** Adjusted over the family of comparisons made together. */
+  /** Adjusted over the family of comparisons. */
   readonly holmP: number | null;
   readonly ranksHolmP: number | null;
 }
 
-/** Which cohorts, first − second, under which conditions: what each has is the mean over these. */
+/** The compared cohorts, first − second, and the conditions over which each participant's mean is taken. */
 export interface ComparedCohorts {
   readonly cohorts: readonly [string, string];
   readonly conditions: readonly string[];
@@ -27,7 +27,10 @@ export interface ComparedCohorts {
 
 const summaryOf = (values: readonly number[]) => (values.length === 0 ? null : meanSummary(values));
 
-/** Measures compared between two cohorts as one family for Holm's correction. Only those count who have a value under each condition. */
+/**
+ * Compares measures between two cohorts as one family for Holm's correction. Only participants with a value under each
+ * condition count.
+ */
 export function compareCohorts(
   measures: readonly Measure[],
   { cohorts, conditions }: ComparedCohorts,

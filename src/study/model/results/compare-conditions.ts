@@ -5,12 +5,12 @@ import type { AnswerRow } from '../tables/answer-tables';
 import type { TrialRow } from '../tables/study-tables';
 import { answerMeasures, type Exclusion, type Measure, type Measured, scoreMeasures } from './measures';
 
-/** One question, or one score, under two conditions. */
+/** The comparison of a question or a score under two conditions. */
 export interface Comparison extends Measured {
   /** null: no participant has both. */
   readonly first: MeanSummary | null;
   readonly second: MeanSummary | null;
-  /** The pairs, in the order of the participants (or groups): for paired plots. */
+  /** The pairs in the order of the participants (or groups), for paired plots. */
   readonly pairs: readonly { readonly who: string; readonly first: number; readonly second: number }[];
   readonly test: PairedTTest | null;
   readonly signedRank: SignedRankTest | null;
@@ -26,7 +26,7 @@ export interface Results {
 
 type Pair = Comparison['pairs'][number];
 
-/** Those who have a value under both conditions; those who have one alone are named with what is missing. */
+/** Returns the participants with a value under both conditions, and the names of those who lack one. */
 function paired({ of, means }: Measure, [first, second]: readonly [string, string]) {
   const pairs: Pair[] = [];
   const alone: Exclusion[] = [];
@@ -55,8 +55,8 @@ function tested(pairs: readonly Pair[]) {
 }
 
 /**
- * Measures compared between two conditions, first − second, as one family for Holm's correction. Only those with both values count;
- * who is left out is stated.
+ * Compares measures between two conditions, first − second, as one family for Holm's correction. Only participants with
+ * both values count; others are listed.
  */
 export function compareConditions(measures: readonly Measure[], conditions: readonly [string, string]): Results {
   const excluded: Exclusion[] = [];
@@ -75,11 +75,11 @@ export function compareConditions(measures: readonly Measure[], conditions: read
   return { comparisons, excluded };
 }
 
-/** Every question (or scale) that is answered with a number, as one family. */
+/** Compares every question or scale with numeric answers, as one family. */
 export const compareAnswers = (rows: readonly AnswerRow[], conditions: readonly [string, string]): Results =>
   compareConditions(answerMeasures(rows), conditions);
 
-/** The scores of every task, points and per cent a family each. */
+/** Compares the scores of every task, with points and per cent as separate families. */
 export const compareScores = (rows: readonly TrialRow[], conditions: readonly [string, string]) => ({
   points: compareConditions(scoreMeasures(rows, 'points'), conditions),
   percent: compareConditions(scoreMeasures(rows, 'percent'), conditions),

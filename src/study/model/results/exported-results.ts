@@ -13,30 +13,30 @@ import { answerMeasures, type CohortOf, type Measure, type Measured, scoreMeasur
 import { isPlanned, plannedMeasures } from './planned';
 import { comparisonTable, frameTimeTable, overallTable, type TableFacts } from './result-tables';
 
-/** What a question asks about, or the name of a scale; empty: nothing is said. */
+/** Returns the subject of a question or the name of a scale; empty: none. */
 export function aboutIn(asked: readonly Questionnaire[], { asked: of }: Pick<Measured, 'asked'>): string {
   const found = asked.find(({ id }) => id === of?.questionnaire);
   const scale = found?.scales.find(({ id }) => id === of?.question);
   return scale?.label ?? found?.questions.find(({ id }) => id === of?.question)?.about ?? '';
 }
 
-/** The cohort that the plan draws for a participant; empty: it has none. */
+/** Returns a function from participants to the cohorts of the plan; empty: it has none. */
 export function cohortIn(plan: StudyPlan): CohortOf {
   const cohorts = cohortsByParticipant(plan);
   return (participant) => cohorts.get(participant)?.id ?? '';
 }
 
-/** All that a study measures, by what is a family for Holm's correction where it is explored. */
+/** The measures of a study by families of Holm's correction in exploratory analyses. */
 export interface StudyMeasures {
   readonly answers: readonly Measure[];
   readonly scales: readonly Measure[];
   readonly points: readonly Measure[];
   readonly percent: readonly Measure[];
-  /** What the plan names: answers, scales and points, a family of its own. */
+  /** The measures that the plan names: answers, scales and points, a separate family. */
   readonly planned: readonly Measure[];
 }
 
-/** Throws where simulated records and records of people are mixed. */
+/** Throws if simulated records and records of people are mixed. */
 export function measuresIn(records: readonly StudyRecord[], plan: StudyPlan): StudyMeasures {
   const cohortOf = cohortIn(plan);
   const answers = answerMeasures(answersIn(records, plan), cohortOf);
@@ -47,11 +47,11 @@ export function measuresIn(records: readonly StudyRecord[], plan: StudyPlan): St
   return { answers, scales, points, percent, planned: plannedMeasures([...answers, ...scales, ...points], plan) };
 }
 
-/** Whether a study is analysed as a whole; two conditions without cohorts are compared in pairs alone. */
+/** Returns whether a study is analysed as a whole; two conditions without cohorts are only compared in pairs. */
 export const comparedAsAWhole = ({ conditions, cohorts }: Pick<StudyPlan, 'conditions' | 'cohorts'>): boolean =>
   conditions.length > 2 || cohorts !== undefined;
 
-/** All conditions and cohorts of a study at once; none where it is not analysed as a whole. */
+/** Returns the comparison of all conditions and cohorts at once; nothing if the study is not analysed as a whole. */
 export const overallComparisons = (measures: readonly Measure[], plan: Pick<StudyPlan, 'conditions' | 'cohorts'>) =>
   comparedAsAWhole(plan)
     ? compareAll(
@@ -60,21 +60,24 @@ export const overallComparisons = (measures: readonly Measure[], plan: Pick<Stud
       )
     : [];
 
-/** Every two, the later one of the plan first: what comes first in it is what others are compared with. */
+/** Returns every pair, the later one of the plan first, because the earlier one is the reference. */
 const pairsOf = (of: readonly { readonly id: string }[]): readonly (readonly [string, string])[] =>
   of.flatMap((baseline, index) => of.slice(index + 1).map(({ id }) => [id, baseline.id] as const));
 
-/** What two cohorts are compared by: the mean of all conditions, and each of several alone. */
+/** Returns the conditions over which cohorts are compared: all, and each of several alone. */
 export function cohortViews({ conditions }: Pick<StudyPlan, 'conditions'>): readonly (readonly string[])[] {
   const all = conditions.map(({ id }) => id);
   return all.length > 1 ? [all, ...all.map((id) => [id])] : [all];
 }
 
-/** Every two cohorts in every view. */
+/** Returns every pair of cohorts in every view. */
 const cohortComparisonsOf = (plan: StudyPlan): readonly ComparedCohorts[] =>
   pairsOf(plan.cohorts ?? []).flatMap((cohorts) => cohortViews(plan).map((conditions) => ({ cohorts, conditions })));
 
-/** What the page of results computes, of every two conditions and cohorts. Throws where simulated records and records of people are mixed. */
+/**
+ * Returns the results of the page for every pair of conditions and cohorts. Throws if simulated records and records of
+ * people are mixed.
+ */
 export function resultTables(records: readonly StudyRecord[], plan: StudyPlan): readonly Table[] {
   const measures = measuresIn(records, plan);
   const asked = questionnairesOf(plan);
@@ -84,7 +87,7 @@ export function resultTables(records: readonly StudyRecord[], plan: StudyPlan): 
     aboutOf: (one) => aboutIn(asked, one),
     isPlanned: (one) => isPlanned(one, plan),
   });
-  /** Three tables of the same measures; those of a family are adjusted together. */
+  /** Returns three tables of the same measures; p is adjusted within each family. */
   const tablesOf = (name: string, families: readonly (readonly Measure[])[]): readonly Table[] => {
     const facts = factsFor(name === 'planned' ? 'planned' : 'explored');
     const pairs = pairsOf(plan.conditions).flatMap((conditions) =>

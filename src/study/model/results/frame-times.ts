@@ -2,27 +2,33 @@ import type { StudyRecord, TrialRecord } from '../records/study-record';
 import { refuseMixture, voidedBlocks } from '../tables/study-tables';
 import type { CohortOf } from './measures';
 
-/** Work per frame of one stage, over all trials of a task under a condition in a cohort: as tables 5 and 6 of the paper. */
+/**
+ * The work per frame of a stage, over all trials of a task under a condition in a cohort, as in tables 5 and 6 of the
+ * paper.
+ */
 export interface FrameTimeRow {
   readonly task: string;
   readonly condition: string;
   /** Empty: the plan has none. */
   readonly cohort: string;
-  /** "frame" is the whole of a frame's work. */
+  /** "frame" is the total work of a frame. */
   readonly stage: string;
   readonly trials: number;
   readonly frames: number;
   readonly minMs: number;
   readonly maxMs: number;
-  /** Of all frames, so that a long trial weighs more than a short one. */
+  /** The mean over all frames, so that a long trial has more weight. */
   readonly meanMs: number;
-  /** The largest of the trials' 95th percentiles: percentiles of trials cannot be pooled. */
+  /** The largest of the trials' 95th percentiles, because percentiles of trials cannot be pooled. */
   readonly worstP95Ms: number;
-  /** Frames shown late, of `frames`; the same for every stage. */
+  /** The number of `frames` that were shown late, equal for every stage. */
   readonly missed: number;
 }
 
-/** Frame times of the trials that count, the whole frame first. Throws where simulated records and records of people are mixed. */
+/**
+ * Returns the frame times of the counted trials, the total first. Throws if simulated records and records of people are
+ * mixed.
+ */
 export function frameTimes(records: readonly StudyRecord[], cohortOf: CohortOf = () => ''): readonly FrameTimeRow[] {
   refuseMixture(records);
   const excluded = voidedBlocks(records);

@@ -2,37 +2,39 @@ import { meanOf } from '../../statistics/summaries';
 import type { AnswerRow } from '../tables/answer-tables';
 import { refuseMixture, type TrialRow } from '../tables/study-tables';
 
-/** A participant or an answer left out, and why: results state it. */
+/** A participant or an answer that is left out of the results, and the reason. */
 export interface Exclusion {
   readonly participant: string;
-  /** What it concerns: a question or a task. */
+  /** The question or task that it concerns. */
   readonly of: string;
   readonly reason: string;
 }
 
-/** A question, or a scale, of a questionnaire after a task. */
+/** A question or a scale of a questionnaire after a task. */
 export type Asked = Pick<AnswerRow, 'task' | 'questionnaire' | 'question'>;
 
-/** What names a measure. */
+/** The name of a measure. */
 export interface Measured {
-  /** "Q1", or the id of a task; of a question that is asked in more than one place: "archery/nasa-tlx/mental". */
+  /** "Q1" or the id of a task; for a question in more than one place "archery/nasa-tlx/mental". */
   readonly of: string;
-  /** What was asked where; null: scores. */
+  /** The question and its place; null: scores. */
   readonly asked: Asked | null;
   readonly unit: 'answer' | 'points' | 'percent';
 }
 
-/** What a study has of one measure. */
+/** The values of a measure. */
 export interface Measure extends Measured {
-  /** The mean of what counts, of each participant (or group) under each condition; in the order of their codes. */
+  /**
+   * The mean of the counted values of each participant (or group) under each condition, in the order of their codes.
+   */
   readonly means: ReadonlyMap<string, ReadonlyMap<string, number>>;
-  /** All of whom something is recorded, counting or not, with their cohort; empty: the plan has none. */
+  /** The cohort of everyone with a record, counted or not; empty: the plan has none. */
   readonly cohorts: ReadonlyMap<string, string>;
-  /** What counts for nothing. */
+  /** The values that are not counted. */
   readonly voided: readonly (Exclusion & { readonly condition: string })[];
 }
 
-/** The cohort of a participant; all the same where a plan has none. */
+/** Returns the cohort of a participant, equal for all if the plan has none. */
 export type CohortOf = (participant: string) => string;
 
 const noCohorts: CohortOf = () => '';
@@ -41,9 +43,9 @@ interface Observation {
   readonly who: string;
   readonly participant: string;
   readonly condition: string;
-  /** null: it stayed open. */
+  /** null: without an answer. */
   readonly value: number | null;
-  /** Why it counts for nothing; empty: it counts. */
+  /** Why it is not counted; empty: it is. */
   readonly excluded: string;
 }
 
@@ -67,7 +69,7 @@ function measured(name: Measured, observations: readonly Observation[], cohortOf
   };
 }
 
-/** What is asked with a number, in the order first met, and what each is called: its id, where that is of one place alone. */
+/** Returns the questions with numeric answers in order, and their names: the id, if it is unique. */
 function askedIn(rows: readonly AnswerRow[]): readonly { readonly of: string; readonly asked: Asked }[] {
   const places = new Map<string, Asked>();
   for (const { task, questionnaire, question, answer } of rows) {
@@ -83,8 +85,8 @@ const isOf = (row: AnswerRow, { task, questionnaire, question }: Asked) =>
   row.question === question && row.questionnaire === questionnaire && row.task === task;
 
 /**
- * Every question (or scale) that is answered with a number; who answers, is measured. Throws where simulated rows and rows of people
- * are mixed.
+ * Returns every question or scale with numeric answers, measured per participant. Throws if simulated rows and rows of
+ * people are mixed.
  */
 export function answerMeasures(rows: readonly AnswerRow[], cohortOf: CohortOf = noCohorts): readonly Measure[] {
   refuseMixture(rows);
@@ -102,8 +104,8 @@ export function answerMeasures(rows: readonly AnswerRow[], cohortOf: CohortOf = 
 }
 
 /**
- * The scores of every task, in points or in per cent of the maximum, the mean of a block's trials. A group's score is one value, not one
- * for each member: "group 01" is measured. Throws where simulated rows and rows of people are mixed.
+ * Returns the scores of every task in points or in per cent of the maximum, as means of a block's trials. A group has
+ * one value, measured as "group 01". Throws if simulated rows and rows of people are mixed.
  */
 export function scoreMeasures(
   rows: readonly TrialRow[],
@@ -124,7 +126,7 @@ export function scoreMeasures(
       value: unit === 'points' ? score : (100 * score) / maximum,
       excluded,
     }));
-    // The members of a group report one and the same score.
+    // The members of a group report the same score.
     const counted = new Map(
       named.filter(({ excluded }) => !excluded).map((row) => [`${row.who} ${row.condition} ${row.repetition}`, row]),
     );

@@ -1,13 +1,13 @@
 import { holm } from '../../statistics/holm';
 import { twoSidedP } from '../../statistics/summaries';
 
-/** A row of the paper's tables 9 and 10: paired t-tests of its method (ours) against IK, fifteen participants. */
+/** A row of the paper's tables 9 and 10: paired t-tests of its method (ours) against IK with fifteen participants. */
 export interface PaperRow {
   readonly question: string;
   readonly ours: number;
   readonly ik: number;
   readonly t: number;
-  /** As printed, to three decimals. */
+  /** The printed value with three decimals. */
   readonly printedP: number;
 }
 
@@ -38,12 +38,12 @@ export const paperRows: readonly PaperRow[] = [
 /** Fifteen pairs. */
 export const paperDf = 14;
 
-/** A row with what follows from its t. */
+/** A row with the values computed from its t. */
 export interface CheckedPaperRow extends PaperRow {
   readonly p: number;
-  /** Whether the printed p is this p, rounded or cut off after its third decimal (the paper cuts). */
+  /** Whether the printed p is this p, rounded or truncated after its third decimal (the paper truncates). */
   readonly follows: boolean;
-  /** Adjusted over all twelve questions; the paper corrects for nothing. */
+  /** Adjusted over all twelve questions; the paper does not correct. */
   readonly holmP: number;
   /** Cohen's d_z, which is t / √n. */
   readonly dz: number;
@@ -51,7 +51,7 @@ export interface CheckedPaperRow extends PaperRow {
 
 const lastPlace = 0.001;
 
-/** The paper's tests, their p recomputed from t with df = 14. */
+/** Returns the paper's tests with p recomputed from t with df = 14. */
 export function checkedPaperRows(): readonly CheckedPaperRow[] {
   const pValues = paperRows.map(({ t }) => twoSidedP(t, paperDf));
   const adjusted = holm(pValues);
@@ -67,7 +67,7 @@ export function checkedPaperRows(): readonly CheckedPaperRow[] {
   });
 }
 
-/** Scores as the text and figures 12 and 14 give them; archery's targets score once each, 5 + 10 + 15 + 20. */
+/** Scores in the text and in figures 12 and 14; each target of archery scores once, 5 + 10 + 15 + 20. */
 export const paperScores = [
   { task: 'archery', maximum: 50, ours: 42.66, ik: 35.73, printedPercent: { ours: 85.32, ik: 71.46 } },
   { task: 'ball', maximum: 20, ours: 19, ik: 16.6, printedPercent: { ours: 95, ik: 83 } },
@@ -89,5 +89,5 @@ export const paperFrameTimes = [
   },
 ] as const;
 
-/** Share of the mean frame time that the paper's method saves by its own tables. */
+/** Returns the share of the mean frame time that the paper's method saves in its own tables. */
 export const savedShare = ({ ours, ik }: (typeof paperFrameTimes)[number]): number => 1 - ours.meanMs / ik.meanMs;

@@ -7,12 +7,12 @@ import type { FrameTimeRow } from './frame-times';
 import type { Measured } from './measures';
 import { checkedPaperRows } from './paper-tables';
 
-/** What tables of results say beside their figures. */
+/** The facts that tables of results state next to their figures. */
 export interface TableFacts {
-  /** planned: what the plan names, and nothing else, is adjusted together. */
+  /** planned: p is adjusted over the measures that the plan names only. */
   readonly family: 'planned' | 'explored';
   readonly simulated: boolean;
-  /** What a question asks about, in a word or two; empty: nothing is said. */
+  /** Returns the subject of a question in a word or two; empty: none. */
   readonly aboutOf: (one: Measured) => string;
   readonly isPlanned: (one: Measured) => boolean;
 }
@@ -23,11 +23,11 @@ const simulatedColumn = boolean(
   'TRUE: made by a program. It says nothing about people.',
 );
 const ids = 'small letters, digits, hyphens';
-/** In [0, 1]: p, ε, shares of variance. */
+/** Values in [0, 1]: p, ε, shares of variance. */
 export const share = '0 to 1';
 const correlation = '-1 to 1';
 
-/** What every table of compared measures begins with. */
+/** The first columns of every table of compared measures. */
 export const measureColumns: readonly Column[] = [
   simulatedColumn,
   text(
@@ -36,21 +36,16 @@ export const measureColumns: readonly Column[] = [
     'answers, scales or trials',
     'Question, scale, or task whose scores are compared.',
   ),
-  text(
-    'about',
-    'any text',
-    'questions.csv: about, scale-definitions.csv: label',
-    'What it asks about; empty for scores.',
-  ),
-  text('unit', 'answer, points, percent', 'what is compared', 'answer: as the scale of the question goes.'),
+  text('about', 'any text', 'questions.csv: about, scale-definitions.csv: label', 'Subject; empty for scores.'),
+  text('unit', 'answer, points, percent', 'what is compared', 'answer: in the unit of the question’s scale.'),
   boolean(
     'planned',
     'planned.csv',
-    'TRUE: named by the plan; a table of results that begins with planned has it adjusted over these alone. FALSE: exploratory.',
+    'TRUE: named by the plan; tables of results that begin with planned adjust p over these only. FALSE: exploratory.',
   ),
 ];
 
-/** What every row of them begins with. */
+/** Returns the first cells of every row. */
 export const measureCells = (one: Measured, { simulated, aboutOf, isPlanned }: TableFacts) => ({
   simulated,
   of: one.of,
@@ -59,31 +54,31 @@ export const measureCells = (one: Measured, { simulated, aboutOf, isPlanned }: T
   planned: isPlanned(one),
 });
 
-/** Mean of one side with its interval. */
+/** Returns the columns of one side's mean and interval. */
 export const meanColumns = (side: 'first' | 'second', what: string, source: (figure: string) => string) => [
   number(`mean_${side}`, '', 'any', source('mean'), `Mean ${what}.`),
   number(`low_${side}`, '', 'any', source('interval'), 'Lower end of its 95 % confidence interval.'),
   number(`high_${side}`, '', 'any', source('interval'), 'Upper end.'),
 ];
 
-/** The cells of one side. */
+/** Returns the cells of one side. */
 export const meanCells = (side: 'first' | 'second', summary: MeanSummary | null) => ({
   [`mean_${side}`]: summary?.mean ?? null,
   [`low_${side}`]: summary?.interval?.low ?? null,
   [`high_${side}`]: summary?.interval?.high ?? null,
 });
 
-/** The ends of an effect's interval. */
+/** Returns the columns of the ends of an effect's interval. */
 export const endColumns = (name: string, method: string, none: string) => [
   number(`low_${name}`, '', 'any', `computed: ${method}`, 'Lower end of its 95 % confidence interval.'),
   number(`high_${name}`, '', 'any', `computed: ${method}`, `Upper end; both empty: ${none}.`),
 ];
 
-/** The interval of an effect by the noncentral t. */
+/** Returns the columns of an interval by the noncentral t. */
 export const noncentralColumns = (name: string) =>
   endColumns(name, 'noncentral t', 'nothing varies, or t is too far out');
 
-/** The interval of a rank-biserial correlation. */
+/** The columns of the interval of a rank-biserial correlation. */
 export const biserialColumns = [
   number('rank_biserial', '', correlation, 'computed: (ranks for − ranks against) / all ranks', 'Its effect size.'),
   ...endColumns(
@@ -93,7 +88,7 @@ export const biserialColumns = [
   ),
 ];
 
-/** Over which rows p is adjusted. */
+/** Describes the rows over which p is adjusted. */
 export const familyText = ({ family }: Pick<TableFacts, 'family'>, alike: string) =>
   `computed: Holm over the rows of this table with the same ${alike}${family === 'planned' ? '' : ' and unit'}`;
 
@@ -105,7 +100,7 @@ function comparisonColumns(facts: TableFacts): readonly Column[] {
   const family = familyText(facts, 'two conditions');
   return [
     ...measureColumns,
-    text('first', ids, 'plan.json: conditions', 'Condition whose values the difference begins with.'),
+    text('first', ids, 'plan.json: conditions', 'Condition from which the other is subtracted.'),
     text('second', ids, 'plan.json: conditions', 'Condition that is subtracted.'),
     number('n', '', '0, 1, 2 …', 'computed', 'Pairs: participants, or groups where a group has one score.'),
     ...meanColumns('first', 'under the first condition', underBoth),
@@ -129,7 +124,7 @@ function comparisonColumns(facts: TableFacts): readonly Column[] {
 
 /** Comparisons that belong together. */
 export interface ComparedPair {
-  /** Ids: first − second. */
+  /** The ids: first − second. */
   readonly conditions: readonly [string, string];
   readonly comparisons: readonly Comparison[];
 }
@@ -157,7 +152,7 @@ const comparisonCells = (one: Comparison) => ({
   high_rank_biserial: one.signedRank?.effectInterval?.high ?? null,
 });
 
-/** Comparisons of conditions as a tidy table, full precision. */
+/** Returns comparisons of conditions as a tidy table in full precision. */
 export const comparisonTable = (name: string, pairs: readonly ComparedPair[], facts: TableFacts): Table => ({
   name,
   columns: comparisonColumns(facts),
@@ -176,15 +171,21 @@ const overallColumns: readonly Column[] = [
     'effect',
     'conditions, cohorts, conditions and cohorts',
     'plan.json: conditions, cohorts',
-    'Within participants, between them, and how far the first depends on the second.',
+    'Effect within participants, between them, and their interaction.',
   ),
   number('n', '', '0, 1, 2 …', 'computed', 'Participants (or groups) whose values are complete.'),
   number('f', '', '0 and more', fTest, 'Empty: nothing spreads.'),
   number('df1', '', '1, 2, 3 …', fTest, 'Degrees of freedom of the effect.'),
   number('df2', '', '0, 1, 2 …', fTest, 'Degrees of freedom of the error.'),
-  number('p', '', share, fTest, 'As if the differences of all conditions spread alike.'),
-  number('epsilon', '', share, 'computed: Greenhouse and Geisser', 'Empty: of cohorts there is none.'),
-  number('p_corrected', '', share, 'computed: F with both degrees of freedom times epsilon', 'The p to read.'),
+  number('p', '', share, fTest, 'Assumes equal variances of the differences of all conditions.'),
+  number('epsilon', '', share, 'computed: Greenhouse and Geisser', 'Empty for cohorts.'),
+  number(
+    'p_corrected',
+    '',
+    share,
+    'computed: F with both degrees of freedom times epsilon',
+    'The corrected p, which is to be reported.',
+  ),
   number('partial_eta_squared', '', share, 'computed: squares of the effect / (these + error)', 'Its effect size.'),
   number('low_eta', '', share, 'computed: noncentral F', 'Lower end of its 90 % confidence interval.'),
   number('high_eta', '', share, 'computed: noncentral F', 'Upper end; empty: F is too large.'),
@@ -208,7 +209,7 @@ const effectCells = (effect: Effect) => ({
   high_eta: effect.interval?.high ?? null,
 });
 
-/** The effects that were analysed, by name. */
+/** Returns the analysed effects by name. */
 export const effectsOf = (variance: VarianceAnalysis | null): readonly (readonly [string, Effect])[] =>
   (
     [
@@ -218,7 +219,7 @@ export const effectsOf = (variance: VarianceAnalysis | null): readonly (readonly
     ] as const
   ).flatMap(([name, effect]) => (effect ? [[name, effect] as const] : []));
 
-/** What belongs to a measure as a whole stands once, beside its first effect. */
+/** Returns the cells of the whole measure, which are in the row of its first effect. */
 const wholeCells = ({ holmP, ranksHolmP, ranks: byRanks }: OverallComparison) => ({
   p_holm: holmP,
   chi_squared: byRanks?.chiSquared ?? null,
@@ -236,7 +237,7 @@ const noWhole = {
   p_ranks_holm: null,
 };
 
-/** The analyses of all conditions and cohorts at once as a tidy table: a row for each effect. */
+/** Returns the analyses of all conditions and cohorts as a tidy table with a row for each effect. */
 export const overallTable = (name: string, comparisons: readonly OverallComparison[], facts: TableFacts): Table => ({
   name,
   columns: overallColumns,
@@ -251,7 +252,7 @@ export const overallTable = (name: string, comparisons: readonly OverallComparis
   ),
 });
 
-/** Frame times as a tidy table. */
+/** Returns frame times as a tidy table. */
 export const frameTimeTable = (rows: readonly FrameTimeRow[], { simulated }: Pick<TableFacts, 'simulated'>): Table => ({
   name: 'frame-times',
   columns: [
@@ -286,7 +287,7 @@ export const frameTimeTable = (rows: readonly FrameTimeRow[], { simulated }: Pic
 
 const printed = "the paper's tables 9 and 10";
 
-/** The paper's tables 9 and 10 with what follows from their t. */
+/** Returns the paper's tables 9 and 10 with the values computed from their t. */
 export const paperTable = (): Table => ({
   name: 'paper-check',
   columns: [
@@ -297,7 +298,7 @@ export const paperTable = (): Table => ({
     number('printed_p', '', share, printed, 'Its p.'),
     number('p', '', share, 'computed from t', 'Two-sided p that follows from t with 14 degrees of freedom.'),
     boolean('follows', 'computed from t', 'Whether the printed p follows from the printed t.'),
-    number('p_holm', '', share, 'computed: Holm over all twelve', 'The paper corrects for nothing.'),
+    number('p_holm', '', share, 'computed: Holm over all twelve', 'The paper does not correct.'),
     number('dz', '', 'any', 'computed: t / √15', "Cohen's d_z."),
   ],
   rows: checkedPaperRows().map(({ question, ours, ik, t, printedP, p, follows, holmP, dz }) => ({

@@ -7,7 +7,7 @@ import { type Questionnaire, questionnaireNamed } from '../questionnaires/questi
 import type { Place, StudyRecord } from '../records/study-record';
 import { boolean, number, type Table, text } from './tidy-csv';
 
-/** Answers to each question, one per row; of a scale that is computed from them: its value. */
+/** An answer to a question, or the value of a scale. */
 export interface AnswerRow {
   readonly participant: string;
   readonly simulated: boolean;
@@ -16,15 +16,15 @@ export interface AnswerRow {
   readonly run: number;
   readonly condition: string;
   readonly questionnaire: string;
-  /** Of the question, or of the scale. */
+  /** The id of the question or of the scale. */
   readonly question: string;
-  /** null: it stayed open, or it cannot be computed for want of an answer. */
+  /** null: without an answer, or without one that the scale needs. */
   readonly answer: Answer | null;
-  /** Empty: it counts. */
+  /** Empty: it is counted. */
   readonly excluded: string;
 }
 
-/** Why what was recorded in this block counts for nothing; empty: it counts. */
+/** Returns why the records of a block are not counted; empty: they are. */
 export type BlockExclusion = (participant: string, place: Place) => string;
 
 type AnswersBody = Extract<StudyRecord, { kind: 'answers' }>['body'];
@@ -54,11 +54,11 @@ function rowsOf(
   });
 }
 
-/** A row for every question of every questionnaire that was handed in, voided ones marked. */
+/** Returns a row for every question of every submitted questionnaire, with voided ones marked. */
 export const answerRows = (records: readonly StudyRecord[], plan: StudyPlan, exclusion: BlockExclusion) =>
   rowsOf(records, plan, exclusion, ({ questions }, answers) => questions.map(({ id }) => [id, answers[id] ?? null]));
 
-/** A row for every scale of every questionnaire that was handed in, voided ones marked. */
+/** Returns a row for every scale of every submitted questionnaire, with voided ones marked. */
 export const scaleRows = (records: readonly StudyRecord[], plan: StudyPlan, exclusion: BlockExclusion) =>
   rowsOf(records, plan, exclusion, (asked, answers) =>
     asked.scales.map((scale) => [scale.id, scaleScore(asked, scale, answers)]),
@@ -68,19 +68,19 @@ const ids = 'small letters, digits, hyphens';
 const codes = 'letters, digits, - and _';
 const asked = (path: string) => `questionnaire: ${path}`;
 
-/** What was asked, a row for each question and language. */
+/** Returns the table of questions with a row for each question and language. */
 export const questionTable = (plan: StudyPlan): Table => ({
   name: 'questions',
   columns: [
     text('questionnaire', ids, 'plan.json, or shipped with the program', 'Id.'),
     text('question', codes, asked('questions[].id'), 'Id.'),
-    text('language', 'a language tag', 'plan.json: languages', 'Of the words in this row.'),
-    text('about', 'any text', asked('questions[].about'), 'What it asks about.'),
+    text('language', 'a language tag', 'plan.json: languages', 'Language of the text in this row.'),
+    text('about', 'any text', asked('questions[].about'), 'Subject of the question.'),
     text('text', 'any text', asked('questions[].text'), 'The words.'),
-    text('kind', questionKindNames().join(', '), asked('questions[].answer.kind'), 'How it is answered.'),
-    text('answers', 'any text', asked('questions[].answer'), 'What can be answered: ends of the scale, or options.'),
+    text('kind', questionKindNames().join(', '), asked('questions[].answer.kind'), 'Kind of question.'),
+    text('answers', 'any text', asked('questions[].answer'), 'Possible answers: ends of the scale, or options.'),
     boolean('reversed', asked('questions[].reversed'), 'Whether scales count from + to − answer.'),
-    text('source', 'any text', asked('source'), 'Where the questionnaire was published.'),
+    text('source', 'any text', asked('source'), 'Publication of the questionnaire.'),
   ],
   rows: questionnairesOf(plan).flatMap(({ id, questions, source }) =>
     questions.flatMap((question) =>
@@ -99,7 +99,7 @@ export const questionTable = (plan: StudyPlan): Table => ({
   ),
 });
 
-/** How each scale is computed. */
+/** Returns the table of scales and their computation. */
 export const scaleTable = (plan: StudyPlan): Table => ({
   name: 'scale-definitions',
   columns: [
@@ -116,15 +116,15 @@ export const scaleTable = (plan: StudyPlan): Table => ({
       'questions',
       'ids, divided by spaces',
       asked('scales[].questions'),
-      'What it is computed from; one that is named twice counts twice.',
+      'Questions from which it is computed; a repeated one counts twice.',
     ),
-    text('choices', 'ids, divided by spaces', asked('scales[].choices'), 'Choices that weight; empty: none.'),
+    text('choices', 'ids, divided by spaces', asked('scales[].choices'), 'Choices that give the weights; empty: none.'),
     number(
       'at_least',
       '',
       'any',
       asked('scales[].atLeast'),
-      'Answers from here on are counted; empty: not of this scale.',
+      'Least answer that is counted; empty: the scale does not count.',
     ),
     number('factor', '', 'any', asked('scales[].factor'), 'The result is factor × (mean, sum or count) + offset.'),
     number('offset', '', 'any', asked('scales[].offset'), 'See factor.'),

@@ -14,12 +14,12 @@ const columns = [
     'estimator',
     threePointNames.join(', '),
     from('estimator'),
-    'Method that draws the body; here and below empty: nothing is said.',
+    'Estimator of the body; here and below empty: not set.',
   ),
-  text('avatar', ownBodies.join(', '), from('avatar'), 'Body that is worn.'),
-  boolean('mirror', from('mirror'), 'Whether a mirror stands there.'),
+  text('avatar', ownBodies.join(', '), from('avatar'), 'Avatar.'),
+  boolean('mirror', from('mirror'), 'Whether there is a mirror.'),
   boolean('upper_body_only', from('upperBodyOnly'), 'Whether the body ends at the hips.'),
-  number('latency', 'ms', `0 to ${mostLatencyMs}`, from('latencyMs'), 'Added to the body’s motion.'),
+  number('latency', 'ms', `0 to ${mostLatencyMs}`, from('latencyMs'), 'Additional latency of the body.'),
   number(
     'noise_position',
     'mm',
@@ -34,11 +34,17 @@ const columns = [
     from('trackerNoise.rotationDegrees'),
     'Standard deviation about each axis.',
   ),
-  number('dropouts_per_minute', '', '0 to 60', from('dropouts.perMinute'), 'How often each hand is lost.'),
-  number('dropout_seconds', 's', '0.1 to 10', from('dropouts.seconds'), 'For how long each time.'),
+  number(
+    'dropouts_per_minute',
+    '',
+    '0 to 60',
+    from('dropouts.perMinute'),
+    'Frequency of tracking losses of each hand.',
+  ),
+  number('dropout_seconds', 's', '0.1 to 10', from('dropouts.seconds'), 'Duration of each loss.'),
 ];
 
-/** What the conditions and cohorts of a plan are. */
+/** Returns the table of conditions and cohorts of a plan. */
 export const conditionTable = ({ conditions, cohorts = [] }: StudyPlan): Table => ({
   name: 'conditions',
   columns,

@@ -1,7 +1,7 @@
 import type { StudyPlan } from '../plan/plan';
 import { type Table, text } from './tidy-csv';
 
-/** What the plan names as planned. */
+/** Returns the table of planned measures. */
 export const plannedTable = ({ planned = [] }: Pick<StudyPlan, 'planned'>): Table => ({
   name: 'planned',
   columns: [

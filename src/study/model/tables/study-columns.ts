@@ -27,17 +27,17 @@ const where = [
 ];
 const conditionColumns = [
   text('condition', ids, 'body.condition', 'Id of the condition; empty: tutorial.'),
-  text('estimator', methods, 'body.estimator', 'Method that drew the body.'),
+  text('estimator', methods, 'body.estimator', 'Estimator of the body.'),
 ];
 const excluded = text(
   'excluded',
   'voided: reason; tutorial',
   'void-block events of the same task, block and run; tutorials have no condition',
-  'Why the row counts for nothing; empty: it counts.',
+  'Why the row is not counted; empty: it is.',
 );
-const time = number('at', 's', moment, 'records: at', 'When, by the clock of the device.');
+const time = number('at', 's', moment, 'records: at', 'Time by the clock of the device.');
 
-/** What can be chosen in answer to a question about the participant. */
+/** Returns the options of a question about the participant. */
 function optionsOf(id: keyof Demographics): string {
   const field = demographicFields.find((one) => one.id === id);
   return field?.kind === 'choice' ? field.options.map(({ value }) => value).join(', ') : 'any text';
@@ -48,24 +48,24 @@ export const participantColumns = [
   text('cohort', ids, 'drawn from the seed in plan.json', 'Id of the cohort; empty: the study has none.'),
   text('consent_version', 'any text', 'consent: body.version', 'Version of the text consented to.'),
   boolean('motion_consent', 'consent: body.motion', 'Whether tracked frames may be kept.'),
-  text('language', tag, 'consent: body.language', 'In which the text was read; empty: the study has only one.'),
-  text('gender', optionsOf('gender'), 'demographics: body.gender', 'As told.'),
-  number('age', 'years', '16 to 120', 'demographics: body.age', 'As told.'),
+  text('language', tag, 'consent: body.language', 'Language of the text; empty: the study has only one.'),
+  text('gender', optionsOf('gender'), 'demographics: body.gender', 'As stated.'),
+  number('age', 'years', '16 to 120', 'demographics: body.age', 'As stated.'),
   text('major', 'any text', 'demographics: body.major', 'Field of study or work, as typed.'),
   text('vr_experience', optionsOf('vrExperience'), 'demographics: body.vrExperience', 'Use of virtual reality before.'),
   text('vr_systems', 'any text', 'demographics: body.vrSystems', 'Systems used before, as typed.'),
-  text('handedness', optionsOf('handedness'), 'demographics: body.handedness', 'Hand preferred, as told.'),
-  text('vision', optionsOf('vision'), 'demographics: body.vision', 'As told.'),
+  text('handedness', optionsOf('handedness'), 'demographics: body.handedness', 'Preferred hand, as stated.'),
+  text('vision', optionsOf('vision'), 'demographics: body.vision', 'As stated.'),
 ];
 
-const languageRead = 'In which it was read; where a record says none, the first of the plan.';
+const languageRead = 'Language of the questionnaire; the first of the plan if the record has none.';
 
 export const answerColumns = [
   ...who,
   ...where,
   ...conditionColumns,
   text('questionnaire', ids, 'answers: body.questionnaire', 'Id.'),
-  text('question', codes, 'answers: body.answers', 'Id; its words and its scale are in questions.csv.'),
+  text('question', codes, 'answers: body.answers', 'Id; its text and its scale are in questions.csv.'),
   number(
     'answer',
     '',
@@ -87,7 +87,7 @@ export const answerColumns = [
     'answers: body.seconds',
     'From the first question shown to handing in the whole questionnaire, pauses left out.',
   ),
-  boolean('overtime', 'answers: body.overtime', 'Whether that took longer than the plan gives.'),
+  boolean('overtime', 'answers: body.overtime', 'Whether that took longer than the time limit in the plan.'),
   time,
   excluded,
 ];
@@ -97,7 +97,7 @@ export const scaleColumns = [
   ...where,
   ...conditionColumns,
   text('questionnaire', ids, 'answers: body.questionnaire', 'Id.'),
-  text('scale', codes, 'plan.json: scales of the questionnaire', 'Id; scale-definitions.csv says how it is computed.'),
+  text('scale', codes, 'plan.json: scales of the questionnaire', 'Id; scale-definitions.csv has its computation.'),
   number(
     'value',
     '',
@@ -109,7 +109,7 @@ export const scaleColumns = [
   excluded,
 ];
 
-/** Which trial a row belongs to. */
+/** The columns that identify the trial of a row. */
 const trialNames = [
   ...who,
   ...where,
@@ -131,9 +131,15 @@ const lossColumns = (part: keyof typeof lossNames) => {
       '',
       counts,
       outcome(`tracking.${part}.losses`),
-      `How often the ${name} was not tracked.`,
+      `Number of tracking losses of the ${name}.`,
     ),
-    number(`${column}_lost`, 's', positive, outcome(`tracking.${part}.seconds`), `For how long the ${name} was not.`),
+    number(
+      `${column}_lost`,
+      's',
+      positive,
+      outcome(`tracking.${part}.seconds`),
+      `Duration of all tracking losses of the ${name}.`,
+    ),
   ];
 };
 
@@ -143,52 +149,52 @@ const tiltColumns = (side: 'left' | 'right') => [
     'rad',
     '-1 to 1',
     measured(`handTilts.${side}.pitch`),
-    `How far up of its ${side} hand the forearm points; empty: not measured.`,
+    `Pitch of the forearm relative to its ${side} hand, up positive; empty: not measured.`,
   ),
   number(
     `${side}_hand_yaw`,
     'rad',
     '-1 to 1',
     measured(`handTilts.${side}.yaw`),
-    `How far to the left of its ${side} hand; empty: not measured.`,
+    `Yaw of the forearm relative to its ${side} hand, left positive; empty: not measured.`,
   ),
 ];
 
 export const trialColumns = [
   ...trialNames,
   number('group', '', ordinals, 'trial: body.group', 'Number of the group; tasks played alone: of the participant.'),
-  text('ended', 'arrows, targets, balls, time, stopped', outcome('ended'), 'Why it was over; stopped: ended early.'),
-  number('score', 'points', positive, outcome('score'), "In a group the group's."),
-  number('maximum', 'points', '1 and more', outcome('maximum'), 'The most that can be had.'),
-  number('percent', '%', positive, 'computed: 100 score / maximum', 'Share of the points that can be had.'),
-  number('shots', '', counts, outcome('shots'), 'Arrows or balls sent off by this participant.'),
-  number('hits', '', counts, outcome('hits'), 'How many of them counted.'),
+  text('ended', 'arrows, targets, balls, time, stopped', outcome('ended'), 'Why it ended; stopped: early.'),
+  number('score', 'points', positive, outcome('score'), 'Points; for a group, those of the group.'),
+  number('maximum', 'points', '1 and more', outcome('maximum'), 'Highest possible score.'),
+  number('percent', '%', positive, 'computed: 100 score / maximum', 'Share of the highest possible score.'),
+  number('shots', '', counts, outcome('shots'), 'Arrows shot or balls thrown by this participant.'),
+  number('hits', '', counts, outcome('hits'), 'Number of them that scored.'),
   number('seconds', 's', positive, outcome('seconds'), 'From the start signal to the end, pauses left out.'),
   number('frames', '', counts, outcome('frames.count'), 'Frames drawn.'),
-  number('missed_frames', '', counts, outcome('frames.missed'), 'Frames shown later than the device wanted.'),
+  number('missed_frames', '', counts, outcome('frames.missed'), 'Frames that were shown late.'),
   text('device', 'any text', outcome('device.name'), 'Name of the headset or browser.'),
   number(
     'refresh_rate',
     'Hz',
     '1 to 1000',
     outcome('device.refreshRateHz'),
-    'Frames per second that the device wants; empty: unknown.',
+    'Refresh rate of the device; empty: unknown.',
   ),
   text(
     'input',
     'controllers, hands, mixed, emulated, simulated',
     outcome('device.input'),
-    'What the hands held; emulated and simulated: no headset.',
+    'Input of the hands; emulated and simulated: no headset.',
   ),
   number('eye_height', 'm', '0.3 to 2.5', measured('eyeHeight'), 'Height of the eyes above the floor.'),
   number('arm_span', 'm', '0.3 to 2.5', measured('armSpan'), 'From wrist to wrist, arms sideways.'),
-  number('forearm', 'm', '0.1 to 0.6', measured('forearm'), 'From elbow to wrist; empty: not told.'),
+  number('forearm', 'm', '0.1 to 0.6', measured('forearm'), 'From elbow to wrist; empty: unknown.'),
   number(
     'gaze_pitch',
     'rad',
     '-0.5 to 0.5',
     measured('gazePitch'),
-    'How far up the headset points when its wearer looks ahead; empty: not measured.',
+    'Pitch of the headset when the participant looks ahead, up positive; empty: not measured.',
   ),
   ...tiltColumns('left'),
   ...tiltColumns('right'),
@@ -196,7 +202,7 @@ export const trialColumns = [
   ...lossColumns('leftHand'),
   ...lossColumns('rightHand'),
   text('assists', 'names, divided by semicolons', outcome('assists'), 'Aids that were on; empty: none.'),
-  number('motion_frames', '', counts, outcome('motionFrames'), 'Tracked frames recorded beside this.'),
+  number('motion_frames', '', counts, outcome('motionFrames'), 'Number of recorded tracking frames.'),
   number(
     'started',
     's',
@@ -236,7 +242,7 @@ export const hitColumns = [
     's',
     positive,
     outcome('events[].time'),
-    "Second of the game's own clock, which also stands while the head is lost.",
+    "Second of the game's clock, which also pauses while the head is lost.",
   ),
   number(
     'onset',
@@ -245,14 +251,14 @@ export const hitColumns = [
     outcome('events[].onset'),
     'Second of the trial at the frame that showed it; with recording_start and the pauses before it, its place among recorded frames. Empty: not known.',
   ),
-  text('type', 'hit, miss, catch', outcome('events[].type'), "What happened; catch: of another's ball."),
+  text('type', 'hit, miss, catch', outcome('events[].type'), "Event; catch: another participant's ball was caught."),
   number('points', 'points', positive, outcome('events[].points'), 'What it scored.'),
   excluded,
 ];
 
 export const pauseColumns = [
   ...trialNames,
-  number('time', 's', positive, outcome('clock.pauses[].time'), 'Second of the trial at which it stood.'),
+  number('time', 's', positive, outcome('clock.pauses[].time'), 'Second of the trial at which it was paused.'),
   number('seconds', 's', positive, outcome('clock.pauses[].seconds'), 'For how long.'),
   excluded,
 ];
@@ -260,7 +266,7 @@ export const pauseColumns = [
 export const eventColumns = [
   ...who,
   text('event', eventTypes.join(', '), 'event: body.type', 'What happened.'),
-  text('task', ids, 'event: body.place.task or body.task', 'Where it concerns one; empty: no particular one.'),
+  text('task', ids, 'event: body.place.task or body.task', 'Task of the event; empty: none.'),
   number('block', '', ordinals, 'event: body.place.block or body.block', 'Where it concerns one.'),
   number('run', '', ordinals, 'event: body.place.run or body.run', 'Where it concerns one.'),
   text(

@@ -16,7 +16,10 @@ import {
 } from './study-columns';
 import type { Cell, Table } from './tidy-csv';
 
-/** Says why what was recorded at a place counts for nothing: "voided: reason"; empty: it counts. */
+/**
+ * Returns a function that gives the reason why the records of a block are not counted, "voided: reason", or an empty
+ * text.
+ */
 export function voidedBlocks(records: readonly StudyRecord[]): BlockExclusion {
   const key = (participant: string, { task, block, run }: Pick<Place, 'task' | 'block' | 'run'>) =>
     `${participant} ${task}/${block}@${run}`;
@@ -32,11 +35,11 @@ export function voidedBlocks(records: readonly StudyRecord[]): BlockExclusion {
 const identity = ({ study, participant, simulated }: StudyRecord) => ({ study, participant, simulated });
 const placed = ({ task, block, run }: Place) => ({ task, block, run });
 
-/** The answers to every question, voided ones marked. */
+/** Returns the answers to every question, with voided ones marked. */
 export const answersIn = (records: readonly StudyRecord[], plan: StudyPlan): readonly AnswerRow[] =>
   answerRows(records, plan, voidedBlocks(records));
 
-/** The scales that are computed from the answers, voided ones marked. */
+/** Returns the scales that are computed from the answers, with voided ones marked. */
 export const scalesIn = (records: readonly StudyRecord[], plan: StudyPlan): readonly AnswerRow[] =>
   scaleRows(records, plan, voidedBlocks(records));
 
@@ -58,7 +61,7 @@ function trialRows(records: readonly StudyRecord[], exclusion: BlockExclusion) {
   });
 }
 
-/** Trials with their scores, voided ones and tutorials marked. */
+/** A trial with its scores; voided ones and tutorials are marked. */
 export interface TrialRow {
   readonly participant: string;
   readonly simulated: boolean;
@@ -68,7 +71,7 @@ export interface TrialRow {
   readonly group: number;
   readonly score: number;
   readonly maximum: number;
-  /** Empty: it counts. */
+  /** Empty: it is counted. */
   readonly excluded: string;
 }
 
@@ -101,7 +104,7 @@ function participantRows(records: readonly StudyRecord[], plan: StudyPlan) {
   return [...rows.values()];
 }
 
-/** What was typed, or found. */
+/** Returns the text of an event. */
 function saidIn(body: StudyEvent): string {
   switch (body.type) {
     case 'remark':
@@ -136,14 +139,14 @@ function eventRows(records: readonly StudyRecord[]) {
   });
 }
 
-/** Simulated records are never put into one table with those of people: throws where both are given. */
+/** Throws if simulated records and records of people are mixed, because no table may contain both. */
 export function refuseMixture(records: readonly { readonly simulated: boolean }[]): void {
   if (records.some(({ simulated }) => simulated) && records.some(({ simulated }) => !simulated)) {
     throw new Error('simulated records and records of people must not be mixed');
   }
 }
 
-/** A row of the table `trials`. */
+/** Returns a row of the table `trials`. */
 const trialTableRow = ({ common, group, at, outcome }: ReturnType<typeof trialRows>[number]) => ({
   ...common,
   group,
@@ -180,7 +183,7 @@ const trialTableRow = ({ common, group, at, outcome }: ReturnType<typeof trialRo
   at,
 });
 
-/** The tables of an export. Throws where simulated records and records of people are mixed. */
+/** Returns the tables of an export. Throws if simulated records and records of people are mixed. */
 export function studyTables(records: readonly StudyRecord[], plan: StudyPlan): readonly Table[] {
   refuseMixture(records);
   const exclusion = voidedBlocks(records);

@@ -1,17 +1,17 @@
-/** A column of a table, as the codebook explains it. */
+/** A column of a table with its entry in the codebook. */
 export interface Column {
   readonly name: string;
   readonly type: 'text' | 'number' | 'boolean';
-  /** SI or a word ("points"); empty: none. */
+  /** An SI unit or a word ("points"); empty: none. */
   readonly unit: string;
-  /** What may stand in it: names, a range, a form. */
+  /** The possible values: names, a range, a format. */
   readonly values: string;
-  /** Where it comes from: the way to it in a record or in the plan, or how it is computed. */
+  /** The source: the path in a record or in the plan, or the computation. */
   readonly source: string;
   readonly description: string;
 }
 
-/** A column of text. */
+/** Returns a column of text. */
 export const text = (name: string, values: string, source: string, description: string): Column => ({
   name,
   type: 'text',
@@ -21,7 +21,7 @@ export const text = (name: string, values: string, source: string, description: 
   description,
 });
 
-/** A column of numbers; `unit`: SI or a word. */
+/** Returns a column of numbers; `unit` is an SI unit or a word. */
 export const number = (name: string, unit: string, values: string, source: string, description: string): Column => ({
   name,
   type: 'number',
@@ -31,7 +31,7 @@ export const number = (name: string, unit: string, values: string, source: strin
   description,
 });
 
-/** A column of TRUE and FALSE. */
+/** Returns a column of TRUE and FALSE. */
 export const boolean = (name: string, source: string, description: string): Column => ({
   name,
   type: 'boolean',
@@ -51,11 +51,14 @@ export interface Table {
 }
 
 /**
- * What a spreadsheet would take for a formula, white space before it or not, in ASCII or full width (OWASP, CSV injection);
- * an apostrophe of ours in front makes it text.
+ * Text that a spreadsheet would take for a formula, also after white space and in full width (OWASP, CSV injection). An
+ * apostrophe in front makes it text.
  */
 const formula = /^[\s\p{Cc}\p{Cf}]*[=+\-@|%＝＋－＠]|^[\t\r\n]/u;
-/** The same within a cell of ours: a spreadsheet that separates by semicolons or tabs sees no quotes around it and begins a cell there. */
+/**
+ * A formula within a cell: a spreadsheet that separates by semicolons or tabs ignores the quotes and starts a cell
+ * there.
+ */
 const innerFormula = /([;\t\r\n])(?=[\s\p{Cc}\p{Cf}"]*[=+\-@|%＝＋－＠])/gu;
 
 function cellText(cell: Cell): string {
@@ -66,7 +69,10 @@ function cellText(cell: Cell): string {
   return /[",\r\n]|^\s|\s$/.test(safe) ? `"${safe.replaceAll('"', '""')}"` : safe;
 }
 
-/** RFC 4180, UTF-8 without a mark, an empty field where there is no value. Throws for a row without one of the columns. */
+/**
+ * Returns a table as CSV (RFC 4180, UTF-8 without a byte order mark) with empty fields for missing values. Throws for a
+ * row without one of the columns.
+ */
 export function tidyCsv({ name, columns, rows }: Table): string {
   const lines = [columns.map((column) => cellText(column.name)).join(',')];
   for (const row of rows) {
@@ -81,23 +87,28 @@ export function tidyCsv({ name, columns, rows }: Table): string {
 }
 
 const sourceMeaning =
-  'Where it comes from: the way to it in records.json, behind the kind of record where only one kind has it, or in plan.json; or how it is computed.';
+  'Path in records.json, after the kind of record if only one kind has it, or in plan.json; or its computation.';
 
-/** The table that explains the columns of the tables. */
+/** Returns the table that explains the columns of the tables. */
 export function codebookOf(tables: readonly Pick<Table, 'name' | 'columns'>[]): Table {
   return {
     name: 'codebook',
     columns: [
-      text('table', 'names of files', 'the tables of this export', 'File of the column, without its ending.'),
+      text('table', 'names of files', 'the tables of this export', 'File of the column, without its extension.'),
       text('column', 'any text', 'the tables of this export', 'Name of the column.'),
-      text('type', 'text, number, boolean', 'the tables of this export', 'In every type an empty field is no value.'),
+      text(
+        'type',
+        'text, number, boolean',
+        'the tables of this export',
+        'An empty field is a missing value in every type.',
+      ),
       text('unit', 'SI or a word', 'the tables of this export', 'Unit; empty: none.'),
-      text('values', 'any text', 'the tables of this export', 'What may stand in it.'),
+      text('values', 'any text', 'the tables of this export', 'Possible values.'),
       text('source', 'any text', 'the tables of this export', sourceMeaning),
       text('description', 'any text', 'the tables of this export', 'What it means.'),
     ],
     rows: tables.flatMap((table) =>
-      table.columns.map(({ name, ...said }) => ({ table: table.name, column: name, ...said })),
+      table.columns.map(({ name, ...rest }) => ({ table: table.name, column: name, ...rest })),
     ),
   };
 }

@@ -3,7 +3,7 @@ import { height, type Target, width } from '../sheet-target';
 import type { StudyScreen } from '../study-screen';
 import { paintSheet, targetsOf } from '../study-sheet';
 
-/** The sheet of the headset on a flat page: drawn and pressed as there, with the mouse for a ray. */
+/** The sheet of the headset on a flat page, drawn by the same code and pressed with the mouse. */
 export interface DrawnSheet {
   readonly node: HTMLCanvasElement;
   /** null hides it. */

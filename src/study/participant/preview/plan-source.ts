@@ -8,13 +8,13 @@ export type ReadPlan =
 
 const planFile: FileKind = { what: 'a study file', megabytes: 1 };
 
-/** A plan from the text of its file. */
+/** Returns the plan in the text of a file. */
 export function planFrom(json: string, name: string): ReadPlan {
   const complaints = planComplaints(json, name);
   return complaints.length > 0 ? { name, complaints } : { name, plan: parsePlan(json, name) };
 }
 
-/** A plan from an address or a file. Rejects with a sentence where it cannot be read at all. */
+/** Resolves with the plan at an address or in a file; rejects with a sentence if it cannot be read. */
 export async function readPlan(source: string | File): Promise<ReadPlan> {
   const bytes = await readLimited(source, planFile);
   return planFrom(new TextDecoder().decode(bytes), nameOf(source));

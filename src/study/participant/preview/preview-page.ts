@@ -18,7 +18,7 @@ class PreviewPage {
   readonly #bar = pageElement('bar', HTMLElement);
   readonly #list = pageElement('stops', HTMLElement);
   readonly #stage = pageElement('view', HTMLElement);
-  readonly #said = pageElement('said', HTMLElement);
+  readonly #messages = pageElement('said', HTMLElement);
   readonly #card = createStudyCard(this.#stage);
   readonly #sheet = createDrawnSheet();
   readonly #playing = element('p', { class: 'playing' });
@@ -26,7 +26,7 @@ class PreviewPage {
   #name = '';
   #participant = '';
   #walk: PreviewWalk | null = null;
-  /** What the card of the desk was last built from: a form that is being filled in is not built anew. */
+  /** The key of the form that is on the card. A form is not rebuilt while it is filled in. */
   #builtForm = '';
 
   async start(): Promise<void> {
@@ -77,13 +77,13 @@ class PreviewPage {
       onChange: () => this.#render(),
     });
     this.#walk = walk;
-    // Another participant at the same screen, where there is one.
+    // Another participant keeps the screen, if there is one with this id.
     if (before) walk.read(before.language);
     const asked = before?.stop.id ?? decodeURIComponent(location.hash.slice(1));
     walk.goTo(walk.stops.findIndex(({ id }) => id === asked));
   }
 
-  /** Arrow keys walk, unless they are needed by what has the focus. */
+  /** Arrow keys move through the screens, unless the focused element needs them. */
   #key({ key, target }: KeyboardEvent): void {
     if (target instanceof HTMLElement && target.closest('input, textarea, select')) return;
     if (key === 'ArrowRight') this.#walk?.next();
@@ -93,7 +93,7 @@ class PreviewPage {
   #render(complaints: readonly string[] = []): void {
     const walk = this.#walk;
     this.#bar.replaceChildren(...this.#controls());
-    this.#said.replaceChildren(...this.#words(complaints));
+    this.#messages.replaceChildren(...this.#words(complaints));
     this.#list.replaceChildren(
       ...(walk ? walk.stops.map((stop, index) => this.#stopButton(walk, index, stop.label)) : []),
     );
@@ -126,7 +126,7 @@ class PreviewPage {
     const form = shown.kind === 'form' ? `${walk.stop.id} ${walk.language}` : '';
     if (shown.kind !== 'form') this.#card.show(place === 'desk' ? screen : null);
     else if (form !== this.#builtForm) {
-      // A form keeps what is filled in as long as it is the same; in another language it is another.
+      // A form keeps its input while it is the same; another language makes it another form.
       this.#card.show(null);
       this.#card.ask(shown.form);
     }

@@ -3,7 +3,7 @@ import { embodimentInWords } from '../../model/plan/embodiment';
 import { languagesOf, type StudyPlan, taskTitle } from '../../model/plan/plan';
 import { blindLabel, type StudyStep, scheduleFor } from '../../model/plan/schedule';
 
-/** Where a screen is met: a questionnaire can be answered at either. */
+/** The place of a screen; questionnaires can be answered at either. */
 export type PreviewPlace = 'desk' | 'headset' | 'either';
 
 /** One screen at which a preview stops. */
@@ -25,9 +25,9 @@ export interface PreviewStop {
     | 'question'
     | 'end';
   readonly at: PreviewPlace;
-  /** For the list of stops; what experimenters may know: the condition too. */
+  /** The label in the list of stops, which names the condition for experimenters. */
   readonly label: string;
-  /** Of a question, its index among those of its questionnaire; else 0. */
+  /** The index of a question in its questionnaire; 0 for other stops. */
   readonly question: number;
 }
 
@@ -81,7 +81,7 @@ function stopsOf(plan: StudyPlan, step: StudyStep, together: number): readonly P
   }
 }
 
-/** Every screen that a participant meets, in order; throws where the plan has no such participant. */
+/** Returns every screen of a participant in order; throws if the plan has no such participant. */
 export function previewStops(plan: StudyPlan, participant: string): readonly PreviewStop[] {
   const { steps, groups } = scheduleFor(plan, participant);
   return steps.flatMap((step) => stopsOf(plan, step, 'task' in step ? (groups[step.task]?.members.length ?? 1) : 1));

@@ -14,7 +14,7 @@ import { screenOf } from '../study-screens';
 import type { ScreenActions, ShownSession, StudySituation } from '../study-situation';
 import { type PreviewStop, previewStops } from './preview-stops';
 
-/** What stands at a stop: a screen, a form of the desk, or a sentence where the participant plays. */
+/** The content of a stop: a screen, a form of the desk, or a sentence about a round. */
 export type PreviewShown =
   | { readonly kind: 'screen'; readonly screen: StudyScreen }
   | { readonly kind: 'form'; readonly form: StudyForm }
@@ -29,10 +29,10 @@ const allSaved: UploadStatus = {
   lockedOut: false,
 };
 
-/** As a participant's code looks; it opens nothing. */
+/** An example in the format of a withdrawal code. */
 const exampleCode = '0000-0000-0000-0000';
 
-/** A session that stands at any step, keeps its answers in the page and records nothing. */
+/** A session that can be moved to any step, keeps its answers in the page and records nothing. */
 class PreviewSession implements ShownSession {
   readonly plan: StudyPlan;
   readonly simulated = false;
@@ -59,12 +59,12 @@ class PreviewSession implements ShownSession {
     return currentStep(this.#schedule, this.#progress);
   }
 
-  /** The clock stands at the beginning of every step. */
+  /** The clock always shows the beginning of a step. */
   remaining(): number | null {
     return 'seconds' in this.step ? this.step.seconds : null;
   }
 
-  /** A participant who comes there is neither paused, nor asked whether to stop, nor has stopped. */
+  /** A participant at another step is not paused, not asked whether to stop, and has not stopped. */
   goTo(step: string): void {
     const { unwell: _, stopped: __, ...progress } = this.#progress;
     this.#progress = { ...progress, step, paused: false, draft: this.#drafts.get(step) ?? {} };
@@ -86,13 +86,13 @@ class PreviewSession implements ShownSession {
 export interface PreviewWalkOptions {
   readonly plan: StudyPlan;
   readonly participant: string;
-  /** Address of the page where participants withdraw. */
+  /** The address of the withdrawal page. */
   readonly withdrawalPage: string;
-  /** Hears when something else is to be shown. */
+  /** Called when something else is to be shown. */
   readonly onChange: () => void;
 }
 
-/** A walk through every screen of a plan, forwards, backwards or by a leap; nothing is recorded anywhere. */
+/** Moves through every screen of a plan in any order; nothing is recorded. */
 export class PreviewWalk {
   readonly stops: readonly PreviewStop[];
   readonly #session: PreviewSession;
@@ -117,8 +117,8 @@ export class PreviewWalk {
     this.#actions = {
       apply: (event) => this.#apply(event),
       goTo: (index) => this.#goToQuestion(index),
-      choose: (question, value) => this.#said(this.#answering.choose(question, value)),
-      type: (question, typed) => this.#said(this.#answering.type(question, typed)),
+      choose: (question, value) => this.#showRefusal(this.#answering.choose(question, value)),
+      type: (question, typed) => this.#showRefusal(this.#answering.type(question, typed)),
       submit: () => (this.#answering.readyToSubmit() ? this.#apply({ type: 'submit' }) : this.#followQuestion()),
       calibrate: next,
       enterVr: next,
@@ -142,13 +142,13 @@ export class PreviewWalk {
     return this.#session.progress.language ?? languagesOf(this.#session.plan)[0];
   }
 
-  /** Where the stop is shown: most are met at one place alone. */
+  /** The place at which the stop is shown: most stops have only one. */
   get place(): 'desk' | 'headset' {
     const { at } = this.stop;
     return at === 'either' ? this.#place : at;
   }
 
-  /** What can be met at either place is shown at this one from now on. */
+  /** Shows stops that can be at either place at this one from now on. */
   showAt(place: 'desk' | 'headset'): void {
     this.#place = place;
     this.#onChange();
@@ -167,7 +167,7 @@ export class PreviewWalk {
     this.goTo(this.#at - 1);
   }
 
-  /** To a stop by its place in the list; beyond the ends: to the last one there. */
+  /** Moves to a stop by its index, clamped to the list. */
   goTo(index: number): void {
     const { step } = this.stops[this.#nearest(index)] as PreviewStop;
     const { paused, unwell } = this.#session.progress;
@@ -181,15 +181,15 @@ export class PreviewWalk {
     return Math.min(this.stops.length - 1, Math.max(0, index));
   }
 
-  /** At a stop of the step that the session is at already. */
+  /** Moves to a stop within the present step. */
   #stand(index: number): void {
     this.#at = this.#nearest(index);
     this.#stopping = false;
     this.#answering.goTo(this.stop.question);
-    this.#said(null);
+    this.#showRefusal(null);
   }
 
-  /** What stands at this stop. */
+  /** Returns the content of this stop. */
   shown(): PreviewShown {
     const { kind } = this.stop;
     const form = this.#form();
@@ -279,8 +279,8 @@ export class PreviewWalk {
     const { id } = this.#session.step;
     const refusal = refusalFor(this.#session.apply(event), this.#session.phrases);
     const { step } = this.#session;
-    if (step.id === id) this.#said(refusal);
-    // Not by goTo: what was handed in may ask whether to stop there.
+    if (step.id === id) this.#showRefusal(refusal);
+    // Not by goTo, because the answers that were handed in may lead to the question whether to stop.
     else this.#stand(this.stops.findIndex((stop) => stop.step === step.id));
   }
 
@@ -289,14 +289,14 @@ export class PreviewWalk {
     this.#followQuestion();
   }
 
-  /** The list follows the question that is shown. */
+  /** Moves the position in the list to the question on display. */
   #followQuestion(): void {
     const { step } = this.stop;
     this.#at = this.stops.findIndex((stop) => stop.step === step && stop.question === this.#answering.question);
-    this.#said(null);
+    this.#showRefusal(null);
   }
 
-  #said(refusal: string | null): void {
+  #showRefusal(refusal: string | null): void {
     this.#refusal = refusal;
     this.#onChange();
   }

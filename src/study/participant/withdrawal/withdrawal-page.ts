@@ -15,13 +15,13 @@ const client = createWithdrawalClient(pageFolder());
 
 const paragraph = (text: string, attributes = {}) => element('p', attributes, text);
 
-/** A field for one line, with what stands over it. */
+/** Returns a field for one line with its label. */
 function field(label: string, attributes: Readonly<Record<string, string | number>>) {
   const input = element('input', { type: 'text', autocomplete: 'off', spellcheck: 'false', ...attributes });
   return { input, node: element('label', {}, element('span', {}, label), input) };
 }
 
-/** What this browser still holds of the participant goes too; a sentence says whether it did. */
+/** Deletes the data of the participant in this browser; resolves with a sentence about the result. */
 async function forgottenHere({ study, participant }: Receipt, { say }: Phrases): Promise<string> {
   try {
     const vault = await openStudyVault();
@@ -49,7 +49,7 @@ function receiptLines(
   ];
 }
 
-/** What is left when everything is deleted. */
+/** Returns the receipt that is shown after the deletion. */
 function receiptCard(receipt: Receipt, about: PublicStudy | null, phrases: Phrases, here: string): HTMLElement {
   const { say } = phrases;
   const lines = receiptLines(receipt, phrases);
@@ -67,7 +67,7 @@ function receiptCard(receipt: Receipt, about: PublicStudy | null, phrases: Phras
 }
 
 interface Asking {
-  /** The study that the address names; null: none. */
+  /** The study in the address; null: none. */
   readonly asked: string | null;
   /** null: the server has no such study. */
   readonly about: PublicStudy | null;
@@ -75,17 +75,17 @@ interface Asking {
   readonly done: (card: HTMLElement) => void;
 }
 
-/** What the server says of a code that is no one's. */
+/** The message of the server about an unknown code. */
 const unknownCode = 'nothing is recorded under this code';
 
-/** Why there is no receipt. Where no answer came, the server may have deleted everything all the same. */
+/** Returns why there is no receipt. Without an answer, the server may have deleted everything nevertheless. */
 function failure(error: unknown, phrases: Phrases): string {
   if (error instanceof ServerRefusal && error.message === unknownCode) return phrases.say('withdrawal.unknownCode');
   const reason = reasonOf(error);
   return phrases.say(error instanceof ServerUnreachable ? 'withdrawal.unheard' : 'withdrawal.failed', { reason });
 }
 
-/** Asks for the code, and deletes once it is confirmed. */
+/** Asks for the code, and deletes everything after a confirmation. */
 function withdrawalForm({ asked, about, phrases, done }: Asking): HTMLElement {
   const { say } = phrases;
   const study = field(say('withdrawal.study'), { name: 'study', value: asked ?? '', size: 30 });
@@ -141,7 +141,7 @@ const asked = new URLSearchParams(location.search).get('study');
 
 interface Found {
   readonly about: PublicStudy | null;
-  /** Why the study that the address names was not found; null: it was, or it names none. */
+  /** Why the study in the address was not found; null: it was, or the address names none. */
   readonly fault: unknown;
 }
 
@@ -153,7 +153,7 @@ async function findStudy(): Promise<Found> {
   }
 }
 
-/** The page in a language; another can be chosen until everything is deleted. */
+/** Shows the page in a language; another one can be chosen until everything is deleted. */
 function show({ about, fault }: Found, languages: readonly [string, ...string[]], language: string): void {
   const phrases = phrasesOf(about ?? {}, language);
   const { say, spoken } = phrases;

@@ -14,7 +14,7 @@ import { recordingTime } from '../../model/records/trial-clock';
 import { voidedBlocks } from '../../model/tables/study-tables';
 import type { MotionFile } from '../storage/motion';
 
-/** What the data set is made of. */
+/** The content of a data set. */
 export interface BidsContent {
   readonly plan: StudyPlan;
   readonly simulated: boolean;
@@ -23,34 +23,34 @@ export interface BidsContent {
 }
 
 export interface BidsDataset {
-  /** Paths within the data set, with their text; none without motion. */
+  /** The text of each file by its path in the data set; none without motion. */
   readonly files: Readonly<Record<string, string>>;
-  /** Of each recording that is not in it: why. */
+  /** The reason for each recording that is left out. */
   readonly leftOut: readonly string[];
 }
 
-/** A trial of which there is a recording. */
+/** A trial with a recording. */
 interface Run {
   readonly trial: TrialRecord;
-  /** When its first frame is on its clock [s]. */
+  /** The time of its first frame on its clock [s]. */
   readonly first: number;
   readonly label: string;
-  /** From 1, for each participant and task in the order in which they were played. */
+  /** Counted from 1 for each participant and task, in the order in which they were played. */
   readonly number: number;
 }
 
 const trackingSystem = 'tracksys-webxr';
 
-/** Letters and digits: what names in BIDS may have. */
+/** Removes characters that names in BIDS may not have. */
 const labelOf = (task: string): string => task.replaceAll('-', '');
 
 const described = (description: string, rest: object = {}) => ({ Description: description, ...rest });
 
 const participantColumns = {
   participant_id: described('Code of the participant.'),
-  age: described('As told.', { Units: 'year' }),
-  handedness: described('As told.', { Levels: { left: 'left', right: 'right', ambidextrous: 'both' } }),
-  gender: described('As told: woman, man, non-binary, other, not-said.'),
+  age: described('As stated.', { Units: 'year' }),
+  handedness: described('As stated.', { Levels: { left: 'left', right: 'right', ambidextrous: 'both' } }),
+  gender: described('As stated: woman, man, non-binary, other, not-said.'),
   vr_experience: described('none, once-or-twice, several-times, monthly, weekly.'),
   vision: described('normal, corrected, impaired.'),
 };
@@ -60,12 +60,12 @@ const scanColumns = {
   acq_time: described('Its first frame, UTC, by the clock of the device.'),
   task: described('Id of the task.'),
   condition: described('Id of the condition.'),
-  estimator: described('Method that drew the body.'),
+  estimator: described('Estimator of the body.'),
   block: described('Place of the condition in the order of this participant, from 1.'),
   block_run: described('From 1; a block that was voided and repeated runs again.'),
   attempt: described('From 1; a trial lost by a crash or reload is tried again.'),
   repetition: described('Trial of the block, from 1.'),
-  excluded: described('Why the trial counts for nothing; n/a: it counts.'),
+  excluded: described('Why the trial is not counted; n/a: it is.'),
 };
 
 const eventColumns = {
@@ -77,15 +77,15 @@ const eventColumns = {
   trial_type: described('What happened.', {
     Levels: {
       trial: 'from the start signal to the end, pauses within',
-      pause: 'the trial stood; frames of this time are not recorded',
+      pause: 'the trial was paused; frames of this time are not recorded',
       hit: 'an arrow or ball of this participant scored',
       miss: 'one did not',
       catch: "another's ball scored for the group",
     },
   }),
   points: described('What it scored.'),
-  trial_time: described('Second of the trial, which stands in pauses.', { Units: 's' }),
-  game_time: described("Second of the game's own clock, which also stands while the head is lost.", { Units: 's' }),
+  trial_time: described('Second of the trial, without pauses.', { Units: 's' }),
+  game_time: described("Second of the game's clock, which also pauses while the head is lost.", { Units: 's' }),
 };
 
 const table = (columns: object, rows: readonly Readonly<Record<string, unknown>>[]): string =>
@@ -95,7 +95,10 @@ const json = (value: unknown): string => `${JSON.stringify(value, null, 2)}\n`;
 
 const seconds = (value: number): number => Math.round(value * 1e6) / 1e6;
 
-/** What happened in a trial on the clock of its recording; null: nothing tells how the two clocks lie (older records). */
+/**
+ * Returns the events of a trial on the clock of its recording, or null for older records, which do not relate the two
+ * clocks.
+ */
 function eventRows({ trial, first }: Run): Readonly<Record<string, unknown>>[] | null {
   const { clock, events, seconds: length } = trial.body.outcome;
   if (!clock) return null;
@@ -155,18 +158,18 @@ function scanRow(run: Run, excluded: string): Readonly<Record<string, unknown>> 
   };
 }
 
-function participantRow(participant: string, told: DemographicsRecord['body'] | undefined) {
+function participantRow(participant: string, stated: DemographicsRecord['body'] | undefined) {
   return {
     participant_id: `sub-${participant}`,
-    age: told?.age ?? null,
-    handedness: told?.handedness === 'both' ? 'ambidextrous' : (told?.handedness ?? null),
-    gender: told?.gender ?? null,
-    vr_experience: told?.vrExperience ?? null,
-    vision: told?.vision ?? null,
+    age: stated?.age ?? null,
+    handedness: stated?.handedness === 'both' ? 'ambidextrous' : (stated?.handedness ?? null),
+    gender: stated?.gender ?? null,
+    vr_experience: stated?.vrExperience ?? null,
+    vision: stated?.vision ?? null,
   };
 }
 
-/** The files of each recording, one after the other: together they would not fit into memory. */
+/** Writes the files of each recording one after the other, because together they would not fit into memory. */
 function writeRuns({ records, motion }: BidsContent) {
   const trials = new Map(
     records.flatMap((record) =>
@@ -202,21 +205,21 @@ const readme = ({ plan, simulated }: BidsContent): string =>
     ...(simulated ? ['SIMULATED: a program made this. It says nothing about people.', ''] : []),
     `Motion of head and wrists in the study "${studyTitle(plan)}" (${plan.id}), as BIDS ${bidsVersion} motion data.`,
     '',
-    'Only of participants who agreed to have their motion kept. A run is a trial; *_scans.tsv says its condition, and whether it counts.',
+    'Only participants who consented to motion recording. A run is a trial; *_scans.tsv has its condition and whether it is counted.',
     'Frame: the floor where the headset has it, +X right, +Y up, +Z backward, right-handed, in metres (channels.json).',
-    'Clock: "latency" and the onsets of events count from the first frame and run on in pauses. The second of the trial, which stands in',
-    'them, is the column trial_time. acq_time is the first frame by the clock of the device.',
-    'A hand that was not seen is n/a in every channel of it.',
+    'Clock: "latency" and the onsets of events start at the first frame and include pauses. The second of the trial, without',
+    'pauses, is the column trial_time. acq_time is the first frame by the clock of the device.',
+    'An untracked hand is n/a in all its channels.',
     '',
   ].join('\n');
 
-/** The motion of a study as a BIDS data set; what cannot be read is left out, with its reason. */
+/** Returns the motion of a study as a BIDS data set; unreadable recordings are left out with the reason. */
 export function bidsDataset(content: BidsContent): BidsDataset {
   const { plan, simulated, records } = content;
   const { files: written, runs, leftOut } = writeRuns(content);
   if (runs.length === 0) return { files: {}, leftOut };
   const participants = [...new Set(runs.map(({ trial }) => trial.participant))].toSorted();
-  const told = new Map(
+  const stated = new Map(
     records.flatMap((record) => (record.kind === 'demographics' ? [[record.participant, record.body] as const] : [])),
   );
   const excluded = voidedBlocks(records);
@@ -230,7 +233,7 @@ export function bidsDataset(content: BidsContent): BidsDataset {
     README: readme(content),
     'participants.tsv': table(
       participantColumns,
-      participants.map((id) => participantRow(id, told.get(id))),
+      participants.map((id) => participantRow(id, stated.get(id))),
     ),
     'participants.json': json(participantColumns),
     ...written,

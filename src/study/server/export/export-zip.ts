@@ -11,33 +11,36 @@ import type { MotionFile } from '../storage/motion';
 import type { ServedSoftware } from '../storage/software';
 import { bidsDataset } from './bids';
 
-/** What an export is made of. */
+/** The content of an export. */
 export interface ExportContent {
   readonly plan: StudyPlan;
   readonly simulated: boolean;
   readonly records: readonly StudyRecord[];
   readonly motion: readonly MotionFile[];
-  /** Seconds since 1970: when it is made, and when the server will delete what it has; null: it has nothing. */
+  /**
+   * The times of the export and of the deletion by the server, in seconds since 1970; null: the server has nothing to
+   * delete.
+   */
   readonly at: number;
   readonly retentionUntil: number | null;
-  /** Of the plan, where it has several; who follows another one is not in it. */
+  /** The version of the plan, if the plan has several; participants of other versions are left out. */
   readonly planVersion?: number;
   readonly software: {
     readonly exportedBy: Software;
-    /** What has served the study since it began. */
+    /** The software that has served the study since it began. */
     readonly served: readonly ServedSoftware[];
   };
 }
 
-/** The file that holds a hash of every other one, as `sha256sum --check` reads it. */
+/** The file with a hash of every other one, in the format of `sha256sum --check`. */
 export const checksumsFile = 'checksums.sha256';
 
 const day = (seconds: number) => new Date(seconds * 1000).toISOString().slice(0, 10);
 
 const simulatedNotice =
-  'SIMULATED: a program made this. It says nothing about people and must never be analysed with theirs.';
+  'SIMULATED: a program made this. It says nothing about people and must not be analysed with data of people.';
 
-/** The analysis in Python, as it lies next to this file. */
+/** Returns the analysis in Python, which is next to this file. */
 const analysisFiles = () =>
   ['analyse.py', 'requirements.txt'].map(
     (name) => [`analysis/${name}`, readFileSync(new URL(`./analysis/${name}`, import.meta.url), 'utf8')] as const,
@@ -58,25 +61,25 @@ function readme(content: ExportContent, leftOut: readonly string[], whole: boole
     'plan.json     the study as it was run',
     'software.json which version of the program served it, with the SHA-256 of its networks',
     'codebook.csv  every column of the other tables: meaning, unit, values, source',
-    'The tables are tidy: UTF-8, a row per observation, an empty field where there is no value.',
-    'An apostrophe before what a spreadsheet would take for a formula was put there by us.',
+    'The tables are tidy: UTF-8, a row per observation, an empty field for a missing value.',
+    'Text that a spreadsheet would take for a formula begins with an added apostrophe.',
     ...(whole
       ? [
-          'results/      what the page of results computes: planned, then explored',
+          'results/      the results of the page: planned, then exploratory',
           'analysis/     the same from the tidy tables: "pip install -r analysis/requirements.txt"',
           '              and "python analysis/analyse.py"',
         ]
       : []),
-    'motion/       where there is consent to it: tracked frames as they were recorded',
+    'motion/       recordings of tracking frames, with consent to them',
     'bids/         the same as a BIDS data set (motion)',
     ...leftOut.map((reason) => `  left out: ${reason}`),
     `${checksumsFile}  a hash of every file: "sha256sum --check ${checksumsFile}"`,
-    'The program itself computes all of it anew and says what differs: npm run study:verify -- FILE.zip',
+    'The program recomputes everything and reports differences: npm run study:verify -- FILE.zip',
     '',
   ].join('\r\n');
 }
 
-/** The file of a recording within an export. */
+/** Returns the path of a recording in an export. */
 export const motionPath = ({ participant, trial }: Pick<MotionFile, 'participant' | 'trial'>): string =>
   `motion/${participant}-${trial.replace(/[^a-z0-9]+/g, '-')}.json`;
 
@@ -84,13 +87,13 @@ const json = (value: unknown): string => `${JSON.stringify(value, null, 2)}\n`;
 
 const sha256 = (text: string): string => createHash('sha256').update(text).digest('hex');
 
-/** The tables of an export by their file without its ending; results are of a whole study. */
+/** Returns the tables of an export by their path without extension; only a whole study has results. */
 function tablesOf({ records, plan }: ExportContent, whole: boolean): readonly Table[] {
   const results = whole ? resultTables(records, plan) : [];
   return [...studyTables(records, plan), ...results.map((table) => ({ ...table, name: `results/${table.name}` }))];
 }
 
-/** File names of an export with their text; of one participant alone where one is named, without results. */
+/** Returns the text of each file of an export by its path. The export of one participant has no results. */
 export function exportFiles(content: ExportContent, participant?: string): Readonly<Record<string, string>> {
   const { plan, simulated, records, motion, at, retentionUntil, software, planVersion = null } = content;
   const whole = participant === undefined;
@@ -119,7 +122,7 @@ export function exportFiles(content: ExportContent, participant?: string): Reado
   return { ...files, [checksumsFile]: lines.join('') };
 }
 
-/** The name of an export, so that simulated people are not taken for people. */
+/** Returns the name of an export, which marks simulated data. */
 export const exportName = (
   { plan, simulated, planVersion }: Pick<ExportContent, 'plan' | 'simulated' | 'planVersion'>,
   participant?: string,
@@ -128,7 +131,7 @@ export const exportName = (
     .filter(Boolean)
     .join('-');
 
-/** The export as a zip file, everything in one folder of its name; the same content gives the same bytes. */
+/** Returns the export as a zip file with one folder; the same content gives the same bytes. */
 export function exportZip(content: ExportContent, participant?: string): Uint8Array {
   const folder = exportName(content, participant);
   const zipped: Zippable = {};

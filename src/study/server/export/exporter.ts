@@ -4,24 +4,27 @@ import type { Software } from 'threepoint-http/software';
 import { shortageOf } from 'threepoint-http/thread-calls';
 import { StoreRefusal } from '../storage/database';
 
-/** What an export is asked for; its process reads the content from the database. */
+/** The parameters of an export, whose process reads the content from the database. */
 export interface ExportOrder {
   /** Seconds since 1970. */
   readonly at: number;
   readonly study: string;
-  /** Version of the plan; only a whole study is restricted to those who follow it. */
+  /** The version of the plan; the export of a whole study has only the participants who follow it. */
   readonly version: number;
-  /** One participant alone; undefined: the study. */
+  /** The only participant of the export; undefined: the whole study. */
   readonly participant?: string;
   readonly software: Software;
 }
 
-/** Makes the zip of an export; rejects with a StoreRefusal where too many wait for theirs, or where memory or files do not suffice. */
+/**
+ * Makes the zip file of an export; rejects with a StoreRefusal if too many exports wait, or without enough memory or
+ * files.
+ */
 export type Exporter = (order: ExportOrder) => Promise<Uint8Array>;
 
-/** Exports that wait for the one that is being made: each holds a connection and an answer. */
+/** The most exports that wait for the present one. Each holds a connection and an answer. */
 const mostWaiting = 8;
-/** How much of what a process writes about its end is read [characters]. */
+/** The most that is read of the error output of a process [characters]. */
 const mostComplaint = 10_000;
 
 function started(file: string, order: ExportOrder): ChildProcess {
@@ -30,8 +33,8 @@ function started(file: string, order: ExportOrder): ChildProcess {
 }
 
 /**
- * A zip made in a process of its own. Of a study with recordings it takes many seconds and much memory: a thread that runs out of memory
- * within SQLite's driver ends the whole process, and rooms with it.
+ * Makes a zip file in a separate process. An export with recordings takes many seconds and much memory, and a thread
+ * that runs out of memory in SQLite's driver ends the whole process, with all rooms.
  */
 function zipInProcess(file: string, order: ExportOrder): Promise<Uint8Array> {
   const child = started(file, order);
@@ -56,17 +59,17 @@ function zipInProcess(file: string, order: ExportOrder): Promise<Uint8Array> {
   });
 }
 
-/** Makes exports of this database one after the other, so that many at once take no more memory and no more processors than one. */
+/** Makes exports of this database one after the other, so that many take no more memory and processors than one. */
 export function createExporter(file: string): Exporter {
   let last: Promise<unknown> = Promise.resolve();
   let waiting = 0;
   return async (order) => {
     if (waiting >= mostWaiting) {
-      throw new StoreRefusal('busy', `${waiting} exports are waiting already: ask again when they are made`);
+      throw new StoreRefusal('busy', `${waiting} exports are waiting already. Try again in a few minutes`);
     }
     waiting += 1;
     const zip = last.then(() => zipInProcess(file, order)).finally(() => (waiting -= 1));
-    // The next one neither keeps these bytes nor fails for what failed here, which its own caller receives.
+    // The next export neither keeps these bytes nor fails with this error, which its caller receives.
     const over = () => undefined;
     last = zip.then(over, over);
     return zip;

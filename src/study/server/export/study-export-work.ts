@@ -4,9 +4,10 @@ import { openStudyStore, type StudyStore } from '../storage/store';
 import { type ExportContent, exportZip } from './export-zip';
 import type { ExportOrder } from './exporter';
 
-// The work of one process: an export from what is stored, written to its output as a zip. Its arguments are the database and the order.
+// A process that reads the content of an export from the database and writes it to its output as a zip file. Its
+// arguments are the database and the order.
 
-/** What was recorded of participants who follow the version of the plan that `info` shows. */
+/** Returns the rows of participants who follow the version of the plan that `info` shows. */
 const ofVersion = <Row extends { readonly participant: string }>(rows: readonly Row[], info: StudyInfo) => {
   const { participants } = info.versions.find(({ version }) => version === info.version) as PlanVersion;
   return rows.filter(({ participant }) => participants.includes(participant));

@@ -1,9 +1,10 @@
 import type { Answer } from 'threepoint-http/answer';
 import { StoreRefusal } from '../storage/database';
 import type { StudyStore } from '../storage/store';
-import { refusalOf, type StudyRequest, type StudyRoute, type StudyRoutes } from './routes';
+import type { StudyRequest, StudyRoute } from './route';
+import { refusalOf, type StudyRoutes } from './routes';
 
-/** How a request ended, as it crosses between threads. */
+/** The result of a request, in a form that can be sent between threads. */
 export type StudyOutcome =
   | { readonly answer: Answer }
   | {
@@ -17,15 +18,18 @@ export type StudyOutcome =
   /** A fault of the server, for its log. */
   | { readonly fault: string };
 
-/** How long a request waits for the lock of another program, and how often it tries [ms]. */
+/** How long a request waits for the lock of another program, and the interval of its attempts [ms]. */
 const lockedMs = 5000;
 const retryMs = 20;
-/** A fault of the disk or the folder is logged so often, not with every request that meets it [ms]. */
+/** The shortest interval between two log entries about a fault of the disk or the folder [ms]. */
 const logEveryMs = 60_000;
 
 const wait = (ms: number) => new Promise<void>((resolve) => setTimeout(resolve, ms));
 
-/** Runs what throws "locked" before it has changed anything again until it succeeds or the time [by performance.now] is over. */
+/**
+ * Repeats a function that throws "locked" before it changes anything, until it succeeds or the time [of
+ * performance.now] is over.
+ */
 async function untilUnlocked<T>(until: number, run: () => T | Promise<T>): Promise<T> {
   for (;;) {
     try {
@@ -45,8 +49,8 @@ export interface StudyDispatcherOptions {
 }
 
 /**
- * Runs the requests to the studies. Requests that change something run one after the other and are answered once that is on the disk; while
- * one of them waits for another program's lock, requests that read go on.
+ * Runs the requests to the studies. Requests that change something run one after the other and are answered when the
+ * change is on the disk. While one of them waits for the lock of another program, requests that only read go on.
  */
 export class StudyDispatcher {
   readonly #options: StudyDispatcherOptions;
@@ -57,7 +61,7 @@ export class StudyDispatcher {
     this.#options = options;
   }
 
-  /** Whether the request may; asked before a body is read. `index` is that of the route. */
+  /** Resolves with whether the request is permitted, before its body is read; `index` is that of the route. */
   admit(index: number, request: StudyRequest): Promise<StudyOutcome> {
     const { routes } = this.#options;
     return this.#outcome(async () => {
@@ -67,7 +71,7 @@ export class StudyDispatcher {
     });
   }
 
-  /** A request to a route that takes a body has been admitted. */
+  /** Handles a request. If its route takes a body, it was admitted before. */
   handle(index: number, request: StudyRequest, body: Uint8Array<ArrayBuffer>): Promise<StudyOutcome> {
     const { routes, store } = this.#options;
     return this.#outcome(async () => {
@@ -84,7 +88,7 @@ export class StudyDispatcher {
 
   #afterOthers<T>(run: () => Promise<T>): Promise<T> {
     const result = this.#lastChange.then(run);
-    // A request neither fails for what failed before it nor keeps the result of that.
+    // A request neither fails with the error of the one before it nor keeps its result.
     const over = () => undefined;
     this.#lastChange = result.then(over, over);
     return result;

@@ -7,41 +7,44 @@ import { normalisedCode } from '../storage/schema';
 import type { StudyStore } from '../storage/store';
 
 /**
- * Who may call a route of the studies. participant: with the token of this very participant, or as an experimenter; invited: with the
- * invitation to this place, or as an experimenter; withdrawing: with a participant's withdrawal code.
+ * The access to a route. participant: the token of this participant or of an experimenter; invited: the invitation to
+ * this place or an experimenter's token; withdrawing: a participant's withdrawal code.
  */
 export type StudyAccess = 'anyone' | 'participant' | 'experimenter' | 'invited' | 'withdrawing';
 
 export interface StudyGuardOptions {
-  readonly store: StudyStore;
-  /** The holder of this, sent as "Authorization: Bearer …", is an experimenter; null: no one is. */
+  readonly store: Pick<StudyStore, 'plans' | 'places'>;
+  /** The experimenter's token, sent as "Authorization: Bearer …"; null: there are no experimenters. */
   readonly experimenterToken: string | null;
   readonly onWrongGuess: (guess: WrongGuess) => void;
 }
 
-/** Who sends a request, and the place that it concerns. */
+/** The sender of a request and the place in the request. */
 export interface Concerned {
-  /** What its header Authorization has as "Bearer …"; null: nothing. */
+  /** The token in the header "Authorization: Bearer …"; null: none. */
   readonly token: string | null;
-  /** The client's address, which limits count; null: it is not known, and a limit refuses the request. */
+  /** The client's address, by which requests are limited; null: unknown, so that limited requests are refused. */
   readonly address: ClientAddress | null;
   readonly study: string;
   readonly participant: string;
 }
 
-/** Makes sure of secrets: of tokens, invitations and withdrawal codes. What it throws are HttpErrors. */
+/** Verifies tokens, invitations and withdrawal codes. Its methods throw HttpErrors. */
 export interface StudyGuard {
-  /** Whether the request bears this participant's own token. */
+  /** Returns whether the request has the token of this participant. */
   isParticipant(concerned: Concerned): boolean;
-  /** What can be told from a request's head; invitations and codes come with its body. */
+  /** Checks the head of a request; invitations and codes are in its body. */
   admit(access: StudyAccess, concerned: Concerned): Promise<void>;
-  /** Runs what the invitation to the place opens, or an experimenter; throws where this is neither. */
+  /** Runs `claim` if the invitation to the place or the token of an experimenter is right; otherwise throws. */
   claiming<T>(concerned: Concerned, invitation: string | undefined, claim: () => T): Promise<T>;
-  /** Runs what a withdrawal code opens; throws where it opens nothing. */
+  /** Runs `withdraw` with a withdrawal code; throws if the code is unknown. */
   withdrawing<T>(concerned: Omit<Concerned, 'participant'>, code: string, withdraw: () => T | null): Promise<T>;
 }
 
-/** Places of an open study that one address may take within an hour: a person who has the study's link could take them all otherwise. */
+/**
+ * The most places of an open study that one address may take within an hour. Otherwise, one person with the link could
+ * take them all.
+ */
 export const openPlacesPerHour = 6;
 
 const digest = (secret: string) => createHash('sha256').update(secret).digest();
@@ -49,7 +52,7 @@ const digest = (secret: string) => createHash('sha256').update(secret).digest();
 const tooMany = (message: string, seconds: number) =>
   new HttpError(429, message, { headers: { 'retry-after': String(seconds) } });
 
-/** Counts the places of open studies that each network takes: runs what takes one, and gives it back to the network where that throws. */
+/** Returns a function that counts the places of open studies for each network. A claim that throws is not counted. */
 function createOpenPlaces(): <T>(network: string, claim: () => T) => Promise<T> {
   const taken = new RateLimiterMemory({ points: openPlacesPerHour, duration: 3600 });
 
@@ -106,7 +109,7 @@ export function createStudyGuard(options: StudyGuardOptions): StudyGuard {
     isParticipant,
     async admit(access, concerned) {
       if (access !== 'participant' && access !== 'experimenter') return;
-      // Participants' tokens are 256 drawn bits: they are looked at however many guesses came from their address.
+      // Participants' tokens are 256 random bits, so they are checked regardless of failed attempts from their address.
       if (access === 'participant' && isParticipant(concerned)) return;
       if (await isExperimenter(concerned)) return;
       throw new HttpError(401, 'this needs the token of the participant or of an experimenter');
@@ -115,7 +118,7 @@ export function createStudyGuard(options: StudyGuardOptions): StudyGuard {
       const { plan } = store.plans.get(study);
       if (await isExperimenter({ token, address })) return claim();
       if (invitation === undefined) {
-        const why = `${participant} is taken by invitation: it stands in the link of the participant`;
+        const why = `${participant} needs an invitation, which is in the participant’s link`;
         throw new HttpError(403, why, { field: 'invitation' });
       }
       const secret = `${participant} ${normalisedCode(invitation)}`;

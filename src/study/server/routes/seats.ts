@@ -4,28 +4,31 @@ import type { StudyPlan } from '../../model/plan/plan';
 import { scheduleFor } from '../../model/plan/schedule';
 import type { PlayedTogether, SignedSeat } from '../../model/progress/study-api';
 
-/** A participant's place in a room, as the server's rooms read it from a signed token. */
+/** The claims of a participant's place in a room, which the server's rooms read from a signed token. */
 export interface SeatClaim {
-  /** Identifies the participant, the same on every device; nobody else can derive it. */
+  /** Identifies the participant, the same on every device; others cannot derive it. */
   readonly identity: string;
   readonly room: string;
   /** The game of the room. */
   readonly kind: string;
   readonly terms: { readonly seconds: number; readonly pausable: boolean };
-  /** Seat null: a place among the spectators. */
+  /** `seat` null: a place among the spectators. */
   readonly assigned: { readonly seat: number | null; readonly name: string };
 }
 
 /** Returns the claim as signed text that the server's rooms accept. */
 export type SignSeat = (claim: SeatClaim) => Promise<string>;
 
-/** Signs participants, and them alone, into the rooms of their trials. */
+/** Signs participants into the rooms of their trials. */
 export interface StudySeats {
-  /** The participant's own seat, or a place among those who watch; throws a ValidationError where the step is not played together. */
+  /**
+   * Resolves with the participant's seat, or with a spectator's place; throws a ValidationError if the step is not
+   * played together.
+   */
   sign(plan: StudyPlan, participant: string, trial: PlayedTogether, watching: boolean): Promise<SignedSeat>;
 }
 
-/** `secret`: names rooms, so that no one can know the name of one beforehand; the same in every process of a fleet. */
+/** `secret` makes the names of rooms unguessable; all processes of a fleet have the same one. */
 export function createStudySeats(secret: string, signSeat: SignSeat): StudySeats {
   const nameOf = (purpose: string, ...parts: readonly unknown[]): string =>
     createHmac('sha256', secret)
@@ -45,7 +48,7 @@ export function createStudySeats(secret: string, signSeat: SignSeat): StudySeats
       const group = schedule.groups[played.task];
       const room = `study.${nameOf('room of a study', plan.id, id, run, group?.number)}`;
       const token = await signSeat({
-        // The same person on every device and after every reload: the seat is theirs.
+        // The identity is the same on every device and after every reload, so that the seat is kept.
         identity: watching ? randomBytes(12).toString('base64url') : nameOf('participant', plan.id, participant),
         room,
         kind: task.game,

@@ -11,7 +11,7 @@ export interface NumberedCommand {
   readonly command: StudyCommand;
 }
 
-/** What the experimenter tells a participant's page to do. */
+/** The commands of experimenters to participants' pages. */
 export class StudyCommands {
   readonly #database: StudyDatabase;
   readonly #places: StudyPlaces;
@@ -48,7 +48,7 @@ export class StudyCommands {
     return rows.map((row) => ({ number: row.number, at: row.at, command: JSON.parse(row.command) as StudyCommand }));
   }
 
-  /** Inside a transaction. */
+  /** Deletes the commands of a participant, in a transaction. */
   delete(study: string, participant: string): void {
     this.#database.run('DELETE FROM commands WHERE study = ? AND participant = ?', study, participant);
   }

@@ -6,15 +6,15 @@ import { reasonOf } from 'threepoint/core/errors/reasons';
 import { GroupCommit } from 'threepoint-http/group-commit';
 import { migrate } from './schema';
 
-/** Why the store will not do it; the message is for the person who asked. */
+/** An operation that the store refuses; the message is for the person who asked for it. */
 export class StoreRefusal extends Error {
   /**
-   * begun: a plan that has participants would change; it can become a new version. locked: another program writes to the database. busy: too
-   * much is asked for at once. lost: the
-   * database or its disk is not as the server left it, which a person must look into.
+   * begun: the plan of participants who have begun would change; it can become a new version. locked: another program
+   * writes to the database. busy: too many requests. lost: the database or its disk is not as the server left it, which
+   * a person must check.
    */
   readonly reason: 'unknown' | 'conflict' | 'begun' | 'forbidden' | 'full' | 'locked' | 'busy' | 'lost';
-  /** For the log: names what the person who asked has no business with, such as paths; null: the message says all. */
+  /** Details for the log that the message must not show, such as paths; null: none. */
   readonly detail: string | null;
 
   constructor(reason: StoreRefusal['reason'], message: string, detail: string | null = null) {
@@ -24,18 +24,18 @@ export class StoreRefusal extends Error {
   }
 }
 
-/** SQLite's extended codes: the disk, or what the database may take of it, is full; 4874: no room for the index of its log. */
+/** SQLite's extended codes for a full disk or database; 4874: no room for the index of its log. */
 const diskIsFull = new Set([13, 4874]);
-/** SQLite's primary codes of a file that cannot be read or written as it should: READONLY, IOERR, CORRUPT, CANTOPEN, NOTADB. */
+/** SQLite's primary codes for a file that cannot be read or written: READONLY, IOERR, CORRUPT, CANTOPEN, NOTADB. */
 const fileIsBad = new Set([8, 10, 11, 14, 26]);
 
-/** SQLite's extended code; null: the error is not SQLite's. */
+/** Returns SQLite's extended code, or null for other errors. */
 export function sqliteCodeOf(error: unknown): number | null {
   const { sqliteExtendedCode } = (error ?? {}) as { sqliteExtendedCode?: unknown };
   return typeof sqliteExtendedCode === 'number' ? sqliteExtendedCode : null;
 }
 
-/** The refusal that SQLite's errors are to the person who asked; any other error as it is. */
+/** Returns the refusal for an error of SQLite, and other errors unchanged. */
 function asRefusal(error: unknown): unknown {
   const code = sqliteCodeOf(error);
   if (code === null) return error;
@@ -54,47 +54,51 @@ type Statement = ReturnType<DatabaseSyncInstance['prepare']>;
 type Parameter = Parameters<Statement['run']>[number];
 
 export interface DatabaseOptions {
-  /** How far the file grows [bytes]. */
+  /** The largest size of the file [bytes]. */
   readonly mostBytes: number;
   /** Opens an existing database that is up to date, and writes nothing. */
   readonly readOnly?: boolean;
 }
 
-/** How long opening waits for another program's lock [ms]. */
+/** How long opening waits for the lock of another program [ms]. */
 const openingMs = 5000;
 
-/** Makes an empty file for the account of the server alone; SQLite gives the files beside it the same mode. */
+/** Makes an empty file that only the server's account can read; SQLite gives the files next to it the same mode. */
 function makeFile(file: string): void {
   if (!existsSync(file)) closeSync(openSync(file, 'a', 0o600));
 }
 
 const flushFile = promisify(fdatasync);
 
-/** A file of the database as it was when it was opened. */
+/** A file of the database and its identity when it was opened. */
 interface OpenedFile {
   readonly path: string;
   readonly identity: Pick<Stats, 'dev' | 'ino'>;
 }
 
 /**
- * The SQLite file of the studies. What a transaction wrote survives the end of the process at once, and a power cut once `flushed` has
- * resolved; what was deleted is overwritten. No call waits for another program's lock: it throws a StoreRefusal, and can be repeated.
+ * The SQLite file of the studies. A transaction survives the end of the process at once, and a power cut once `flushed`
+ * has resolved; deleted data are overwritten. No call waits for the lock of another program: it throws a StoreRefusal
+ * and can be repeated.
  */
 export class StudyDatabase {
   readonly #database: DatabaseSyncInstance;
   /** The database's file and its write-ahead log. */
   readonly #files: readonly OpenedFile[];
-  /** Descriptor of the log, one for good, which reports every page that could not be written; null: the database is only read. */
+  /**
+   * A permanent descriptor of the log, which reports every page that could not be written; null: the database is only
+   * read.
+   */
   readonly #log: number | null;
   readonly #commits = new GroupCommit(() => this.#writeThrough());
-  /** By their text: a statement is prepared once. */
+  /** Prepared statements by their text. */
   readonly #statements = new Map<string, Statement>();
-  /** The log still holds deleted pages as they were. */
+  /** Whether the log still holds deleted pages. */
   #holdsDeleted = false;
-  /** Why what is written is not where the next start looks for it; null: it is. */
+  /** Why the data are not where the next start looks for them; null: they are. */
   #misplaced: string | null = null;
 
-  /** Opens the file, makes it where there is none, and brings it up to date. */
+  /** Opens the file, creates it if it is missing, and brings it up to date. */
   constructor(file: string, { mostBytes, readOnly = false }: DatabaseOptions) {
     if (!readOnly) makeFile(file);
     this.#database = new DatabaseSync(file, { readOnly });
@@ -110,7 +114,9 @@ export class StudyDatabase {
     this.#files = [file, `${file}-wal`].map((path) => ({ path, identity: statSync(path) }));
   }
 
-  /** All or nothing of what `body` writes; throws a StoreRefusal where the disk is full, the database locked or its file bad. */
+  /**
+   * Runs `body` in a transaction; throws a StoreRefusal if the disk is full, the database locked or its file unusable.
+   */
   transaction<T>(body: () => T): T {
     try {
       this.#database.exec('BEGIN IMMEDIATE');
@@ -118,13 +124,13 @@ export class StudyDatabase {
       this.#database.exec('COMMIT');
       return result;
     } catch (error) {
-      // A full disk has rolled back already.
+      // SQLite has already rolled back on a full disk.
       if (this.#database.isTransaction) this.#database.exec('ROLLBACK');
       throw asRefusal(error);
     }
   }
 
-  /** What `body` reads, all as of one moment. */
+  /** Runs `body`, whose reads all see one state of the database. */
   snapshot<T>(body: () => T): T {
     this.#database.exec('BEGIN');
     try {
@@ -134,12 +140,12 @@ export class StudyDatabase {
     }
   }
 
-  /** The first row, of which the caller knows the columns; undefined: there is none. */
+  /** Returns the first row, whose columns the caller knows, or undefined. */
   get<Row>(sql: string, ...parameters: readonly Parameter[]): Row | undefined {
     return this.#refusing(() => this.#statement(sql).get(...parameters) as Row | undefined);
   }
 
-  /** The first row of a query that always has one. */
+  /** Returns the first row of a query that always has one. */
   getOne<Row>(sql: string, ...parameters: readonly Parameter[]): Row {
     return this.get<Row>(sql, ...parameters) as Row;
   }
@@ -148,7 +154,7 @@ export class StudyDatabase {
     return this.#refusing(() => this.#statement(sql).all(...parameters) as Row[]);
   }
 
-  /** The rows one after the other: all of them might not fit into the memory. */
+  /** Yields the rows one after the other, because all of them might not fit into memory. */
   *each<Row>(sql: string, ...parameters: readonly Parameter[]): Iterable<Row> {
     const rows = this.#refusing(() =>
       this.#statement(sql)
@@ -162,33 +168,32 @@ export class StudyDatabase {
     }
   }
 
-  /** Returns how many rows were changed. */
+  /** Returns the number of changed rows. */
   run(sql: string, ...parameters: readonly Parameter[]): number {
     return this.#refusing(() => Number(this.#statement(sql).run(...parameters).changes));
   }
 
   /**
-   * Resolves when everything written before this call survives a power cut. Rejects with a StoreRefusal where the disk failed, until the
-   * server starts again, and where the files are not in their place any more.
+   * Resolves when everything written before this call survives a power cut. Rejects with a StoreRefusal after a failure
+   * of the disk, until the server starts again, and if the files were moved or deleted.
    */
   async flushed(): Promise<void> {
     try {
       await this.#commits.flushed();
     } catch (error) {
-      const text =
-        'the disk of the server failed, and what was sent may not be stored: the server must be started again';
+      const text = 'the disk of the server failed, and this may not be stored. Restart the server';
       throw new StoreRefusal('lost', text, reasonOf(error));
     }
     if (this.#misplaced !== null) {
       const text =
-        'the folder of the studies was deleted or replaced while the server ran, and nothing is stored: it must be put back, or the server started again';
+        'the folder of the studies was deleted or replaced while the server ran, and nothing is stored. Put it back, or restart the server';
       throw new StoreRefusal('lost', text, this.#misplaced);
     }
   }
 
   /**
-   * Empties the log, which still holds deleted pages as they were; flushes as it does. Returns false where another program reads the database
-   * or the disk does not take it: what is committed stays in the log, and this must be tried again.
+   * Empties the log, which still holds deleted pages, and flushes. Returns false if another program reads the database
+   * or the disk fails: committed data stay in the log, and the call must be repeated.
    */
   forgetDeleted(): boolean {
     this.#holdsDeleted = true;
@@ -201,12 +206,12 @@ export class StudyDatabase {
     return !this.#holdsDeleted;
   }
 
-  /** Whether `forgetDeleted` is to be tried again. */
+  /** Whether `forgetDeleted` must be called again. */
   get holdsDeleted(): boolean {
     return this.#holdsDeleted;
   }
 
-  /** Moves what the log holds into the file, so that the file alone is a copy of everything. */
+  /** Moves the log into the file, so that the file alone is a complete copy. */
   close(): void {
     if (this.#log !== null) this.forgetDeleted();
     this.#database.close();
@@ -214,8 +219,8 @@ export class StudyDatabase {
   }
 
   #prepare(mostBytes: number): void {
-    // NORMAL: a transaction waits for no disk; `flushed` does, for many at once. SQLite itself flushes around its checkpoints, so that the
-    // file stays sound at any moment. secure_delete: what was deleted is overwritten.
+    // NORMAL: transactions do not wait for the disk; `flushed` does, for many at once. SQLite flushes around its
+    // checkpoints, so that the file is always sound. secure_delete: deleted data are overwritten.
     this.#database.exec(`
       PRAGMA journal_mode = WAL;
       PRAGMA synchronous = NORMAL;
@@ -238,7 +243,7 @@ export class StudyDatabase {
     try {
       return body();
     } catch (error) {
-      // Within a transaction it is still to be rolled back, which needs the error as it is.
+      // In a transaction the caller rolls back, which needs the original error.
       throw this.#database.isTransaction ? error : asRefusal(error);
     }
   }
@@ -252,7 +257,7 @@ export class StudyDatabase {
   }
 }
 
-/** What happened to the file under its name; null: it is still the one that was opened. */
+/** Resolves with what happened to the file under its name, or with null if it is still the one that was opened. */
 async function displacementOf({ path, identity }: OpenedFile): Promise<string | null> {
   try {
     const { dev, ino } = await stat(path);
@@ -265,19 +270,19 @@ async function displacementOf({ path, identity }: OpenedFile): Promise<string | 
   }
 }
 
-/** Another server has the folder. */
+/** Another server uses the folder. */
 export class FolderTaken extends Error {}
 
-/** A lock that a server holds on its folder for as long as it lives: SQLite's own, which ends with the process. */
+/** A lock that a server holds on its folder while it runs: a lock of SQLite, which ends with the process. */
 export class FolderLock {
   readonly #database: DatabaseSyncInstance;
 
-  /** Throws FolderTaken where another server holds it. */
+  /** Throws FolderTaken if another server holds it. */
   constructor(file: string) {
     makeFile(file);
     this.#database = new DatabaseSync(file);
     try {
-      // Without a journal it takes no room on the disk.
+      // Without a journal the lock needs no room on the disk.
       this.#database.exec('PRAGMA journal_mode = MEMORY; BEGIN EXCLUSIVE');
     } catch (error) {
       this.#database.close();

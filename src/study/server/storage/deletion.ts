@@ -30,10 +30,10 @@ export interface StudyDeletionParts {
   readonly commands: StudyCommands;
 }
 
-/** Told of whom something could not be deleted, and of what was thrown. */
+/** Called with a participant who could not be deleted, and with the error. */
 export type DeletionFault = (place: { readonly study: string; readonly participant: string }, error: unknown) => void;
 
-/** Deletes all that is stored of a participant, and keeps a receipt of it. */
+/** Deletes everything that is stored of a participant, and keeps a receipt. */
 export class StudyDeletion {
   readonly #parts: StudyDeletionParts;
 
@@ -44,7 +44,7 @@ export class StudyDeletion {
   delete(study: string, participant: string, reason: Receipt['reason'], at: number): Receipt {
     const { database, plans, places, records, motion, commands } = this.#parts;
     const receipt = database.transaction(() => {
-      // Refuses a participant whom there is not.
+      // Refuses an unknown participant.
       places.get(study, participant);
       const invitation = this.#invitationAfter(study, reason);
       const recordCount = records.delete(study, participant);
@@ -62,11 +62,14 @@ export class StudyDeletion {
     return receiptOf(receipt);
   }
 
-  /** Deletes a simulated study to its last record, and its receipts; one of people goes participant by participant. */
+  /** Deletes a simulated study with its receipts. A study of people is deleted participant by participant. */
   deleteSimulated(study: string): void {
     const { database, plans } = this.#parts;
     if (!plans.get(study).simulated) {
-      throw new StoreRefusal('forbidden', `the study "${study}" is of people: its participants are deleted one by one`);
+      throw new StoreRefusal(
+        'forbidden',
+        `the study "${study}" has data of people: delete its participants one by one`,
+      );
     }
     database.transaction(() => {
       for (const table of ['records', 'motion', 'receipts']) {
@@ -77,13 +80,16 @@ export class StudyDeletion {
     database.forgetDeleted();
   }
 
-  /** Deletes everything of the participant who has this code; null: none has. */
+  /** Deletes everything of the participant with this code; returns null if there is none. */
   withdraw(study: string, code: string, at: number): Receipt | null {
     const participant = this.#parts.places.ownerOf(study, code);
     return participant === null ? null : this.delete(study, participant, 'withdrawn', at);
   }
 
-  /** Deletes what is past its retention date, of each participant by itself; tells `onFault` of whom that failed. */
+  /**
+   * Deletes what is past its retention date, each participant separately; `onFault` is called with each failed
+   * deletion.
+   */
   deleteExpired(now: number, onFault: DeletionFault): readonly Receipt[] {
     return this.#parts.places.expired(now).flatMap((place) => {
       try {
@@ -100,7 +106,10 @@ export class StudyDeletion {
     return rows.map(receiptOf);
   }
 
-  /** A participant who withdrew stays out; a place that the experimenter cleared may be taken anew, by a new invitation or by that of all. */
+  /**
+   * A participant who withdrew stays out. A place that the experimenter cleared can be taken by a new invitation or by
+   * the common one.
+   */
   #invitationAfter(study: string, reason: Receipt['reason']): string | null {
     const { plans } = this.#parts;
     if (reason !== 'experimenter') return null;

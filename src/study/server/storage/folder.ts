@@ -9,21 +9,21 @@ import { FolderLock, FolderTaken, StoreRefusal, sqliteCodeOf } from './database'
 import { DatabaseProblem } from './schema';
 import { openStudyStore, type StudyStore } from './store';
 
-/** The folder of the studies, open: no other server has it. */
+/** The open folder of the studies, which no other server uses. */
 export interface StudyFolder {
   readonly store: StudyStore;
   readonly experimenterToken: string;
-  /** Holds the token; null: it was given. */
+  /** The file with the generated token; null: the token was given. */
   readonly tokenFile: string | null;
   close(): void;
 }
 
-/** The form of the tokens that this server draws, and has drawn before. */
+/** The format of the tokens that this server generates or has generated. */
 const drawnToken = /^([\w-]{43}|[\w-]{32})$/;
 
 const modeOf = (path: string): string => (statSync(path).mode & 0o777).toString(8).padStart(4, '0');
 
-/** The token in this file; drawn and written, readable for its owner alone, where there is none. */
+/** Returns the token in this file, which is generated and written with access for its owner only if it is missing. */
 function keptToken(file: string): string {
   if (!existsSync(file)) writeFileSync(file, `${randomBytes(32).toString('base64url')}\n`, { mode: 0o600 });
   const token = readFileSync(file, 'utf8').trim();
@@ -32,7 +32,7 @@ function keptToken(file: string): string {
   return token;
 }
 
-/** Takes the rights of other accounts of the machine away from what they could read. Windows has no such modes. */
+/** Removes the access of other accounts of the machine. Windows has no such modes. */
 function closeToOthers(path: string, mode: number, log: (line: string) => void): void {
   if (process.platform === 'win32' || !existsSync(path) || (statSync(path).mode & 0o077) === 0) return;
   const before = `${path} was open to other accounts of this machine (mode ${modeOf(path)})`;
@@ -44,7 +44,7 @@ function closeToOthers(path: string, mode: number, log: (line: string) => void):
   }
 }
 
-/** The folder and its files, for the account of the server alone; made where they are missing. */
+/** Creates the folder and its files with access for the server's account only. */
 function prepare(directory: string, log: (line: string) => void): void {
   mkdirSync(directory, { recursive: true, mode: 0o700 });
   closeToOthers(directory, 0o700, log);
@@ -53,22 +53,22 @@ function prepare(directory: string, log: (line: string) => void): void {
   }
 }
 
-/** What a person can do about a folder that cannot be opened; null: the error is none of its. */
+/** Returns how to repair a folder that cannot be opened, or null for unrelated errors. */
 function remedyOf(error: unknown, directory: string): string | null {
   const file = join(directory, 'studies.db');
   const reason = reasonOf(error);
   if (error instanceof FolderTaken) {
-    return `Another server has the folder ${directory}. End it, or name another folder with --studies.`;
+    return `Another server uses the folder ${directory}. Stop it, or name another folder with --studies.`;
   }
   if (error instanceof DatabaseProblem) return `${file} ${error.message}`;
   if (error instanceof StoreRefusal)
-    return `${file} cannot be written: ${reason}. Mend that, then start the server again.`;
+    return `${file} cannot be written: ${reason}. Repair that, then start the server again.`;
   const { code } = (error ?? {}) as NodeJS.ErrnoException;
   if (code === 'ENOSPC' || code === 'EDQUOT') {
     return `The disk with ${directory} is full (${reason}). Make room, then start the server again.`;
   }
   if (code === 'EMFILE' || code === 'ENFILE') {
-    return `The files that the server may have open do not suffice (${reason}). Raise the limit: ulimit -n 1024.`;
+    return `The server may not open enough files (${reason}). Raise the limit: ulimit -n 1024.`;
   }
   if (typeof code === 'string' && /^E[A-Z]+$/.test(code)) {
     return `The folder ${directory} cannot be used (${reason}). Give the account of the server the right to write there, or name another folder with --studies.`;
@@ -83,24 +83,24 @@ function remedyOf(error: unknown, directory: string): string | null {
       return `The disk with ${file} is full (${reason}). Make room, then start the server again.`;
     case 11:
     case 26:
-      return `${file} is damaged, or no database (${reason}). Put a copy of it back, or move it away to begin with an empty one; "sqlite3 ${file} .recover" reads what can still be read.`;
+      return `${file} is damaged or not a database (${reason}). Restore a copy, or move it away to start with an empty one; "sqlite3 ${file} .recover" reads what can still be read.`;
     default:
       return `${file} cannot be used (${reason}). Give the account of the server the right to write to it and to its folder, or name another folder with --studies.`;
   }
 }
 
 export interface StudyFolderOptions {
-  /** Holds the database and a token that the server drew; made where it is missing. */
+  /** The folder of the database and of a generated token; created if it is missing. */
   readonly directory: string;
-  /** The experimenter's token; null: the one kept in the directory, drawn at the first start. */
+  /** The experimenter's token; null: the one in the folder, which is generated at the first start. */
   readonly token: string | null;
-  /** What serves the studies from now on. */
+  /** The software that serves the studies from now on. */
   readonly software: Software;
 }
 
 /**
- * Opens the folder of the studies at this time [s]. Throws a ConfigurationError with the file and the remedy where it cannot be used: taken by
- * another server, not writable, or with a database that is damaged, locked or of a newer version.
+ * Opens the folder of the studies at this time [s]. Throws a ConfigurationError with the file and the remedy if another
+ * server uses it, if it is not writable, or if the database is damaged, locked or of a newer version.
  */
 export function openStudyFolder(
   { directory, token, software }: StudyFolderOptions,

@@ -2,15 +2,15 @@ import { gunzipSync, gzipSync } from 'node:zlib';
 import { StoreRefusal, type StudyDatabase } from './database';
 import type { StudyPlaces } from './places';
 
-/** A recording of tracked frames, as recording.ts writes it. */
+/** A recording of tracking frames in the format of recording.ts. */
 export interface MotionFile {
   readonly participant: string;
-  /** Id of the trial's record. */
+  /** The id of the trial's record. */
   readonly trial: string;
   readonly text: string;
 }
 
-/** The same as it is stored. */
+/** A recording in its stored form. */
 export interface PackedMotion {
   readonly participant: string;
   readonly trial: string;
@@ -23,10 +23,10 @@ export const unpacked = ({ participant, trial, gzipped }: PackedMotion): MotionF
   text: gunzipSync(gzipped).toString(),
 });
 
-/** Compressed bytes of tracked frames. */
+/** The limit of compressed recordings per participant [bytes]. */
 export const mostMotionPerParticipant = 256 * 2 ** 20;
 
-/** The tracked frames of trials, of participants who consented to their being kept. */
+/** The recordings of trials of participants who consented to them. */
 export class StudyMotion {
   readonly #database: StudyDatabase;
   readonly #places: StudyPlaces;
@@ -64,7 +64,7 @@ export class StudyMotion {
     });
   }
 
-  /** Of one participant, or of all. */
+  /** Returns the recordings of one participant, or of all. */
   all(study: string, participant?: string): readonly PackedMotion[] {
     const packed = 'SELECT participant, trial, gzipped FROM motion WHERE study = ?';
     return participant === undefined
@@ -72,7 +72,7 @@ export class StudyMotion {
       : this.#database.all(`${packed} AND participant = ? ORDER BY trial`, study, participant);
   }
 
-  /** Inside a transaction; returns how many files there were. */
+  /** Deletes the recordings of a participant, in a transaction; returns their number. */
   delete(study: string, participant: string): number {
     return this.#database.run('DELETE FROM motion WHERE study = ? AND participant = ?', study, participant);
   }

@@ -5,14 +5,14 @@ import { StoreRefusal, type StudyDatabase } from './database';
 import type { StudyPlans } from './plans';
 import { newCode, normalisedCode } from './schema';
 
-/** A place as it is stored. */
+/** A stored place. */
 export interface PlaceRow {
   readonly participant: string;
   readonly token_hash: Uint8Array | null;
   readonly withdrawal_hash: Uint8Array | null;
   readonly invitation: string | null;
   readonly withdrawn: number;
-  /** Of the plan that the participant follows; null: the newest. */
+  /** The version of the plan that the participant follows; null: the newest. */
   readonly plan_version: number | null;
   readonly motion_consent: number | null;
   readonly progress: string | null;
@@ -25,7 +25,7 @@ export const notConsented = (participant: string): StoreRefusal =>
 const hashOf = (secret: string): Buffer => createHash('sha256').update(secret).digest();
 const newToken = (): string => randomBytes(32).toString('base64url');
 
-/** The places of a study's participants: invitations, tokens, withdrawal codes, and how far each session is. */
+/** The places of a study's participants: invitations, tokens, withdrawal codes and progress. */
 export class StudyPlaces {
   readonly #database: StudyDatabase;
   readonly #plans: StudyPlans;
@@ -35,14 +35,14 @@ export class StudyPlaces {
     this.#plans = plans;
   }
 
-  /** The place of this participant; throws a StoreRefusal where the study has none. */
+  /** Returns the place of a participant; throws a StoreRefusal for an unknown one. */
   get(study: string, participant: string): PlaceRow {
     const row = this.#row(study, participant);
     if (!row) throw new StoreRefusal('unknown', `the study "${study}" has no participant ${participant}`);
     return row;
   }
 
-  /** The same, of a participant who has not withdrawn; throws a StoreRefusal otherwise. */
+  /** Returns the place of a participant; throws a StoreRefusal for an unknown one and for one who has withdrawn. */
   getPresent(study: string, participant: string): PlaceRow {
     const row = this.get(study, participant);
     if (row.withdrawn) throw new StoreRefusal('forbidden', `${participant} has withdrawn`);
@@ -55,7 +55,7 @@ export class StudyPlaces {
 
   invites(study: string, participant: string, code: string): boolean {
     const { invitation } = this.get(study, participant);
-    // Hashes are of one length, as the comparison wants them.
+    // Hashes have equal lengths, which the comparison requires.
     return invitation !== null && timingSafeEqual(hashOf(normalisedCode(code)), hashOf(invitation));
   }
 
@@ -100,7 +100,7 @@ export class StudyPlaces {
     });
   }
 
-  /** Where nothing is recorded yet, the withdrawal code is void too: its owner may never have received it. */
+  /** If nothing is recorded yet, the withdrawal code becomes void too, because its owner may never have received it. */
   release(study: string, participant: string): void {
     this.get(study, participant);
     this.#database.run(
@@ -116,7 +116,7 @@ export class StudyPlaces {
     return row?.token_hash ? timingSafeEqual(row.token_hash, hashOf(token)) : false;
   }
 
-  /** Whose withdrawal code this is; null: no one's. */
+  /** Returns the participant with this withdrawal code, or null. */
   ownerOf(study: string, withdrawalCode: string): string | null {
     const row = this.#database.get<PlaceRow>(
       'SELECT participant FROM participants WHERE study = ? AND withdrawal_hash = ?',
@@ -125,7 +125,7 @@ export class StudyPlaces {
     return row?.participant ?? null;
   }
 
-  /** Inside a transaction. */
+  /** Sets the consent to motion, in a transaction. */
   setMotionConsent(study: string, participant: string, consent: number): void {
     this.#database.run(
       'UPDATE participants SET motion_consent = ? WHERE study = ? AND participant = ?',
@@ -133,7 +133,7 @@ export class StudyPlaces {
     );
   }
 
-  /** Stores where a participant is, unless a later report is there already; throws a StoreRefusal before consent. */
+  /** Stores the progress of a participant unless a later report is stored; throws a StoreRefusal before consent. */
   saveProgress(study: string, participant: string, progress: unknown, at: number): void {
     const { simulated } = this.#plans.get(study);
     const schedule = scheduleFor(this.#plans.planFor(study, participant), participant);
@@ -147,7 +147,7 @@ export class StudyPlaces {
     this.#database.transaction(() => {
       const { motion_consent, progress: stored } = this.getPresent(study, participant);
       if (motion_consent === null) throw notConsented(participant);
-      // On another device a participant may take back what the record of the consent says.
+      // On another device a participant may withdraw the recorded consent to motion.
       if (checked.motion === false && motion_consent === 1) this.setMotionConsent(study, participant, 0);
       if (stored !== null && isLater(schedule, resumed(schedule, stored), checked)) return;
       this.#database.run(
@@ -157,7 +157,7 @@ export class StudyPlaces {
     });
   }
 
-  /** As it was reported; `now`: with what its clock ran since. */
+  /** Returns the progress as it was reported; with `now`, its clock has run on since the report. */
   progress(study: string, participant: string, now?: number): Progress | null {
     const { progress, progress_at } = this.get(study, participant);
     if (progress === null) return null;
@@ -165,7 +165,7 @@ export class StudyPlaces {
     return now === undefined ? report : sinceReport(report, now - (progress_at as number));
   }
 
-  /** Forgets all that a place holds, inside a transaction. `withdrawn`: the participant stays out. */
+  /** Clears a place, in a transaction. `withdrawn`: the participant stays out. */
   clear(study: string, participant: string, invitation: string | null, withdrawn: boolean): void {
     this.#database.run(
       `UPDATE participants SET token_hash = NULL, withdrawal_hash = NULL, motion_consent = NULL, progress = NULL,
@@ -174,7 +174,7 @@ export class StudyPlaces {
     );
   }
 
-  /** Places of studies past their retention date that still hold something. */
+  /** Returns the places of studies past their retention date that still hold data. */
   expired(now: number): readonly { readonly study: string; readonly participant: string }[] {
     return this.#database.all(
       `SELECT study, participant FROM participants JOIN studies ON studies.id = study

@@ -22,17 +22,17 @@ export interface AddOptions {
   readonly simulated: boolean;
   /** Seconds since 1970. */
   readonly at: number;
-  /** Where the study has begun with another plan: this one is for those who come later. */
+  /** Whether another plan becomes a new version for later participants if the study has begun. */
   readonly newVersion?: boolean;
 }
 
 const secondsPerDay = 86_400;
 
-/** "P01, P02 and 3 more". */
+/** Returns "P01, P02 and 3 more". */
 const listed = (names: readonly string[]) =>
   names.length > 4 ? `${names.slice(0, 3).join(', ')} and ${names.length - 3} more` : names.join(', ');
 
-/** The studies themselves: their plans, version by version, and the places that these have. */
+/** The studies: the versions of their plans and the places in these. */
 export class StudyPlans {
   readonly #database: StudyDatabase;
   readonly #places: PlanPlaces;
@@ -42,14 +42,14 @@ export class StudyPlans {
     this.#places = new PlanPlaces(database);
   }
 
-  /** The study of this id, its plan in this version or in the newest; throws a StoreRefusal where there is none. */
+  /** Returns a study with this version of its plan or with the newest; throws a StoreRefusal if it is unknown. */
   get(id: string, version?: number): StudyInfo {
     const row = this.#row(id);
     if (!row) throw new StoreRefusal('unknown', `there is no study "${id}"`);
     return this.#infoOf(row, version);
   }
 
-  /** The plan that a participant follows: the one that they began with, else the newest. */
+  /** Returns the plan that a participant follows: that of their beginning, or the newest. */
   planFor(id: string, participant: string): StudyPlan {
     this.#refuseUnknown(id);
     const { plan } = this.#database.getOne<VersionRow>(
@@ -61,7 +61,7 @@ export class StudyPlans {
     return storedPlan(JSON.parse(plan));
   }
 
-  /** Oldest first. */
+  /** Returns all studies, the oldest first. */
   all(): readonly StudyInfo[] {
     return this.#database
       .all<StudyRow>('SELECT * FROM studies ORDER BY created_at, id')
@@ -69,8 +69,8 @@ export class StudyPlans {
   }
 
   /**
-   * Adds a study, or finds the same one there. Another plan under the id of a study that has begun is refused, unless it is asked for as a
-   * new version: those who began, and who play with them, stay with theirs.
+   * Adds a study, or returns an equal one that exists. Another plan for a study that has begun is refused unless it is
+   * added as a new version. Participants who have begun, and those who play with them, keep their version.
    */
   add(plan: StudyPlan, { simulated, at, newVersion = false }: AddOptions): StudyInfo {
     return this.#database.transaction(() => {
@@ -96,7 +96,7 @@ export class StudyPlans {
       else {
         const text =
           `the study "${checked.id}" has begun: ${listed(begun.map(({ participant }) => participant))} keep its plan. ` +
-          `What has changed can be version ${known.version + 1}, for those who come later; or give it another id`;
+          `Add the plan as version ${known.version + 1} for later participants, or give it another id`;
         throw new StoreRefusal('begun', text);
       }
       return this.get(checked.id);
@@ -113,7 +113,7 @@ export class StudyPlans {
     this.#places.free(this.get(id), participant);
   }
 
-  /** Inside a transaction, of a study in which nothing is recorded. */
+  /** Deletes a study without records, in a transaction. */
   remove(id: string): void {
     for (const table of ['commands', 'participants', 'plan_versions']) {
       this.#database.run(`DELETE FROM ${table} WHERE study = ?`, id);
@@ -166,7 +166,7 @@ export class StudyPlans {
     if (code !== codeBefore) {
       throw new ValidationError(
         'participants',
-        `the codes of participants would change from ${codeBefore} to ${code}, and links that were sent would open nothing: give the plan another id`,
+        `the codes of participants would change from ${codeBefore} to ${code}, and sent links would stop working: give the plan another id`,
       );
     }
     const kept = new Map<string, number>();
@@ -190,7 +190,7 @@ export class StudyPlans {
       'INSERT INTO plan_versions (study, version, plan, since) VALUES (?, ?, ?, ?)',
       ...[id, version + 1, JSON.stringify(plan), at],
     );
-    // What those who take part were promised holds for all.
+    // The retention period that was promised to participants holds for all.
     const until = Math.min(retentionUntil, at + plan.retentionDays * secondsPerDay);
     this.#database.run('UPDATE studies SET retention_until = ? WHERE id = ?', until, id);
     this.#places.follow(id, kept);

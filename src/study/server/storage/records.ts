@@ -5,10 +5,10 @@ import type { StudyPlans } from './plans';
 
 export const mostRecordsPerParticipant = 10_000;
 
-/** What the ids of the experimenter's remarks begin with. */
+/** The prefix of the ids of the experimenter's remarks. */
 const remarkPrefix = 'experimenter-';
 
-/** What was recorded of participants, once they have consented. */
+/** The records of participants who have consented. */
 export class StudyRecords {
   readonly #database: StudyDatabase;
   readonly #plans: StudyPlans;
@@ -20,7 +20,7 @@ export class StudyRecords {
     this.#places = places;
   }
 
-  /** Stores what is not there yet, all or nothing; returns the ids of all. */
+  /** Stores the new ones of these records in one transaction; returns the ids of all. */
   store(study: string, participant: string, records: readonly StudyRecord[], at: number): readonly string[] {
     const { simulated } = this.#plans.get(study);
     const plan = this.#plans.planFor(study, participant);
@@ -30,7 +30,7 @@ export class StudyRecords {
         refuseForeign(record, study, participant, simulated);
         if (record.kind === 'consent') refuseOtherText(record.body.version, plan.consent.version);
         else if (consented === null) throw notConsented(participant);
-        // A record that is sent once more changes nothing: consent to motion may have been taken back since.
+        // A repeated record changes nothing, because the consent to motion may have been withdrawn since.
         if (!this.#insert(record, at) || record.kind !== 'consent') continue;
         consented = Number(record.body.motion && plan.consent.motion !== null);
         this.#places.setMotionConsent(study, participant, consented);
@@ -53,7 +53,7 @@ export class StudyRecords {
     });
   }
 
-  /** Of one participant, or of all. */
+  /** Returns the records of one participant, or of all. */
   all(study: string, participant?: string): readonly StudyRecord[] {
     const rows =
       participant === undefined
@@ -68,7 +68,10 @@ export class StudyRecords {
     return rows.map(({ record }) => JSON.parse(record) as StudyRecord);
   }
 
-  /** The records of these participants as the JSON of a list, without making objects of them: of a whole study they may fill the memory. */
+  /**
+   * Returns the records of these participants as a JSON list without parsing them, because those of a whole study may
+   * fill the memory.
+   */
   listed(study: string, participants: ReadonlySet<string>): readonly Uint8Array[] {
     const chunks: Buffer[] = [];
     const rows = this.#database.each<{ participant: string; record: string }>(
@@ -90,12 +93,12 @@ export class StudyRecords {
     ).count;
   }
 
-  /** Inside a transaction; returns how many there were. */
+  /** Deletes the records of a participant, in a transaction; returns their number. */
   delete(study: string, participant: string): number {
     return this.#database.run('DELETE FROM records WHERE study = ? AND participant = ?', study, participant);
   }
 
-  /** Inside a transaction; returns false where the record is stored already. */
+  /** Stores a record, in a transaction; returns false if it is stored already. */
   #insert(record: StudyRecord, receivedAt: number): boolean {
     const { study, participant, id } = record;
     const text = JSON.stringify(record);
@@ -124,8 +127,8 @@ function refuseOtherText(read: unknown, shown: string): void {
 }
 
 /**
- * Refuses a record that is of another place or named as the remarks of the experimenter are, or of people where the study is simulated and the
- * other way round.
+ * Refuses a record of another place, with the id of an experimenter's remark, or of a person in a simulated study and
+ * the reverse.
  */
 function refuseForeign(record: StudyRecord, study: string, participant: string, simulated: boolean): void {
   if (record.study !== study || record.participant !== participant) {

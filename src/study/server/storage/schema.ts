@@ -1,16 +1,16 @@
 import { randomBytes } from 'node:crypto';
 import type { DatabaseSyncInstance } from '@photostructure/sqlite';
 
-// Crockford's base 32 without letters that are mistaken for digits: a code is read from a note and typed.
+// Crockford's base 32 without letters that resemble digits, because a code is read from a note and typed.
 const codeAlphabet = '0123456789ABCDEFGHJKMNPQRSTVWXYZ';
 
-/** Eighty bits as XXXX-XXXX-XXXX-XXXX. */
+/** Returns eighty random bits as XXXX-XXXX-XXXX-XXXX. */
 export function newCode(): string {
   const characters = Array.from(randomBytes(16), (byte) => codeAlphabet[byte % 32]).join('');
   return (characters.match(/.{4}/g) as string[]).join('-');
 }
 
-/** The code as it was given, however it was typed. */
+/** Returns a typed code in its normal form. */
 export function normalisedCode(typed: string): string {
   const characters = typed
     .toUpperCase()
@@ -20,7 +20,7 @@ export function normalisedCode(typed: string): string {
   return (characters.match(/.{1,4}/g) ?? []).join('-');
 }
 
-/** Each brings the database from its index to the next version. Never change one that was released: add one. */
+/** Each migrates the database from its index to the next version. Never change a released one; add another one. */
 const migrations: readonly (string | ((database: DatabaseSyncInstance) => void))[] = [
   `
   CREATE TABLE studies (
@@ -78,7 +78,7 @@ const migrations: readonly (string | ((database: DatabaseSyncInstance) => void))
     at REAL NOT NULL
   ) STRICT;
   `,
-  // Places could be taken by their name alone before: each gets an invitation of its own now.
+  // Earlier versions had places without invitations; each gets one.
   (database) => {
     database.exec('ALTER TABLE participants ADD COLUMN invitation TEXT');
     const places = database.prepare('SELECT study, participant FROM participants WHERE withdrawn = 0').all();
@@ -88,7 +88,7 @@ const migrations: readonly (string | ((database: DatabaseSyncInstance) => void))
     }
   },
   `CREATE TABLE software (number INTEGER PRIMARY KEY, software TEXT NOT NULL, since REAL NOT NULL) STRICT;`,
-  // The plan of a study could not change once it had begun: all who had begun did so with the first version.
+  // Earlier versions had one plan per study, which becomes version 1 for all who have begun.
   `
   CREATE TABLE plan_versions (
     study TEXT NOT NULL REFERENCES studies (id),
@@ -105,10 +105,13 @@ const migrations: readonly (string | ((database: DatabaseSyncInstance) => void))
   `,
 ];
 
-/** Why a database cannot be used, as the rest of a sentence that begins with its file. */
+/** Why a database cannot be used, as the end of a sentence that begins with its file. */
 export class DatabaseProblem extends Error {}
 
-/** Brings a database up to date; throws a DatabaseProblem where it is damaged, of a later version than this server, or another program's. */
+/**
+ * Migrates a database to the newest version; throws a DatabaseProblem if it is damaged, newer than this server, or of
+ * another program.
+ */
 export function migrate(database: DatabaseSyncInstance): void {
   const read = (pragma: string) => Object.values(database.prepare(`PRAGMA ${pragma}`).get() as object)[0] as unknown;
   const version = read('user_version') as number;
@@ -125,7 +128,7 @@ export function migrate(database: DatabaseSyncInstance): void {
   const damage = read('quick_check(1)');
   if (damage !== 'ok') {
     throw new DatabaseProblem(
-      `is damaged (${String(damage).replaceAll('\n', ' ')}): put a copy of it back, or read what can still be read by ".recover" of sqlite3.`,
+      `is damaged (${String(damage).replaceAll('\n', ' ')}): restore a copy, or recover the rest with ".recover" of sqlite3.`,
     );
   }
   for (let next = version; next < migrations.length; next++) {

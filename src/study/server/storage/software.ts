@@ -1,10 +1,10 @@
 import type { Software } from 'threepoint-http/software';
 import type { StudyDatabase } from './database';
 
-/** Software and since when it served the studies, in seconds since 1970. */
+/** Software and the time since which it served the studies, in seconds since 1970. */
 export type ServedSoftware = Software & { readonly since: number };
 
-/** With which software this server has served its studies. */
+/** The software with which this server has served its studies. */
 export class StudySoftware {
   readonly #database: StudyDatabase;
 
@@ -12,7 +12,7 @@ export class StudySoftware {
     this.#database = database;
   }
 
-  /** This software serves from now on; what serves already is not noted again. */
+  /** Notes the software that serves from now on, if it has changed. */
   note(software: Software, at: number): void {
     const text = JSON.stringify(software);
     const last = this.#database.get<{ software: string }>('SELECT software FROM software ORDER BY number DESC LIMIT 1');
@@ -22,7 +22,7 @@ export class StudySoftware {
     });
   }
 
-  /** What has served since this moment, the oldest first. */
+  /** Returns the software that has served since this moment, the oldest first. */
   since(at: number): readonly ServedSoftware[] {
     const all = this.#database
       .all<{ software: string; since: number }>('SELECT software, since FROM software ORDER BY number')

@@ -11,8 +11,9 @@ import { StudyRecords } from './records';
 import { StudySoftware } from './software';
 
 /**
- * Studies and what was recorded in them. What returns is stored and outlives the process; that it outlives a power cut too, `flushed` says,
- * and nothing is acknowledged before. Times are seconds since 1970, given by the caller.
+ * The store of studies and records. Results are stored when a call returns and survive the end of the process. They
+ * survive a power cut when `flushed` has resolved, and nothing is acknowledged before. Times are seconds since 1970 of
+ * the caller's clock.
  */
 export interface StudyStore {
   readonly plans: StudyPlans;
@@ -23,16 +24,16 @@ export interface StudyStore {
   readonly software: StudySoftware;
   readonly deletion: StudyDeletion;
   overview(study: string, now: number): readonly ParticipantState[];
-  /** What `body` reads, all as of one moment. */
+  /** Runs `body`, whose reads all see one state of the database. */
   snapshot<T>(body: () => T): T;
-  /** Resolves when everything until now is on the disk; those who ask while the disk is at work wait for one flush together. */
+  /** Resolves when everything so far is on the disk; concurrent calls share a flush. */
   flushed(): Promise<void>;
-  /** Overwrites deleted data that could not be overwritten when it was deleted; false: it still cannot be. */
+  /** Overwrites deleted data that could not be overwritten at their deletion; returns false if that fails again. */
   forgetDeleted(): boolean;
   close(): void;
 }
 
-/** A place as the experimenter sees it, at this time [s]. */
+/** Returns the state of a place for the experimenter at this time [s]. */
 function stateOf(row: PlaceRow, { plan, version }: PlanVersion, records: number, now: number): ParticipantState {
   const schedule = scheduleFor(plan, row.participant);
   const silence = now - (row.progress_at ?? now);
@@ -57,10 +58,10 @@ function stateOf(row: PlaceRow, { plan, version }: PlanVersion, records: number,
   };
 }
 
-/** Studies leave room for the rest of the machine: beyond so much [bytes] writes are refused as "full". */
+/** The size beyond which writes are refused as "full" [bytes], to leave room for the rest of the machine. */
 const mostStoredBytes = 16 * 2 ** 30;
 
-/** Opens the database in this file, makes it where there is none, and brings it up to date; `readOnly` opens what is there already. */
+/** Opens the database in this file, creates it if it is missing, and migrates it; `readOnly` opens an existing one. */
 export function openStudyStore(
   file: string,
   { mostBytes = mostStoredBytes, readOnly = false }: Partial<DatabaseOptions> = {},

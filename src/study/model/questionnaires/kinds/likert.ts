@@ -9,7 +9,7 @@ const mostPoints = 101;
 
 const schema = v.strictObject({
   kind: v.literal('likert'),
-  /** The first point and the last, both whole. */
+  /** The first and the last point, both whole numbers. */
   from: integerBetween(-1000, 1000),
   to: integerBetween(-1000, 1000),
   /** The distance of two points; 1 if absent. */

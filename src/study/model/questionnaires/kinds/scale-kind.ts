@@ -11,7 +11,7 @@ export type Ends = v.InferOutput<typeof ends>;
 
 /** Throws a ValidationError if the ends of a range are in the wrong order. */
 export function checkRange({ from, to }: Pick<SteppedScale, 'from' | 'to'>, field: string): void {
-  if (to <= from) throw new ValidationError(`${field}.to`, `expected more than ${from}, where it begins`);
+  if (to <= from) throw new ValidationError(`${field}.to`, `expected more than ${from}, the lower end`);
 }
 
 /** Throws a ValidationError unless a whole number of steps, `most` at most, leads from end to end. */
@@ -20,7 +20,7 @@ export function checkSteps(scale: SteppedScale, most: number, field: string): vo
   const steps = stepsOf(scale);
   if (Math.abs(steps - Math.round(steps)) > 1e-6) {
     const { from, to, step } = scale;
-    throw new ValidationError(`${field}.step`, `${from} to ${to} is no whole number of steps of ${step}`);
+    throw new ValidationError(`${field}.step`, `${from} to ${to} is not a whole number of steps of ${step}`);
   }
   if (steps > most + 1e-6) throw new ValidationError(`${field}.step`, `expected at most ${most} steps from end to end`);
 }

@@ -1,11 +1,11 @@
-"""Computes the tables in results/ anew from the tidy tables of this export, and says what differs.
+"""Recomputes the tables in results/ from the tidy tables of this export, and reports differences.
 
     python -m pip install -r analysis/requirements.txt
     python analysis/analyse.py
 
-Nothing of the program that made the export is used: the tests are SciPy's, sums of squares are those of linear models. The tables
-computed are written to analysis/python/. Change what you like: this file is a beginning for an analysis of your own, and
-stands alone for that, however long it is.
+The script is independent of the program that made the export: the tests are SciPy's, sums of squares are those of
+linear models. The computed tables are written to analysis/python/. Change the script as you like: it is a start for your
+own analysis, and is one file for that reason.
 """
 
 import csv
@@ -24,19 +24,19 @@ RELATIVE = 1e-6
 # Figures this small differ by rounding.
 ABSOLUTE = 1e-9
 CONFIDENCE = 0.95
-# Of values about 0: squares this small are rounding.
+# Squares this small, of values about 0, are rounding.
 CONSTANT_SQUARES = 1e-20
-# Values this near to each other, against the largest that they are computed from, are equal but for rounding.
+# Values that differ by at most this share of the largest input are equal up to rounding.
 EQUAL_WITHIN = 1e-9
-# Of a share of the variance, which has but one side.
+# The confidence for a share of the variance, which is one-sided.
 ETA_CONFIDENCE = 0.9
 # F times its degrees of freedom beyond which the export has no interval, nor where an end of it lies beyond this noncentrality.
 LARGEST_F = 700
 LARGEST_LAMBDA = 1400
-# The same of t and its noncentrality.
+# The limits of t and its noncentrality.
 LARGEST_T = 18.5
 LARGEST_DELTA = 37
-# From as many pairs (values in a cohort) on, or with ties or zeros, Wilcoxon's tests are approximated.
+# From this many pairs (values in a cohort) on, or with ties or zeros, Wilcoxon's tests are approximated.
 EXACT_BELOW = 50
 
 
@@ -57,7 +57,7 @@ def mean_interval(values):
 
 
 def noncentrality_of_t(t, df, share):
-    """Where the noncentral t is below t, at least 0, with this probability; None: out of reach."""
+    """Returns the noncentrality, at least 0, at which the noncentral t is below t with this probability; None: out of reach."""
 
     def above(noncentrality):
         return stats.nct.cdf(t, df, noncentrality) - share
@@ -196,9 +196,9 @@ class Measure(NamedTuple):
     """What a study has of one question, scale or score."""
 
     begun: dict
-    # The mean of what counts, by whom and condition.
+    # The mean of the counted values by participant and condition.
     means: dict
-    # Of all of whom something is recorded, counting or not.
+    # The cohort of everyone with a record, counted or not.
     cohorts: dict
 
 
@@ -311,7 +311,7 @@ def residual_squares(y, columns):
 
 
 def noncentrality_at(f, df, share):
-    """Where the noncentral F is below f with this probability, at least 0; None: out of reach."""
+    """Returns the noncentrality, at least 0, at which F is below f with this probability; None: out of reach."""
     if stats.f.cdf(f, *df) <= share:
         return 0.0
 

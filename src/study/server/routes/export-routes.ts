@@ -1,0 +1,42 @@
+import type { Answer } from 'threepoint-http/answer';
+import type { Software } from 'threepoint-http/software';
+import { exportName } from '../export/export-zip';
+import type { Exporter } from '../export/exporter';
+import type { StudyStore } from '../storage/store';
+import type { StudyAccess } from './guard';
+import { type Handle, route, type StudyRoute } from './route';
+
+/** The parts of the server that an export needs. */
+export interface Exporting {
+  readonly store: Pick<StudyStore, 'plans' | 'places'>;
+  readonly software: Software;
+  readonly makeZip: Exporter;
+}
+
+interface ExportAsked {
+  readonly at: number;
+  readonly study: string;
+  readonly participant?: string;
+  readonly version?: number | undefined;
+}
+
+/** Resolves with the answer that contains an export. */
+export async function exportOf({ store, software, makeZip }: Exporting, asked: ExportAsked): Promise<Answer> {
+  const { participant } = asked;
+  const info = store.plans.get(asked.study, asked.version);
+  const plan = participant === undefined ? info.plan : store.plans.planFor(asked.study, participant);
+  if (participant !== undefined) store.places.get(asked.study, participant);
+  const planVersion = participant === undefined && info.versions.length > 1 ? info.version : undefined;
+  const name = exportName({ plan, simulated: info.simulated, ...(planVersion && { planVersion }) }, participant);
+  return {
+    status: 200,
+    headers: { 'content-type': 'application/zip', 'content-disposition': `attachment; filename="${name}.zip"` },
+    body: await makeZip({ ...asked, version: info.version, software }),
+  };
+}
+
+/** Returns a route whose answer is an export. */
+export const exporting = (path: string, access: StudyAccess, handle: Handle): StudyRoute => ({
+  ...route('GET', path, access, 0, handle),
+  isPatient: true,
+});

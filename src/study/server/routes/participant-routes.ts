@@ -1,0 +1,179 @@
+import { parseRecording } from 'threepoint/core/tracking/recording';
+import { checked, identifier, integerBetween, text, ValidationError } from 'threepoint/core/validation/validation';
+import { done, HttpError, json } from 'threepoint-http/answer';
+import { jsonOf, textOf } from 'threepoint-http/router';
+import * as v from 'valibot';
+import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
+import { profileFrom } from '../../model/records/participant-profile';
+import { checkedRecord } from '../../model/records/study-record';
+import type { StudyStore } from '../storage/store';
+import { type Exporting, exporting, exportOf } from './export-routes';
+import type { StudyGuard } from './guard';
+import { bodyLimits, type Handle, route, type StudyCall, type StudyRoute } from './route';
+import type { StudySeats } from './seats';
+
+export const mostRecordsAtOnce = 200;
+
+const batchSchema = v.object({
+  records: v.pipe(
+    v.array(v.unknown(), 'expected a list'),
+    v.minLength(1, 'expected at least one record'),
+    v.maxLength(mostRecordsAtOnce, `expected at most ${mostRecordsAtOnce} records`),
+  ),
+});
+
+const commandSchema = v.variant('type', [
+  v.strictObject({ type: v.literal('start') }),
+  v.strictObject({ type: v.literal('pause') }),
+  v.strictObject({ type: v.literal('resume') }),
+  v.strictObject({ type: v.literal('stop'), by: v.literal('experimenter'), reason: text(500) }),
+  v.strictObject({
+    type: v.literal('void-block'),
+    reason: text(500),
+    repeat: v.boolean('expected true or false'),
+    of: v.exactOptional(v.strictObject({ task: identifier, block: integerBetween(1, 1000) })),
+  }),
+]);
+
+/** `consent` is the version of the text that the participant has read. */
+const claimSchema = v.strictObject({ invitation: v.optional(text(60)), consent: v.optional(text(40)) });
+const seatSchema = v.strictObject({ step: text(120), run: integerBetween(1, 99) });
+const remarkSchema = v.strictObject({ text: text(2000) });
+const sinceSchema = v.object({ after: integerBetween(0, 2 ** 53 - 1) });
+const notATrial = 'expected the id of a trial record';
+const motionSchema = v.object({
+  trial: v.pipe(v.string(notATrial), v.regex(/^[a-z0-9][a-z0-9/@.:-]{0,119}$/, notATrial)),
+});
+
+/** The parts of the server that these routes use. */
+export interface ParticipantRouteOptions extends Exporting {
+  readonly store: Omit<StudyStore, 'overview' | 'software' | 'snapshot' | 'flushed' | 'forgetDeleted' | 'close'>;
+  readonly guard: StudyGuard;
+  /** Signs participants into the rooms of their trials. */
+  readonly seats: StudySeats;
+}
+
+/** Returns the state for a device that has taken a participant's place; a session of another device is continued. */
+const sessionOf = ({ store }: Pick<ParticipantRouteOptions, 'store'>, { study, participant, at }: StudyCall) => ({
+  plan: store.plans.planFor(study, participant),
+  simulated: store.plans.get(study).simulated,
+  progress: store.places.progress(study, participant, at),
+  ...profileFrom(store.records.all(study, participant)),
+});
+
+/** Throws if a stored plan is no longer valid for a new study, because nothing can be recorded by its rules. */
+function refuseOutdated(plan: StudyPlan): void {
+  try {
+    checkedPlan(plan);
+  } catch (error) {
+    if (!(error instanceof ValidationError)) throw error;
+    throw new HttpError(
+      409,
+      `the plan of this study is of an older version of the program and no longer valid: ${error.message}. ` +
+        'Its records can be exported and deleted. Give a study with another plan another id',
+    );
+  }
+}
+
+/**
+ * Takes a place. `read` is the version of the text that was consented to, if it was sent. Throws if the plan has
+ * another one; the place stays free.
+ */
+function takePlace(
+  { store }: Pick<ParticipantRouteOptions, 'store'>,
+  { study, participant, at }: StudyCall,
+  read: string | undefined,
+) {
+  const plan = store.plans.planFor(study, participant);
+  refuseOutdated(plan);
+  const { version } = plan.consent;
+  if (read !== undefined && read !== version) {
+    throw new HttpError(409, `consent was given to text ${read}, but the study shows ${version}`, { field: 'consent' });
+  }
+  return store.places.claim(study, participant, at);
+}
+
+/** Returns a route that signs: it takes a body and changes nothing. */
+const signing = (path: string, handle: Handle): StudyRoute => ({
+  ...route('POST', path, 'participant', bodyLimits.json, handle),
+  changes: false,
+});
+
+/** Returns the routes of one participant. */
+export function participantRoutes({ store, guard, seats, software, makeZip }: ParticipantRouteOptions): StudyRoute[] {
+  const own = '/:study/participants/:participant';
+  return [
+    route('POST', `${own}/claim`, 'invited', bodyLimits.json, async (call) => {
+      const { invitation, consent } = checked(claimSchema, jsonOf(call));
+      const claim = () => takePlace({ store }, call, consent);
+      const { token, withdrawalCode } = await guard.claiming(call, invitation, claim);
+      return json({ token, withdrawalCode, ...sessionOf({ store }, call) }, 201);
+    }),
+    route('POST', `${own}/invitation`, 'experimenter', 0, ({ study, participant }) => {
+      store.places.reinvite(study, participant);
+      return done;
+    }),
+    route('POST', `${own}/release`, 'experimenter', 0, ({ study, participant }) => {
+      store.places.release(study, participant);
+      return done;
+    }),
+    route('POST', `${own}/records`, 'participant', bodyLimits.json, (call) => {
+      const { records } = checked(batchSchema, jsonOf(call));
+      const plan = store.plans.planFor(call.study, call.participant);
+      const valid = records.map((record, index) => {
+        try {
+          return checkedRecord(record, plan);
+        } catch (error) {
+          if (!(error instanceof ValidationError)) throw error;
+          throw new ValidationError(`records[${index}]${error.field && `.${error.field}`}`, error.complaint);
+        }
+      });
+      return json({ acknowledged: store.records.store(call.study, call.participant, valid, call.at) });
+    }),
+    route('GET', `${own}/records`, 'participant', 0, ({ study, participant }) =>
+      json({ records: store.records.all(study, participant) }),
+    ),
+    route('PUT', `${own}/progress`, 'participant', bodyLimits.json, (call) => {
+      store.places.saveProgress(call.study, call.participant, jsonOf(call), call.at);
+      return done;
+    }),
+    route('GET', `${own}/progress`, 'participant', 0, ({ study, participant, at }) =>
+      json({ progress: store.places.progress(study, participant, at) }),
+    ),
+    route('GET', `${own}/commands`, 'participant', 0, ({ study, participant, query }) => {
+      const { after } = checked(sinceSchema, { after: Number(query.get('after') ?? 0) });
+      return json({ commands: store.commands.after(study, participant, after) });
+    }),
+    route('POST', `${own}/commands`, 'experimenter', bodyLimits.json, (call) => {
+      const command = checked(commandSchema, jsonOf(call));
+      return json({ number: store.commands.add(call.study, call.participant, command, call.at) }, 201);
+    }),
+    route('POST', `${own}/remarks`, 'experimenter', bodyLimits.json, (call) => {
+      const remark = checked(remarkSchema, jsonOf(call));
+      return json({ id: store.records.addRemark(call.study, call.participant, remark.text, call.at) }, 201);
+    }),
+    route('PUT', `${own}/motion`, 'participant', bodyLimits.motion, ({ study, participant, at, query, body }) => {
+      const { trial } = checked(motionSchema, { trial: query.get('trial') });
+      const recording = textOf({ body });
+      try {
+        parseRecording(recording);
+      } catch (error) {
+        throw new HttpError(400, (error as Error).message);
+      }
+      store.motion.store(study, participant, trial, recording, at);
+      return done;
+    }),
+    signing(`${own}/seat`, async (call) => {
+      const trial = checked(seatSchema, jsonOf(call));
+      const plan = store.plans.planFor(call.study, call.participant);
+      // A request that is admitted without the participant's token is from an experimenter, who watches.
+      return json(await seats.sign(plan, call.participant, trial, !guard.isParticipant(call)));
+    }),
+    exporting(`${own}/export`, 'participant', ({ study, participant, at }) =>
+      exportOf({ store, software, makeZip }, { at, study, participant }),
+    ),
+    route('DELETE', own, 'experimenter', 0, ({ study, participant, at }) =>
+      json(store.deletion.delete(study, participant, 'experimenter', at)),
+    ),
+  ];
+}

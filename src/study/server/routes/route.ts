@@ -1,0 +1,53 @@
+import type { Answer } from 'threepoint-http/answer';
+import type { ClientAddress } from 'threepoint-http/client-address';
+import type { Route } from 'threepoint-http/router';
+import { mostMotionBytes } from '../../model/progress/study-api';
+import type { Concerned, StudyAccess } from './guard';
+
+/** The largest bodies [bytes]. */
+export const bodyLimits = { json: 512 * 1024, motion: mostMotionBytes } as const;
+
+const prefix = '/api/studies';
+
+/** A request to a route of the studies, as it is sent from the thread of the sockets to that of the database. */
+export interface StudyRequest {
+  /** The time of the request in seconds since 1970. */
+  readonly at: number;
+  readonly token: string | null;
+  readonly address: ClientAddress | null;
+  /** The values of the ":names" of the route, not checked yet. */
+  readonly names: Readonly<Record<string, string>>;
+  /** The query of the address, without "?". */
+  readonly query: string;
+}
+
+/** A request with checked names of study and participant; empty if the route has none. */
+export interface StudyCall extends Concerned {
+  readonly at: number;
+  readonly query: URLSearchParams;
+  readonly body: Uint8Array<ArrayBuffer>;
+}
+
+export interface StudyRoute extends Omit<Route<StudyAccess>, 'handle'> {
+  /** Whether the answer waits until the change is on the disk. */
+  readonly changes: boolean;
+  /** Whether the answer has no time limit. */
+  readonly isPatient: boolean;
+  handle(call: StudyCall): Answer | Promise<Answer>;
+}
+
+/** Handles a request. */
+export type Handle = StudyRoute['handle'];
+
+/** Returns a route with a path below the prefix and a limit of its JSON body [bytes]. */
+export const route = (
+  method: Route['method'],
+  path: string,
+  access: StudyAccess,
+  bodyLimit: number,
+  handle: Handle,
+): StudyRoute => ({
+  ...{ method, path: `${prefix}${path}`, access, bodyLimit, handle },
+  changes: method !== 'GET',
+  isPatient: false,
+});

@@ -1,0 +1,91 @@
+import { checked, integerBetween, participantId, text } from 'threepoint/core/validation/validation';
+import { type Answer, done, json } from 'threepoint-http/answer';
+import { jsonOf } from 'threepoint-http/router';
+import * as v from 'valibot';
+import { checkedPlan, languagesOf, type StudyPlan, studyTitle } from '../../model/plan/plan';
+import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
+import type { StudyStore } from '../storage/store';
+import { type Exporting, exporting, exportOf } from './export-routes';
+import type { StudyGuard } from './guard';
+import { bodyLimits, route, type StudyRoute } from './route';
+
+const newStudySchema = v.strictObject({
+  plan: v.unknown(),
+  simulated: v.boolean('expected true or false'),
+  newVersion: v.optional(v.boolean('expected true or false')),
+});
+const versionSchema = v.object({ version: v.optional(integerBetween(1, 10_000)) });
+const withdrawalSchema = v.object({ code: text(60) });
+
+/** Returns the public part of a plan. Participants get the order and names of conditions only with their schedule. */
+const publicPlan = (plan: StudyPlan, simulated: boolean) => {
+  const { id, title, consent, remote, phrases = {} } = plan;
+  return { id, title, consent, languages: languagesOf(plan), phrases, simulated, contact: remote?.contact ?? null };
+};
+
+/** Returns the requested version of the plan, or undefined for the newest. */
+function versionIn(query: URLSearchParams): number | undefined {
+  const asked = query.get('version');
+  return checked(versionSchema, asked === null ? {} : { version: Number(asked) }).version;
+}
+
+/** Returns a study with the records of participants who follow the version of its plan that `info` shows. */
+function recordsOf(store: Pick<StudyStore, 'records'>, info: StudyInfo): Answer {
+  const { participants } = info.versions.find(({ version }) => version === info.version) as PlanVersion;
+  const head = `${JSON.stringify(info).slice(0, -1)},"records":`;
+  const records = store.records.listed(info.plan.id, new Set(participants));
+  const body = Buffer.concat([Buffer.from(head), ...records, Buffer.from('}\n')]);
+  return { ...json(null), body };
+}
+
+/** The parts of the server that these routes use. */
+export interface StudyRouteOptions extends Exporting {
+  readonly store: Pick<StudyStore, 'plans' | 'places' | 'records' | 'deletion' | 'overview'>;
+  readonly guard: StudyGuard;
+}
+
+/** Returns the routes of the server and of one study. */
+export function studyRoutes({ store, guard, software, makeZip }: StudyRouteOptions): StudyRoute[] {
+  return [
+    route('GET', '', 'experimenter', 0, () =>
+      json({
+        studies: store.plans.all().map(({ plan, versions: _, ...rest }) => {
+          const { id, participants } = plan;
+          return { id, title: studyTitle(plan), participants, ...rest };
+        }),
+      }),
+    ),
+    route('POST', '', 'experimenter', bodyLimits.json, (call) => {
+      const { plan, simulated, newVersion = false } = checked(newStudySchema, jsonOf(call));
+      return json(store.plans.add(checkedPlan(plan), { simulated, newVersion, at: call.at }), 201);
+    }),
+    // Participants who have begun read the text of their version.
+    route('GET', '/:study', 'anyone', 0, ({ study, query }) => {
+      const { plan, simulated } = store.plans.get(study);
+      const participant = query.get('participant');
+      const read = participant === null ? plan : store.plans.planFor(study, checked(participantId, participant));
+      return json(publicPlan(read, simulated));
+    }),
+    route('DELETE', '/:study', 'experimenter', 0, ({ study }) => {
+      store.deletion.deleteSimulated(study);
+      return done;
+    }),
+    route('GET', '/:study/records', 'experimenter', 0, ({ study, query }) => {
+      return recordsOf(store, store.plans.get(study, versionIn(query)));
+    }),
+    route('GET', '/:study/receipts', 'experimenter', 0, ({ study }) => {
+      store.plans.get(study);
+      return json({ receipts: store.deletion.receipts(study) });
+    }),
+    exporting('/:study/export', 'experimenter', ({ study, at, query }) =>
+      exportOf({ store, software, makeZip }, { at, study, version: versionIn(query) }),
+    ),
+    route('GET', '/:study/participants', 'experimenter', 0, ({ study, at }) =>
+      json({ participants: store.overview(study, at) }),
+    ),
+    route('POST', '/:study/withdraw', 'withdrawing', bodyLimits.json, async (call) => {
+      const { code } = checked(withdrawalSchema, jsonOf(call));
+      return json(await guard.withdrawing(call, code, () => store.deletion.withdraw(call.study, code, call.at)));
+    }),
+  ];
+}
