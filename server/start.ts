@@ -4,7 +4,7 @@ import { createSitePolicy } from 'threepoint-http/site-policy';
 import { softwareIn } from 'threepoint-http/software';
 import { type Credentials, serve } from 'threepoint-http/web-server';
 import { createRelay } from 'threepoint-rooms/server/relay';
-import type { RelayConfiguration } from 'threepoint-rooms/server/relay-configuration';
+import type { RelayConfiguration } from 'threepoint-rooms/server/settings/relay-configuration';
 import { openStudyService } from 'threepoint-study/server/study-service';
 import { createPageHandler } from './page';
 import { shippedRoomKinds } from './room-kinds';

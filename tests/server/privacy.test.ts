@@ -6,7 +6,7 @@ import { openStudyStore } from 'threepoint-study/server/study-store';
 import { expect, onTestFinished, test } from 'vitest';
 import { measured } from '../reliability/measured';
 import { fists, releaseOf } from '../rooms/client/people';
-import { packetAt, toldRoom } from '../rooms/room/told-room';
+import { createTestRoom, packetAt } from '../rooms/room/test-room';
 import { arrive, startRelay, until } from '../rooms/server/running-relay';
 import { paperPlan, session } from '../study/model/studies';
 import { directoryWith } from '../temporary-directory';
@@ -103,7 +103,7 @@ test('nothing that carries poses can write to a disk: relay, sockets, rooms and 
 });
 
 test('a room hands out no pose that is older than two seconds', () => {
-  const told = toldRoom();
+  const told = createTestRoom();
   told.begin();
   const at = told.time;
   told.room.onPose('ann', packetAt(told.room.match, 0, fists(releaseOf(0)), told.time), told.time);

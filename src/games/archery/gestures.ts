@@ -151,7 +151,7 @@ class BowGestures implements ArcheryGestures {
   readonly #cues: BowCue[] = [];
   readonly #view = makeView();
   readonly #arrowView = { nock: this.#view.nockPoint, direction: vec3(0, 0, 0) };
-  readonly #told = {
+  readonly #result = {
     bow: null as BowView | null,
     actions: this.#actions,
     haptics: this.#haptics,
@@ -168,8 +168,8 @@ class BowGestures implements ArcheryGestures {
   follow(frame: TrackingFrame, buttons: Buttons): GestureFrame {
     this.#begin(frame, buttons);
     if (frame.suspended) this.#wait();
-    else this.#told.bow = this.#play(frame);
-    return this.#told;
+    else this.#result.bow = this.#play(frame);
+    return this.#result;
   }
 
   jumped(): void {
@@ -354,8 +354,8 @@ class BowGestures implements ArcheryGestures {
       this.#pulse(stringSide, 0.5, 0.03);
     }
     // The harder the string pulls, the more of it the hand feels.
-    if (arrow.feels()) this.#pulse(stringSide, 0.08 + 0.42 * (arrow.draw / maximumDraw), 0.012);
-    if (arrow.creaks()) this.#cue('creak', bowSide, this.#bow.inHand.position);
+    if (arrow.passesHapticNotch()) this.#pulse(stringSide, 0.08 + 0.42 * (arrow.draw / maximumDraw), 0.012);
+    if (arrow.passesCreakNotch()) this.#cue('creak', bowSide, this.#bow.inHand.position);
   }
 
   #shoot(arrow: NockedArrow, { bowSide, stringSide }: Roles): void {

@@ -65,7 +65,7 @@ export class NockedArrow {
   #steady = 0;
   #anchoredAt = 0;
   #feltDraw = 0;
-  #heardDraw = 0;
+  #creakedDraw = 0;
 
   constructor(
     /** What holds it, and of which hand. */
@@ -123,16 +123,16 @@ export class NockedArrow {
   }
 
   /** Whether the draw has changed by another notch that the string hand feels. */
-  feels(): boolean {
+  passesHapticNotch(): boolean {
     if (!(Math.abs(this.draw - this.#feltDraw) >= hapticNotch)) return false;
     this.#feltDraw = this.draw;
     return true;
   }
 
   /** Whether the draw has grown by another notch at which the bow creaks. */
-  creaks(): boolean {
-    const further = this.draw - this.#heardDraw >= creakNotch;
-    if (further || this.draw < this.#heardDraw) this.#heardDraw = this.draw;
+  passesCreakNotch(): boolean {
+    const further = this.draw - this.#creakedDraw >= creakNotch;
+    if (further || this.draw < this.#creakedDraw) this.#creakedDraw = this.draw;
     return further;
   }
 

@@ -9,7 +9,7 @@ import { ballRoomMessageFrom } from './ball-messages';
 import { type BallGame, BallPolicy } from './ball-policy';
 import { unpackBall } from './ball-snapshot';
 import type { BallOptions } from './ball-state';
-import { answersDeed, followBallEvent, predictDeed, withMatchTime } from './replica';
+import { answersBallAction, followBallEvent, predictBallAction, withMatchTime } from './replica';
 import { arenaFromSeatFloor } from './stations';
 
 export type BallConnection = Connection<BallGame>;
@@ -23,8 +23,8 @@ export const ballClientPolicy: ClientPolicy<BallGame> = {
   unpack: unpackBall,
   follow: followBallEvent,
   at: withMatchTime,
-  predict: predictDeed,
-  answers: answersDeed,
+  predict: predictBallAction,
+  answers: answersBallAction,
   arenaFromFloor: arenaFromSeatFloor,
 };
 

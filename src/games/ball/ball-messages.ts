@@ -7,7 +7,7 @@ import {
 } from 'threepoint-rooms/protocol/messages';
 import * as v from 'valibot';
 import { type PackedBall, packedBallSchema } from './ball-snapshot';
-import type { BallDeed, BallEvent } from './ball-state';
+import type { BallAction, BallEvent } from './ball-state';
 
 /** The ball game as the messages of its Room carry it. */
 export interface SentBallGame {
@@ -43,7 +43,7 @@ const ballAction = v.variant('type', [
 ]);
 
 /** What a player does with a ball, checked field by field; null for anything else. */
-export function ballActionFrom(value: unknown): BallDeed | null {
+export function ballActionFrom(value: unknown): BallAction | null {
   const result = v.safeParse(ballAction, value, { abortEarly: true });
   return result.success ? result.output : null;
 }

@@ -96,7 +96,7 @@ export const packBall = (state: BallState): PackedBall => ({
   basket: packLaunch({ time: state.basket.at, position: state.basket.position, velocity: state.basket.normal }),
 });
 
-/** The state as it was packed, heads and hands unknown, deeds counted from 0; null where the parts contradict each other. */
+/** The state as it was packed, heads and hands unknown, actions counted from 0; null where the parts contradict each other. */
 export function unpackBall(packed: PackedBall): BallState | null {
   const [balls, seconds, rotation] = packed.o;
   if (balls < 1 || balls > 20 || packed.balls.length !== balls || !(seconds > 0 && seconds <= 3600)) return null;

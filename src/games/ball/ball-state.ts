@@ -82,11 +82,11 @@ export interface BallState {
   readonly basket: Basket;
 }
 
-/** What the rules hear: the Room, and each player's own deeds. */
-export type BallAction = SeatAction | (BallDeed & { readonly player: number });
+/** What the rules hear: the Room, and each player's own actions. */
+export type BallInput = SeatAction | (BallAction & { readonly player: number });
 
 /** What a player does with a ball. Numbered by the player from 1: a number counts once, even if it arrives twice or out of order. */
-export type BallDeed =
+export type BallAction =
   | { readonly type: 'grab'; readonly sequence: number; readonly side: Side; readonly ball: number }
   /** Back to the rack. */
   | { readonly type: 'drop'; readonly sequence: number; readonly side: Side }
@@ -102,7 +102,7 @@ export type BallDeed =
       readonly velocity: Vec3;
     };
 
-/** Why a deed changed nothing. */
+/** Why a action changed nothing. */
 export type Refusal =
   | 'phase'
   | 'role'

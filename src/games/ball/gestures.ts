@@ -21,8 +21,8 @@ import { type Side, sides } from 'threepoint/core/math/side';
 import { copyVec3, distance, length, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { ballInPalm, fistOf } from '../fist';
-import type { BallAction, BallDeed, BallEvent, BallState } from './ball-state';
-import { slowestThrow } from './deeds';
+import { slowestThrow } from './actions';
+import type { BallAction, BallEvent, BallInput, BallState } from './ball-state';
 import { ballRadius } from './flight';
 import { createHandSpeed, type HandSpeed } from './hand-speed';
 import { ballInHand } from './state-readings';
@@ -57,7 +57,7 @@ export interface BallCue {
 /** What one frame of hands and buttons means; the pose among its actions, `held` and `near` are the same objects in every frame. */
 export interface BallGestureFrame {
   /** Arena frame; the pose first. */
-  readonly actions: readonly BallAction[];
+  readonly actions: readonly BallInput[];
   readonly haptics: readonly BallPulse[];
   readonly cues: readonly BallCue[];
   /** The ball in each hand, by what the hand did; null: none. */
@@ -71,10 +71,10 @@ export interface BallGestures {
   /** Frames in the order of their time; irregular ones are fine. */
   follow(frame: TrackingFrame, buttons: Buttons): BallGestureFrame;
   /** What the match said: a ball that was refused is in no hand. */
-  hear(events: readonly BallEvent[]): void;
+  onEvents(events: readonly BallEvent[]): void;
   /** The floor lies elsewhere from the next frame on: hands have no way behind them. */
   jumped(): void;
-  /** The match is known afresh, perhaps without deeds of these hands: from the next frame on they hold no ball that it has elsewhere, and put back what only it has in them. */
+  /** The match is known afresh, perhaps without actions of these hands: from the next frame on they hold no ball that it has elsewhere, and put back what only it has in them. */
   resume(): void;
 }
 
@@ -128,10 +128,10 @@ const makeHandMemory = (): HandMemory => ({
   pose: makePose<'arena'>(),
 });
 
-type PoseAction = Extract<BallAction, { type: 'pose' }>;
+type PoseAction = Extract<BallInput, { type: 'pose' }>;
 
 class PlayerGestures implements BallGestures {
-  /** The number of the last deed. */
+  /** The number of the last action. */
   private sequence = 0;
   /** The hands have not been compared with the match that is known now. */
   private stale = true;
@@ -148,7 +148,7 @@ class PlayerGestures implements BallGestures {
   // Of the frame that is followed now.
   private now: BallGestureSettings;
   private time = 0;
-  private actions: BallAction[] = [];
+  private actions: BallInput[] = [];
   private haptics: BallPulse[] = [];
   private cues: BallCue[] = [];
 
@@ -177,13 +177,13 @@ class PlayerGestures implements BallGestures {
     }
     this.followHand('left', left, buttons, playing, paused);
     this.followHand('right', right, buttons, playing, paused);
-    return this.told();
+    return this.finish();
   }
 
-  hear(events: readonly BallEvent[]): void {
+  onEvents(events: readonly BallEvent[]): void {
     if (events.length === 0) return;
     const { player } = this.settings();
-    for (const event of events) for (const side of sides) this.hearOf(side, event, player);
+    for (const event of events) for (const side of sides) this.onEvent(side, event, player);
   }
 
   jumped(): void {
@@ -242,16 +242,16 @@ class PlayerGestures implements BallGestures {
       holding.lostAt = this.time;
       holding.opened = null;
     }
-    return this.tell();
+    return this.result();
   }
 
-  private told(): BallGestureFrame {
+  private finish(): BallGestureFrame {
     this.cues = this.slipped.length > 0 ? [...this.slipped, ...this.cues] : this.cues;
     this.slipped = [];
-    return this.tell();
+    return this.result();
   }
 
-  private tell(): BallGestureFrame {
+  private result(): BallGestureFrame {
     const { actions, haptics, cues, held, near, hands } = this;
     held.left = hands.left.holding?.ball ?? null;
     held.right = hands.right.holding?.ball ?? null;
@@ -259,8 +259,8 @@ class PlayerGestures implements BallGestures {
     return { actions, haptics, cues, held, near };
   }
 
-  private act(deed: BallDeed): void {
-    this.actions.push({ ...deed, player: this.now.player });
+  private act(action: BallAction): void {
+    this.actions.push({ ...action, player: this.now.player });
   }
 
   private number(): number {
@@ -347,7 +347,7 @@ class PlayerGestures implements BallGestures {
     this.haptics.push({ side, strength: Math.min(1, 0.3 + speed / 15), seconds: 0.05 });
   }
 
-  private hearOf(side: Side, event: BallEvent, player: number): void {
+  private onEvent(side: Side, event: BallEvent, player: number): void {
     const hand = this.hands[side];
     const { thrown, holding } = hand;
     if (event.type === 'refused' && event.player === player && event.sequence === thrown?.sequence) {
@@ -366,7 +366,7 @@ class PlayerGestures implements BallGestures {
   }
 }
 
-/** One per player; deeds are numbered from 1. */
+/** One per player; actions are numbered from 1. */
 export const createBallGestures = (settings: () => BallGestureSettings): BallGestures => new PlayerGestures(settings);
 
 /** The ball in a rack that a fist would take, unless one of the two hands has just taken it. */

@@ -54,7 +54,7 @@ const across = vec3(0, 0, 0);
 
 class Holder implements BallBot {
   readonly #postures: PlayerPostures;
-  readonly #told: HolderGoal | undefined;
+  readonly #goalOf: HolderGoal | undefined;
   /** Where the opening waits, and how far from there the arms alone carry it. */
   readonly #home: Vec3;
   readonly #level: Vec3;
@@ -73,7 +73,7 @@ class Holder implements BallBot {
 
   constructor(body: PlayerBody, told?: HolderGoal) {
     this.#postures = createPlayerPostures(body);
-    this.#told = told;
+    this.#goalOf = told;
     const { arm, eyes } = this.#postures;
     this.#home = add(eyes, vec3(0, -0.62 * arm - 0.06, -0.82 * arm));
     this.#level = vec3(this.#home.x, 0, this.#home.z);
@@ -123,7 +123,7 @@ class Holder implements BallBot {
 
   /** The basket goes where the ball comes down, or where it is told to be, and turns towards the ball. */
   #carry(comes: boolean, elapsed: number): void {
-    const goal = this.#told?.(this.#home, this.#goal) ?? (comes ? this.#at : this.#home);
+    const goal = this.#goalOf?.(this.#home, this.#goal) ?? (comes ? this.#at : this.#home);
     if (comes) {
       add(upright, scale(this.#into, -lean, wanted), wanted);
       normalise(wanted, undefined, wanted);

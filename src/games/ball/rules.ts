@@ -1,10 +1,10 @@
 import { distance, isFiniteVec3, length, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { fistOf } from '../fist';
 import type { GameRules } from '../game-rules';
-import type { BallAction, BallEnd, BallEvent, BallOptions, BallPlayer, BallState, Basket, Refusal } from './ball-state';
+import { applyAction, armReach, countOnce, longestDelay } from './actions';
+import type { BallEnd, BallEvent, BallInput, BallOptions, BallPlayer, BallState, Basket, Refusal } from './ball-state';
 import { basketInHands, makeOpening } from './basket';
 import { decide } from './decided-flights';
-import { armReach, countOnce, deedOf, longestDelay } from './deeds';
 import { round, rounded, type Step, unchanged, withBall, withPlayer } from './state-changes';
 import { ballMatchTime, ballSecondsLeft, ballsLeft, tickSeconds } from './state-readings';
 import { holderStation, isInZone, stations } from './stations';
@@ -51,7 +51,7 @@ function returnHeld(state: BallState, player: number | null): Step {
 
 const forgotten = { head: null, left: null, right: null } as const;
 
-/** Deeds are numbered by a page, from 1: those of another page of the same player's as well. */
+/** Actions are numbered by a page, from 1: those of another page of the same player's as well. */
 const uncounted = { sequence: 0, seen: 0 } as const;
 
 function join(state: BallState, index: number): Step {
@@ -97,7 +97,7 @@ function canStart({ players, phase, options }: BallState): boolean {
   return throwers > 0 && holders > 0;
 }
 
-type PoseAction = Extract<BallAction, { type: 'pose' }>;
+type PoseAction = Extract<BallInput, { type: 'pose' }>;
 
 // Memory of one call: every player's pose comes some thirty times a second.
 const fists = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
@@ -144,7 +144,7 @@ function carryBasket(state: BallState, at: number): Step {
   return decide({ ...state, basket: from }, { ...held, at });
 }
 
-function act(state: BallState, action: BallAction): Step {
+function act(state: BallState, action: BallInput): Step {
   if (action.type === 'pause') return pause(state);
   const player = state.players[action.player];
   if (!player) return unchanged(state);
@@ -172,7 +172,7 @@ function act(state: BallState, action: BallAction): Step {
       const counted = countOnce(player, action.sequence);
       if (!counted) return refused(state, 'seen-before');
       const remembered = withPlayer(state, action.player, counted);
-      const done = deedOf(remembered, action.player, action);
+      const done = applyAction(remembered, action.player, action);
       return typeof done === 'string' ? refused(remembered, done) : done;
     }
     default:
@@ -196,7 +196,7 @@ function roundEnd(state: BallState): BallEnd | null {
  * frame. What the players do carries its own time: a flight and the basket are compared as the holder saw them, however late
  * either arrives.
  */
-export const ballRules: GameRules<BallState, BallAction, BallEvent, BallOptions> = {
+export const ballRules: GameRules<BallState, BallInput, BallEvent, BallOptions> = {
   tickSeconds,
 
   start(players, seed, options = {}) {

@@ -177,7 +177,7 @@ function createScore() {
 }
 
 /** What can be pressed now; where this page is in the room no longer, nothing but the way back. */
-function createDeeds(actions: BallBarActions) {
+function createActions(actions: BallBarActions) {
   let isReady = false;
   const ready = button('Ready', () => actions.ready(!isReady), { class: 'primary' });
   const rejoin = button('Take over again', actions.rejoin, { class: 'primary' });
@@ -201,7 +201,7 @@ function createDeeds(actions: BallBarActions) {
       steer.classList.toggle('primary', !out);
       rest.hidden = !seated || mouse !== true;
       watch.hidden = !seated;
-      for (const deed of [ready, steer, rest, watch]) deed.disabled = out;
+      for (const button of [ready, steer, rest, watch]) button.disabled = out;
       hint.hidden = !seated || mouse !== true || out;
       hint.textContent = round?.throws
         ? 'Point at the basket and hold the button: the ring shows where the ball will come down. Let go when it is green. Esc: not yet.'
@@ -292,7 +292,7 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
   const where = element('p', { class: 'hint' });
   const waiting = element('p', { class: 'waiting', role: 'status' });
   const seats = createSeats(actions);
-  const deeds = createDeeds(actions);
+  const buttons = createActions(actions);
   const company = createCompany(actions);
   const voices = createVoicesBar(actions.voices);
   const players = createPlayers(actions, setSound);
@@ -302,8 +302,8 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
     score.node,
     where,
     waiting,
-    deeds.node,
-    deeds.hint,
+    buttons.node,
+    buttons.hint,
     company.node,
     seats.places,
     seats.cameras,
@@ -322,7 +322,7 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
       const sentence = round?.ended ?? round?.waiting ?? null;
       if (waiting.textContent !== (sentence ?? '')) waiting.textContent = sentence;
       waiting.hidden = sentence === null;
-      deeds.show(state);
+      buttons.show(state);
       seats.show(state);
       company.show(state);
       if (round) voices.show(round.voices, round);

@@ -8,7 +8,7 @@ import { identity } from 'threepoint/core/math/quat';
 import { zero } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
-import type { BallAction, BallState } from 'threepoint-games/ball/ball-state';
+import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import type { Opening } from 'threepoint-games/ball/basket';
 import { type BallGestureFrame, type BallGestures, createBallGestures } from 'threepoint-games/ball/gestures';
 import { createHolder } from 'threepoint-games/ball/holder-motion';
@@ -32,7 +32,7 @@ export function momentsUntil(time: number, last: number | null): readonly number
   return moments;
 }
 
-const isDeed = (action: BallAction): action is Extract<BallAction, { type: 'grab' | 'drop' | 'throw' }> =>
+const isBallAction = (action: BallInput): action is Extract<BallInput, { type: 'grab' | 'drop' | 'throw' }> =>
   action.type === 'grab' || action.type === 'drop' || action.type === 'throw';
 
 export const bodyAt = (station: number, calibration: Calibration): PlayerBody => ({
@@ -54,7 +54,7 @@ export interface CourtSight {
   opening: Opening | null;
 }
 
-/** Hands become deeds on this connection. */
+/** Hands become actions on this connection. */
 export function gesturesOf(of: BallConnection): BallGestures {
   return createBallGestures(() => {
     const seen = of.room;
@@ -69,7 +69,7 @@ export function gesturesOf(of: BallConnection): BallGestures {
   });
 }
 
-/** One player's frame as deeds, sent. While the clock stands hands mean nothing. */
+/** One player's frame as actions, sent. While the clock stands hands mean nothing. */
 export function play(
   of: BallConnection,
   gestures: BallGestures,
@@ -78,9 +78,9 @@ export function play(
 ): BallGestureFrame {
   const done = gestures.follow(of.room?.paused ? { ...frame, suspended: true } : frame, buttons);
   for (const action of done.actions) {
-    if (!isDeed(action)) continue;
-    const { player: _, ...deed } = action;
-    of.act(deed);
+    if (!isBallAction(action)) continue;
+    const { player: _, ...ballAction } = action;
+    of.act(ballAction);
   }
   return done;
 }
@@ -107,7 +107,7 @@ export interface Mover {
   readonly estimator: PoseEstimator;
 }
 
-/** One moment of a built-in player: deeds, and the solved body to the others. */
+/** One moment of a built-in player: actions, and the solved body to the others. */
 export function moveOnce(
   { line, gestures, actor, estimator }: Mover,
   moment: number,
@@ -217,7 +217,7 @@ export class BallBots {
     const { match, mySeat } = seen;
     bot.gestures ??= gesturesOf(line);
     if (update.news.length > 0) bot.gestures.resume();
-    bot.gestures.hear(update.events);
+    bot.gestures.onEvents(update.events);
     const actor = this.actorOf(bot, stationOf(seen, mySeat), match.phase, mySeat);
     const mover = { line, gestures: bot.gestures, actor, estimator };
     for (const moment of momentsUntil(time, bot.movedAt)) moveOnce(mover, moment, this.sight);

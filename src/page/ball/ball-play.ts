@@ -21,7 +21,7 @@ import {
   type SteeredPlayer,
 } from 'threepoint-games/ball/steered-players';
 import type { BallBot } from 'threepoint-games/ball/thrower-motion';
-import type { ConnectionStatus, Visitor, VoiceLine } from 'threepoint-rooms/client/connection';
+import type { ConnectionStatus, Visitor, VoiceChannel } from 'threepoint-rooms/client/connection';
 import { createRemotePlayers, type RemotePlayer } from 'threepoint-rooms/client/remote-players';
 import {
   actorFor,
@@ -43,7 +43,7 @@ export interface BallPlay {
   readonly status: ConnectionStatus;
   readonly room: BallRoomView | null;
   /** How this page sets up voices with the others; null: not connected yet. */
-  readonly voices: VoiceLine | null;
+  readonly voices: VoiceChannel | null;
   /** Where the arena lies in this room: by the own seat; a spectator stands in the arena's own frame. Another object with every change. */
   readonly floorFromArena: Transform<'floor', 'arena'>;
   readonly newest: BallFrame | null;
@@ -148,7 +148,7 @@ class MatchPlay implements BallPlay {
     return this.connection?.room ?? null;
   }
 
-  get voices(): VoiceLine | null {
+  get voices(): VoiceChannel | null {
     return this.connection?.voices ?? null;
   }
 
@@ -171,7 +171,7 @@ class MatchPlay implements BallPlay {
     for (const pose of update.poses) this.remote.receive(pose);
     if (update.events.length > 0) this.events = [...this.events, ...update.events];
     if (update.news.length > 0) this.gestures?.resume();
-    this.gestures?.hear(update.events);
+    this.gestures?.onEvents(update.events);
     this.watchSeats();
     this.bots.seat(this.connection, time);
     this.bots.move(time);

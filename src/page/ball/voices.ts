@@ -2,12 +2,12 @@ import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { smoothstep } from 'threepoint/core/math/damper';
 import { transformPoint } from 'threepoint/core/math/pose';
 import { vec3 } from 'threepoint/core/math/vec3';
-import type { VoiceLine } from 'threepoint-rooms/client/connection';
+import type { VoiceChannel } from 'threepoint-rooms/client/connection';
 import type { SignalBody } from 'threepoint-rooms/protocol/voice-messages';
-import { KeptTerms } from 'threepoint-rooms/voices/kept-terms';
+import { IceServerCache } from 'threepoint-rooms/voices/ice-server-cache';
 import { Microphone } from 'threepoint-rooms/voices/microphone';
 import { VoiceMesh } from 'threepoint-rooms/voices/voice-mesh';
-import { hasRelay, type VoiceTerms } from 'threepoint-rooms/voices/voice-terms';
+import { hasRelay, type VoiceSettings } from 'threepoint-rooms/voices/voice-settings';
 import { VoiceSound } from '../scene/sound/voice-sound';
 import type { BodyFrame } from './ball-frame';
 import type { BallPlay } from './ball-play';
@@ -17,7 +17,7 @@ import type { PersonVoice, VoicesProbe, VoicesState } from './voices-state';
 export interface VoicesOptions {
   readonly play: Pick<BallPlay, 'room' | 'status' | 'voices'>;
   /** What the room's server says of voices; null: the room is in this page, or a study's. */
-  readonly terms: (() => Promise<VoiceTerms>) | null;
+  readonly terms: (() => Promise<VoiceSettings>) | null;
   /** The audio that the game's own sounds play in. */
   openAudio(): Promise<AudioContext>;
   /** Voices go by a relay alone, so that no page learns this one's address. */
@@ -63,9 +63,9 @@ export class Voices {
   readonly #seen: BodyFrame[] = [];
   /** How loud each seat's player speaks in this frame. */
   readonly #levels: number[] = [];
-  #line: VoiceLine | null = null;
+  #line: VoiceChannel | null = null;
   #mySeat: number | null = null;
-  readonly #terms: KeptTerms | null;
+  readonly #terms: IceServerCache | null;
   #asked = false;
   #phase: 'off' | 'asked' | 'joining' | 'in' = 'off';
   #muted = true;
@@ -79,7 +79,7 @@ export class Voices {
 
   constructor(options: VoicesOptions) {
     this.#options = options;
-    this.#terms = options.terms && new KeptTerms(options.terms);
+    this.#terms = options.terms && new IceServerCache(options.terms);
   }
 
   get state(): VoicesState {
@@ -93,7 +93,7 @@ export class Voices {
       relay,
       relayOnly: relay && relayOnly(),
       said: this.#said,
-      deaf: this.#phase === 'in' && this.#microphone.complaint !== null,
+      deaf: this.#phase === 'in' && this.#microphone.errorMessage !== null,
     };
   }
 
@@ -108,15 +108,15 @@ export class Voices {
     if (play.voices !== this.#line) {
       this.#line = play.voices;
       this.#line?.listen({
-        seatsChanged: () => this.#follow(),
-        signalled: (from, body) => this.#hear(from, body),
+        onSeatsChanged: () => this.#follow(),
+        onSignal: (from, body) => this.#hear(from, body),
       });
       this.#follow();
     }
     if (!this.#asked && this.#terms && play.room) {
       this.#asked = true;
       // A server that does not say has no voices.
-      void this.#terms.renew().catch(() => undefined);
+      void this.#terms.refresh().catch(() => undefined);
     }
     if ((this.#stay || this.#phase === 'joining') && play.status.phase === 'ended') this.leave();
   }
@@ -151,7 +151,7 @@ export class Voices {
     this.#fault = null;
     this.#muted = true;
     try {
-      const [context, fresh] = await Promise.all([openAudio(), terms.renew()]);
+      const [context, fresh] = await Promise.all([openAudio(), terms.refresh()]);
       if (turn !== this.#turn) return;
       await this.#microphone.open();
       if (turn === this.#turn) this.#enter(context, fresh);
@@ -169,7 +169,7 @@ export class Voices {
     this.#stay = null;
     this.#phase = 'off';
     this.#muted = true;
-    this.#line?.say(null);
+    this.#line?.setVoice(null);
     this.#microphone.close();
     if (!stay) return;
     clearInterval(stay.watching);
@@ -270,20 +270,20 @@ export class Voices {
   get #said(): string | null {
     if (this.#phase !== 'in') return this.#fault;
     if (this.#options.play.room?.mySeat === null) return 'You are watching: voices are for the players on the seats.';
-    const { complaint } = this.#microphone;
-    return complaint && `${complaint} You hear the others all the same.`;
+    const { errorMessage } = this.#microphone;
+    return errorMessage && `${errorMessage} You hear the others all the same.`;
   }
 
-  #configurationOf({ iceServers }: VoiceTerms): RTCConfiguration {
+  #configurationOf({ iceServers }: VoiceSettings): RTCConfiguration {
     return { iceServers: [...iceServers], iceTransportPolicy: this.state.relayOnly ? 'relay' : 'all' };
   }
 
-  #enter(context: AudioContext, terms: VoiceTerms): void {
+  #enter(context: AudioContext, terms: VoiceSettings): void {
     const sound = new VoiceSound(context);
     const mesh = new VoiceMesh({
       configuration: this.#configurationOf(terms),
       signal: (to, body) => this.#line?.signal(to, body),
-      heard: (session, stream) => this.#play(session, stream),
+      onStream: (session, stream) => this.#play(session, stream),
     });
     const watching = setInterval(() => this.#watch(), watchMs);
     const sessions = { session: newSession(), linked: new Set<string>(), dropped: new Set<string>() };
@@ -296,7 +296,7 @@ export class Voices {
 
   #say(): void {
     this.#toldSilent = this.#silent;
-    if (this.#stay) this.#line?.say({ session: this.#stay.session, muted: this.#toldSilent });
+    if (this.#stay) this.#line?.setVoice({ session: this.#stay.session, muted: this.#toldSilent });
   }
 
   /** A muted microphone stays open, so that no question comes up in a headset; nothing of it is sent. */
@@ -309,7 +309,7 @@ export class Voices {
   }
 
   #hear(from: string, body: SignalBody): void {
-    this.#stay?.mesh.take(from, body);
+    this.#stay?.mesh.receive(from, body);
   }
 
   /** Connects to those who take part now. */
@@ -378,7 +378,9 @@ export class Voices {
     // A headset's sleep stops the audio too.
     if (stay.context.state === 'suspended' && document.visibilityState === 'visible') void stay.context.resume();
     stay.sound.mend();
-    void this.#terms?.watch().then((renewed) => renewed && this.#stay?.mesh.configure(this.#configurationOf(renewed)));
+    void this.#terms
+      ?.refreshIfDue()
+      .then((renewed) => renewed && this.#stay?.mesh.configure(this.#configurationOf(renewed)));
   }
 }
 

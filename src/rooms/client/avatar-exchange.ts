@@ -23,7 +23,7 @@ export interface AvatarExchange {
   /** Rejects with a sentence where the server does not say. */
   terms(): Promise<AvatarTerms>;
   /** Whether the other server that is named has this file: it need not be stored then. */
-  liesElsewhere(hash: AvatarHash): Promise<boolean>;
+  isStoredElsewhere(hash: AvatarHash): Promise<boolean>;
   /** Stores the own file; kept for as long as its owner has it on, on a seat. Rejects with a sentence where the server does not take it. */
   store(hash: AvatarHash, file: Blob): Promise<void>;
   /** Where this file may be, the likeliest first. */
@@ -70,7 +70,7 @@ export function createAvatarExchange(base: string, room: string, pass: RoomPass)
 
   return {
     terms: askTerms,
-    async liesElsewhere(hash) {
+    async isStoredElsewhere(hash) {
       const { elsewhere } = await askTerms();
       if (!elsewhere) return false;
       return fetch(`${elsewhere}${hash}`, { method: 'HEAD', cache: 'no-store' }).then(

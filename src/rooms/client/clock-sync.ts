@@ -1,7 +1,7 @@
 /** What is known of another clock by asking it for the time. */
 export interface ClockSync {
   /** The other clock minus ours [s]; 0 before the first answer. */
-  readonly ahead: number;
+  readonly offset: number;
   /** Round trip of the answer that `ahead` is taken from [s]; Infinity before the first. */
   readonly roundTrip: number;
   /** Median round trip of the last five answers [s], as long as the newest has been waited for where that is longer; null: none yet. */
@@ -9,7 +9,7 @@ export interface ClockSync {
   /** Whether to ask now: often at first, then every two seconds. */
   due(now: number): boolean;
   /** An answer: asked at `sent`, heard at `now` (ours), given at `there` (theirs). */
-  hear(sent: number, there: number, now: number): void;
+  receive(sent: number, there: number, now: number): void;
   /** Our clock left out `seconds` of a pause that ended at `now`: theirs is so much further ahead, until it is asked afresh. */
   paused(seconds: number, now: number): void;
   /** Forgets everything: after a pause of the machine clocks may have gone on differently. */
@@ -51,7 +51,7 @@ export function createClockSync(): ClockSync {
   }
 
   return {
-    get ahead() {
+    get offset() {
       return best.ahead;
     },
     get roundTrip() {
@@ -66,7 +66,7 @@ export function createClockSync(): ClockSync {
       nextAsk = now + (asked < eager.asks ? eager.every : every);
       return true;
     },
-    hear(sent, there, now) {
+    receive(sent, there, now) {
       const roundTrip = now - sent;
       if (!(roundTrip >= 0 && roundTrip < longestSilence) || sent < askedFrom) return;
       unanswered = null;

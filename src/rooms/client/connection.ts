@@ -1,7 +1,7 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { WornAvatar } from 'threepoint/core/body/worn-avatar';
 import type { Transform } from 'threepoint/core/math/pose';
-import type { Farewell, SeatInfo } from '../protocol/messages';
+import type { DisconnectReason, SeatInfo } from '../protocol/messages';
 import type { PosePacket } from '../protocol/pose-packet';
 import type { SignalBody, Voice } from '../protocol/voice-messages';
 import type { HostedGame } from '../room/match-policy';
@@ -22,7 +22,7 @@ export interface ConnectionStatus {
   /** Seconds until the next attempt; null: one is under way, or none will be made. */
   readonly retryIn: number | null;
   /** Why it ended, or why the last attempt failed; null: nothing to tell. */
-  readonly reason: Farewell | 'unreachable' | 'refused' | null;
+  readonly reason: DisconnectReason | 'unreachable' | 'refused' | null;
 }
 
 /** The room as it is known here. */
@@ -77,15 +77,15 @@ export type ShownPose = Omit<PosePacket, 'timeMs'>;
 /** What a room says of its voices: told at once and not with a frame, as a page that is hidden draws none. */
 export interface VoiceListener {
   /** The room's seats are known anew: others may take part or no longer. */
-  seatsChanged(): void;
+  onSeatsChanged(): void;
   /** The page with this session among the voices has something to say about the connection to it. */
-  signalled(from: string, body: SignalBody): void;
+  onSignal(from: string, body: SignalBody): void;
 }
 
 /** How a page sets up its voices with the others of its room. */
-export interface VoiceLine {
+export interface VoiceChannel {
   /** Takes part as this says; null: not. Said again after every return. */
-  say(voice: Voice | null): void;
+  setVoice(voice: Voice | null): void;
   /** To the page with this session; lost without a word while there is no connection. */
   signal(to: string, body: SignalBody): void;
   /** One listener; null: none. */
@@ -113,7 +113,7 @@ export interface Connection<Game extends HostedGame> {
   /** Another seat that is free; null: watch. */
   sit(seat: number | null): void;
   calibrate(calibration: Calibration): void;
-  readonly voices: VoiceLine;
+  readonly voices: VoiceChannel;
   /** To be seen with another avatar from now on. Said again after every return. */
   wear(avatar: WornAvatar): void;
   /** Where a seat's floor lies in the arena. */

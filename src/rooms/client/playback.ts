@@ -86,9 +86,9 @@ function opacityAfter(silence: number): number {
 export class Playback {
   private samples: PathSample[] = [];
   private readonly transits = new TransitWindow(transitMemory);
-  private heardAt = 0;
+  private receivedAt = 0;
   /** Page's clock minus the sender's clock of what is drawn. */
-  private behind = Number.NaN;
+  private clockOffset = Number.NaN;
   private delay = firstDelay;
   private followedAt = Number.NaN;
   /** What is drawn; the same object in every frame. */
@@ -106,13 +106,13 @@ export class Playback {
   receive(packet: PosePacket, arrivedAt: number): void {
     const last = this.samples[this.samples.length - 1];
     let time = last ? last.time + packetSecondsBetween(last.packet.timeMs, packet.timeMs) : packet.timeMs / 1000;
-    const silent = arrivedAt - this.heardAt > hideAfter;
+    const silent = arrivedAt - this.receivedAt > hideAfter;
     if (last && time <= last.time && !silent) return;
     if (last && silent) {
       // A player who was hidden comes back as they are now, even if their clock has been set back.
       this.samples = [];
       this.transits.clear();
-      this.behind = Number.NaN;
+      this.clockOffset = Number.NaN;
       time = packet.timeMs / 1000;
     }
     // Of packets that came to the relay at once only the newest is here: those between were as late as they are missing.
@@ -122,14 +122,14 @@ export class Playback {
       for (let i = missing; i > 0; i--) this.transits.add(arrivedAt, arrivedAt - time + i / posesPerSecond);
     }
     this.samples.push({ time, arrivedAt, packet });
-    this.heardAt = arrivedAt;
+    this.receivedAt = arrivedAt;
     this.transits.add(arrivedAt, arrivedAt - time);
   }
 
   /** Writes into `shown` what is drawn at this time of the page's clock [s] and returns how solid it is; null: nothing is drawn. */
   follow(time: number): number | null {
     const { samples } = this;
-    const silence = time - this.heardAt;
+    const silence = time - this.receivedAt;
     if (silence >= hideAfter) {
       // No pose is kept for longer than it is shown.
       if (samples.length > 1) samples.splice(0, samples.length - 1);
@@ -163,9 +163,9 @@ export class Playback {
     this.delay += (wanted - this.delay) * smoothingFactor(delayHalfLife, passed);
     const goal = transits.least + this.delay;
     // A clock that was set afresh is another timeline; else the playhead hurries or dawdles by a tenth at most.
-    if (Number.isNaN(this.behind) || Math.abs(goal - this.behind) > 0.5) this.behind = goal;
-    else this.behind += clamp(goal - this.behind, -0.1 * passed, 0.1 * passed);
-    return time - this.behind;
+    if (Number.isNaN(this.clockOffset) || Math.abs(goal - this.clockOffset) > 0.5) this.clockOffset = goal;
+    else this.clockOffset += clamp(goal - this.clockOffset, -0.1 * passed, 0.1 * passed);
+    return time - this.clockOffset;
   }
 
   /** Writes what is drawn `at` this time of the sender's clock [s]; before the first packet: as that has it. */

@@ -2,7 +2,7 @@ import type { Calibration } from 'threepoint/core/body/calibration';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { plainAvatar, type WornAvatar } from 'threepoint/core/body/worn-avatar';
 import type { Transform } from 'threepoint/core/math/pose';
-import { type ClientMessage, type Joining, type RoomMessage, toMillimetres } from '../protocol/messages';
+import { type ClientMessage, type JoinRequest, type RoomMessage, toMillimetres } from '../protocol/messages';
 import { packetMs } from '../protocol/packet-time';
 import { decodePose, encodePose } from '../protocol/pose-codec';
 import { decodeFrame } from '../protocol/pose-frame';
@@ -18,7 +18,7 @@ import type {
   RoomView,
   ShownPose,
   Visitor,
-  VoiceLine,
+  VoiceChannel,
   VoiceListener,
 } from './connection';
 import { RoomReplica } from './room-replica';
@@ -30,8 +30,8 @@ const mostWaiting = 256;
 
 /** A client's half of the protocol. Each kind of connection carries it over a wire of its own, in `transmit` and `transmitPose`. */
 export abstract class RoomSession<Game extends HostedGame> implements Connection<Game> {
-  readonly voices: VoiceLine = {
-    say: (voice) => this.#sayVoice(voice),
+  readonly voices: VoiceChannel = {
+    setVoice: (voice) => this.#setVoice(voice),
     signal: (to: string, body: SignalBody) => this.transmit({ type: 'signal', to, body }),
     listen: (listener) => {
       this.#voiceListener = listener;
@@ -47,13 +47,13 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   #voice: Voice | null = null;
   #voiceListener: VoiceListener | null = null;
   #skeleton: Skeleton;
-  #wishes: { spectate: boolean; seat: number | null };
+  #seatRequest: { spectate: boolean; seat: number | null };
   /** What the room was told first on this connection. */
-  #said: Joining | null = null;
+  #sentJoin: JoinRequest | null = null;
   /** By its type, what was last asked for without a connection, or with its welcome on the way. */
-  readonly #unsaid = new Map<ClientMessage['type'], ClientMessage>();
+  readonly #queued = new Map<ClientMessage['type'], ClientMessage>();
   /** Whether the clock is to stand; null: never asked for. */
-  #pauseWish: boolean | null = null;
+  #pauseRequest: boolean | null = null;
   #welcomes = 0;
   #now = 0;
   #nextPose = Number.NEGATIVE_INFINITY;
@@ -69,7 +69,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     this.#calibration = toMillimetres(visitor.calibration);
     this.#skeleton = skeletonFromCalibration(this.#calibration);
     this.#avatar = visitor.avatar ?? plainAvatar;
-    this.#wishes = { spectate: visitor.spectate ?? false, seat: visitor.seat ?? null };
+    this.#seatRequest = { spectate: visitor.spectate ?? false, seat: visitor.seat ?? null };
   }
 
   abstract get status(): ConnectionStatus;
@@ -115,24 +115,24 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   }
 
   ready(ready: boolean): void {
-    this.#ask({ type: 'ready', ready });
+    this.#sendOrQueue({ type: 'ready', ready });
   }
 
   rotate(rotate: boolean): void {
-    this.#ask({ type: 'rotate', rotate });
+    this.#sendOrQueue({ type: 'rotate', rotate });
   }
 
   pause(pause: boolean): void {
-    this.#pauseWish = pause;
+    this.#pauseRequest = pause;
     if (this.#replica.mySeat !== null) this.transmit({ type: 'pause', pause });
   }
 
   away(away: boolean): void {
-    this.#ask({ type: 'away', away });
+    this.#sendOrQueue({ type: 'away', away });
   }
 
   sit(seat: number | null): void {
-    this.#ask({ type: 'sit', seat });
+    this.#sendOrQueue({ type: 'sit', seat });
   }
 
   calibrate(calibration: Calibration): void {
@@ -152,25 +152,25 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   }
 
   /** What to say first on every new connection. */
-  protected joining(): Joining {
+  protected joinRequest(): JoinRequest {
     const { name, bot = false } = this.#visitor;
     const own = { calibration: this.#calibration, avatar: this.#avatar, voice: this.#voice };
-    this.#said = { name, bot, ...own, ...this.#wishes };
-    return this.#said;
+    this.#sentJoin = { name, bot, ...own, ...this.#seatRequest };
+    return this.#sentJoin;
   }
 
-  #ask(message: ClientMessage): void {
+  #sendOrQueue(message: ClientMessage): void {
     if (this.status.phase === 'joined') this.transmit(message);
-    else this.#unsaid.set(message.type, message);
+    else this.#queued.set(message.type, message);
   }
 
-  #sayWhatWaited(): void {
-    for (const message of this.#unsaid.values()) this.transmit(message);
-    this.#unsaid.clear();
+  #sendQueued(): void {
+    for (const message of this.#queued.values()) this.transmit(message);
+    this.#queued.clear();
   }
 
   /** What was changed while the welcome was on its way has not been sent. */
-  #sayChanges({ calibration, avatar, voice }: Joining): void {
+  #sendChanges({ calibration, avatar, voice }: JoinRequest): void {
     if (calibration !== this.#calibration) this.transmit({ type: 'calibration', calibration: this.#calibration });
     if (avatar !== this.#avatar) this.transmit({ type: 'wear', avatar: this.#avatar });
     if (voice !== this.#voice) this.transmit({ type: 'voice', voice: this.#voice });
@@ -182,22 +182,23 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     this.#view = null;
     switch (message.type) {
       case 'pong':
-        this.#clock.hear(message.sent, message.time, at);
+        this.#clock.receive(message.sent, message.time, at);
         return;
       case 'signal':
-        this.#voiceListener?.signalled(message.from, message.body);
+        this.#voiceListener?.onSignal(message.from, message.body);
         return;
       case 'welcome':
         if (this.#replica.onWelcome(message)) this.#news.push('voided');
         this.#news.push('welcome');
         this.#welcomes += 1;
         // A player who returns to a server that has forgotten them asks for the same seat.
-        if (message.seat !== null) this.#wishes = { spectate: false, seat: message.seat };
-        if (this.#said) this.#sayChanges(this.#said);
-        this.#sayWhatWaited();
+        if (message.seat !== null) this.#seatRequest = { spectate: false, seat: message.seat };
+        if (this.#sentJoin) this.#sendChanges(this.#sentJoin);
+        this.#sendQueued();
         // The room may have forgotten the wish, or have been told otherwise before the connection was lost.
-        if (this.#pauseWish !== null && message.seat !== null) this.transmit({ type: 'pause', pause: this.#pauseWish });
-        this.#voiceListener?.seatsChanged();
+        if (this.#pauseRequest !== null && message.seat !== null)
+          this.transmit({ type: 'pause', pause: this.#pauseRequest });
+        this.#voiceListener?.onSeatsChanged();
         return;
       default:
         if (this.#replica.onChange(message)) this.#afterChange(message);
@@ -234,7 +235,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     return since;
   }
 
-  #sayVoice(voice: Voice | null): void {
+  #setVoice(voice: Voice | null): void {
     this.#voice = voice;
     if (this.#replica.known) this.transmit({ type: 'voice', voice });
   }
@@ -243,13 +244,13 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     switch (message.type) {
       case 'seat':
         this.#news.push('seats');
-        this.#voiceListener?.seatsChanged();
+        this.#voiceListener?.onSeatsChanged();
         return;
       case 'seated':
-        this.#wishes = { spectate: message.seat === null, seat: message.seat };
+        this.#seatRequest = { spectate: message.seat === null, seat: message.seat };
         this.#news.push('seats');
-        if (this.#pauseWish && message.seat !== null) this.transmit({ type: 'pause', pause: true });
-        this.#voiceListener?.seatsChanged();
+        if (this.#pauseRequest && message.seat !== null) this.transmit({ type: 'pause', pause: true });
+        this.#voiceListener?.onSeatsChanged();
         return;
       case 'match':
         this.#news.push('match');
@@ -261,7 +262,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
 
   /** Seconds of the Room's clock minus seconds of this page's. */
   get #ahead(): number {
-    return this.#knowsClock ? 0 : this.#clock.ahead;
+    return this.#knowsClock ? 0 : this.#clock.offset;
   }
 
   /** Seconds of the match minus seconds of this page's clock. */

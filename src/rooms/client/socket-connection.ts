@@ -1,6 +1,6 @@
 import { io, type Socket } from 'socket.io-client';
 import { type ClientMessage, protocolVersion } from '../protocol/messages';
-import { frameEvent, messageEvent, pageParser, poseEvent } from '../protocol/small-frames';
+import { frameEvent, messageEvent, pageParser, poseEvent } from '../protocol/socket-parsers';
 import type { HostedGame } from '../room/match-policy';
 import { type BackOff, createBackOff } from './back-off';
 import type { ClientPolicy } from './client-policy';
@@ -119,7 +119,7 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
   #listen(): void {
     const socket = this.#socket;
     socket.on('connect', () => {
-      socket.emit(messageEvent, { type: 'join', version: protocolVersion, ...this.joining() });
+      socket.emit(messageEvent, { type: 'join', version: protocolVersion, ...this.joinRequest() });
     });
     socket.on('connect_error', (error) => this.#onRefusal(error.message));
     socket.on('disconnect', () => this.#retryLater(this.#reason));

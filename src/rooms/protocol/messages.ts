@@ -77,7 +77,7 @@ const clientMessage = v.variant('type', [
 
 /** What a client may say, apart from pose packets. */
 export type ClientMessage = v.InferOutput<typeof clientMessage>;
-export type Joining = Omit<v.InferOutput<typeof join>, 'type' | 'version'>;
+export type JoinRequest = Omit<v.InferOutput<typeof join>, 'type' | 'version'>;
 
 /** The message, checked field by field; null for anything else. */
 export function clientMessageFrom(value: unknown): ClientMessage | null {
@@ -152,8 +152,17 @@ export function unpackSeatInfo(packed: PackedSeatInfo): SeatInfo | null {
  * Why the Room ends a client's stay: the same person connected again (replaced), a person took a bot's seat (yielded), the client
  * asked for it (left), broke the rules, reads too slowly, or the room or its server ends.
  */
-const farewells = ['replaced', 'yielded', 'left', 'misbehaved', 'slow', 'stopping', 'closed', 'old-page'] as const;
-export type Farewell = (typeof farewells)[number];
+const disconnectReasons = [
+  'replaced',
+  'yielded',
+  'left',
+  'misbehaved',
+  'slow',
+  'stopping',
+  'closed',
+  'old-page',
+] as const;
+export type DisconnectReason = (typeof disconnectReasons)[number];
 
 /** What a Room says of itself, in any game. */
 const controlMessage = v.variant('type', [
@@ -166,7 +175,7 @@ const controlMessage = v.variant('type', [
   /** The match's start is elsewhere now: its host paused. */
   v.strictObject({ type: v.literal('match-start'), matchStart: seconds }),
   v.strictObject({ type: v.literal('pong'), sent: seconds, time: seconds }),
-  v.strictObject({ type: v.literal('farewell'), reason: v.picklist(farewells) }),
+  v.strictObject({ type: v.literal('farewell'), reason: v.picklist(disconnectReasons) }),
   signalFrom,
 ]);
 

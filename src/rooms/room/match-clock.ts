@@ -3,14 +3,14 @@ import type { HostedGame, HostedMatch, MatchAction, MatchPolicy } from './match-
 /** What a match's clock tells its Room. */
 export interface MatchClockListener<Game extends HostedGame> {
   /** What happened in the match, oldest first; perhaps nothing. */
-  happened(events: readonly Game['event'][]): void;
+  onEvents(events: readonly Game['event'][]): void;
   /** The clock stands, or runs again. */
-  paused(): void;
+  onPauseChange(): void;
   /** The clock's start is elsewhere in the Room's time. */
-  shifted(): void;
+  onStartShift(): void;
   /** Another match has begun. */
-  restarted(): void;
-  stepped(actions: readonly MatchAction<Game>[]): void;
+  onRestart(): void;
+  onStep(actions: readonly MatchAction<Game>[]): void;
 }
 
 /** A shift of the match's start by less than this [s] is rounding. */
@@ -22,7 +22,7 @@ export class MatchClock<Game extends HostedGame> {
   readonly #listener: MatchClockListener<Game>;
   #match: HostedMatch<Game>;
   /** Actions that wait for the next step. */
-  #waiting: MatchAction<Game>[] = [];
+  #queued: MatchAction<Game>[] = [];
   #begun = false;
   #matchStart = 0;
   /** For how long the clock has stood in all [s]. */
@@ -58,8 +58,8 @@ export class MatchClock<Game extends HostedGame> {
   }
 
   /** Time alone changes nothing: no match runs, and no action waits. */
-  get isStill(): boolean {
-    return this.#waiting.length === 0 && !this.isRunning;
+  get isIdle(): boolean {
+    return this.#queued.length === 0 && !this.isRunning;
   }
 
   /** The second of the match at which its clock stands; null: it runs. */
@@ -77,7 +77,7 @@ export class MatchClock<Game extends HostedGame> {
 
   /** Keeps an action for the next step. */
   add(action: MatchAction<Game>): void {
-    this.#waiting.push(action);
+    this.#queued.push(action);
   }
 
   /** Steps the match as far as this time, unless its clock stands or, because the players want so, is stopped now. */
@@ -87,14 +87,14 @@ export class MatchClock<Game extends HostedGame> {
       this.#resume(time, this.#stoppedAt);
     }
     const stopping = wantPause && this.state.phase === 'running';
-    const due = this.#takeWaiting();
+    const due = this.#takeQueued();
     if (stopping) due.push({ type: 'pause' });
     const tick = this.state.tick;
-    this.#listener.happened(this.#match.advance(this.#runningTime(time), due));
+    this.#listener.onEvents(this.#match.advance(this.#runningTime(time), due));
     // Between two ticks of the match nothing is stepped: then it stops with the next one. A match that these ticks ended stands by itself.
     if (stopping && this.state.tick !== tick && this.state.phase === 'running') {
       this.#stoppedAt = time;
-      this.#listener.paused();
+      this.#listener.onPauseChange();
       return;
     }
     this.#followHost(time);
@@ -103,7 +103,7 @@ export class MatchClock<Game extends HostedGame> {
   }
 
   #newMatch(): HostedMatch<Game> {
-    return this.#policy.start(this.#rotation, (actions) => this.#listener.stepped(actions));
+    return this.#policy.start(this.#rotation, (actions) => this.#listener.onStep(actions));
   }
 
   /** The Room's time less the time that the match's clock has stood [s]. */
@@ -111,9 +111,9 @@ export class MatchClock<Game extends HostedGame> {
     return time - this.#pausedSeconds;
   }
 
-  #takeWaiting(): MatchAction<Game>[] {
-    const waiting = this.#waiting;
-    this.#waiting = [];
+  #takeQueued(): MatchAction<Game>[] {
+    const waiting = this.#queued;
+    this.#queued = [];
     return waiting;
   }
 
@@ -121,7 +121,7 @@ export class MatchClock<Game extends HostedGame> {
     this.#pausedSeconds += time - stoppedAt;
     this.#matchStart += time - stoppedAt;
     this.#stoppedAt = null;
-    this.#listener.paused();
+    this.#listener.onPauseChange();
   }
 
   /** A match cuts pauses of its host, which stepped nothing meanwhile, out of its time: then its start is later. */
@@ -129,7 +129,7 @@ export class MatchClock<Game extends HostedGame> {
     const start = time - this.#match.lead - this.state.tick * this.#policy.tickSeconds;
     if (Math.abs(start - this.#matchStart) <= leastShift) return;
     this.#matchStart = start;
-    this.#listener.shifted();
+    this.#listener.onStartShift();
   }
 
   /** Begins another match once all who are there want one and can play it. */
@@ -148,8 +148,8 @@ export class MatchClock<Game extends HostedGame> {
       this.add({ type: 'join', player });
       this.add({ type: 'ready', player, ready: true });
     });
-    const events = this.#match.advance(this.#runningTime(time), this.#takeWaiting());
-    this.#listener.restarted();
-    this.#listener.happened(events);
+    const events = this.#match.advance(this.#runningTime(time), this.#takeQueued());
+    this.#listener.onRestart();
+    this.#listener.onEvents(events);
   }
 }

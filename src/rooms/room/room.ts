@@ -1,15 +1,15 @@
 import { plainAvatar, type WornAvatar } from 'threepoint/core/body/worn-avatar';
 import { transformPoint, transformSeen } from 'threepoint/core/math/pose';
-import { type ClientMessage, type Joining, packSeatInfo, protocolVersion } from '../protocol/messages';
+import { type ClientMessage, type JoinRequest, packSeatInfo, protocolVersion } from '../protocol/messages';
 import { decodePoints, makePoints } from '../protocol/pose-codec';
 import type { PointsPacket } from '../protocol/pose-packet';
 import { MatchClock } from './match-clock';
 import type { HostedGame, MatchPolicy } from './match-policy';
 import { sendEvents } from './room-events';
-import type { ClientId, RoomOutlet, RoomReason, RoomRefusal } from './room-outlet';
+import type { ClientId, RefusalReason, RoomHost, RoomRefusal } from './room-host';
 import { RoomVoices } from './room-voices';
-import { SeatNews } from './seat-news';
-import { allowedMoves, type Client, type SeatCensus, Seats } from './seats';
+import { SeatUpdates } from './seat-updates';
+import { allowedMoves, type Member, type SeatCensus, Seats } from './seats';
 
 export interface RoomOptions {
   readonly id: string;
@@ -46,32 +46,32 @@ const points = makePoints();
 export class Room<Game extends HostedGame> {
   readonly options: RoomOptions;
   readonly #policy: MatchPolicy<Game>;
-  readonly #outlet: RoomOutlet<Game>;
-  readonly #clients = new Map<ClientId, Client>();
+  readonly #host: RoomHost<Game>;
+  readonly #members = new Map<ClientId, Member>();
   readonly #seats: Seats;
   readonly #voices: RoomVoices;
   readonly #match: MatchClock<Game>;
-  readonly #news: SeatNews;
+  readonly #seatUpdates: SeatUpdates;
   /** The newest time that the host has given [s]. */
   #time = 0;
 
-  constructor(policy: MatchPolicy<Game>, options: RoomOptions, outlet: RoomOutlet<Game>) {
+  constructor(policy: MatchPolicy<Game>, options: RoomOptions, host: RoomHost<Game>) {
     this.options = options;
     this.#policy = policy;
-    this.#outlet = outlet;
+    this.#host = host;
     this.#match = new MatchClock(policy, {
-      happened: this.#happened,
-      paused: () => this.#broadcastClock('paused'),
-      shifted: () => this.#broadcastClock('match-start'),
-      restarted: () => outlet.broadcast({ type: 'match', match: this.#snapshot(), matchStart: this.#match.matchStart }),
-      stepped: (actions) => outlet.stepped?.(actions),
+      onEvents: this.#sendEvents,
+      onPauseChange: () => this.#broadcastClock('paused'),
+      onStartShift: () => this.#broadcastClock('match-start'),
+      onRestart: () => host.broadcast({ type: 'match', match: this.#snapshot(), matchStart: this.#match.matchStart }),
+      onStep: (actions) => host.stepped?.(actions),
     });
     this.#seats = new Seats(policy.seats, {
-      changed: (seat) => this.#news.changed(seat, this.#time),
+      changed: (seat) => this.#seatUpdates.changed(seat, this.#time),
       act: (action) => this.#match.add(action),
     });
-    this.#news = new SeatNews(policy.seats, (seat) => this.#broadcastSeat(seat));
-    this.#voices = new RoomVoices(this.#seats, options.voices === true, outlet);
+    this.#seatUpdates = new SeatUpdates(policy.seats, (seat) => this.#broadcastSeat(seat));
+    this.#voices = new RoomVoices(this.#seats, options.voices === true, host);
   }
 
   /** The game that is played here. */
@@ -80,7 +80,7 @@ export class Room<Game extends HostedGame> {
   }
 
   get census(): RoomCensus {
-    const empty = this.#clients.size === 0 && this.#seats.areEmpty;
+    const empty = this.#members.size === 0 && this.#seats.areEmpty;
     return { ...this.#seats.census, spectators: this.#countSpectators(), empty };
   }
 
@@ -95,16 +95,16 @@ export class Room<Game extends HostedGame> {
   }
 
   /** What this person has on, on a seat that is theirs or held for them; null: they have none. */
-  wornBy(identity: string): WornAvatar | null {
-    const index = this.#seats.heldBy(identity);
+  avatarOf(identity: string): WornAvatar | null {
+    const index = this.#seats.indexOfIdentity(identity);
     return index === null ? null : (this.#seats.at(index)?.avatar ?? null);
   }
 
   /** A new connection of a person whose identity the host has made sure of. Replaces an older one of theirs and takes their held seat. */
-  join(client: ClientId, identity: string, joining: Joining, time: number): void {
+  join(client: ClientId, identity: string, joining: JoinRequest, time: number): void {
     this.#time = time;
     this.#match.begin(time);
-    if (this.#clients.has(client)) {
+    if (this.#members.has(client)) {
       this.#refuse(client, 'message', 'joined-already');
       return;
     }
@@ -112,14 +112,14 @@ export class Room<Game extends HostedGame> {
     const { name, calibration, bot, spectate } = joining;
     const avatar = this.options.assigned ? plainAvatar : joining.avatar;
     const voice = spectate ? null : this.#voices.admitted(identity, joining.voice);
-    const known: Client = { identity, name, bot, calibration, avatar, voice, moves: allowedMoves() };
-    this.#clients.set(client, known);
-    const held = this.#seats.heldBy(identity);
-    if (held !== null && !spectate) this.#seats.retake(held, client, known, time);
+    const member: Member = { identity, name, bot, calibration, avatar, voice, moves: allowedMoves() };
+    this.#members.set(client, member);
+    const held = this.#seats.indexOfIdentity(identity);
+    if (held !== null && !spectate) this.#seats.retake(held, client, member, time);
     else {
       if (held !== null) this.#vacate(held);
       const index = spectate ? null : this.#freeSeatFor(joining.seat, bot);
-      if (index !== null) this.#takeSeat(index, client, known, time);
+      if (index !== null) this.#takeSeat(index, client, member, time);
     }
     this.#welcome(client, time);
     this.#broadcastAbout();
@@ -129,11 +129,11 @@ export class Room<Game extends HostedGame> {
   disconnect(client: ClientId, time: number): void {
     this.#time = time;
     const index = this.#seats.indexOf(client);
-    if (!this.#clients.delete(client)) return;
+    if (!this.#members.delete(client)) return;
     if (index !== null) {
       if (this.#seats.at(index)?.bot) this.#vacate(index);
       else {
-        this.#seats.hold(index, time);
+        this.#seats.markDisconnected(index, time);
         this.#seats.setPresence(index, time);
       }
     }
@@ -143,13 +143,13 @@ export class Room<Game extends HostedGame> {
   /** bad: an action that is none of this game's. A message that asks for more than the client may have is taken, and refused. */
   onMessage(client: ClientId, message: Exclude<ClientMessage, { type: 'join' }>, time: number): 'taken' | 'bad' {
     this.#time = time;
-    const known = this.#clients.get(client);
-    if (!known) {
+    const member = this.#members.get(client);
+    if (!member) {
       this.#refuse(client, 'message', 'not-joined');
       return 'taken';
     }
     if (message.type === 'action') return this.#onAction(client, message);
-    this.#onControl(client, known, message, time);
+    this.#onControl(client, member, message, time);
     return 'taken';
   }
 
@@ -160,7 +160,7 @@ export class Room<Game extends HostedGame> {
     const index = this.#seats.indexOf(client);
     const seat = index === null ? null : this.#seats.at(index);
     if (!seat || index === null) return 'ignored';
-    const judged = seat.poses.take(packet, bytes, time);
+    const judged = seat.poses.accept(packet, bytes, time);
     if (judged === 'too-fast') this.#refuse(client, 'pose', 'too-fast');
     if (judged !== 'believed') return 'ignored';
     if (!this.#match.isPaused) this.#actPose(index, packet, seat.poses.packetTime);
@@ -168,8 +168,8 @@ export class Room<Game extends HostedGame> {
   }
 
   /** Time alone changes nothing here: no match runs and no one is waited for. Until something comes, ticks are in vain. */
-  get isStill(): boolean {
-    return this.#match.isStill && this.#seats.areStill && this.#news.isComplete;
+  get isIdle(): boolean {
+    return this.#match.isIdle && this.#seats.areIdle && this.#seatUpdates.isComplete;
   }
 
   /** So long after a tick the next is of use, unless a message comes [s]. */
@@ -182,26 +182,26 @@ export class Room<Game extends HostedGame> {
     this.#match.begin(time);
     this.#time = time;
     this.#seats.watch(time);
-    this.#news.tick(time);
-    this.#match.step(time, this.#seats.wantPause);
+    this.#seatUpdates.tick(time);
+    this.#match.step(time, this.#seats.pauseRequested);
   }
 
   /** Sends the pose packets that have come since the last call. */
   sendPoses(): void {
     const poses = this.#seats.takeFresh();
-    if (poses.length > 0) this.#outlet.poses(poses);
+    if (poses.length > 0) this.#host.sendPoses(poses);
   }
 
   #onControl(
     client: ClientId,
-    known: Client,
+    member: Member,
     message: Exclude<ClientMessage, { type: 'join' | 'action' }>,
     time: number,
   ): void {
     const index = this.#seats.indexOf(client);
     switch (message.type) {
       case 'ping':
-        this.#outlet.send(client, { type: 'pong', sent: message.sent, time });
+        this.#host.send(client, { type: 'pong', sent: message.sent, time });
         return;
       case 'leave':
         if (index !== null) this.#vacate(index);
@@ -209,28 +209,28 @@ export class Room<Game extends HostedGame> {
         this.#broadcastAbout();
         return;
       case 'calibration':
-        this.#calibrate(index, known, message);
+        this.#calibrate(index, member, message);
         return;
       case 'wear':
-        this.#wear(client, known, message);
+        this.#wear(client, member, message);
         return;
       case 'voice':
       case 'signal':
-        this.#voices.hear(index, known, message, (reason) => this.#refuse(client, 'message', reason));
+        this.#voices.onMessage(index, member, message, (reason) => this.#refuse(client, 'message', reason));
         return;
       case 'away':
         if (index !== null) this.#declareAway(index, message, time);
         return;
       case 'sit':
-        this.#sit(client, known, message.seat, time);
+        this.#sit(client, member, message.seat, time);
         return;
       default:
-        this.#onWish(client, index, message);
+        this.#onPlayerRequest(client, index, message);
     }
   }
 
   /** What only a player may ask of the match. */
-  #onWish(client: ClientId, index: number | null, message: Received<'ready' | 'rotate' | 'pause'>): void {
+  #onPlayerRequest(client: ClientId, index: number | null, message: Received<'ready' | 'rotate' | 'pause'>): void {
     const seat = index === null ? null : this.#seats.at(index);
     if (!seat || index === null) {
       this.#refuse(client, 'message', 'no-seat');
@@ -246,7 +246,7 @@ export class Room<Game extends HostedGame> {
         this.#broadcastAbout();
         return;
       case 'pause':
-        if (this.options.pausable) seat.wantsPause = message.pause;
+        if (this.options.pausable) seat.requestsPause = message.pause;
         else this.#refuse(client, 'message', 'not-pausable');
     }
   }
@@ -256,7 +256,7 @@ export class Room<Game extends HostedGame> {
     if (!action) return 'bad';
     const player = this.#seats.indexOf(client);
     if (player === null) this.#refuse(client, 'action', 'no-seat');
-    else if (this.paused) this.#happened([this.#policy.refusalInPause(player, action)]);
+    else if (this.paused) this.#sendEvents([this.#policy.refusalInPause(player, action)]);
     else this.#match.add({ ...action, player });
     return 'taken';
   }
@@ -273,52 +273,52 @@ export class Room<Game extends HostedGame> {
     });
   }
 
-  #calibrate(index: number | null, known: Client, { calibration }: Received<'calibration'>): void {
-    known.calibration = calibration;
-    if (index !== null) this.#seats.tell(index, { calibration });
+  #calibrate(index: number | null, member: Member, { calibration }: Received<'calibration'>): void {
+    member.calibration = calibration;
+    if (index !== null) this.#seats.update(index, { calibration });
   }
 
   /** Where places are assigned all look alike: bodies that people bring along would tell who they are. */
-  #wear(client: ClientId, known: Client, { avatar }: Received<'wear'>): void {
+  #wear(client: ClientId, member: Member, { avatar }: Received<'wear'>): void {
     if (this.options.assigned) {
       this.#refuse(client, 'message', 'assigned');
       return;
     }
-    known.avatar = avatar;
+    member.avatar = avatar;
     const index = this.#seats.indexOf(client);
-    if (index !== null && this.#seats.at(index)?.avatar !== avatar) this.#seats.tell(index, { avatar });
+    if (index !== null && this.#seats.at(index)?.avatar !== avatar) this.#seats.update(index, { avatar });
   }
 
   #declareAway(index: number, { away }: Received<'away'>, time: number): void {
     const seat = this.#seats.at(index);
     if (!seat) return;
     seat.declaredAway = away;
-    if (!away) seat.poses.heard(time);
+    if (!away) seat.poses.markSeen(time);
     this.#seats.setPresence(index, time);
   }
 
   /** Moves a client to another seat, or among those who watch (null). */
-  #sit(client: ClientId, known: Client, wish: number | null, time: number): void {
+  #sit(client: ClientId, member: Member, wish: number | null, time: number): void {
     const index = this.#seats.indexOf(client);
     if (wish === index) return;
-    const refusal = this.options.assigned ? 'assigned' : this.#seats.refusalOf(wish, known, time);
+    const refusal = this.options.assigned ? 'assigned' : this.#seats.refusalOf(wish, member, time);
     if (refusal) {
       this.#refuse(client, 'sit', refusal);
       return;
     }
     if (index !== null) this.#vacate(index);
-    known.voice = null;
-    if (wish !== null) this.#takeSeat(wish, client, known, time);
-    this.#outlet.send(client, { type: 'seated', seat: wish });
+    member.voice = null;
+    if (wish !== null) this.#takeSeat(wish, client, member, time);
+    this.#host.send(client, { type: 'seated', seat: wish });
     this.#broadcastAbout();
   }
 
   /** Ends other connections of this person; their seat is held for the newest one. */
   #replaceOlder(identity: string, time: number): void {
-    for (const [older, { identity: theirs }] of this.#clients) {
+    for (const [older, { identity: theirs }] of this.#members) {
       if (theirs !== identity) continue;
       const index = this.#seats.indexOf(older);
-      if (index !== null) this.#seats.hold(index, time);
+      if (index !== null) this.#seats.markDisconnected(index, time);
       this.#dismiss(older, 'replaced');
     }
   }
@@ -329,26 +329,26 @@ export class Room<Game extends HostedGame> {
   }
 
   /** Sits a client down; a bot that sits there goes. */
-  #takeSeat(index: number, client: ClientId, known: Client, time: number): void {
+  #takeSeat(index: number, client: ClientId, member: Member, time: number): void {
     const sitting = this.#seats.at(index)?.client ?? null;
     this.#seats.vacate(index);
     if (sitting !== null) this.#dismiss(sitting, 'yielded');
-    this.#seats.take(index, client, known, time);
+    this.#seats.take(index, client, member, time);
   }
 
   #vacate(index: number): void {
     this.#seats.vacate(index);
-    this.#news.changed(index, this.#time);
+    this.#seatUpdates.changed(index, this.#time);
   }
 
   #dismiss(client: ClientId, reason: 'left' | 'replaced' | 'yielded'): void {
-    this.#clients.delete(client);
-    this.#outlet.drop(client, reason);
+    this.#members.delete(client);
+    this.#host.disconnect(client, reason);
   }
 
   #welcome(to: ClientId, time: number): void {
     const { id, epoch } = this.options;
-    this.#outlet.send(to, {
+    this.#host.send(to, {
       type: 'welcome',
       version: protocolVersion,
       room: id,
@@ -371,27 +371,27 @@ export class Room<Game extends HostedGame> {
 
   #countSpectators(): number {
     let spectators = 0;
-    for (const client of this.#clients.keys()) if (this.#seats.indexOf(client) === null) spectators += 1;
+    for (const client of this.#members.keys()) if (this.#seats.indexOf(client) === null) spectators += 1;
     return spectators;
   }
 
   #broadcastAbout(): void {
-    this.#outlet.broadcast({ type: 'about', spectators: this.#countSpectators(), rotate: this.#match.rotate });
+    this.#host.broadcast({ type: 'about', spectators: this.#countSpectators(), rotate: this.#match.rotate });
   }
 
   #broadcastSeat(seat: number): void {
-    this.#outlet.broadcast({ type: 'seat', seat, info: packSeatInfo(this.#seats.infoOf(seat)) });
+    this.#host.broadcast({ type: 'seat', seat, info: packSeatInfo(this.#seats.infoOf(seat)) });
   }
 
   #broadcastClock(type: 'paused' | 'match-start'): void {
     const { matchStart, pausedAt } = this.#match;
-    this.#outlet.broadcast(type === 'paused' ? { type, at: pausedAt, matchStart } : { type, matchStart });
+    this.#host.broadcast(type === 'paused' ? { type, at: pausedAt, matchStart } : { type, matchStart });
   }
 
-  readonly #happened = (events: readonly Game['event'][]): void =>
-    sendEvents(events, { policy: this.#policy, seats: this.#seats, outlet: this.#outlet });
+  readonly #sendEvents = (events: readonly Game['event'][]): void =>
+    sendEvents(events, { policy: this.#policy, seats: this.#seats, host: this.#host });
 
-  #refuse(client: ClientId, what: RoomRefusal['what'], reason: RoomReason): void {
-    this.#outlet.refused({ client, seat: this.#seats.indexOf(client), what, reason });
+  #refuse(client: ClientId, what: RoomRefusal['what'], reason: RefusalReason): void {
+    this.#host.refused({ client, seat: this.#seats.indexOf(client), what, reason });
   }
 }

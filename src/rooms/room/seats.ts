@@ -3,8 +3,8 @@ import type { WornAvatar } from 'threepoint/core/body/worn-avatar';
 import type { SeatAction } from 'threepoint/core/tracking/seat-action';
 import type { SeatInfo } from '../protocol/messages';
 import type { Voice } from '../protocol/voice-messages';
-import { PoseClaims } from './pose-claims';
-import type { ClientId, FreshPose } from './room-outlet';
+import { PoseValidator } from './pose-validator';
+import type { ClientId, FreshPose } from './room-host';
 import { TokenBucket } from './token-bucket';
 
 /** Seats are held this long after a connection is lost [s]. */
@@ -20,7 +20,7 @@ const movesAtOnce = 4;
 export const allowedMoves = (): TokenBucket => new TokenBucket(movesPerSecond, movesAtOnce);
 
 /** A client who has joined. */
-export interface Client {
+export interface Member {
   /** The person: the same on each of their connections. */
   readonly identity: string;
   readonly name: string;
@@ -43,14 +43,14 @@ export interface Seat {
   voice: Voice | null;
   readonly bot: boolean;
   /** Room time [s] of losing the connection. */
-  lostAt: number | null;
+  disconnectedAt: number | null;
   /** Present in the match, as the rules see it. */
   playing: boolean;
   declaredAway: boolean;
   presence: SeatInfo['presence'];
   /** The player wants the match's clock to stand. */
-  wantsPause: boolean;
-  readonly poses: PoseClaims;
+  requestsPause: boolean;
+  readonly poses: PoseValidator;
 }
 
 /** What seats cause outside of them. */
@@ -94,15 +94,15 @@ export class Seats {
   }
 
   /** Whether one of the players wants the match's clock to stand. */
-  get wantPause(): boolean {
-    return this.#seats.some((seat) => seat?.wantsPause);
+  get pauseRequested(): boolean {
+    return this.#seats.some((seat) => seat?.requestsPause);
   }
 
   /** Time alone changes nothing of them: none is held, all who are silent are known to be, and no pose is remembered. */
-  get areStill(): boolean {
+  get areIdle(): boolean {
     return this.#seats.every((seat) => {
       if (!seat) return true;
-      return seat.lostAt === null && seat.presence !== 'here' && !seat.poses.remembered;
+      return seat.disconnectedAt === null && seat.presence !== 'here' && !seat.poses.hasPose;
     });
   }
 
@@ -131,7 +131,7 @@ export class Seats {
   }
 
   /** The number of the seat that is held for this person or taken by them; null: none is. */
-  heldBy(identity: string): number | null {
+  indexOfIdentity(identity: string): number | null {
     const index = this.#seats.findIndex((seat) => seat?.identity === identity);
     return index < 0 ? null : index;
   }
@@ -144,7 +144,7 @@ export class Seats {
   }
 
   /** Why a client may not move to this seat, or among those who watch (null) at this time [s]; null: they may, and one move is spent. */
-  refusalOf(wish: number | null, { bot, moves }: Client, time: number): 'occupied' | 'too-often' | null {
+  refusalOf(wish: number | null, { bot, moves }: Member, time: number): 'occupied' | 'too-often' | null {
     if (wish !== null && !this.isFreeFor(wish, bot)) return 'occupied';
     return moves.take(time) ? null : 'too-often';
   }
@@ -158,8 +158,8 @@ export class Seats {
   }
 
   /** Sits a client down on a seat that is empty. */
-  take(index: number, client: ClientId, known: Client, time: number): void {
-    const { identity, name, calibration, avatar, voice, bot } = known;
+  take(index: number, client: ClientId, member: Member, time: number): void {
+    const { identity, name, calibration, avatar, voice, bot } = member;
     this.#seats[index] = {
       identity,
       client,
@@ -168,51 +168,52 @@ export class Seats {
       avatar,
       voice,
       bot,
-      lostAt: null,
+      disconnectedAt: null,
       playing: true,
       declaredAway: false,
       presence: 'here',
-      wantsPause: false,
-      poses: new PoseClaims(time),
+      requestsPause: false,
+      poses: new PoseValidator(time),
     };
     this.#listener.act({ type: 'join', player: index });
     this.#listener.changed(index);
   }
 
   /** Gives the seat that was held for a person back to them, on their new connection. */
-  retake(index: number, client: ClientId, { name, calibration, avatar, voice }: Client, time: number): void {
+  retake(index: number, client: ClientId, { name, calibration, avatar, voice }: Member, time: number): void {
     const seat = this.at(index);
     if (!seat) return;
     // To the rules a player who was away for long comes anew; within the grace all that was theirs still is.
     this.#listener.act({ type: seat.playing ? 'reconnect' : 'join', player: index });
-    Object.assign(seat, {
+    const changes: Partial<Seat> = {
       client,
-      lostAt: null,
+      disconnectedAt: null,
       playing: true,
       declaredAway: false,
       presence: 'here',
       calibration,
       avatar,
       voice,
-    });
+    };
+    Object.assign(seat, changes);
     if (name) seat.name = name;
     seat.poses.reconnected(time);
     this.#listener.changed(index);
   }
 
   /** Holds the seat of a client whose connection is lost. Others are told with the presence that follows from it. */
-  hold(index: number, time: number): void {
+  markDisconnected(index: number, time: number): void {
     const seat = this.at(index);
     if (!seat) return;
     seat.client = null;
-    seat.lostAt = time;
+    seat.disconnectedAt = time;
   }
 
   /** What a player has told of themselves since they sat down. */
-  tell(index: number, told: Partial<Pick<Seat, 'calibration' | 'avatar' | 'voice'>>): void {
+  update(index: number, changes: Partial<Pick<Seat, 'calibration' | 'avatar' | 'voice'>>): void {
     const seat = this.at(index);
     if (!seat) return;
-    Object.assign(seat, told);
+    Object.assign(seat, changes);
     this.#listener.changed(index);
   }
 
@@ -228,7 +229,7 @@ export class Seats {
   setPresence(index: number, time: number): void {
     const seat = this.at(index);
     if (!seat) return;
-    const silent = time - seat.poses.heardAt > awayAfter;
+    const silent = time - seat.poses.lastSeenAt > awayAfter;
     const presence = seat.client === null ? 'gone' : seat.declaredAway || silent ? 'away' : 'here';
     if (presence === seat.presence) return;
     seat.presence = presence;
@@ -245,13 +246,13 @@ export class Seats {
 
   #watchSeat(index: number, seat: Seat, time: number): void {
     this.setPresence(index, time);
-    if (seat.poses.forgetOld(time)) this.#listener.act({ type: 'silent', player: index });
-    if (seat.lostAt === null) return;
-    if (seat.playing && time - seat.lostAt > awayAfter) {
+    if (seat.poses.forgetExpired(time)) this.#listener.act({ type: 'silent', player: index });
+    if (seat.disconnectedAt === null) return;
+    if (seat.playing && time - seat.disconnectedAt > awayAfter) {
       seat.playing = false;
       this.#listener.act({ type: 'leave', player: index });
     }
-    if (time - seat.lostAt > seatHoldSeconds) {
+    if (time - seat.disconnectedAt > seatHoldSeconds) {
       this.vacate(index);
       this.#listener.changed(index);
     }

@@ -9,16 +9,16 @@ import { clientAddressOf } from 'threepoint-http/client-address';
 import { type Call, jsonOf, type Route, type Service } from 'threepoint-http/router';
 import * as v from 'valibot';
 import { roomTerms } from '../protocol/messages';
-import type { AvatarRoutes } from './avatar-routes';
-import type { RoomListing } from './hosted-rooms';
-import { JoinLimits } from './join-limits';
-import type { Lobby } from './lobby';
-import type { RelayConfiguration } from './relay-configuration';
-import type { RelayCensus, RelayMetrics } from './relay-metrics';
-import { relayPath } from './relay-transport';
-import type { RoomKinds } from './room-kinds';
-import { assignedRoomName, type RoomTokens, roomName } from './room-tokens';
-import type { VoiceRoutes } from './voice-routes';
+import { JoinLimits } from './access/join-limits';
+import { assignedRoomName, type RoomTokens, roomName } from './access/room-tokens';
+import type { AvatarRoutes } from './avatars/avatar-routes';
+import type { RoomKinds } from './hosting/room-kinds';
+import type { RoomListing } from './hosting/room-registry';
+import type { Lobby } from './lobby/lobby';
+import type { RelayConfiguration } from './settings/relay-configuration';
+import type { RelayCensus, RelayMetrics } from './settings/relay-metrics';
+import { relayPath } from './sockets/relay-transport';
+import type { VoiceRoutes } from './voices/voice-routes';
 
 export interface RelayRoutesOptions {
   readonly configuration: RelayConfiguration;
@@ -78,10 +78,10 @@ const isOnThisMachine = (request: IncomingMessage): boolean =>
   clientAddressOf(request, false).isLoopback && request.headers['x-forwarded-for'] === undefined;
 
 /**
- * Who may call a route of the relay: all pages of our origins, the holder of the admin's token, programs on this machine; guest: the holder of a
+ * Who may call a route of the relay: all pages of our origins, the holder of the admin's token, programs on this machine; client: the holder of a
  * pass to the room that the address names, which the route itself looks at.
  */
-export type RelayAccess = 'anyone' | 'admin' | 'this-machine' | 'guest';
+export type RelayAccess = 'anyone' | 'admin' | 'this-machine' | 'client';
 
 type RelayRoute = Route<RelayAccess>;
 
@@ -116,7 +116,7 @@ export class RelayRoutes implements Service<RelayAccess> {
     this.#admin = new AdminGuard(options.configuration, options.log);
     this.routes = [
       get('/healthz', 'anyone', () => json({ status: 'ok', ...options.census() })),
-      get('/metrics', 'this-machine', () => this.#tellMetrics()),
+      get('/metrics', 'this-machine', () => this.#metrics()),
       get(relayPath, 'anyone', () => {
         throw new HttpError(426, 'only WebSockets are served at this address', { headers: { upgrade: 'websocket' } });
       }),
@@ -154,7 +154,7 @@ export class RelayRoutes implements Service<RelayAccess> {
     this.#options.log.error({ error: String(error) }, 'request failed');
   }
 
-  async #tellMetrics(): Promise<Answer> {
+  async #metrics(): Promise<Answer> {
     const { registry } = this.#options.metrics;
     return { status: 200, headers: { 'content-type': registry.contentType }, body: await registry.metrics() };
   }

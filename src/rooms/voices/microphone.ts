@@ -9,7 +9,7 @@ const refusals: Readonly<Record<string, string>> = {
 };
 
 /** Why there is no microphone, in a sentence. */
-export function refusalOf(error: unknown): string {
+export function microphoneErrorOf(error: unknown): string {
   const name = error instanceof DOMException ? error.name : '';
   return (
     refusals[name] ?? `The microphone could not be used (${error instanceof Error ? error.message : String(error)}).`
@@ -32,8 +32,8 @@ export class Microphone {
   #stream: MediaStream | null = null;
   #wanted = false;
   #asking: Promise<void> | null = null;
-  #complaint: string | null = null;
-  #again: ReturnType<typeof setInterval> | null = null;
+  #errorMessage: string | null = null;
+  #retryTimer: ReturnType<typeof setInterval> | null = null;
 
   /** `changed`: another track, or none any more. */
   constructor(changed: () => void) {
@@ -46,21 +46,21 @@ export class Microphone {
   }
 
   /** Why there is none, in a sentence; null: there is, or none is wanted. */
-  get complaint(): string | null {
-    return this.#complaint;
+  get errorMessage(): string | null {
+    return this.#errorMessage;
   }
 
   /** Never rejects: what goes wrong is the complaint. */
   async open(): Promise<void> {
     this.#wanted = true;
-    document.addEventListener('visibilitychange', this.#look);
+    document.addEventListener('visibilitychange', this.#retry);
     await this.#take();
   }
 
   close(): void {
     this.#wanted = false;
-    this.#complaint = null;
-    document.removeEventListener('visibilitychange', this.#look);
+    this.#errorMessage = null;
+    document.removeEventListener('visibilitychange', this.#retry);
     this.#stopAsking();
     this.#release();
   }
@@ -83,12 +83,12 @@ export class Microphone {
       }
       this.#release();
       this.#stream = stream;
-      this.#complaint = null;
+      this.#errorMessage = null;
       this.#stopAsking();
       stream.getAudioTracks()[0]?.addEventListener('ended', this.#lose, { once: true });
     } catch (error) {
       if (!this.#wanted) return;
-      this.#complaint = refusalOf(error);
+      this.#errorMessage = microphoneErrorOf(error);
       // Who refuses is not asked again every two seconds: the page's own button does that.
       if (error instanceof DOMException && error.name === 'NotAllowedError') this.#stopAsking();
     }
@@ -98,20 +98,20 @@ export class Microphone {
   /** The device has ended it: it sleeps, or was pulled out. */
   readonly #lose = (): void => {
     this.#stream = null;
-    this.#complaint = 'The microphone was lost: it is being looked for.';
+    this.#errorMessage = 'The microphone was lost: it is being looked for.';
     this.#changed();
-    this.#again ??= setInterval(this.#look, againMs);
-    this.#look();
+    this.#retryTimer ??= setInterval(this.#retry, againMs);
+    this.#retry();
   };
 
-  readonly #look = (): void => {
-    if (this.#wanted && this.track === null && document.visibilityState === 'visible' && this.#again !== null)
+  readonly #retry = (): void => {
+    if (this.#wanted && this.track === null && document.visibilityState === 'visible' && this.#retryTimer !== null)
       void this.#take();
   };
 
   #stopAsking(): void {
-    if (this.#again !== null) clearInterval(this.#again);
-    this.#again = null;
+    if (this.#retryTimer !== null) clearInterval(this.#retryTimer);
+    this.#retryTimer = null;
   }
 
   #release(): void {

@@ -5,7 +5,7 @@ export interface VoiceMeshOptions {
   readonly configuration: RTCConfiguration;
   signal(to: string, body: SignalBody): void;
   /** The voice of the page with this session; null: it is there no longer. */
-  heard(session: string, stream: MediaStream | null): void;
+  onStream(session: string, stream: MediaStream | null): void;
 }
 
 /** Connections to all others who take part in the voices of a room, each by the session that its page has among them. */
@@ -38,8 +38,8 @@ export class VoiceMesh {
   }
 
   /** Takes in a signal; from a page that is not among the voices, nothing. */
-  take(from: string, body: SignalBody): void {
-    void this.#peers.get(from)?.take(body);
+  receive(from: string, body: SignalBody): void {
+    void this.#peers.get(from)?.receive(body);
   }
 
   /** The own voice, to all; null: nothing is sent. */
@@ -63,13 +63,13 @@ export class VoiceMesh {
   }
 
   #connect(own: string, session: string): VoicePeer {
-    const { signal, heard } = this.#options;
+    const { signal, onStream } = this.#options;
     return new VoicePeer(
       {
         polite: own < session,
         configuration: this.#configuration,
         signal: (body) => signal(session, body),
-        heard: (stream) => heard(session, stream),
+        onStream: (stream) => onStream(session, stream),
       },
       this.#track,
     );
@@ -78,6 +78,6 @@ export class VoiceMesh {
   #drop(session: string): void {
     this.#peers.get(session)?.close();
     this.#peers.delete(session);
-    this.#options.heard(session, null);
+    this.#options.onStream(session, null);
   }
 }

@@ -6,7 +6,7 @@ export interface VoicePeerOptions {
   readonly configuration: RTCConfiguration;
   signal(body: SignalBody): void;
   /** The voice of the other, for as long as the connection lasts. */
-  heard(stream: MediaStream): void;
+  onStream(stream: MediaStream): void;
 }
 
 type Candidate = Extract<SignalBody, { candidates: unknown }>['candidates'][number];
@@ -43,7 +43,7 @@ function opusAlone(transceiver: RTCRtpTransceiver): void {
 export class VoicePeer {
   readonly #options: VoicePeerOptions;
   readonly #pc: RTCPeerConnection;
-  #over = false;
+  #closed = false;
   #offering = false;
   #ignoring = false;
   #answering = false;
@@ -61,7 +61,7 @@ export class VoicePeer {
     this.#pc.addEventListener('negotiationneeded', () => void this.#offer());
     this.#pc.addEventListener('icecandidate', ({ candidate }) => candidate && this.#gather(candidate));
     this.#pc.addEventListener('track', ({ track: theirs }) => {
-      if (!this.#over) options.heard(new MediaStream([theirs]));
+      if (!this.#closed) options.onStream(new MediaStream([theirs]));
     });
     if (options.polite) return;
     const transceiver = this.#pc.addTransceiver('audio', { direction: 'sendrecv' });
@@ -80,7 +80,7 @@ export class VoicePeer {
   }
 
   /** Takes in what the other page has signalled. */
-  async take(body: SignalBody): Promise<void> {
+  async receive(body: SignalBody): Promise<void> {
     try {
       if ('description' in body) await this.#takeDescription(body.description);
       else for (const candidate of body.candidates) await this.#takeCandidate(candidate);
@@ -97,7 +97,7 @@ export class VoicePeer {
     if (signalingState === 'have-local-offer') {
       if (now - this.#offeredAt < answerSeconds) return;
       this.#offeredAt = now;
-      this.#tell();
+      this.#sendDescription();
       return;
     }
     const lost = connectionState === 'disconnected' || connectionState === 'failed';
@@ -114,8 +114,8 @@ export class VoicePeer {
 
   /** Nothing is sent, signalled or heard from now on. */
   close(): void {
-    if (this.#over) return;
-    this.#over = true;
+    if (this.#closed) return;
+    this.#closed = true;
     if (this.#gathering !== null) clearTimeout(this.#gathering);
     this.setTrack(null);
     setTimeout(() => this.#pc.close(), closingMs);
@@ -126,7 +126,7 @@ export class VoicePeer {
       this.#offering = true;
       await this.#pc.setLocalDescription();
       this.#offeredAt = performance.now() / 1000;
-      this.#tell();
+      this.#sendDescription();
     } catch (error) {
       // Closed while it was being described.
       if (!(error instanceof DOMException)) throw error;
@@ -135,9 +135,9 @@ export class VoicePeer {
     }
   }
 
-  #tell(): void {
+  #sendDescription(): void {
     const description = this.#pc.localDescription;
-    if (this.#over || !description || (description.type !== 'offer' && description.type !== 'answer')) return;
+    if (this.#closed || !description || (description.type !== 'offer' && description.type !== 'answer')) return;
     this.#options.signal({ description: { type: description.type, sdp: shortened(description.sdp) } });
   }
 
@@ -159,7 +159,7 @@ export class VoicePeer {
       void transceiver.sender.replaceTrack(this.#track);
     }
     await pc.setLocalDescription();
-    this.#tell();
+    this.#sendDescription();
   }
 
   async #takeCandidate(candidate: Candidate): Promise<void> {
@@ -172,7 +172,7 @@ export class VoicePeer {
   }
 
   #gather({ candidate, sdpMid, sdpMLineIndex, usernameFragment }: RTCIceCandidate): void {
-    if (this.#over || candidate.length > longestCandidate) return;
+    if (this.#closed || candidate.length > longestCandidate) return;
     this.#candidates.push({ candidate, sdpMid, sdpMLineIndex, usernameFragment });
     this.#gathering ??= setTimeout(() => {
       this.#gathering = null;

@@ -35,7 +35,7 @@ test('a file that never ends is given up with a sentence, and the next place is 
     new ArrayBuffer(0),
     unused,
     {
-      ...{ terms: unused, liesElsewhere: unused, store: unused },
+      ...{ terms: unused, isStoredElsewhere: unused, store: unused },
       addressesOf: async () =>
         [first, second].map((url) => ({
           get url() {
@@ -57,7 +57,7 @@ test('a file that never ends is given up with a sentence, and the next place is 
 /** Loads from the store of a room that has files at these addresses. */
 const from = (urls: readonly string[]) =>
   new SeenAvatars(new ArrayBuffer(0), unused, {
-    ...{ terms: unused, liesElsewhere: unused, store: unused },
+    ...{ terms: unused, isStoredElsewhere: unused, store: unused },
     addressesOf: async () => urls.map((url) => ({ url, headers: {} })),
   });
 

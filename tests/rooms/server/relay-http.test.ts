@@ -1,7 +1,7 @@
 import { SignJWT } from 'jose';
 import { clientAddressOf } from 'threepoint-http/client-address';
-import { relayConfigurationFrom } from 'threepoint-rooms/server/relay-configuration';
-import { createRoomTokens } from 'threepoint-rooms/server/room-tokens';
+import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
+import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { type RunningRelay, rawGuest, rawSocket, startRelay, testSecret, tokenFor, until } from './running-relay';
 

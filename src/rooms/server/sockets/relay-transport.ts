@@ -11,12 +11,12 @@ import { createSlotCounter } from 'threepoint-http/connection-limiter';
 import { createSitePolicy } from 'threepoint-http/site-policy';
 import { targetOf } from 'threepoint-http/target';
 import { handshakeMs } from 'threepoint-http/web-server';
-import { longestMessage } from '../protocol/messages';
-import { relayParser } from '../protocol/small-frames';
-import { TokenBucket } from '../room/token-bucket';
-import type { RelayConfiguration } from './relay-configuration';
-import type { RelayMetrics } from './relay-metrics';
-import { type ReceivingWebSocket, takeShortMessages } from './short-messages';
+import { longestMessage } from '../../protocol/messages';
+import { relayParser } from '../../protocol/socket-parsers';
+import { TokenBucket } from '../../room/token-bucket';
+import type { RelayConfiguration } from '../settings/relay-configuration';
+import type { RelayMetrics } from '../settings/relay-metrics';
+import { type ReceivingWebSocket, takeShortMessages } from '../short-messages';
 import { SlowReaders } from './slow-readers';
 
 /** Where the relay is found on its server. */
@@ -62,7 +62,7 @@ const destroySoon = (raw: NetSocket | undefined): void => {
 };
 
 /** Ends the connection however little the other side reads. */
-export function hangUp(socket: Socket): void {
+export function closeConnection(socket: Socket): void {
   const raw: NetSocket | undefined = socket.conn.request?.socket;
   socket.disconnect(true);
   destroySoon(raw);
@@ -147,7 +147,7 @@ export function createRelayTransport(
       metrics.kicked(fault);
       log.warn({ because: fault }, 'a connection without a place was ended');
     }
-    // A guest who has left the rooms may still have the connection.
+    // A client who has left the rooms may still have the connection.
     conn.close();
     destroySoon(conn.request.socket);
   }

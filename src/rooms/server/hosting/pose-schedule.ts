@@ -5,7 +5,7 @@ import { clamp } from 'threepoint/core/math/damper';
 export interface PoseSender {
   readonly room: { sendPoses(): void };
   /** Who hears them. */
-  readonly guests: { readonly size: number };
+  readonly clients: { readonly size: number };
   /** When it has sent last [s]. */
   sentAt: number;
 }
@@ -80,7 +80,7 @@ export class PoseSchedule {
     this.#judge(now);
     let next = Number.POSITIVE_INFINITY;
     for (const sender of this.#fresh) {
-      const due = sender.guests.size > pair ? sender.sentAt + this.#pace : now;
+      const due = sender.clients.size > pair ? sender.sentAt + this.#pace : now;
       if (due <= now) send(sender, now);
       else {
         this.#waiting.add(sender);

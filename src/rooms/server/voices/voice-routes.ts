@@ -1,9 +1,9 @@
 import { createHash, createHmac } from 'node:crypto';
 import { type Answer, json } from 'threepoint-http/answer';
 import type { Call, Route } from 'threepoint-http/router';
-import { guestPassOf } from './guest-pass';
-import type { RoomTokens } from './room-tokens';
-import type { VoiceConfiguration } from './voice-configuration';
+import { requirePass } from '../access/request-pass';
+import type { RoomTokens } from '../access/room-tokens';
+import type { VoiceConfiguration } from '../settings/voice-configuration';
 
 export interface VoiceRoutesOptions {
   /** null: there are no voices. */
@@ -15,7 +15,7 @@ export interface VoiceRoutesOptions {
 
 /** A pass to the servers that pass voices on is good for so long [s]: pages ask for another one before. */
 const turnSeconds = 4 * 3600;
-const noVoices = { voices: false, iceServers: [], goodFor: null };
+const noVoices = { voices: false, iceServers: [], ttlSeconds: null };
 
 /**
  * A user and password that a TURN server believes which knows the same secret, until a time [s since 1970] ("REST API for access to TURN
@@ -29,18 +29,18 @@ function turnPass(secret: string, identity: string, until: number): { username: 
 
 /** Whether the people of a room can talk, and by which servers their pages find each other. `?room=` is for the proxy of a fleet. */
 export class VoiceRoutes {
-  readonly routes: readonly Route<'guest'>[];
+  readonly routes: readonly Route<'client'>[];
   readonly #options: VoiceRoutesOptions;
 
   constructor(options: VoiceRoutesOptions) {
     this.#options = options;
     const handle = (call: Call) => this.#terms(call);
-    this.routes = [{ method: 'GET', path: '/api/voices', access: 'guest', handle, bodyLimit: 0 }];
+    this.routes = [{ method: 'GET', path: '/api/voices', access: 'client', handle, bodyLimit: 0 }];
   }
 
   async #terms(call: Call): Promise<Answer> {
     const { voices, tokens, now } = this.#options;
-    const { identity, assigned } = await guestPassOf(call, tokens);
+    const { identity, assigned } = await requirePass(call, tokens);
     if (!voices || assigned) return json(noVoices);
     const { stun, turn } = voices;
     return json({
@@ -49,7 +49,7 @@ export class VoiceRoutes {
         ...(stun.length > 0 ? [{ urls: stun }] : []),
         ...(turn ? [{ urls: turn.urls, ...turnPass(turn.secret, identity, now() + turnSeconds) }] : []),
       ],
-      goodFor: turn ? turnSeconds : null,
+      ttlSeconds: turn ? turnSeconds : null,
     });
   }
 }

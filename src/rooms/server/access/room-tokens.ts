@@ -1,7 +1,7 @@
 import { randomBytes } from 'node:crypto';
 import { errors, jwtVerify, SignJWT } from 'jose';
 import * as v from 'valibot';
-import { mostSeats, type RoomTerms, roomTerms } from '../protocol/messages';
+import { mostSeats, type RoomTerms, roomTerms } from '../../protocol/messages';
 
 /** A place that is one person's own, by the name that it is known under; seat null: among those who watch. */
 export interface AssignedPlace {

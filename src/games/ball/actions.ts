@@ -1,5 +1,5 @@
 import { distance, isFiniteVec3, length } from 'threepoint/core/math/vec3';
-import type { BallDeed, BallPlayer, BallState, Refusal } from './ball-state';
+import type { BallAction, BallPlayer, BallState, Refusal } from './ball-state';
 import { ballRadius } from './flight';
 import { roundedLaunch, type Step, withBall } from './state-changes';
 import { ballInHand, ballMatchTime, tickSeconds } from './state-readings';
@@ -30,15 +30,15 @@ export function countOnce({ sequence, seen }: BallPlayer, number: number): { seq
   return { sequence, seen: seen | (1 << age) };
 }
 
-/** What the deed does, or why it does nothing. */
-export function deedOf(state: BallState, index: number, deed: BallDeed): Step | Refusal {
+/** What the action does, or why it does nothing. */
+export function applyAction(state: BallState, index: number, action: BallAction): Step | Refusal {
   if (state.phase !== 'running' || state.startedAt === null) return 'phase';
   if (state.players[index]!.role !== 'thrower') return 'role';
-  if (deed.type === 'grab') return grab(state, index, deed, state.startedAt);
-  const ball = ballInHand(state, index, deed.side);
+  if (action.type === 'grab') return grab(state, index, action, state.startedAt);
+  const ball = ballInHand(state, index, action.side);
   if (ball < 0) return 'not-held';
-  if (deed.type === 'drop') return putBack(state, index, ball);
-  return ball === deed.ball ? throwBall(state, index, deed, state.startedAt) : 'not-held';
+  if (action.type === 'drop') return putBack(state, index, ball);
+  return ball === action.ball ? throwBall(state, index, action, state.startedAt) : 'not-held';
 }
 
 const putBack = (state: BallState, player: number, ball: number): Step => ({
@@ -46,7 +46,7 @@ const putBack = (state: BallState, player: number, ball: number): Step => ({
   events: [{ type: 'returned', ball, player }],
 });
 
-type Grab = Extract<BallDeed, { type: 'grab' }>;
+type Grab = Extract<BallAction, { type: 'grab' }>;
 
 function grab(state: BallState, player: number, { ball, side }: Grab, startedAt: number): Step | Refusal {
   const fist = state.players[player]![side];
@@ -62,19 +62,19 @@ function grab(state: BallState, player: number, { ball, side }: Grab, startedAt:
   };
 }
 
-type Throw = Extract<BallDeed, { type: 'throw' }>;
+type Throw = Extract<BallAction, { type: 'throw' }>;
 
-function throwBall(state: BallState, player: number, deed: Throw, startedAt: number): Step | Refusal {
-  const { ball, side, position, velocity } = deed;
+function throwBall(state: BallState, player: number, action: Throw, startedAt: number): Step | Refusal {
+  const { ball, side, position, velocity } = action;
   const { head, station, [side]: fist } = state.players[player]!;
-  if (!isFiniteVec3(position) || !isFiniteVec3(velocity) || !Number.isFinite(deed.at)) return 'speed';
+  if (!isFiniteVec3(position) || !isFiniteVec3(velocity) || !Number.isFinite(action.at)) return 'speed';
   const speed = length(velocity);
   if (speed > fastestThrow) return 'speed';
   if (!head || !isInZone(head, station)) return 'zone';
   if (distance(position, head) > armReach) return 'reach';
   if (fist && distance(position, fist) > releaseReach) return 'reach';
   const now = ballMatchTime(state) + tickSeconds;
-  const time = Math.min(Math.max(deed.at, now - longestDelay, startedAt), now);
+  const time = Math.min(Math.max(action.at, now - longestDelay, startedAt), now);
   if (time >= startedAt + state.options.seconds) return 'time';
   if (speed < slowestThrow) return putBack(state, player, ball);
   const launch = roundedLaunch({ time, position: { ...position, y: Math.max(position.y, ballRadius) }, velocity });

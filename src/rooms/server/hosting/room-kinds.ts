@@ -1,5 +1,5 @@
-import type { RoomTerms } from '../protocol/messages';
-import type { HostedGame, MatchPolicy } from '../room/match-policy';
+import type { RoomTerms } from '../../protocol/messages';
+import type { HostedGame, MatchPolicy } from '../../room/match-policy';
 
 /**
  * The games that rooms of a server may be for, by the name that pages ask for: the policy of a room with these terms. `assigned`: every

@@ -1,6 +1,6 @@
 import { Redis } from 'ioredis';
 import type { Logger } from 'pino';
-import type { RoomListing } from './hosted-rooms';
+import type { RoomListing } from '../hosting/room-registry';
 
 /** Rooms of all processes, as far as this one knows. */
 export interface Lobby {
@@ -25,7 +25,7 @@ export function createOwnLobby(): Lobby {
 
 const prefix = 'threepoint:lobby:';
 /** What a process has said is believed this long [s]: one that was killed is forgotten then. */
-const beliefSeconds = 5;
+const entrySeconds = 5;
 const commandTimeoutMs = 1000;
 
 const retryStrategy = (attempt: number): number => Math.min(200 * attempt, 2000);
@@ -72,7 +72,7 @@ export function createRedisLobby(redis: Redis, node: string, log: Logger): Lobby
       const now = Date.now();
       redis
         .multi()
-        .set(`${prefix}node:${node}`, JSON.stringify(rooms), 'EX', beliefSeconds)
+        .set(`${prefix}node:${node}`, JSON.stringify(rooms), 'EX', entrySeconds)
         .zadd(`${prefix}nodes`, now, node)
         .zremrangebyscore(`${prefix}nodes`, 0, now - 60_000)
         .exec()

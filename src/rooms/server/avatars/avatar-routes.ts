@@ -6,11 +6,11 @@ import { type Answer, done, HttpError, json } from 'threepoint-http/answer';
 import { readBody } from 'threepoint-http/body';
 import { clientAddressOf } from 'threepoint-http/client-address';
 import type { Call, Route } from 'threepoint-http/router';
+import { requirePass } from '../access/request-pass';
+import type { RoomTokens } from '../access/room-tokens';
+import type { RelayConfiguration } from '../settings/relay-configuration';
+import type { RelayMetrics } from '../settings/relay-metrics';
 import type { AvatarOwner, AvatarStore, Reservation } from './avatar-store';
-import { guestPassOf } from './guest-pass';
-import type { RelayConfiguration } from './relay-configuration';
-import type { RelayMetrics } from './relay-metrics';
-import type { RoomTokens } from './room-tokens';
 
 export interface AvatarRoutesOptions {
   readonly configuration: Pick<RelayConfiguration, 'avatarMegabytes' | 'avatarsFrom' | 'trustProxy'>;
@@ -44,7 +44,7 @@ const perMinute = (points: number): RateLimiterMemory => new RateLimiterMemory({
 
 /** Uploads and downloads of the avatars that the people of a room see each other in. `?room=` is for the proxy of a fleet. */
 export class AvatarRoutes {
-  readonly routes: readonly Route<'guest'>[];
+  readonly routes: readonly Route<'client'>[];
   readonly #options: AvatarRoutesOptions;
   readonly #uploads = perMinute(uploadsPerPerson);
   readonly #uploadsFrom = perMinute(uploadsPerAddress);
@@ -52,8 +52,8 @@ export class AvatarRoutes {
 
   constructor(options: AvatarRoutesOptions) {
     this.#options = options;
-    const route = (method: 'GET' | 'PUT', path: string, handle: Route['handle']): Route<'guest'> => ({
-      ...{ method, path, access: 'guest', handle },
+    const route = (method: 'GET' | 'PUT', path: string, handle: Route['handle']): Route<'client'> => ({
+      ...{ method, path, access: 'client', handle },
       // What is uploaded is no JSON: its handler reads it.
       bodyLimit: 0,
     });
@@ -67,13 +67,13 @@ export class AvatarRoutes {
   /** What may be stored, and what of the person who asks is. */
   async #terms(call: Call): Promise<Answer> {
     const { configuration, store } = this.#options;
-    const { room, identity } = await guestPassOf(call, this.#options.tokens);
+    const { room, identity } = await requirePass(call, this.#options.tokens);
     const taken = Math.min(mostAvatarBytes, configuration.avatarMegabytes * 2 ** 20);
     return json({ mostBytes: taken, elsewhere: configuration.avatarsFrom, yours: store.keptOf(room, identity) });
   }
 
   async #download(call: Call): Promise<Answer> {
-    const { room, identity } = await guestPassOf(call, this.#options.tokens);
+    const { room, identity } = await requirePass(call, this.#options.tokens);
     await this.#spend(this.#downloads, identity, 'download');
     const bytes = this.#options.store.get(room, hashIn(call));
     if (!bytes) throw new HttpError(404, 'no one in this room has stored such an avatar');
@@ -82,7 +82,7 @@ export class AvatarRoutes {
 
   async #upload(call: Call): Promise<Answer> {
     const { request } = call;
-    const { room, identity, assigned } = await guestPassOf(call, this.#options.tokens);
+    const { room, identity, assigned } = await requirePass(call, this.#options.tokens);
     const hash = hashIn(call);
     if (assigned) throw new HttpError(403, 'in the rooms of a study all wear the same avatar');
     if (!this.#options.isSeated(room, identity)) throw new HttpError(403, 'this is for people on a seat of the room');

@@ -3,8 +3,8 @@ import type { Redis } from 'ioredis';
 import { type RateLimiterAbstract, RateLimiterMemory, RateLimiterRedis, RateLimiterRes } from 'rate-limiter-flexible';
 import { HttpError } from 'threepoint-http/answer';
 import { clientAddressOf } from 'threepoint-http/client-address';
-import type { RelayConfiguration } from './relay-configuration';
-import type { RelayMetrics } from './relay-metrics';
+import type { RelayConfiguration } from '../settings/relay-configuration';
+import type { RelayMetrics } from '../settings/relay-metrics';
 
 export interface JoinLimitsOptions {
   readonly configuration: RelayConfiguration;
@@ -18,14 +18,14 @@ const joinsPerMinuteHere = 120;
 /** Limits the new players of one address per minute; the limit of this machine itself is higher. */
 export class JoinLimits {
   readonly #options: JoinLimitsOptions;
-  readonly #elsewhere: RateLimiterAbstract;
-  readonly #here: RateLimiterAbstract;
+  readonly #remote: RateLimiterAbstract;
+  readonly #local: RateLimiterAbstract;
 
   constructor(options: JoinLimitsOptions) {
     this.#options = options;
     const { joinsPerMinute } = options.configuration;
-    this.#elsewhere = this.#limiter(joinsPerMinute, 'threepoint:joins');
-    this.#here = this.#limiter(Math.max(joinsPerMinuteHere, joinsPerMinute), 'threepoint:joins-here');
+    this.#remote = this.#limiter(joinsPerMinute, 'threepoint:joins');
+    this.#local = this.#limiter(Math.max(joinsPerMinuteHere, joinsPerMinute), 'threepoint:joins-here');
   }
 
   /** Counts one more player from the address of this request; throws an HttpError 429 where the limit is reached. */
@@ -33,7 +33,7 @@ export class JoinLimits {
     const { configuration, metrics } = this.#options;
     const { network, isLoopback } = clientAddressOf(request, configuration.trustProxy);
     try {
-      await (isLoopback ? this.#here : this.#elsewhere).consume(network);
+      await (isLoopback ? this.#local : this.#remote).consume(network);
     } catch (error) {
       if (!(error instanceof RateLimiterRes)) throw error;
       metrics.refused('token', 'joins');

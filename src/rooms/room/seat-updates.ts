@@ -8,7 +8,7 @@ const changesPerSecond = 0.5;
 const changesAtOnce = 8;
 
 /** Sends how a seat is now when it has changed: at once, or with a later tick where it has changed too often. Nothing of its last state is lost. */
-export class SeatNews {
+export class SeatUpdates {
   readonly #send: (seat: number) => void;
   readonly #allowance: readonly TokenBucket[];
   /** Seats of which others know an older state. */

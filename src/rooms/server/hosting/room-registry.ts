@@ -1,15 +1,15 @@
 import { randomBytes } from 'node:crypto';
 import type { Logger } from 'pino';
-import type { RoomMessage } from '../protocol/messages';
-import type { HostedGame } from '../room/match-policy';
-import { Room, type RoomCensus } from '../room/room';
-import { dismiss, type Guest, sendPoses, tell } from './guest';
+import type { RoomMessage } from '../../protocol/messages';
+import type { HostedGame } from '../../room/match-policy';
+import { Room, type RoomCensus } from '../../room/room';
+import type { RoomPass } from '../access/room-tokens';
+import type { RelayConfiguration } from '../settings/relay-configuration';
+import type { HostCensus, RelayMetrics } from '../settings/relay-metrics';
+import { type Client, disconnect, send, sendPoses } from './client';
 import { PoseSchedule, type PoseSender } from './pose-schedule';
-import type { RelayConfiguration } from './relay-configuration';
-import type { HostCensus, RelayMetrics } from './relay-metrics';
 import type { RoomKinds } from './room-kinds';
-import type { RoomPass } from './room-tokens';
-import { createTicker } from './tick';
+import { createTicker } from './ticker';
 
 /** A room as others may know it; those whose places are assigned are known to their people alone. */
 export interface RoomListing extends Omit<RoomCensus, 'empty'> {
@@ -18,28 +18,28 @@ export interface RoomListing extends Omit<RoomCensus, 'empty'> {
   readonly phase: HostedGame['state']['phase'];
 }
 
-export interface HostedRoom extends PoseSender {
+export interface RegisteredRoom extends PoseSender {
   readonly room: Room<HostedGame>;
   /** Whether the lobby may show it. */
   readonly listed: boolean;
   /** Connections that have joined. */
-  readonly guests: Map<string, Guest>;
+  readonly clients: Map<string, Client>;
   emptySince: number | null;
   /** When it is to be ticked next [s]. */
   tickAt: number;
 }
 
 /** The rooms of this process. */
-export interface HostedRooms {
+export interface RoomRegistry {
   readonly listings: readonly RoomListing[];
   readonly census: HostCensus;
-  get(name: string): HostedRoom | undefined;
-  /** The room of this name, which has heard a message or lost a guest: it is ticked soon, and until it is still again. */
-  wake(name: string): HostedRoom | undefined;
+  get(name: string): RegisteredRoom | undefined;
+  /** The room of this name, which has heard a message or lost a client: it is ticked soon, and until it is still again. */
+  wake(name: string): RegisteredRoom | undefined;
   /** Sends the poses that have come into a room when it is time, and ticks it until it is still again. */
-  sendPoses(hosted: HostedRoom): void;
+  sendPoses(hosted: RegisteredRoom): void;
   /** The room of this pass, made where there is none; null: there are too many, or its game is none of this server's. */
-  enter(pass: RoomPass): HostedRoom | null;
+  getOrCreate(pass: RoomPass): RegisteredRoom | null;
   /** Closes rooms that have been empty for long; asked again and again, `now` in seconds. */
   sweep(now: number): void;
   /** Ends a room for all in it; false: there is none. */
@@ -48,7 +48,7 @@ export interface HostedRooms {
   clear(): void;
 }
 
-export interface HostedRoomsOptions {
+export interface RoomRegistryOptions {
   readonly configuration: RelayConfiguration;
   readonly kinds: RoomKinds;
   readonly log: Logger;
@@ -63,14 +63,14 @@ export interface HostedRoomsOptions {
 const emptyRoomSeconds = 5;
 
 /** Makes rooms: the first to come decides how long a round is, within what the server signed. */
-function roomMaker({ configuration, kinds, log, metrics, broadcast }: HostedRoomsOptions) {
+function roomMaker({ configuration, kinds, log, metrics, broadcast }: RoomRegistryOptions) {
   const epoch = randomBytes(6).toString('base64url');
   let made = 0;
-  return ({ room: id, kind, terms, assigned }: RoomPass): HostedRoom | null => {
+  return ({ room: id, kind, terms, assigned }: RoomPass): RegisteredRoom | null => {
     const policy = kinds.get(kind)?.(terms, assigned !== null);
     if (!policy) return null;
     made += 1;
-    const joined = new Map<string, Guest>();
+    const joined = new Map<string, Client>();
     const room = new Room(
       policy,
       {
@@ -80,15 +80,15 @@ function roomMaker({ configuration, kinds, log, metrics, broadcast }: HostedRoom
       },
       {
         send(to, message) {
-          const guest = joined.get(to);
-          if (guest) tell(guest, message);
+          const client = joined.get(to);
+          if (client) send(client, message);
         },
         broadcast: (message) => broadcast(id, message),
-        poses: (poses) => sendPoses(joined.values(), poses, metrics.counts),
-        drop(client, reason) {
-          const guest = joined.get(client);
-          joined.delete(client);
-          if (guest) dismiss(guest, reason);
+        sendPoses: (poses) => sendPoses(joined.values(), poses, metrics.counts),
+        disconnect(id, reason) {
+          const client = joined.get(id);
+          joined.delete(id);
+          if (client) disconnect(client, reason);
         },
         refused({ client, seat, what, reason }) {
           metrics.refused(what, reason);
@@ -97,34 +97,34 @@ function roomMaker({ configuration, kinds, log, metrics, broadcast }: HostedRoom
       },
     );
     log.info({ room: id, kind, terms }, 'room opened');
-    return { room, listed: assigned === null, guests: joined, sentAt: 0, emptySince: null, tickAt: 0 };
+    return { room, listed: assigned === null, clients: joined, sentAt: 0, emptySince: null, tickAt: 0 };
   };
 }
 
 /** Rooms where something has come of late, or goes on by itself: they are ticked until they are still. */
-class AwakeRooms {
-  readonly #rooms = new Set<HostedRoom>();
-  readonly #options: HostedRoomsOptions;
+class ActiveRooms {
+  readonly #rooms = new Set<RegisteredRoom>();
+  readonly #options: RoomRegistryOptions;
   readonly #ticker: ReturnType<typeof createTicker>;
 
-  constructor(options: HostedRoomsOptions) {
+  constructor(options: RoomRegistryOptions) {
     this.#options = options;
     this.#ticker = createTicker(options.configuration.tickHz, options.now, () => this.#tick());
   }
 
-  add(hosted: HostedRoom): void {
+  add(hosted: RegisteredRoom): void {
     this.#rooms.add(hosted);
     this.#ticker.wake();
   }
 
   /** As `add`, and it is ticked with the next tick. */
-  wake(hosted: HostedRoom): HostedRoom {
+  wake(hosted: RegisteredRoom): RegisteredRoom {
     hosted.tickAt = 0;
     this.add(hosted);
     return hosted;
   }
 
-  delete(hosted: HostedRoom): void {
+  delete(hosted: RegisteredRoom): void {
     this.#rooms.delete(hosted);
   }
 
@@ -142,21 +142,21 @@ class AwakeRooms {
       if (hosted.tickAt > latest) continue;
       hosted.room.tick(now());
       hosted.tickAt = started + hosted.room.tickPeriod;
-      if (hosted.room.isStill) this.#rooms.delete(hosted);
+      if (hosted.room.isIdle) this.#rooms.delete(hosted);
     }
     metrics.tick.observe(now() - started);
     return this.#rooms.size > 0;
   }
 }
 
-export function createHostedRooms(options: HostedRoomsOptions): HostedRooms {
+export function createRoomRegistry(options: RoomRegistryOptions): RoomRegistry {
   const { configuration, log, now } = options;
-  const rooms = new Map<string, HostedRoom>();
-  const awake = new AwakeRooms(options);
+  const rooms = new Map<string, RegisteredRoom>();
+  const awake = new ActiveRooms(options);
   const make = roomMaker(options);
   const schedule = new PoseSchedule(now);
 
-  function forget(name: string, hosted: HostedRoom): void {
+  function forget(name: string, hosted: RegisteredRoom): void {
     rooms.delete(name);
     awake.delete(hosted);
   }
@@ -182,7 +182,7 @@ export function createHostedRooms(options: HostedRoomsOptions): HostedRooms {
       schedule.add(hosted);
       awake.add(hosted);
     },
-    enter(pass) {
+    getOrCreate(pass) {
       const existing = rooms.get(pass.room);
       if (existing) return awake.wake(existing);
       if (rooms.size >= configuration.mostRooms) return null;
@@ -207,7 +207,7 @@ export function createHostedRooms(options: HostedRoomsOptions): HostedRooms {
       const hosted = rooms.get(name);
       if (!hosted) return false;
       forget(name, hosted);
-      for (const guest of hosted.guests.values()) dismiss(guest, 'closed');
+      for (const client of hosted.clients.values()) disconnect(client, 'closed');
       return true;
     },
     clear() {

@@ -4,7 +4,7 @@ export interface AvatarStoreOptions {
   /** All files together, those on their way included [bytes]; 0: none is taken. */
   readonly mostBytes: number;
   /** What a person has on in a room of this process; null: they have no seat there. */
-  readonly wornBy: (room: string, identity: string) => WornAvatar | null;
+  readonly avatarOf: (room: string, identity: string) => WornAvatar | null;
   /** Seconds, monotonic. */
   readonly now: () => number;
 }
@@ -110,7 +110,7 @@ export class AvatarStore {
   sweep(): void {
     const now = this.#options.now();
     for (const [owner, file] of this.#files) {
-      const worn = this.#options.wornBy(file.room, file.identity);
+      const worn = this.#options.avatarOf(file.room, file.identity);
       if (worn === file.hash) file.wasWorn = true;
       // Word of a file comes after it: until then its owner has on what they had before, another file perhaps.
       const waiting = worn !== null && !file.wasWorn && now - file.storedAt < graceSeconds;

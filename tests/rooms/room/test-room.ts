@@ -3,19 +3,19 @@ import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { plainAvatar } from 'threepoint/core/body/worn-avatar';
 import { type BallRoomMessage, ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
 import { type BallGame, BallPolicy } from 'threepoint-games/ball/ball-policy';
-import type { BallAction, BallDeed, BallEvent, BallOptions, BallState } from 'threepoint-games/ball/ball-state';
+import type { BallAction, BallEvent, BallInput, BallOptions, BallState } from 'threepoint-games/ball/ball-state';
 import { arenaFromSeatFloor } from 'threepoint-games/ball/stations';
-import type { Joining } from 'threepoint-rooms/protocol/messages';
+import type { JoinRequest } from 'threepoint-rooms/protocol/messages';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
 import { encodeFrame } from 'threepoint-rooms/protocol/pose-frame';
 import { Room, type RoomOptions } from 'threepoint-rooms/room/room';
-import type { RoomRefusal } from 'threepoint-rooms/room/room-outlet';
+import type { RoomRefusal } from 'threepoint-rooms/room/room-host';
 import { fists, holding, opening, releaseOf, shownAt } from '../client/people';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 
-export const joining = (more: Partial<Joining> = {}): Joining => ({
+export const joinRequest = (more: Partial<JoinRequest> = {}): JoinRequest => ({
   name: 'Ann',
   calibration: defaultCalibration,
   spectate: false,
@@ -36,22 +36,22 @@ export function packetAt(match: BallState | null, seat: number, wrists: Wrists, 
   return bytes;
 }
 
-interface ToldOptions extends Partial<RoomOptions> {
+interface TestRoomOptions extends Partial<RoomOptions> {
   readonly ball?: Partial<BallOptions>;
 }
 
 /** A room of the ball game that a test tells everything, with all that it says. Every message is one that a page can read. */
-export function toldRoom({ ball, ...options }: ToldOptions = {}) {
-  const said: { readonly to: string; readonly message: BallRoomMessage }[] = [];
+export function createTestRoom({ ball, ...options }: TestRoomOptions = {}) {
+  const sent: { readonly to: string; readonly message: BallRoomMessage }[] = [];
   const frames: Uint8Array[] = [];
   const dropped: { readonly client: string; readonly reason: string }[] = [];
   const refusals: RoomRefusal[] = [];
-  const log: (readonly BallAction[])[] = [];
+  const log: (readonly BallInput[])[] = [];
   let time = 1000;
   const hear = (to: string, message: BallRoomMessage) => {
     const read = ballRoomMessageFrom(JSON.parse(JSON.stringify(message)));
     if (!read) throw new Error(`no page can read this: ${JSON.stringify(message)}`);
-    said.push({ to, message: read });
+    sent.push({ to, message: read });
   };
   const room = new Room<BallGame>(
     new BallPolicy(ball),
@@ -59,15 +59,15 @@ export function toldRoom({ ball, ...options }: ToldOptions = {}) {
     {
       send: hear,
       broadcast: (message) => hear('all', message),
-      poses: (poses) => frames.push(encodeFrame(poses)),
-      drop: (client, reason) => dropped.push({ client, reason }),
+      sendPoses: (poses) => frames.push(encodeFrame(poses)),
+      disconnect: (client, reason) => dropped.push({ client, reason }),
       refused: (refusal) => refusals.push(refusal),
       stepped: (actions) => log.push(actions),
     },
   );
-  const told = {
+  const testRoom = {
     room,
-    said,
+    sent,
     frames,
     dropped,
     refusals,
@@ -75,12 +75,12 @@ export function toldRoom({ ball, ...options }: ToldOptions = {}) {
     get time() {
       return time;
     },
-    join(client: string, more: Partial<Joining> = {}, identity = client) {
-      room.join(client, identity, joining(more), time);
-      return told.welcomeOf(client);
+    join(client: string, more: Partial<JoinRequest> = {}, identity = client) {
+      room.join(client, identity, joinRequest(more), time);
+      return testRoom.welcomeOf(client);
     },
     welcomeOf(client: string) {
-      const welcome = said.findLast(({ to, message }) => to === client && message.type === 'welcome')?.message;
+      const welcome = sent.findLast(({ to, message }) => to === client && message.type === 'welcome')?.message;
       if (welcome?.type !== 'welcome') throw new Error(`${client} was not welcomed`);
       return welcome;
     },
@@ -92,33 +92,33 @@ export function toldRoom({ ball, ...options }: ToldOptions = {}) {
     pass(seconds: number, everyTick: () => void = () => undefined) {
       for (let i = 0; i < Math.round(seconds * 60); i++) {
         everyTick();
-        told.tick();
+        testRoom.tick();
       }
     },
     pose(client: string, seat: number, wrists: Wrists, at = time) {
       return room.onPose(client, packetAt(room.match, seat, wrists, at), time);
     },
-    act(client: string, action: BallDeed) {
+    act(client: string, action: BallAction) {
       return room.onMessage(client, { type: 'action', action }, time);
     },
     /** Ann and Ben throw, Cal holds the basket; all ready. */
     begin() {
-      for (const client of ['ann', 'ben', 'cal']) told.join(client, { name: client });
+      for (const client of ['ann', 'ben', 'cal']) testRoom.join(client, { name: client });
       for (const client of ['ann', 'ben', 'cal']) room.onMessage(client, { type: 'ready', ready: true }, time);
-      told.stand();
-      told.tick();
-      told.tick();
+      testRoom.stand();
+      testRoom.tick();
+      testRoom.tick();
     },
     /** All three are seen where they begin. */
     stand() {
-      if (room.match.players[0]?.present) told.pose('ann', 0, fists(releaseOf(0)));
-      if (room.match.players[1]?.present) told.pose('ben', 1, fists(releaseOf(1)));
-      told.pose('cal', 2, holding(opening));
+      if (room.match.players[0]?.present) testRoom.pose('ann', 0, fists(releaseOf(0)));
+      if (room.match.players[1]?.present) testRoom.pose('ben', 1, fists(releaseOf(1)));
+      testRoom.pose('cal', 2, holding(opening));
     },
     events: () =>
-      said.flatMap(({ message }): readonly BallEvent[] => (message.type === 'events' ? message.events : [])),
+      sent.flatMap(({ message }): readonly BallEvent[] => (message.type === 'events' ? message.events : [])),
     happened: <T extends BallEvent['type']>(type: T) =>
-      told.events().filter((event): event is Extract<BallEvent, { type: T }> => event.type === type),
+      testRoom.events().filter((event): event is Extract<BallEvent, { type: T }> => event.type === type),
   };
-  return told;
+  return testRoom;
 }

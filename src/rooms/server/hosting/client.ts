@@ -1,19 +1,19 @@
 import type { Socket as NetSocket } from 'node:net';
 import type { Socket } from 'socket.io';
-import type { Farewell, RoomMessage } from '../protocol/messages';
-import { frameLength, writeFrame } from '../protocol/pose-frame';
-import { messageEvent } from '../protocol/small-frames';
-import type { HostedGame } from '../room/match-policy';
-import type { FreshPose } from '../room/room-outlet';
-import { TokenBucket } from '../room/token-bucket';
-import type { RelayConfiguration } from './relay-configuration';
-import type { RelayCounts } from './relay-metrics';
-import { hangUp } from './relay-transport';
-import type { RoomPass } from './room-tokens';
-import { mostBytesWaiting } from './slow-readers';
+import type { DisconnectReason, RoomMessage } from '../../protocol/messages';
+import { frameLength, writeFrame } from '../../protocol/pose-frame';
+import { messageEvent } from '../../protocol/socket-parsers';
+import type { HostedGame } from '../../room/match-policy';
+import type { FreshPose } from '../../room/room-host';
+import { TokenBucket } from '../../room/token-bucket';
+import type { RoomPass } from '../access/room-tokens';
+import type { RelayConfiguration } from '../settings/relay-configuration';
+import type { RelayCounts } from '../settings/relay-metrics';
+import { closeConnection } from '../sockets/relay-transport';
+import { mostBytesWaiting } from '../sockets/slow-readers';
 
 /** A connection with a pass, before and after it joins its room. */
-export interface Guest {
+export interface Client {
   readonly id: string;
   readonly socket: Socket;
   /** The connection below. */
@@ -35,11 +35,11 @@ const signalsPerSecond = 20;
 const signalsAtOnce = 80;
 
 /** `now`: seconds, monotonic. */
-export const createGuest = (
+export const createClient = (
   socket: Socket,
   { posesPerSecond, eventsPerSecond }: RelayConfiguration,
   now: number,
-): Guest => ({
+): Client => ({
   id: socket.id,
   socket,
   wire: socket.conn.request.socket,
@@ -53,16 +53,16 @@ export const createGuest = (
   ended: false,
 });
 
-export const tell = ({ socket }: Guest, message: RoomMessage<HostedGame>): void => {
+export const send = ({ socket }: Client, message: RoomMessage<HostedGame>): void => {
   socket.emit(messageEvent, message);
 };
 
 /** Says farewell and ends the connection. */
-export function dismiss(guest: Guest, reason: Farewell): void {
-  if (guest.ended) return;
-  guest.ended = true;
-  tell(guest, { type: 'farewell', reason });
-  hangUp(guest.socket);
+export function disconnect(client: Client, reason: DisconnectReason): void {
+  if (client.ended) return;
+  client.ended = true;
+  send(client, { type: 'farewell', reason });
+  closeConnection(client.socket);
 }
 
 /** The packets of all seats but one as a binary WebSocket message, unmasked, ready for the wire; null: there are none. */
@@ -78,25 +78,25 @@ function poseMessage(poses: readonly FreshPose[], except: number | null): Buffer
   return message;
 }
 
-/** The seat of the poses that came from this guest; null: none did. */
-function seatAmong(poses: readonly FreshPose[], guest: string): number | null {
-  for (const { from, seat } of poses) if (from === guest) return seat;
+/** The seat of the poses that came from this client; null: none did. */
+function seatAmong(poses: readonly FreshPose[], client: string): number | null {
+  for (const { from, seat } of poses) if (from === client) return seat;
   return null;
 }
 
 /**
- * To all guests with a free connection, to each but their own; the others miss these. Straight to the wire: nothing of socket.io, Engine.IO
+ * To all clients with a free connection, to each but their own; the others miss these. Straight to the wire: nothing of socket.io, Engine.IO
  * or ws lies between a message and it there, as none is compressed, and their queues cost as much as the system's call.
  */
-export function sendPoses(to: Iterable<Guest>, poses: readonly FreshPose[], counts: RelayCounts): void {
+export function sendPoses(to: Iterable<Client>, poses: readonly FreshPose[], counts: RelayCounts): void {
   let shared: Buffer | null = null;
-  for (const guest of to) {
-    if (guest.ended) continue;
-    const own = seatAmong(poses, guest.id);
+  for (const client of to) {
+    if (client.ended) continue;
+    const own = seatAmong(poses, client.id);
     if (own === null) shared ??= poseMessage(poses, null);
     const message = own === null ? shared : poseMessage(poses, own);
     if (!message) continue;
-    const { wire, socket } = guest;
+    const { wire, socket } = client;
     if (wire.writable && wire.writableLength <= mostBytesWaiting && socket.conn.readyState === 'open') {
       wire.write(message);
       counts.framesOut += 1;

@@ -1,5 +1,5 @@
 /** What to print when the page is being served: where it is, and how to open it on a headset. */
-export function welcome({
+export function startupMessage({
   port,
   requestedPort,
   addresses,

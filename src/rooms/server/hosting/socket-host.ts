@@ -1,17 +1,17 @@
 import type { Logger } from 'pino';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
 import type { Server, Socket } from 'socket.io';
-import { messageEvent } from '../protocol/small-frames';
-import type { HostedGame } from '../room/match-policy';
-import type { Room } from '../room/room';
-import { createGuest, dismiss, type Guest } from './guest';
-import { GuestMessages } from './guest-messages';
-import { createHostedRooms, type RoomListing } from './hosted-rooms';
-import type { RelayConfiguration } from './relay-configuration';
-import type { HostCensus, RelayMetrics } from './relay-metrics';
-import type { RelayTransport } from './relay-transport';
+import { messageEvent } from '../../protocol/socket-parsers';
+import type { HostedGame } from '../../room/match-policy';
+import type { Room } from '../../room/room';
+import type { RoomTokens } from '../access/room-tokens';
+import type { RelayConfiguration } from '../settings/relay-configuration';
+import type { HostCensus, RelayMetrics } from '../settings/relay-metrics';
+import type { RelayTransport } from '../sockets/relay-transport';
+import { type Client, createClient, disconnect } from './client';
+import { MessageHandler } from './message-handler';
 import type { RoomKinds } from './room-kinds';
-import type { RoomTokens } from './room-tokens';
+import { createRoomRegistry, type RoomListing } from './room-registry';
 
 export interface SocketHostOptions {
   readonly configuration: RelayConfiguration;
@@ -33,11 +33,11 @@ export interface SocketHost {
   room(name: string): Room<HostedGame> | null;
   /** Ends a room for all in it; false: there is none. */
   end(name: string): boolean;
-  /** Tells all guests that the server stops, and ends all connections. */
+  /** Tells all clients that the server stops, and ends all connections. */
   close(): Promise<void>;
 }
 
-/** A guest who has not joined a room this long after connecting is disconnected [s]. */
+/** A client who has not joined a room this long after connecting is disconnected [s]. */
 const joinPatience = 5;
 /** Guests who join nothing, and rooms that are empty, are looked for this often [ms]. */
 const sweepMs = 1000;
@@ -78,8 +78,8 @@ function createGate({ kinds, tokens, metrics, log }: SocketHostOptions): Paramet
 /** Serves rooms on the transport's WebSockets. */
 export function createSocketHost({ io, listen, close }: RelayTransport, options: SocketHostOptions): SocketHost {
   const { configuration, kinds, log, metrics, now } = options;
-  const guests = new Set<Guest>();
-  const rooms = createHostedRooms({
+  const clients = new Set<Client>();
+  const rooms = createRoomRegistry({
     configuration,
     kinds,
     log,
@@ -89,33 +89,33 @@ export function createSocketHost({ io, listen, close }: RelayTransport, options:
       io.to(name).emit(messageEvent, message);
     },
   });
-  const messages = new GuestMessages({ rooms, log, metrics, now });
+  const messages = new MessageHandler({ rooms, log, metrics, now });
 
   io.use(createGate(options));
   io.on('connection', (socket) => {
-    const guest = createGuest(socket, configuration, now());
-    guests.add(guest);
+    const client = createClient(socket, configuration, now());
+    clients.add(client);
     listen(socket, {
-      onPose: (bytes) => messages.onPose(guest, bytes),
-      onFault: (fault) => messages.kick(guest, fault === 'slow' ? 'slow' : 'misbehaved', fault),
+      onPose: (bytes) => messages.onPose(client, bytes),
+      onFault: (fault) => messages.kick(client, fault === 'slow' ? 'slow' : 'misbehaved', fault),
     });
-    socket.on(messageEvent, (value: unknown) => messages.onMessage(guest, value));
+    socket.on(messageEvent, (value: unknown) => messages.onMessage(client, value));
     socket.onAny((event: string) => {
-      if (event !== messageEvent) messages.kick(guest, 'misbehaved', 'unknown-event');
+      if (event !== messageEvent) messages.kick(client, 'misbehaved', 'unknown-event');
     });
     socket.on('disconnect', (reason) => {
-      guest.ended = true;
-      guests.delete(guest);
-      messages.onEnd(guest);
-      log.debug({ room: guest.pass.room, client: guest.id, reason }, 'disconnected');
+      client.ended = true;
+      clients.delete(client);
+      messages.onDisconnect(client);
+      log.debug({ room: client.pass.room, client: client.id, reason }, 'disconnected');
     });
   });
 
   const sweeping = setInterval(() => {
     const at = now();
-    for (const guest of guests) {
-      const waitsToJoin = !guest.ended && !guest.joined;
-      if (waitsToJoin && at - guest.connectedAt > joinPatience) messages.kick(guest, 'misbehaved', 'no-join');
+    for (const client of clients) {
+      const waitsToJoin = !client.ended && !client.joined;
+      if (waitsToJoin && at - client.connectedAt > joinPatience) messages.kick(client, 'misbehaved', 'no-join');
     }
     rooms.sweep(at);
   }, sweepMs);
@@ -132,7 +132,7 @@ export function createSocketHost({ io, listen, close }: RelayTransport, options:
     end: rooms.end,
     async close() {
       clearInterval(sweeping);
-      for (const guest of guests) dismiss(guest, 'stopping');
+      for (const client of clients) disconnect(client, 'stopping');
       rooms.clear();
       await new Promise((resolve) => setTimeout(resolve, 50));
       close();

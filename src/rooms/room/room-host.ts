@@ -1,4 +1,4 @@
-import type { Farewell, RoomMessage } from '../protocol/messages';
+import type { DisconnectReason, RoomMessage } from '../protocol/messages';
 import type { SeatPose } from '../protocol/pose-frame';
 import type { HostedGame, MatchAction } from './match-policy';
 
@@ -6,7 +6,7 @@ import type { HostedGame, MatchAction } from './match-policy';
 export type ClientId = string;
 
 /** Why a Room refuses something; an action that the rules refuse has a reason of the game's. */
-export type RoomReason =
+export type RefusalReason =
   | 'too-fast'
   | 'occupied'
   | 'too-often'
@@ -34,15 +34,15 @@ export interface FreshPose extends SeatPose {
 }
 
 /** How a Room speaks. Called from within its methods, never at another time. */
-export interface RoomOutlet<Game extends HostedGame> {
+export interface RoomHost<Game extends HostedGame> {
   /** Reliable and in order. */
   send(to: ClientId, message: RoomMessage<Game>): void;
   /** The same to all who have joined. */
   broadcast(message: RoomMessage<Game>): void;
   /** To all who have joined, to each but their own: the packets that have come since the last call, seat by seat. At least one. */
-  poses(poses: readonly FreshPose[]): void;
+  sendPoses(poses: readonly FreshPose[]): void;
   /** The Room has forgotten this client. */
-  drop(client: ClientId, reason: Farewell): void;
+  disconnect(client: ClientId, reason: DisconnectReason): void;
   refused(refusal: RoomRefusal): void;
   /** The actions of every tick before it is stepped: enough to play a match again from its start. */
   stepped?(actions: readonly MatchAction<Game>[]): void;

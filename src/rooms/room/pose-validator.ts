@@ -12,7 +12,7 @@ const headTolerance = 0.1;
 /** Packets of a seat that wait to be passed on, at most: more come together only after the host stood still. */
 const mostFresh = 16;
 /** What was refused for its speed is believed after this [s]: a device that lost its place has found it again. */
-const disbeliefSeconds = 1;
+const speedCheckSeconds = 1;
 /** A packet may give itself a time this far ahead of the room's clock [s]: the sender knows that clock up to half a round trip. */
 const mostAhead = 0.25;
 /** How often a space may be re-anchored, on average a second and at once: by snap turns, recentring and a change of devices. */
@@ -20,8 +20,8 @@ const jumpsPerSecond = 1;
 const jumpsAtOnce = 4;
 
 /** What one seat claims of its poses, and what of that is believed. Times are the room clock's [s]. */
-export class PoseClaims {
-  #heardAt: number;
+export class PoseValidator {
+  #lastSeenAt: number;
   /** The time that the newest packet gives itself. */
   #packetTime: number | null = null;
   /** Of the newest pose that is remembered, here or in the match; null: none is. */
@@ -33,12 +33,12 @@ export class PoseClaims {
   readonly #jumps = new TokenBucket(jumpsPerSecond, jumpsAtOnce);
 
   constructor(time: number) {
-    this.#heardAt = time;
+    this.#lastSeenAt = time;
   }
 
   /** When the newest pose was believed, or another sign of life was given. */
-  get heardAt(): number {
-    return this.#heardAt;
+  get lastSeenAt(): number {
+    return this.#lastSeenAt;
   }
 
   /** When the newest pose was, by the sender's clock as far as it is believed; NaN before the first. */
@@ -47,23 +47,23 @@ export class PoseClaims {
   }
 
   /** The player gave a sign of life other than a pose. */
-  heard(time: number): void {
-    this.#heardAt = time;
+  markSeen(time: number): void {
+    this.#lastSeenAt = time;
   }
 
   /** The player is back on another connection: nothing is compared with what the old one claimed. */
   reconnected(time: number): void {
-    this.#heardAt = time;
+    this.#lastSeenAt = time;
     this.#packetTime = null;
     this.#isHeadKnown = false;
   }
 
   /** Takes a packet in, and keeps its bytes until they are passed on, unless it is older than the newest one or its head is further from there than a person gets. */
-  take(packet: PointsPacket, bytes: Uint8Array, time: number): 'believed' | 'old' | 'too-fast' {
+  accept(packet: PointsPacket, bytes: Uint8Array, time: number): 'believed' | 'old' | 'too-fast' {
     // A time from the future would be credit for a leap.
     const packetTime = time + Math.min(packetSecondsBetween(time * 1000, packet.timeMs), mostAhead);
     const { position } = packet.pose.head;
-    if (time - this.#heardAt <= disbeliefSeconds && this.#packetTime !== null) {
+    if (time - this.#lastSeenAt <= speedCheckSeconds && this.#packetTime !== null) {
       const elapsed = packetTime - this.#packetTime;
       if (elapsed <= 0) return 'old';
       const reachable = headTolerance + fastestHead * elapsed;
@@ -73,7 +73,7 @@ export class PoseClaims {
     this.#packetTime = packetTime;
     copyVec3(position, this.#head);
     this.#isHeadKnown = true;
-    this.#heardAt = time;
+    this.#lastSeenAt = time;
     this.#posedAt = time;
     this.#fresh.push(bytes);
     if (this.#fresh.length > mostFresh) this.#fresh.shift();
@@ -88,12 +88,12 @@ export class PoseClaims {
   }
 
   /** A pose of the player is remembered, here or in the match. */
-  get remembered(): boolean {
+  get hasPose(): boolean {
     return this.#posedAt !== null;
   }
 
   /** Forgets a pose that is older than `poseMemory`; true: it did so now. */
-  forgetOld(time: number): boolean {
+  forgetExpired(time: number): boolean {
     if (this.#posedAt === null || time - this.#posedAt <= poseMemory) return false;
     this.#posedAt = null;
     this.#isHeadKnown = false;

@@ -104,14 +104,14 @@ class RelayDecoder {
   }
 
   add(chunk: string | Uint8Array | ArrayBuffer): void {
-    if (typeof chunk === 'string') this.tell(decodeText(chunk));
+    if (typeof chunk === 'string') this.notify(decodeText(chunk));
   }
 
   destroy(): void {
     this.listeners = [];
   }
 
-  protected tell(packet: SocketPacket): void {
+  protected notify(packet: SocketPacket): void {
     for (const listener of this.listeners) listener(packet);
   }
 }
@@ -119,7 +119,7 @@ class RelayDecoder {
 class PageDecoder extends RelayDecoder {
   override add(chunk: string | Uint8Array | ArrayBuffer): void {
     if (typeof chunk === 'string') super.add(chunk);
-    else this.tell({ type: eventType, nsp: '/', data: [frameEvent, isBytes(chunk) ? chunk : new Uint8Array(chunk)] });
+    else this.notify({ type: eventType, nsp: '/', data: [frameEvent, isBytes(chunk) ? chunk : new Uint8Array(chunk)] });
   }
 }
 
