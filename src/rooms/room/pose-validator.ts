@@ -3,30 +3,30 @@ import { packetSecondsBetween } from '../protocol/packet-time';
 import type { PointsPacket } from '../protocol/pose-packet';
 import { TokenBucket } from './token-bucket';
 
-/** A player's pose is forgotten this long after it was sent [s]: movements identify people. With a tick to spare of 2 s. */
+/** A player's pose is deleted this long after it was sent [s], because movements identify people: 2 s less a tick. */
 export const poseMemory = 1.9;
-/** No head moves faster [m/s] without saying that its space was re-anchored. */
+/** A head moves at most this fast [m/s], unless the packet says that its space was re-anchored. */
 export const fastestHead = 20;
 /** A head may be moved this far [m] by rounding and by a hiccup of its device. */
 const headTolerance = 0.1;
-/** Packets of a seat that wait to be passed on, at most: more come together only after the host stood still. */
+/** The most packets of a seat that wait to be forwarded: more arrive together only after the host was blocked. */
 const mostFresh = 16;
-/** What was refused for its speed is believed after this [s]: a device that lost its place has found it again. */
+/** After this long without an accepted pose [s] any position is accepted: a device has found its place again. */
 const speedCheckSeconds = 1;
-/** A packet may give itself a time this far ahead of the room's clock [s]: the sender knows that clock up to half a round trip. */
+/** A packet's time may lie this far ahead of the room clock [s]: a sender knows that clock to half a round trip. */
 const mostAhead = 0.25;
-/** How often a space may be re-anchored, on average a second and at once: by snap turns, recentring and a change of devices. */
+/** How often a space may be re-anchored, per second on average and at once: snap turns, recentring, change of devices. */
 const jumpsPerSecond = 1;
 const jumpsAtOnce = 4;
 
-/** What one seat claims of its poses, and what of that is believed. Times are the room clock's [s]. */
+/** Checks the pose packets of one seat, and keeps those that are not forwarded yet. Times are the room clock's [s]. */
 export class PoseValidator {
   #lastSeenAt: number;
-  /** The time that the newest packet gives itself. */
+  /** The newest packet's own time. */
   #packetTime: number | null = null;
-  /** Of the newest pose that is remembered, here or in the match; null: none is. */
+  /** The arrival of the newest pose that is stored, here or in the match; null: none is. */
   #posedAt: number | null = null;
-  /** Where the head was; known as long as the pose is remembered. */
+  /** The newest head position, as long as the pose is stored. */
   readonly #head = vec3(0, 0, 0);
   #isHeadKnown = false;
   #fresh: Uint8Array[] = [];
@@ -36,31 +36,34 @@ export class PoseValidator {
     this.#lastSeenAt = time;
   }
 
-  /** When the newest pose was believed, or another sign of life was given. */
+  /** When the newest pose was accepted, or the player showed another sign of life. */
   get lastSeenAt(): number {
     return this.#lastSeenAt;
   }
 
-  /** When the newest pose was, by the sender's clock as far as it is believed; NaN before the first. */
+  /** The newest pose's time by the sender's clock, limited to `mostAhead`; NaN before the first. */
   get packetTime(): number {
     return this.#packetTime ?? Number.NaN;
   }
 
-  /** The player gave a sign of life other than a pose. */
+  /** Records a sign of life other than a pose. */
   markSeen(time: number): void {
     this.#lastSeenAt = time;
   }
 
-  /** The player is back on another connection: nothing is compared with what the old one claimed. */
+  /** Starts over on another connection: its poses are not compared with those of the old one. */
   reconnected(time: number): void {
     this.#lastSeenAt = time;
     this.#packetTime = null;
     this.#isHeadKnown = false;
   }
 
-  /** Takes a packet in, and keeps its bytes until they are passed on, unless it is older than the newest one or its head is further from there than a person gets. */
-  accept(packet: PointsPacket, bytes: Uint8Array, time: number): 'believed' | 'old' | 'too-fast' {
-    // A time from the future would be credit for a leap.
+  /**
+   * Accepts a packet and keeps its bytes for forwarding. It rejects a packet that is older than the newest one, or in which the head has moved
+   * faster than a person can.
+   */
+  accept(packet: PointsPacket, bytes: Uint8Array, time: number): 'accepted' | 'old' | 'too-fast' {
+    // A time in the future would permit a jump later.
     const packetTime = time + Math.min(packetSecondsBetween(time * 1000, packet.timeMs), mostAhead);
     const { position } = packet.pose.head;
     if (time - this.#lastSeenAt <= speedCheckSeconds && this.#packetTime !== null) {
@@ -77,22 +80,22 @@ export class PoseValidator {
     this.#posedAt = time;
     this.#fresh.push(bytes);
     if (this.#fresh.length > mostFresh) this.#fresh.shift();
-    return 'believed';
+    return 'accepted';
   }
 
-  /** The packets that have not been passed on yet, oldest first, once. */
+  /** Removes and returns the packets to forward, oldest first. */
   takeFresh(): readonly Uint8Array[] {
     const fresh = this.#fresh;
     if (fresh.length > 0) this.#fresh = [];
     return fresh;
   }
 
-  /** A pose of the player is remembered, here or in the match. */
+  /** Whether a pose of the player is stored, here or in the match. */
   get hasPose(): boolean {
     return this.#posedAt !== null;
   }
 
-  /** Forgets a pose that is older than `poseMemory`; true: it did so now. */
+  /** Deletes a pose that is older than `poseMemory`; returns whether it did. */
   forgetExpired(time: number): boolean {
     if (this.#posedAt === null || time - this.#posedAt <= poseMemory) return false;
     this.#posedAt = null;

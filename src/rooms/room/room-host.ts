@@ -17,7 +17,7 @@ export type RefusalReason =
   | 'assigned'
   | 'no-voices'
   | 'session-taken'
-  | 'not-heard';
+  | 'no-receiver';
 
 /** Something that the Room would not do. */
 export interface RoomRefusal {

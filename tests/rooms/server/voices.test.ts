@@ -100,13 +100,13 @@ describe('the voices of a room', () => {
     const { ann: other } = await twoTalkers('other');
     const dot = talker(server.url, 'one', 'Dot');
     await until('dot in', () => dot.connection.room !== null);
-    const before = await refusals(server.url, 'not-heard');
+    const before = await refusals(server.url, 'no-receiver');
     // Ben is called so in both rooms.
     other.connection.voices.signal('bens-page', offer);
     ann.connection.voices.signal('annas-page', offer);
     ann.connection.voices.signal('dots-page', offer);
     dot.connection.voices.signal('bens-page', offer);
-    await expect.poll(() => refusals(server.url, 'not-heard')).toBe(before + 3);
+    await expect.poll(() => refusals(server.url, 'no-receiver')).toBe(before + 3);
     expect([...dot.heard, ...ann.heard]).toEqual([]);
   });
 
