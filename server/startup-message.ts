@@ -1,4 +1,4 @@
-/** What to print when the page is being served: where it is, and how to open it on a headset. */
+/** Returns what the server prints once it listens: its addresses, and how to open the page on a headset. */
 export function startupMessage({
   port,
   requestedPort,
@@ -7,9 +7,9 @@ export function startupMessage({
 }: {
   port: number;
   requestedPort: number;
-  /** The machine's addresses when it serves the network, null when it serves itself alone. */
+  /** The machine's addresses on the network; null: it serves only itself. */
   addresses: readonly string[] | null;
-  /** Where the experimenter's token lies; null: it was given, or there are no studies. */
+  /** The file of the experimenter's token; null: the token is a setting. */
   tokenFile?: string | null;
 }): string {
   const lines = [''];
@@ -29,9 +29,9 @@ export function startupMessage({
     lines.push(
       '',
       addresses.length === 0
-        ? '  This machine is on no network: connect it, then start again.'
-        : '  On a headset in the same network: open one of the addresses with numbers in its browser.',
-      '  The certificate is our own, so the browser warns once: Advanced, then Proceed.',
+        ? '  This machine is on no network. Connect it, then start again.'
+        : '  On a headset on the same network: open one of the addresses with digits in its browser.',
+      '  The certificate is self-signed, so the browser warns once: choose Advanced, then Proceed.',
     );
   }
   lines.push(
@@ -41,7 +41,7 @@ export function startupMessage({
   if (tokenFile) lines.push(`                ${tokenFile}`);
   lines.push(
     '',
-    '  docs/running-on-a-headset.md has the steps and what to do when it does not open. Ctrl-C stops.',
+    '  docs/running-on-a-headset.md lists the steps, and what to do if the page does not open. Ctrl-C stops the server.',
     '',
   );
   return lines.join('\n');

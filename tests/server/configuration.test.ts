@@ -33,7 +33,7 @@ describe('the configuration', () => {
     [
       [],
       { EXPERIMENTER_TOKEN: 'our-laboratory-token' },
-      /EXPERIMENTER_TOKEN has some \d+ bits, .* needs 128: let "openssl rand -base64 32" draw one/,
+      /EXPERIMENTER_TOKEN has some \d+ bits; it needs 128. Generate one: openssl rand -base64 32/,
     ],
     [['--studies='], {}, /--studies needs/],
     [['--lam'], {}, /--lam[\s\S]*Usage: npm start/],

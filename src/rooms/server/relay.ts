@@ -18,23 +18,23 @@ import { createRelayMetrics, type RelayCensus } from './settings/relay-metrics';
 import { createRelayTransport } from './sockets/relay-transport';
 import { VoiceRoutes } from './voices/voice-routes';
 
-/** A relay for a server: its sockets and its part of the HTTP. */
+/** The relay of a server: its sockets and its HTTP service. */
 export interface Relay {
   readonly host: SocketHost;
   readonly avatars: AvatarStore;
   readonly census: RelayCensus;
   readonly service: Service;
   readonly upgrade: UpgradeListener;
-  /** Says farewell and closes; the server itself is its owner's. */
+  /** Disconnects all clients and stops the relay; the HTTP server stays open. */
   close(): Promise<void>;
 }
 
-/** Seconds since 1970. */
+/** Returns the time in seconds since 1970. */
 const unixTime = (): number => Date.now() / 1000;
-/** How often avatars that no one has on any more are forgotten [ms]. */
+/** Interval at which avatars that nobody wears are deleted [ms]. */
 const sweepMs = 1000;
 
-/** A secret kept in a file, so that tokens outlive a restart. */
+/** Returns the secret in a file, and creates it if needed, so that tokens stay valid after a restart. */
 export function loadOrCreateSecret(path: string): string {
   if (existsSync(path)) {
     const kept = readFileSync(path, 'utf8').trim();
@@ -46,7 +46,7 @@ export function loadOrCreateSecret(path: string): string {
   return secret;
 }
 
-/** Connections to the Redis of a fleet; null: this process is alone. */
+/** Connects to the Redis that several processes share; null: a single process. */
 function connectFleet({ redisUrl }: RelayConfiguration, log: Logger) {
   if (!redisUrl) return null;
   return {
@@ -56,7 +56,7 @@ function connectFleet({ redisUrl }: RelayConfiguration, log: Logger) {
   };
 }
 
-/** Starts a relay; `secret` signs the tokens, `connectionLimiter` counts the connections of its server, `kinds` are the games of its rooms. */
+/** Starts a relay. `secret` signs the tokens; `connectionLimiter` is that of the HTTP server; `kinds` are the games. */
 export function createRelay(
   configuration: RelayConfiguration,
   secret: string,

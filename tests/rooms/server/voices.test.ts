@@ -204,9 +204,9 @@ describe('how pages find each other', () => {
 
   test.each([
     [{ THREEPOINT_VOICES: 'maybe' }, /THREEPOINT_VOICES must be on or off, not "maybe"/],
-    [{ THREEPOINT_STUN: 'https://stun.example.org' }, /THREEPOINT_STUN must hold addresses as stun:.*not "https:/],
-    [{ THREEPOINT_TURN: 'turn:here:3478?transport=smoke' }, /THREEPOINT_TURN must hold addresses as turn:.*smoke/],
-    [{ THREEPOINT_TURN: 'turn:here:3478' }, /THREEPOINT_TURN needs THREEPOINT_TURN_SECRET beside it, .* it has 0/],
+    [{ THREEPOINT_STUN: 'https://stun.example.org' }, /THREEPOINT_STUN must list addresses such as stun:.*not "https:/],
+    [{ THREEPOINT_TURN: 'turn:here:3478?transport=smoke' }, /THREEPOINT_TURN must list addresses such as turn:.*smoke/],
+    [{ THREEPOINT_TURN: 'turn:here:3478' }, /THREEPOINT_TURN needs THREEPOINT_TURN_SECRET with .* it has 0/],
   ])('%j is refused in a sentence', (environment, sentence) => {
     expect(() => relayConfigurationFrom(environment)).toThrow(sentence);
   });

@@ -9,13 +9,13 @@ import type { RelayMetrics } from '../settings/relay-metrics';
 export interface JoinLimitsOptions {
   readonly configuration: RelayConfiguration;
   readonly metrics: RelayMetrics;
-  /** Holds the counts of a fleet; null: this process is alone. */
+  /** Stores the counts of all processes; null: a single process. */
   readonly redis: Redis | null;
 }
 
 const joinsPerMinuteHere = 120;
 
-/** Limits the new players of one address per minute; the limit of this machine itself is higher. */
+/** Limits the new people of each address per minute; the limit for this machine is higher. */
 export class JoinLimits {
   readonly #options: JoinLimitsOptions;
   readonly #remote: RateLimiterAbstract;
@@ -28,7 +28,7 @@ export class JoinLimits {
     this.#local = this.#limiter(Math.max(joinsPerMinuteHere, joinsPerMinute), 'threepoint:joins-here');
   }
 
-  /** Counts one more player from the address of this request; throws an HttpError 429 where the limit is reached. */
+  /** Counts a new person from the address of this request. Throws an HttpError 429 if the limit is reached. */
   async spend(request: IncomingMessage): Promise<void> {
     const { configuration, metrics } = this.#options;
     const { network, isLoopback } = clientAddressOf(request, configuration.trustProxy);
@@ -38,7 +38,7 @@ export class JoinLimits {
       if (!(error instanceof RateLimiterRes)) throw error;
       metrics.refused('token', 'joins');
       const wait = Math.ceil(error.msBeforeNext / 1000);
-      throw new HttpError(429, `too many people from this address; try again in ${wait} s`, {
+      throw new HttpError(429, `too many new people from this address; try again in ${wait} s`, {
         headers: { 'retry-after': String(wait) },
       });
     }
@@ -47,7 +47,7 @@ export class JoinLimits {
   #limiter(points: number, keyPrefix: string): RateLimiterAbstract {
     const alone = new RateLimiterMemory({ points, duration: 60, keyPrefix });
     const { redis: storeClient } = this.#options;
-    // Without Redis each process counts for itself.
+    // While Redis is unreachable, each process counts for itself.
     return storeClient
       ? new RateLimiterRedis({ storeClient, points, duration: 60, keyPrefix, insuranceLimiter: alone })
       : alone;

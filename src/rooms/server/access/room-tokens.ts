@@ -3,39 +3,39 @@ import { errors, jwtVerify, SignJWT } from 'jose';
 import * as v from 'valibot';
 import { mostSeats, type RoomTerms, roomTerms } from '../../protocol/messages';
 
-/** A place that is one person's own, by the name that it is known under; seat null: among those who watch. */
+/** The seat and name that a study assigns to a participant; seat null: a spectator. */
 export interface AssignedPlace {
   readonly seat: number | null;
   readonly name: string;
 }
 
-/** What a token says: who a person is in which room. Known to the server alone; others know a seat and a name. */
+/** The claims of a token: the person and the room. Only the server reads them; other players see a seat and a name. */
 export interface RoomPass {
   readonly identity: string;
   readonly room: string;
-  /** The game that the room is for. */
+  /** The name of the game. */
   readonly kind: string;
-  /** What the room is to be like if this person is the first in it. */
+  /** The terms of the room, if this person is the first in it. */
   readonly terms: RoomTerms;
-  /** Of a room whose places are all assigned; null: a room where a person takes any place that is free. */
+  /** The assigned place; null: a room with free choice of seats. */
   readonly assigned: AssignedPlace | null;
 }
 
-/** Passes as signed text that expires. */
+/** Signs and verifies room passes as JSON Web Tokens that expire. */
 export interface RoomTokens {
-  /** For a new person. */
+  /** Returns a token for a new person. */
   issue(room: string, kind: string, terms?: RoomTerms): Promise<string>;
-  /** The same person for longer. */
+  /** Returns a new token for the same person. */
   sign(pass: RoomPass): Promise<string>;
-  /** As `verify`, for a token that has expired within the last hours: good for another one, not for coming in. */
+  /** Verifies a token that may have expired within the last 12 hours; it permits renewal, not entry. */
   verifyRenewable(token: string): Promise<RoomPass | null>;
-  /** null: not signed by us, changed, or expired. */
+  /** Returns the claims of a token; null: not signed by this server, modified, or expired. */
   verify(token: string): Promise<RoomPass | null>;
 }
 
-/** Names of rooms: what goes into an address and can be told over the telephone. */
+/** Names of rooms: short, valid in an address and easy to spell out. */
 export const roomName = /^[a-z0-9][a-z0-9-]{0,31}$/;
-/** Names of rooms whose places are assigned: no other room can be called so. Proxies find a room by 32 characters at most. */
+/** Names of rooms with assigned places; other rooms cannot have such a name. Proxies route by 32 characters at most. */
 export const assignedRoomName = /^study\.[0-9a-f]{24}$/;
 
 const lifeSeconds = 15 * 60;
@@ -79,7 +79,7 @@ export function createRoomTokens(secret: string, now: () => number): RoomTokens 
       const assigned = v.safeParse(assignedPlace, payload.assigned ?? null);
       if (!identity || typeof room !== 'string' || typeof kind !== 'string' || !terms.success || !assigned.success)
         return null;
-      // A room has assigned places or it has none: its name tells which.
+      // The name shows whether a room has assigned places.
       const named = assigned.output ? assignedRoomName : roomName;
       return named.test(room) ? { identity, room, kind, terms: terms.output, assigned: assigned.output } : null;
     } catch (error) {

@@ -17,23 +17,23 @@ export interface AvatarRoutesOptions {
   readonly store: AvatarStore;
   readonly tokens: Pick<RoomTokens, 'verify'>;
   readonly metrics: Pick<RelayMetrics, 'refused'>;
-  /** Whether a person has a seat in a room of this process, or one is held for them. */
+  /** Returns whether a person has a seat in a room of this process, or one is held for them. */
   readonly isSeated: (room: string, identity: string) => boolean;
 }
 
-/** Files a minute: of a person, and of all people of one address. */
+/** Uploads a minute of a person and of an address, and downloads of a person. */
 const uploadsPerPerson = 4;
 const uploadsPerAddress = 20;
 const downloadsPerPerson = 60;
 
 const glb = 'model/gltf-binary';
-/** "glTF", version 2; then the length of the whole. */
+/** The header of a GLB file: "glTF" and version 2; the file's length follows. */
 const glbHead = Buffer.from([0x67, 0x6c, 0x54, 0x46, 2, 0, 0, 0]);
 
 const isGlb = (bytes: Buffer): boolean =>
   bytes.length >= 20 && bytes.subarray(0, 8).equals(glbHead) && bytes.readUInt32LE(8) === bytes.length;
 
-/** What is stored is shown by no browser, text and scripts included: it is a file to be saved, without scripts, of the type that it was checked for. */
+/** Headers of a stored file: browsers save it, and never display it or run scripts in it. */
 const asFile: Readonly<Record<string, string>> = {
   'content-type': glb,
   'content-disposition': 'attachment; filename="avatar.glb"',
@@ -42,7 +42,7 @@ const asFile: Readonly<Record<string, string>> = {
 
 const perMinute = (points: number): RateLimiterMemory => new RateLimiterMemory({ points, duration: 60 });
 
-/** Uploads and downloads of the avatars that the people of a room see each other in. `?room=` is for the proxy of a fleet. */
+/** The routes for uploading and downloading the avatars of a room's members. A proxy in front of several processes routes by `?room=`. */
 export class AvatarRoutes {
   readonly routes: readonly Route<'client'>[];
   readonly #options: AvatarRoutesOptions;
@@ -54,7 +54,7 @@ export class AvatarRoutes {
     this.#options = options;
     const route = (method: 'GET' | 'PUT', path: string, handle: Route['handle']): Route<'client'> => ({
       ...{ method, path, access: 'client', handle },
-      // What is uploaded is no JSON: its handler reads it.
+      // Uploads are not JSON: their handler reads them.
       bodyLimit: 0,
     });
     this.routes = [
@@ -64,7 +64,7 @@ export class AvatarRoutes {
     ];
   }
 
-  /** What may be stored, and what of the person who asks is. */
+  /** Answers with the size limit, and with the hash of the person's stored file. */
   async #terms(call: Call): Promise<Answer> {
     const { configuration, store } = this.#options;
     const { room, identity } = await requirePass(call, this.#options.tokens);
@@ -76,7 +76,7 @@ export class AvatarRoutes {
     const { room, identity } = await requirePass(call, this.#options.tokens);
     await this.#spend(this.#downloads, identity, 'download');
     const bytes = this.#options.store.get(room, hashIn(call));
-    if (!bytes) throw new HttpError(404, 'no one in this room has stored such an avatar');
+    if (!bytes) throw new HttpError(404, 'nobody in this room has uploaded this avatar');
     return { status: 200, headers: asFile, body: bytes };
   }
 
@@ -84,8 +84,9 @@ export class AvatarRoutes {
     const { request } = call;
     const { room, identity, assigned } = await requirePass(call, this.#options.tokens);
     const hash = hashIn(call);
-    if (assigned) throw new HttpError(403, 'in the rooms of a study all wear the same avatar');
-    if (!this.#options.isSeated(room, identity)) throw new HttpError(403, 'this is for people on a seat of the room');
+    if (assigned) throw new HttpError(403, 'in the rooms of a study everybody has the same avatar');
+    if (!this.#options.isSeated(room, identity))
+      throw new HttpError(403, 'only people on a seat of the room may upload avatars');
     if ((request.headers['content-type'] ?? '').toLowerCase() !== glb) throw new HttpError(415, `send ${glb}`);
     const length = lengthOf(request);
     await this.#spend(this.#uploads, identity, 'upload');
@@ -104,13 +105,14 @@ export class AvatarRoutes {
     const reserved = this.#options.store.reserve(owner, length);
     if (typeof reserved === 'object') return reserved;
     this.#options.metrics.refused('avatar', reserved);
-    if (reserved === 'busy') throw new HttpError(409, 'another avatar of yours is on its way');
+    if (reserved === 'busy')
+      throw new HttpError(409, 'another upload of yours is under way; try again when it has ended');
     if (reserved === 'crowded')
-      throw new HttpError(507, 'the people of your network have no place for another avatar here now');
-    throw new HttpError(507, 'there is no place for another avatar on this server now');
+      throw new HttpError(507, 'the avatars from your network use all their space on this server; try again later');
+    throw new HttpError(507, 'this server has no space for another avatar; try again later');
   }
 
-  /** The file, hashed as it comes: a room never waits for more than one chunk. */
+  /** Reads the file and hashes each chunk as it arrives, so that rooms are never blocked for long. */
   async #receive(request: IncomingMessage, length: number, expected: string): Promise<Buffer> {
     const bytes = Buffer.allocUnsafeSlow(length);
     const hash = createHash('sha256');
@@ -120,14 +122,15 @@ export class AvatarRoutes {
       hash.update(chunk);
     });
     if (at < length) throw new HttpError(400, 'the body has no end');
-    if (hash.digest('base64url') !== expected) throw new HttpError(422, 'the file is not the one that its name says');
-    if (!isGlb(bytes)) throw new HttpError(422, 'this is no VRM or GLB file');
+    if (hash.digest('base64url') !== expected)
+      throw new HttpError(422, 'the SHA-256 of the file differs from its name');
+    if (!isGlb(bytes)) throw new HttpError(422, 'this is not a VRM or GLB file');
     return bytes;
   }
 
-  async #spend(limiter: RateLimiterMemory, who: string, what: string): Promise<void> {
+  async #spend(limiter: RateLimiterMemory, key: string, what: string): Promise<void> {
     try {
-      await limiter.consume(who);
+      await limiter.consume(key);
     } catch (error) {
       if (!(error instanceof RateLimiterRes)) throw error;
       this.#options.metrics.refused('avatar', what);
@@ -141,17 +144,18 @@ export class AvatarRoutes {
 
 function hashIn({ names }: Call): string {
   const hash = names.hash ?? '';
-  if (!avatarHash.test(hash)) throw new HttpError(400, 'an avatar’s name is its SHA-256 as base64url, 43 characters');
+  if (!avatarHash.test(hash))
+    throw new HttpError(400, 'the name of an avatar must be its SHA-256 as base64url, 43 characters');
   return hash;
 }
 
-/** How long the file will be [bytes]: what does not say so beforehand is not taken, as no place could be kept for it. */
+/** Returns the length of the file [bytes]. Throws an HttpError 411 without one, because space must be reserved. */
 function lengthOf({ headers }: IncomingMessage): number {
-  const said = headers['content-length'];
-  if (said === undefined || headers['transfer-encoding'] !== undefined) {
-    throw new HttpError(411, 'say how long the file is');
+  const text = headers['content-length'];
+  if (text === undefined || headers['transfer-encoding'] !== undefined) {
+    throw new HttpError(411, 'the upload needs a Content-Length');
   }
-  const length = Number(said);
-  if (length > mostAvatarBytes) throw new HttpError(413, `an avatar has at most ${mostAvatarBytes} bytes`);
+  const length = Number(text);
+  if (length > mostAvatarBytes) throw new HttpError(413, `the avatar is larger than ${mostAvatarBytes} bytes`);
   return length;
 }

@@ -16,25 +16,25 @@ import { mostBytesWaiting } from '../sockets/slow-readers';
 export interface Client {
   readonly id: string;
   readonly socket: Socket;
-  /** The connection below. */
+  /** The TCP socket of the connection. */
   readonly wire: NetSocket;
   readonly pass: RoomPass;
-  /** [s] */
+  /** Time of the connection [s]. */
   readonly connectedAt: number;
   readonly poses: TokenBucket;
   readonly events: TokenBucket;
-  /** Of pages that set up their voices with each other. */
+  /** Limits the signals of the page's voice connections. */
   readonly signals: TokenBucket;
   joined: boolean;
   badMessages: number;
   ended: boolean;
 }
 
-/** Two pages that connect need a dozen signals, and begin anew after a lost network; a page may have five others to connect to. */
+/** Limits of voice signals. Two pages need a dozen to connect, and again after an outage; a page connects to up to five others. */
 const signalsPerSecond = 20;
 const signalsAtOnce = 80;
 
-/** `now`: seconds, monotonic. */
+/** Creates the client of a socket whose pass is verified. `now`: seconds, monotonic. */
 export const createClient = (
   socket: Socket,
   { posesPerSecond, eventsPerSecond }: RelayConfiguration,
@@ -53,11 +53,12 @@ export const createClient = (
   ended: false,
 });
 
+/** Sends a control message, reliably and in order. */
 export const send = ({ socket }: Client, message: RoomMessage<HostedGame>): void => {
   socket.emit(messageEvent, message);
 };
 
-/** Says farewell and ends the connection. */
+/** Sends the reason and closes the connection. */
 export function disconnect(client: Client, reason: DisconnectReason): void {
   if (client.ended) return;
   client.ended = true;
@@ -65,7 +66,7 @@ export function disconnect(client: Client, reason: DisconnectReason): void {
   closeConnection(client.socket);
 }
 
-/** The packets of all seats but one as a binary WebSocket message, unmasked, ready for the wire; null: there are none. */
+/** Returns the packets of all seats but one as an unmasked binary WebSocket frame; null: there are none. */
 function poseMessage(poses: readonly FreshPose[], except: number | null): Buffer | null {
   const length = frameLength(poses, except);
   if (length === 0) return null;
@@ -78,15 +79,15 @@ function poseMessage(poses: readonly FreshPose[], except: number | null): Buffer
   return message;
 }
 
-/** The seat of the poses that came from this client; null: none did. */
+/** Returns the seat of a client's own poses among these; null: there are none of it. */
 function seatAmong(poses: readonly FreshPose[], client: string): number | null {
   for (const { from, seat } of poses) if (from === client) return seat;
   return null;
 }
 
 /**
- * To all clients with a free connection, to each but their own; the others miss these. Straight to the wire: nothing of socket.io, Engine.IO
- * or ws lies between a message and it there, as none is compressed, and their queues cost as much as the system's call.
+ * Sends poses to all clients, except each client's own; a client whose connection is busy misses them. Writes directly to the TCP socket, because
+ * the queues of socket.io, Engine.IO and ws cost as much as the system call. Nothing is compressed.
  */
 export function sendPoses(to: Iterable<Client>, poses: readonly FreshPose[], counts: RelayCounts): void {
   let shared: Buffer | null = null;

@@ -14,20 +14,20 @@ export interface MessageHandlerOptions {
 }
 
 const badMessagesAllowed = 3;
-/** More refused messages in a row than this count as an attack. */
+/** The most messages in a row beyond the limit; more count as an attack. */
 const mostRefusedInARow = 60;
 
-/** A client who would join with another version of the protocol: a page from before an update, left open. */
+/** Returns whether a message is a join with another protocol version, from a page that was loaded before an update. */
 const isOtherVersion = (value: unknown): boolean => {
   const { type, version } = (value ?? {}) as { type?: unknown; version?: unknown };
   return type === 'join' && typeof version === 'number' && version !== protocolVersion;
 };
 
-/** Signals between pages about their voices have a token bucket of their own. */
+/** Returns whether a message is a voice signal, which has its own token bucket. */
 const isSignal = (value: unknown): boolean => ((value ?? {}) as { readonly type?: unknown }).type === 'signal';
 
 /**
- * Passes the messages of clients to their rooms where they are well formed and within their limit. A client that keeps sending anything else is
+ * Passes the messages of clients to their rooms, if they are valid and within the limits. A client that keeps sending other messages is
  * disconnected.
  */
 export class MessageHandler {
@@ -71,14 +71,14 @@ export class MessageHandler {
     } else this.#countBad(client, 'message');
   }
 
-  /** The connection has ended. */
+  /** Removes a client whose connection has ended. */
   onDisconnect({ id, pass }: Client): void {
     const hosted = this.#options.rooms.wake(pass.room);
     hosted?.clients.delete(id);
     hosted?.room.disconnect(id, this.#options.now());
   }
 
-  /** Ends the connection of a client that harms others, at once. */
+  /** Disconnects a client that harms others. `because`: the label of the metric. */
   kick(client: Client, reason: 'misbehaved' | 'slow', because: string): void {
     if (client.ended) return;
     this.#options.metrics.kicked(because);
@@ -87,7 +87,7 @@ export class MessageHandler {
     disconnect(client, reason);
   }
 
-  #join(client: Client, { type: _type, version: _version, ...asked }: ClientMessage & { type: 'join' }): void {
+  #join(client: Client, { type: _type, version: _version, ...request }: ClientMessage & { type: 'join' }): void {
     if (client.joined) {
       this.#countBad(client, 'second join');
       return;
@@ -102,12 +102,12 @@ export class MessageHandler {
     hosted.clients.set(client.id, client);
     void client.socket.join(client.pass.room);
     const { identity, assigned } = client.pass;
-    // Where places are assigned, what the page asks for is not what it gets.
-    const joining = assigned ? { ...asked, ...assigned, spectate: assigned.seat === null, bot: false } : asked;
+    // An assigned place overrides the page's request.
+    const joining = assigned ? { ...request, ...assigned, spectate: assigned.seat === null, bot: false } : request;
     hosted.room.join(client.id, identity, joining, this.#options.now());
   }
 
-  /** Whether this message is still within what a client may send. */
+  /** Returns whether a message is within the client's limit. */
   #isWithin(client: Client, bucket: TokenBucket, at: number): boolean {
     if (bucket.take(at)) return true;
     if (bucket.refusedInARow > mostRefusedInARow) this.kick(client, 'misbehaved', 'budget');

@@ -4,21 +4,21 @@ import { clamp } from 'threepoint/core/math/damper';
 /** A room that may have poses to send. */
 export interface PoseSender {
   readonly room: { sendPoses(): void };
-  /** Who hears them. */
+  /** The clients that receive them. */
   readonly clients: { readonly size: number };
-  /** When it has sent last [s]. */
+  /** Time of the last send [s]. */
   sentAt: number;
 }
 
-/** On a process that has not a moment to spare a room's poses leave this far apart [s]. */
+/** Interval between two sends of a room at full load [s]. */
 const longestPace = 0.012;
-/** Share of its time that the process is busy: below the first poses leave at once, from the second on `longestPace` apart. */
+/** Load of the process [share of time]: up to the first, poses are sent at once; from the second, `longestPace` apart. */
 const calm = 0.5;
 const full = 0.9;
-/** The share is judged anew this often [s], and followed by this part of the way. */
-const judgedEvery = 0.1;
-const followed = 0.25;
-/** In a room of so many each hears one other, of whom hardly ever two packets come within the pace: waiting would save no message. */
+/** Interval at which the load is measured [s], and the weight of a measurement in the average. */
+const measureInterval = 0.1;
+const weight = 0.25;
+/** In a room of two, waiting saves no message: two packets of one sender rarely arrive within the interval. */
 const pair = 2;
 
 function send(sender: PoseSender, now: number): void {
@@ -26,7 +26,7 @@ function send(sender: PoseSender, now: number): void {
   sender.room.sendPoses();
 }
 
-/** Share of the time since the last call that this process's event loop was busy. */
+/** Returns a function that measures the load of the event loop since its last call, in [0, 1]. */
 function ownBusyShare(): () => number {
   let last = performance.eventLoopUtilization();
   return () => {
@@ -38,29 +38,29 @@ function ownBusyShare(): () => number {
 }
 
 /**
- * When rooms send their poses: at once while the process has time to spare, together with all that the same turn of the event loop has
- * read; under load each room of more than two waits a moment after it has sent, so that one message has the poses of several. `now`:
- * seconds, monotonic; `busyShare`: of the process's time since the last call.
+ * Schedules when rooms send their poses. On a process with little load they are sent at the end of the turn of the event loop that has read them.
+ * Under load a room of more than two waits after each send, so that one message carries several poses. `now`: seconds, monotonic; `busyShare`:
+ * the load since its last call, in [0, 1].
  */
 export class PoseSchedule {
   readonly #now: () => number;
   readonly #busyShare: () => number;
-  /** In this turn of the event loop, and those whose turn comes with the timer. */
+  /** Senders of this turn of the event loop, and those that wait for the timer. */
   readonly #fresh = new Set<PoseSender>();
   readonly #waiting = new Set<PoseSender>();
   #immediate: NodeJS.Immediate | null = null;
   #timer: NodeJS.Timeout | null = null;
-  /** When the timer fires [s]. */
+  /** Time at which the timer fires [s]. */
   #timerAt = Number.POSITIVE_INFINITY;
   #pace = 0;
-  #judgedAt = 0;
+  #measuredAt = 0;
 
   constructor(now: () => number, busyShare: () => number = ownBusyShare()) {
     this.#now = now;
     this.#busyShare = busyShare;
   }
 
-  /** There is something to send. */
+  /** Schedules a send. */
   add(sender: PoseSender): void {
     if (this.#waiting.has(sender)) return;
     this.#fresh.add(sender);
@@ -77,7 +77,7 @@ export class PoseSchedule {
   readonly #sendFresh = (): void => {
     this.#immediate = null;
     const now = this.#now();
-    this.#judge(now);
+    this.#measureLoad(now);
     let next = Number.POSITIVE_INFINITY;
     for (const sender of this.#fresh) {
       const due = sender.clients.size > pair ? sender.sentAt + this.#pace : now;
@@ -115,10 +115,10 @@ export class PoseSchedule {
     this.#timerAt = time;
   }
 
-  #judge(now: number): void {
-    if (now - this.#judgedAt < judgedEvery) return;
-    this.#judgedAt = now;
+  #measureLoad(now: number): void {
+    if (now - this.#measuredAt < measureInterval) return;
+    this.#measuredAt = now;
     const wanted = longestPace * clamp((this.#busyShare() - calm) / (full - calm), 0, 1);
-    this.#pace += (wanted - this.#pace) * followed;
+    this.#pace += (wanted - this.#pace) * weight;
   }
 }

@@ -11,7 +11,7 @@ import { PoseSchedule, type PoseSender } from './pose-schedule';
 import type { RoomKinds } from './room-kinds';
 import { createTicker } from './ticker';
 
-/** A room as others may know it; those whose places are assigned are known to their people alone. */
+/** The public description of a room. Rooms with assigned places are not listed. */
 export interface RoomListing extends Omit<RoomCensus, 'empty'> {
   readonly room: string;
   readonly kind: string;
@@ -20,12 +20,12 @@ export interface RoomListing extends Omit<RoomCensus, 'empty'> {
 
 export interface RegisteredRoom extends PoseSender {
   readonly room: Room<HostedGame>;
-  /** Whether the lobby may show it. */
+  /** Whether the lobby lists the room. */
   readonly listed: boolean;
-  /** Connections that have joined. */
+  /** Clients that have joined, by id. */
   readonly clients: Map<string, Client>;
   emptySince: number | null;
-  /** When it is to be ticked next [s]. */
+  /** Time of the next tick [s]. */
   tickAt: number;
 }
 
@@ -34,17 +34,17 @@ export interface RoomRegistry {
   readonly listings: readonly RoomListing[];
   readonly census: HostCensus;
   get(name: string): RegisteredRoom | undefined;
-  /** The room of this name, which has heard a message or lost a client: it is ticked soon, and until it is still again. */
+  /** Returns the room of this name, and ticks it until it is idle again; called when a client sends a message or disconnects. */
   wake(name: string): RegisteredRoom | undefined;
-  /** Sends the poses that have come into a room when it is time, and ticks it until it is still again. */
+  /** Schedules the sending of a room's poses, and ticks it until it is idle again. */
   sendPoses(hosted: RegisteredRoom): void;
-  /** The room of this pass, made where there is none; null: there are too many, or its game is none of this server's. */
+  /** Returns the room of a pass, and creates it if needed; null: the server has too many rooms, or does not have the game. */
   getOrCreate(pass: RoomPass): RegisteredRoom | null;
-  /** Closes rooms that have been empty for long; asked again and again, `now` in seconds. */
+  /** Closes rooms that have been empty for `emptyRoomSeconds`; called periodically. `now`: seconds. */
   sweep(now: number): void;
-  /** Ends a room for all in it; false: there is none. */
+  /** Closes a room and disconnects its clients; returns false if there is none. */
   end(name: string): boolean;
-  /** Forgets all rooms, and ticks no more. */
+  /** Removes all rooms and stops ticking. */
   clear(): void;
 }
 
@@ -55,15 +55,15 @@ export interface RoomRegistryOptions {
   readonly metrics: RelayMetrics;
   /** Seconds, monotonic. */
   readonly now: () => number;
-  /** To all who have joined the room of this name. */
+  /** Sends a message to all clients that have joined a room. */
   readonly broadcast: (name: string, message: RoomMessage<HostedGame>) => void;
 }
 
-/** An empty room is kept this long [s]. */
+/** An empty room is closed after this time [s]. */
 const emptyRoomSeconds = 5;
 
-/** Makes rooms: the first to come decides how long a round is, within what the server signed. */
-function roomMaker({ configuration, kinds, log, metrics, broadcast }: RoomRegistryOptions) {
+/** Returns a function that creates the room of a pass; the pass of the first person decides its terms. */
+function roomFactory({ configuration, kinds, log, metrics, broadcast }: RoomRegistryOptions) {
   const epoch = randomBytes(6).toString('base64url');
   let made = 0;
   return ({ room: id, kind, terms, assigned }: RoomPass): RegisteredRoom | null => {
@@ -75,7 +75,7 @@ function roomMaker({ configuration, kinds, log, metrics, broadcast }: RoomRegist
       policy,
       {
         ...{ id, epoch: `${epoch}${made}`, pausable: terms.pausable ?? false, assigned: assigned !== null },
-        // A study has no consent to voices to ask for.
+        // Studies do not ask for consent to voices.
         voices: configuration.voices !== null && assigned === null,
       },
       {
@@ -101,7 +101,7 @@ function roomMaker({ configuration, kinds, log, metrics, broadcast }: RoomRegist
   };
 }
 
-/** Rooms where something has come of late, or goes on by itself: they are ticked until they are still. */
+/** Ticks the rooms that are not idle. */
 class ActiveRooms {
   readonly #rooms = new Set<RegisteredRoom>();
   readonly #options: RoomRegistryOptions;
@@ -117,7 +117,7 @@ class ActiveRooms {
     this.#ticker.wake();
   }
 
-  /** As `add`, and it is ticked with the next tick. */
+  /** Adds a room and ticks it with the next tick. */
   wake(hosted: RegisteredRoom): RegisteredRoom {
     hosted.tickAt = 0;
     this.add(hosted);
@@ -133,7 +133,7 @@ class ActiveRooms {
     this.#rooms.clear();
   }
 
-  /** Whether any is still awake. */
+  /** Ticks the rooms that are due. Returns whether any is still active. */
   #tick(): boolean {
     const { configuration, metrics, now } = this.#options;
     const started = now();
@@ -152,13 +152,13 @@ class ActiveRooms {
 export function createRoomRegistry(options: RoomRegistryOptions): RoomRegistry {
   const { configuration, log, now } = options;
   const rooms = new Map<string, RegisteredRoom>();
-  const awake = new ActiveRooms(options);
-  const make = roomMaker(options);
+  const active = new ActiveRooms(options);
+  const create = roomFactory(options);
   const schedule = new PoseSchedule(now);
 
-  function forget(name: string, hosted: RegisteredRoom): void {
+  function remove(name: string, hosted: RegisteredRoom): void {
     rooms.delete(name);
-    awake.delete(hosted);
+    active.delete(hosted);
   }
   return {
     get listings() {
@@ -176,20 +176,20 @@ export function createRoomRegistry(options: RoomRegistryOptions): RoomRegistry {
     get: (name) => rooms.get(name),
     wake(name) {
       const hosted = rooms.get(name);
-      return hosted && awake.wake(hosted);
+      return hosted && active.wake(hosted);
     },
     sendPoses(hosted) {
       schedule.add(hosted);
-      awake.add(hosted);
+      active.add(hosted);
     },
     getOrCreate(pass) {
       const existing = rooms.get(pass.room);
-      if (existing) return awake.wake(existing);
+      if (existing) return active.wake(existing);
       if (rooms.size >= configuration.mostRooms) return null;
-      const hosted = make(pass);
+      const hosted = create(pass);
       if (!hosted) return null;
       rooms.set(pass.room, hosted);
-      return awake.wake(hosted);
+      return active.wake(hosted);
     },
     sweep(now) {
       for (const [id, hosted] of rooms) {
@@ -199,19 +199,19 @@ export function createRoomRegistry(options: RoomRegistryOptions): RoomRegistry {
         }
         hosted.emptySince ??= now;
         if (now - hosted.emptySince < emptyRoomSeconds) continue;
-        forget(id, hosted);
+        remove(id, hosted);
         log.info({ room: id }, 'room closed');
       }
     },
     end(name) {
       const hosted = rooms.get(name);
       if (!hosted) return false;
-      forget(name, hosted);
+      remove(name, hosted);
       for (const client of hosted.clients.values()) disconnect(client, 'closed');
       return true;
     },
     clear() {
-      awake.stop();
+      active.stop();
       schedule.stop();
       rooms.clear();
     },

@@ -15,7 +15,7 @@ import { createRoomRegistry, type RoomListing } from './room-registry';
 
 export interface SocketHostOptions {
   readonly configuration: RelayConfiguration;
-  /** The games that its rooms may be for. */
+  /** The games of the server. */
   readonly kinds: RoomKinds;
   readonly tokens: RoomTokens;
   readonly log: Logger;
@@ -24,27 +24,27 @@ export interface SocketHostOptions {
   readonly now: () => number;
 }
 
-/** Sockets on one side, rooms on the other. */
+/** Connects the sockets of a server to its rooms. */
 export interface SocketHost {
   readonly io: Server;
   readonly rooms: readonly RoomListing[];
   readonly census: HostCensus;
-  /** The room of this name, for tests and for the server's owner; null: there is none. */
+  /** Returns the room of this name; null: there is none. */
   room(name: string): Room<HostedGame> | null;
-  /** Ends a room for all in it; false: there is none. */
+  /** Closes a room and disconnects its clients; returns false if there is none. */
   end(name: string): boolean;
-  /** Tells all clients that the server stops, and ends all connections. */
+  /** Disconnects all clients with the reason 'stopping'. */
   close(): Promise<void>;
 }
 
-/** A client who has not joined a room this long after connecting is disconnected [s]. */
-const joinPatience = 5;
-/** Guests who join nothing, and rooms that are empty, are looked for this often [ms]. */
+/** A client that has not joined a room this long after connecting is disconnected [s]. */
+const joinTimeout = 5;
+/** Interval of the check for clients that have not joined and for empty rooms [ms]. */
 const sweepMs = 1000;
-/** Connections a minute that one person may make. */
+/** The most connections of one person per minute. */
 const connectsPerMinute = 30;
 
-/** Lets sockets with a pass in, each person so often a minute. */
+/** Returns middleware that accepts sockets with a valid pass, and limits the connections of each person. */
 function createGate({ kinds, tokens, metrics, log }: SocketHostOptions): Parameters<Server['use']>[0] {
   const connects = new RateLimiterMemory({ points: connectsPerMinute, duration: 60 });
   async function refusalOf(socket: Socket): Promise<'refused' | 'too-often' | null> {
@@ -68,14 +68,14 @@ function createGate({ kinds, tokens, metrics, log }: SocketHostOptions): Paramet
     refusalOf(socket).then(
       (refusal) => (refusal ? next(new Error(refusal)) : next()),
       (error: unknown) => {
-        log.error({ error: String(error) }, 'pass not read');
+        log.error({ error: String(error) }, 'the pass could not be verified');
         next(new Error('refused'));
       },
     );
   };
 }
 
-/** Serves rooms on the transport's WebSockets. */
+/** Creates the host of the rooms on a transport. */
 export function createSocketHost({ io, listen, close }: RelayTransport, options: SocketHostOptions): SocketHost {
   const { configuration, kinds, log, metrics, now } = options;
   const clients = new Set<Client>();
@@ -115,7 +115,7 @@ export function createSocketHost({ io, listen, close }: RelayTransport, options:
     const at = now();
     for (const client of clients) {
       const waitsToJoin = !client.ended && !client.joined;
-      if (waitsToJoin && at - client.connectedAt > joinPatience) messages.kick(client, 'misbehaved', 'no-join');
+      if (waitsToJoin && at - client.connectedAt > joinTimeout) messages.kick(client, 'misbehaved', 'no-join');
     }
     rooms.sweep(at);
   }, sweepMs);

@@ -1,17 +1,17 @@
-/** Calls a function so often a second for as long as that is of use. */
+/** Calls a function periodically, until it returns false. */
 export interface Ticker {
-  /** Ticks from now on, if it does not already. */
+  /** Starts ticking, unless it already does. */
   wake(): void;
   stop(): void;
 }
 
-/** `tick` says whether more ticks are wanted; `now` in seconds, monotonic. */
+/** Creates a ticker. `tick` returns whether to go on; `now`: seconds, monotonic. */
 export function createTicker(hz: number, now: () => number, tick: () => boolean): Ticker {
   const period = 1 / hz;
   let next = 0;
   let timer: NodeJS.Timeout | null = null;
   let stopped = false;
-  // What has arrived meanwhile is read first: a timer fires before that, and what it asks for would wait for the tick after.
+  // Timers fire before input is read: setImmediate reads messages first, which would otherwise wait for the next tick.
   const soon = (): NodeJS.Immediate => setImmediate(run);
   function run(): void {
     if (stopped) return;
@@ -20,7 +20,7 @@ export function createTicker(hz: number, now: () => number, tick: () => boolean)
       return;
     }
     const ended = now();
-    // Whole milliseconds are all a timer knows: what it was late is made up for, what was missed altogether is not.
+    // Timers have whole milliseconds: a delay is compensated, a missed tick is not.
     next = Math.max(next + period, ended);
     timer = setTimeout(soon, Math.max(0, Math.floor((next - ended) * 1000)));
   }

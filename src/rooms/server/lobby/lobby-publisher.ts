@@ -5,10 +5,10 @@ import { Adapter } from 'socket.io-adapter';
 import type { RoomListing } from '../hosting/room-registry';
 import type { Lobby } from './lobby';
 
-/** Where a page hears of rooms that open, fill and close, in any process of a fleet. */
+/** The socket.io namespace in which pages receive the rooms of all processes. */
 export const lobbyNamespace = '/lobby';
 
-/** The connections over which the processes of a fleet tell each other. */
+/** The Redis connections of socket.io's adapter. */
 export interface FleetChannel {
   readonly publisher: Redis;
   readonly subscriber: Redis;
@@ -17,26 +17,26 @@ export interface FleetChannel {
 export interface LobbyPublisherOptions {
   readonly io: Server;
   readonly lobby: Lobby;
-  /** This process, as others know it. */
+  /** The id of this process. */
   readonly node: string;
-  /** null: this process is alone. */
+  /** null: a single process. */
   readonly channel: FleetChannel | null;
   /** The rooms of this process. */
   readonly rooms: () => readonly RoomListing[];
-  /** Ends a room of this process, where there is one of this name. */
+  /** Ends the room of this name, if this process has it. */
   readonly endRoom: (room: string) => void;
 }
 
 const lobbyEveryMs = 1000;
-/** What the processes of a fleet tell each other: that a room is to end. */
+/** The event by which processes ask each other to end a room. */
 const endEvent = 'end-room';
 
-/** Tells pages of the rooms of all processes, and the processes that a room is to end. */
+/** Publishes the rooms of all processes to pages, and asks all processes to end a room. */
 export class LobbyPublisher {
   readonly #options: LobbyPublisherOptions;
   readonly #namespace: ReturnType<Server['of']>;
   readonly #timer: NodeJS.Timeout;
-  /** The rooms as pages were last told. */
+  /** The last published list of rooms, as JSON. */
   #published = '';
 
   constructor(options: LobbyPublisherOptions) {
@@ -44,7 +44,7 @@ export class LobbyPublisher {
     const { io, lobby, channel, endRoom } = options;
     if (channel) shareNamespace(io, channel);
     this.#namespace = io.of(lobbyNamespace);
-    // A list is a thousand times as long as the question for it.
+    // The list is a thousand times as long as the request: once for each connection.
     const answered = new WeakSet<Socket['conn']>();
     this.#namespace.on('connection', (socket) => {
       if (answered.has(socket.conn)) {
@@ -59,7 +59,7 @@ export class LobbyPublisher {
     this.#timer = setInterval(() => this.#publish(), lobbyEveryMs);
   }
 
-  /** Ends a room in all processes that can be reached. */
+  /** Ends a room in all processes that are reachable. */
   endRoom(room: string): void {
     this.#options.endRoom(room);
     if (this.#reachesAll) this.#namespace.serverSideEmit(endEvent, room);
@@ -69,7 +69,7 @@ export class LobbyPublisher {
     clearInterval(this.#timer);
   }
 
-  /** A process that is alone, or out of reach of Redis, is all there is. */
+  /** Whether messages reach the other processes. */
   get #reachesAll(): boolean {
     return this.#options.channel?.publisher.status === 'ready';
   }
@@ -80,16 +80,16 @@ export class LobbyPublisher {
     const text = JSON.stringify(rooms);
     if (text === this.#published) return;
     this.#published = text;
-    // What cannot be told now is told with the next change: without Redis nothing piles up.
+    // While Redis is down, other processes' pages receive the list with the next change; nothing is queued.
     const listeners = this.#reachesAll ? this.#namespace : this.#namespace.local;
     listeners.emit('node', { node: this.#options.node, rooms });
   }
 }
 
-/** Carries the lobby alone over Redis: poses stay in the process that has the room. */
+/** Shares only the lobby's namespace over Redis; poses stay in the process of their room. */
 function shareNamespace(io: Server, { publisher, subscriber }: FleetChannel): void {
   const shared = createAdapter(publisher, subscriber);
-  // socket.io calls it with new, and takes what it returns.
+  // socket.io calls it with `new` and uses what it returns.
   const adapterFor = function adapterFor(namespace: ConstructorParameters<typeof Adapter>[0]) {
     return namespace.name === lobbyNamespace ? shared(namespace) : new Adapter(namespace);
   };

@@ -2,16 +2,16 @@ import { Redis } from 'ioredis';
 import type { Logger } from 'pino';
 import type { RoomListing } from '../hosting/room-registry';
 
-/** Rooms of all processes, as far as this one knows. */
+/** The list of the rooms of all processes. */
 export interface Lobby {
-  /** What this process has now. */
+  /** Publishes the rooms of this process. */
   publish(rooms: readonly RoomListing[]): void;
-  /** Everything; where the common store cannot be reached: what this process has, and `complete` false. */
+  /** Returns all rooms; if Redis is unreachable those of this process, with `complete` false. */
   list(): Promise<{ readonly rooms: readonly RoomListing[]; readonly complete: boolean }>;
   close(): Promise<void>;
 }
 
-/** The lobby of a process that is alone. */
+/** Creates the lobby of a single process. */
 export function createOwnLobby(): Lobby {
   let own: readonly RoomListing[] = [];
   return {
@@ -24,13 +24,13 @@ export function createOwnLobby(): Lobby {
 }
 
 const prefix = 'threepoint:lobby:';
-/** What a process has said is believed this long [s]: one that was killed is forgotten then. */
+/** The entry of a process expires after this time [s], so that a killed process disappears. */
 const entrySeconds = 5;
 const commandTimeoutMs = 1000;
 
 const retryStrategy = (attempt: number): number => Math.min(200 * attempt, 2000);
 
-/** A connection whose commands fail at once without Redis, so that no request waits for them; it comes back by itself. */
+/** Opens a connection whose commands fail at once while Redis is down, so that no request waits; it reconnects by itself. */
 export function connectRedis(url: string, log: Logger): Redis {
   return watched(
     new Redis(url, {
@@ -43,7 +43,7 @@ export function connectRedis(url: string, log: Logger): Redis {
   );
 }
 
-/** A connection whose commands wait for Redis however long that takes, and never fail: what socket.io's adapter expects. */
+/** Opens a connection whose commands wait until Redis is back and never fail, as socket.io's adapter requires. */
 export function connectRedisPatiently(url: string, log: Logger): Redis {
   return watched(new Redis(url, { maxRetriesPerRequest: null, retryStrategy }), log);
 }
@@ -52,17 +52,17 @@ function watched(redis: Redis, log: Logger): Redis {
   let down = false;
   redis.on('error', (error: Error) => {
     if (!down)
-      log.warn({ error: error.message }, 'Redis cannot be reached: the lobby shows the rooms of this process alone');
+      log.warn({ error: error.message }, 'Redis is unreachable: the lobby lists only the rooms of this process');
     down = true;
   });
   redis.on('ready', () => {
-    if (down) log.warn('Redis is back');
+    if (down) log.warn('Redis is reachable again');
     down = false;
   });
   return redis;
 }
 
-/** The lobby of a fleet: every process tells its rooms under its own name, and what it told expires. */
+/** Creates a lobby that several processes share: each stores its rooms under its own name, and the entry expires. */
 export function createRedisLobby(redis: Redis, node: string, log: Logger): Lobby {
   let own: readonly RoomListing[] = [];
   const failed = (error: unknown): void => log.debug({ error: String(error) }, 'lobby not stored');
@@ -82,10 +82,10 @@ export function createRedisLobby(redis: Redis, node: string, log: Logger): Lobby
       try {
         const nodes = await redis.zrange(`${prefix}nodes`, 0, -1);
         const others = nodes.filter((name) => name !== node);
-        const told = others.length > 0 ? await redis.mget(others.map((name) => `${prefix}node:${name}`)) : [];
-        const theirs = told.flatMap((text) => (text ? (JSON.parse(text) as RoomListing[]) : []));
+        const entries = others.length > 0 ? await redis.mget(others.map((name) => `${prefix}node:${name}`)) : [];
+        const theirs = entries.flatMap((text) => (text ? (JSON.parse(text) as RoomListing[]) : []));
         const known = new Set(own.map(({ room }) => room));
-        // After a move between processes a room may be told twice for a moment: ours is the living one.
+        // A room that moves between processes may be listed twice for a moment; this process's entry is current.
         return { rooms: [...own, ...theirs.filter(({ room }) => !known.has(room))], complete: true };
       } catch (error) {
         failed(error);

@@ -2,40 +2,40 @@ import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { weaknessOf } from 'threepoint-http/secret-bits';
 import { type VoiceConfiguration, voiceConfigurationFrom, voiceEnvironment } from './voice-configuration';
 
-/** How the relay behaves, from the environment. */
+/** The settings of the relay, from the environment. */
 export interface RelayConfiguration {
-  /** Signs the room tokens; the same in all processes of a fleet. null: one of our own, kept on this machine. */
+  /** Signs the room tokens; the same in all processes. null: a generated secret, stored on this machine. */
   readonly secret: string | null;
-  /** Pages of these origins may connect; empty: pages of the very address they connect to. */
+  /** Origins of pages that may connect; empty: the server's own origin. */
   readonly origins: readonly string[];
-  /** Names of the server besides localhost, this machine's own and those of the origins. */
+  /** Further names of the server, beyond localhost, this machine's and those of the origins. */
   readonly hosts: readonly string[];
-  /** How often the rooms' matches are stepped per second, at most. */
+  /** The most ticks of a room per second. */
   readonly tickHz: number;
   readonly posesPerSecond: number;
   readonly eventsPerSecond: number;
-  /** New people per minute and address; a person who returns does not count. */
+  /** New people per minute and address; returning people do not count. */
   readonly joinsPerMinute: number;
-  /** Connections that one address may have open at once. */
+  /** The most open connections of one address. */
   readonly connectionsPerAddress: number;
   readonly mostRooms: number;
-  /** Seconds of a ball game's round. */
+  /** Length of a round of the ball game [s], in rooms without terms. */
   readonly ballSeconds: number;
-  /** Of all avatars together that the people of this process's rooms have stored; 0: none is taken. */
+  /** The most megabytes of all stored avatars; 0: no avatar is accepted. */
   readonly avatarMegabytes: number;
-  /** The folder of another server that has avatars by the same names, with a slash at its end; null: there is none. */
+  /** A folder on another server with avatars by hash, with a trailing slash; null: none. */
   readonly avatarsFrom: string | null;
-  /** Origins from which the page may read files that are named by address: avatars, recordings, motion capture. */
+  /** Origins from which the page may read files by address: avatars, recordings, motion capture. */
   readonly filesFrom: readonly string[];
-  /** null: people in a room cannot talk to each other. */
+  /** null: players cannot talk to each other. */
   readonly voices: VoiceConfiguration | null;
-  /** Believe what a proxy in front says of a client's address. */
+  /** Whether to trust the client's address in a proxy's X-Forwarded-For. */
   readonly trustProxy: boolean;
-  /** Of the lobby that several processes share; null: this process is alone. */
+  /** Redis of the lobby that several processes share; null: a single process. */
   readonly redisUrl: string | null;
-  /** The address to listen on; null: this machine alone, or with --lan all of its own. */
+  /** The address to listen on; null: loopback, or with --lan all interfaces. */
   readonly host: string | null;
-  /** The holder of this, sent as "Authorization: Bearer …", may end rooms; null: no one. */
+  /** The bearer token that permits ending rooms; null: nobody may. */
   readonly adminToken: string | null;
   readonly logLevel: (typeof logLevels)[number];
 }
@@ -46,26 +46,26 @@ const shortestSecret = 32;
 type Environment = Readonly<Record<string, string | undefined>>;
 
 export const relayEnvironment = `Environment of the relay (server/README.md):
-  THREEPOINT_SECRET             signs room tokens; 128 bits or more (openssl rand -base64 32), the same in every process of a fleet
-  THREEPOINT_ORIGINS            origins of pages that may connect, with commas between; default: the server's own
-  THREEPOINT_HOSTS              names of the server, with commas between, where it has others than localhost, its addresses,
+  THREEPOINT_SECRET             signs room tokens; 128 bits or more (openssl rand -base64 32), the same in all processes
+  THREEPOINT_ORIGINS            origins of pages that may connect, separated by commas; default: the server's own
+  THREEPOINT_HOSTS              further names of the server, separated by commas; known are localhost, its addresses,
                                 this machine's name and those in THREEPOINT_ORIGINS
-  THREEPOINT_TICK_HZ            how often matches are stepped a second, 20 to 120; default 60
-  THREEPOINT_POSES_PER_SECOND   budget of each client; default 40
-  THREEPOINT_EVENTS_PER_SECOND  budget of each client; default 10
-  THREEPOINT_JOINS_PER_MINUTE   budget of new people of each address; default 5, on this machine itself 120
-  THREEPOINT_CONNECTIONS_PER_ADDRESS  connections that one address may have open; default 256
-  THREEPOINT_MOST_ROOMS         rooms in this process; default 500
+  THREEPOINT_TICK_HZ            ticks of a match per second, 20 to 120; default 60
+  THREEPOINT_POSES_PER_SECOND   most poses of each client; default 40
+  THREEPOINT_EVENTS_PER_SECOND  most messages of each client; default 10
+  THREEPOINT_JOINS_PER_MINUTE   most new people of each address; default 5, from this machine 120
+  THREEPOINT_CONNECTIONS_PER_ADDRESS  most open connections of each address; default 256
+  THREEPOINT_MOST_ROOMS         most rooms of this process; default 500
   THREEPOINT_BALL_SECONDS       length of a round of the ball game; default 90
-  THREEPOINT_AVATAR_MEGABYTES   of avatars that people show each other, in memory; default 256, 0: none
-  THREEPOINT_AVATARS_FROM       https:// address of a folder that has more of them, each named by its SHA-256 as base64url
-  THREEPOINT_FILES_FROM         https:// origins, with commas between, from which the page may read avatars, recordings and motion capture
-                                that are named by address; default: its own server alone
+  THREEPOINT_AVATAR_MEGABYTES   memory for players' avatars; default 256, 0: none
+  THREEPOINT_AVATARS_FROM       https:// address of a folder with further avatars, each named by its SHA-256 as base64url
+  THREEPOINT_FILES_FROM         https:// origins, separated by commas, from which the page may read avatars, recordings and motion capture
+                                by address; default: only its own server
 ${voiceEnvironment}
-  THREEPOINT_TRUST_PROXY        1: a proxy in front appends the clients' addresses to X-Forwarded-For; default 0
+  THREEPOINT_TRUST_PROXY        1: a proxy appends the client's address to X-Forwarded-For; default 0
   THREEPOINT_REDIS_URL          redis://HOST:PORT of the lobby that several processes share
-  THREEPOINT_ADMIN_TOKEN        lets its holder end rooms; 128 bits or more
-  THREEPOINT_HOST               address to listen on behind a proxy, as 0.0.0.0; default 127.0.0.1
+  THREEPOINT_ADMIN_TOKEN        token that permits ending rooms; 128 bits or more
+  THREEPOINT_HOST               address to listen on behind a proxy, for example 0.0.0.0; default 127.0.0.1
   THREEPOINT_LOG_LEVEL          ${logLevels.join(', ')}; default warn`;
 
 function numberFrom(environment: Environment, name: string, fallback: number, min: number, max: number): number {
@@ -89,7 +89,7 @@ function originsFrom(environment: Environment, name: string, scheme: RegExp): re
       const url = URL.canParse(part) ? new URL(part) : null;
       if (!url || !scheme.test(url.protocol) || (part !== url.origin && part !== `${url.origin}/`)) {
         throw new ConfigurationError(
-          `The environment variable ${name} must hold origins as https://example.org, not "${part}".`,
+          `The environment variable ${name} must list origins such as https://example.org, not "${part}".`,
         );
       }
       return url.origin;
@@ -104,7 +104,7 @@ function hostsFrom(text: string | undefined): readonly string[] {
   for (const name of names) {
     if (!/^[a-z0-9]([a-z0-9.-]*[a-z0-9])?$/i.test(name)) {
       throw new ConfigurationError(
-        `The environment variable THREEPOINT_HOSTS must hold names as study.example.org, without ports, not "${name}".`,
+        `The environment variable THREEPOINT_HOSTS must list names such as study.example.org, without ports, not "${name}".`,
       );
     }
   }
@@ -116,7 +116,7 @@ function folderFrom(text: string | undefined): string | null {
   const url = URL.canParse(text) ? new URL(text) : null;
   if (url?.protocol !== 'https:' || !url.pathname.endsWith('/') || url.search || url.hash || url.username) {
     throw new ConfigurationError(
-      `The environment variable THREEPOINT_AVATARS_FROM must be a folder as https://example.org/avatars/, not "${text}".`,
+      `The environment variable THREEPOINT_AVATARS_FROM must be a folder such as https://example.org/avatars/, not "${text}".`,
     );
   }
   return url.href;
@@ -127,7 +127,7 @@ function refuseWeak(name: string, secret: string | null): void {
   if (weakness) throw new ConfigurationError(`The secret in the environment variable ${name} ${weakness}`);
 }
 
-/** Throws a ConfigurationError that names the variable and what it should be. */
+/** Reads the settings. Throws a ConfigurationError that names the variable and its valid values. */
 export function relayConfigurationFrom(environment: Environment): RelayConfiguration {
   const secret = environment.THREEPOINT_SECRET || null;
   if (secret !== null && secret.length < shortestSecret) {
@@ -157,7 +157,7 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
   }
   if (redisUrl !== null && secret === null) {
     throw new ConfigurationError(
-      'Several processes need a common THREEPOINT_SECRET: set it beside THREEPOINT_REDIS_URL.',
+      'Several processes need the same THREEPOINT_SECRET. Set it together with THREEPOINT_REDIS_URL.',
     );
   }
   const number = (name: string, fallback: number, min: number, max: number) =>
@@ -172,7 +172,7 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
     posesPerSecond: whole('THREEPOINT_POSES_PER_SECOND', 40, 1, 200),
     eventsPerSecond: whole('THREEPOINT_EVENTS_PER_SECOND', 10, 1, 1000),
     joinsPerMinute: whole('THREEPOINT_JOINS_PER_MINUTE', 5, 1, 100_000),
-    // A class of thirty behind one address: six connections for the page and two WebSockets each.
+    // Thirty people behind one address: each has six connections for the page and two WebSockets.
     connectionsPerAddress: whole('THREEPOINT_CONNECTIONS_PER_ADDRESS', 256, 8, 1_000_000),
     mostRooms: whole('THREEPOINT_MOST_ROOMS', 500, 1, 100_000),
     ballSeconds: number('THREEPOINT_BALL_SECONDS', 90, 1, 3600),

@@ -1,29 +1,29 @@
 import { Counter, collectDefaultMetrics, Gauge, Histogram, Registry } from 'prom-client';
 
-/** What is counted in the hot path: plain numbers, read when they are asked for. */
+/** Counters of the hot path: plain numbers, which the metrics read on request. */
 export interface RelayCounts {
   posesIn: number;
   posesIgnored: number;
   framesOut: number;
-  /** Volatile frames that a client's connection had no room for. */
+  /** Frames of poses that were dropped, because a client's connection was busy. */
   framesDropped: number;
   messagesIn: number;
   bytesIn: number;
   bytesOut: number;
 }
 
-/** What /metrics tells of a relay. */
+/** The metrics of a relay, as /metrics reports them. */
 export interface RelayMetrics {
   readonly registry: Registry;
   readonly counts: RelayCounts;
-  /** Seconds that a tick of all rooms took. */
+  /** Duration of a tick of all rooms [s]. */
   readonly tick: Histogram;
   kicked(reason: string): void;
   refused(what: string, reason: string): void;
   close(): void;
 }
 
-/** Who is in the rooms of this process. */
+/** Numbers of rooms and of their members in this process. */
 export interface HostCensus {
   readonly rooms: number;
   readonly players: number;
@@ -31,25 +31,25 @@ export interface HostCensus {
   readonly spectators: number;
 }
 
-/** Who is there, asked for whenever the metrics are. */
+/** The gauges of a relay, read with the metrics. */
 export interface RelayCensus extends HostCensus {
-  /** WebSockets that are open, silent ones included. */
+  /** Open WebSockets, silent ones included. */
   readonly sockets: number;
-  /** Connections of any kind that are open, silent ones included. */
+  /** Open connections of any kind, silent ones included. */
   readonly connections: number;
   /** Connections refused since the start, because their address had too many. */
   readonly refusedConnections: number;
-  /** Files of avatars in the store. */
+  /** Avatar files in the store. */
   readonly avatars: number;
-  /** Their bytes, those on their way included. */
+  /** Their bytes, uploads under way included. */
   readonly avatarBytes: number;
 }
 
 const countHelp = {
   posesIn: ['poses_in', 'Pose packets received.'],
-  posesIgnored: ['poses_ignored', 'Pose packets that were old, unbelievable, or beyond the budget.'],
+  posesIgnored: ['poses_ignored', 'Pose packets that were old, implausibly fast, or beyond the limit.'],
   framesOut: ['frames_out', 'Frames of poses sent, one for each client.'],
-  framesDropped: ['frames_dropped', 'Frames of poses that a client was not ready for.'],
+  framesDropped: ['frames_dropped', 'Frames of poses that were dropped because a connection was busy.'],
   messagesIn: ['messages_in', 'Control messages received.'],
   bytesIn: ['pose_bytes_in', 'Bytes of pose packets received.'],
   bytesOut: ['frame_bytes_out', 'Bytes of frames of poses sent.'],
@@ -59,16 +59,16 @@ const gaugeHelp = {
   rooms: 'Rooms in this process.',
   players: 'People on seats, held seats included.',
   bots: 'Bots on seats.',
-  spectators: 'People who watch.',
-  sockets: 'WebSockets that are open, silent ones included.',
-  connections: 'Connections of any kind that are open, silent ones included.',
-  avatars: 'Files of avatars in the store.',
-  avatarBytes: 'Bytes of avatars in the store, those on their way included.',
+  spectators: 'Spectators.',
+  sockets: 'Open WebSockets, silent ones included.',
+  connections: 'Open connections of any kind, silent ones included.',
+  avatars: 'Avatar files in the store.',
+  avatarBytes: 'Bytes of avatars in the store, uploads under way included.',
 } as const satisfies Partial<Record<keyof RelayCensus, string>>;
 
 const keysOf = <T extends object>(of: T): (keyof T)[] => Object.keys(of) as (keyof T)[];
 
-/** A counter that is kept elsewhere and read when the metrics are. */
+/** Adds a counter that is read from `count` on each request for the metrics. */
 function addCounter(registry: Registry, name: string, help: string, count: () => number): void {
   new Counter({
     name: `threepoint_${name}_total`,
@@ -122,7 +122,7 @@ export function createRelayMetrics(census: () => RelayCensus): RelayMetrics {
   });
   const refusals = new Counter({
     name: 'threepoint_refusals_total',
-    help: 'What rooms would not do, by reason.',
+    help: 'Requests that rooms refused, by reason.',
     labelNames: ['what', 'reason'],
     registers,
   });

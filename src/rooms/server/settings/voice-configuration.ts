@@ -1,19 +1,19 @@
 import { ConfigurationError } from 'threepoint-http/configuration-error';
 
-/** How pages of the rooms find a way to each other for their voices. */
+/** The servers by which pages connect their voices. */
 export interface VoiceConfiguration {
-  /** Servers that tell a page its own address as others see it; none: pages of one network find each other all the same. */
+  /** STUN servers, from which a page learns its public address. Without one, only pages of the same network connect. */
   readonly stun: readonly string[];
-  /** Servers that pass on what finds no other way, and hide who talks from whom; null: there are none. */
+  /** TURN servers, which relay voices between networks and hide addresses; null: none. */
   readonly turn: { readonly urls: readonly string[]; readonly secret: string } | null;
 }
 
 type Environment = Readonly<Record<string, string | undefined>>;
 
-export const voiceEnvironment = `  THREEPOINT_VOICES             off: people in a room cannot talk to each other, and no page may use the microphone; default on
-  THREEPOINT_STUN               stun:HOST:PORT of servers that tell pages their address, with commas between; default none
-  THREEPOINT_TURN               turn:HOST:PORT of servers that pass voices on, with commas between; default none
-  THREEPOINT_TURN_SECRET        what those servers sign passes with (coturn: static-auth-secret), 32 characters or more`;
+export const voiceEnvironment = `  THREEPOINT_VOICES             off: players cannot talk to each other, and no page may use the microphone; default on
+  THREEPOINT_STUN               STUN servers as stun:HOST:PORT, separated by commas; default none
+  THREEPOINT_TURN               TURN servers as turn:HOST:PORT, separated by commas; default none
+  THREEPOINT_TURN_SECRET        secret of the TURN servers (coturn: static-auth-secret), 32 characters or more`;
 
 function urlsFrom(environment: Environment, name: string, form: RegExp, like: string): readonly string[] {
   const urls = (environment[name] ?? '')
@@ -22,12 +22,14 @@ function urlsFrom(environment: Environment, name: string, form: RegExp, like: st
     .filter(Boolean);
   for (const url of urls) {
     if (!form.test(url))
-      throw new ConfigurationError(`The environment variable ${name} must hold addresses as ${like}, not "${url}".`);
+      throw new ConfigurationError(
+        `The environment variable ${name} must list addresses such as ${like}, not "${url}".`,
+      );
   }
   return urls;
 }
 
-/** null: there are no voices. Throws a ConfigurationError that names the variable and what it should be. */
+/** Reads the voice settings; null: voices are off. Throws a ConfigurationError that names the variable and its valid values. */
 export function voiceConfigurationFrom(environment: Environment): VoiceConfiguration | null {
   const wanted = environment.THREEPOINT_VOICES || 'on';
   if (wanted !== 'on' && wanted !== 'off') {
@@ -43,7 +45,7 @@ export function voiceConfigurationFrom(environment: Environment): VoiceConfigura
   const secret = environment.THREEPOINT_TURN_SECRET ?? '';
   if (urls.length > 0 && secret.length < 32) {
     throw new ConfigurationError(
-      `The environment variable THREEPOINT_TURN needs THREEPOINT_TURN_SECRET beside it, of at least 32 characters; it has ${secret.length}.`,
+      `The environment variable THREEPOINT_TURN needs THREEPOINT_TURN_SECRET with at least 32 characters; it has ${secret.length}.`,
     );
   }
   if (wanted === 'off') return null;

@@ -1,23 +1,23 @@
 import type { Socket } from 'socket.io';
 
-/** A connection that could take no frame for this long [s], or has this many packets waiting, is too slow, with a pass or without. */
+/** A connection is too slow if it accepts no frame for this long [s], or if more packets than this wait. */
 const slowSeconds = 5;
 const mostWaiting = 256;
-/** A connection may have so many bytes waiting and still be sent poses: one that encrypts takes a moment for each write. */
+/** The most bytes that may wait on a connection that still receives poses: with TLS each write takes a moment. */
 export const mostBytesWaiting = 4096;
-/** Connections that read too slowly are looked for this often [ms]. */
+/** Interval of the check [ms]. */
 const slowCheckMs = 1000;
 
-/** Packets that wait for the connection to take them. */
+/** Returns the number of packets that wait in a connection's queue. */
 const packetsWaiting = (conn: Socket['conn']): number =>
-  // reason: private in the types, yet the only count there is: the socket's own buffer shows 16 KiB at most.
+  // reason: private in the types, but the only count: the socket's own buffer holds 16 KiB at most.
   (conn as unknown as { readonly writeBuffer: readonly unknown[] }).writeBuffer.length;
 
-/** Watches all open connections, and ends those whose other side reads too slowly. */
+/** Watches all open connections, and ends those whose client reads too slowly. */
 export class SlowReaders {
   readonly #now: () => number;
   readonly #end: (conn: Socket['conn']) => void;
-  /** The last time that each could take a frame [s]. */
+  /** The last time at which each accepted a frame [s]. */
   readonly #writableAt = new Map<Socket['conn'], number>();
   readonly #timer = setInterval(() => this.#check(), slowCheckMs);
 

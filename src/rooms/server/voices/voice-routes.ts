@@ -6,28 +6,28 @@ import type { RoomTokens } from '../access/room-tokens';
 import type { VoiceConfiguration } from '../settings/voice-configuration';
 
 export interface VoiceRoutesOptions {
-  /** null: there are no voices. */
+  /** null: voices are off. */
   readonly voices: VoiceConfiguration | null;
   readonly tokens: Pick<RoomTokens, 'verify'>;
   /** Seconds since 1970. */
   readonly now: () => number;
 }
 
-/** A pass to the servers that pass voices on is good for so long [s]: pages ask for another one before. */
+/** Lifetime of a TURN credential [s]; pages request the next one earlier. */
 const turnSeconds = 4 * 3600;
 const noVoices = { voices: false, iceServers: [], ttlSeconds: null };
 
 /**
- * A user and password that a TURN server believes which knows the same secret, until a time [s since 1970] ("REST API for access to TURN
- * services", draft-uberti-behave-turn-rest-00; coturn's use-auth-secret). The user's name tells the TURN server nothing but that.
+ * Returns a time-limited credential for a TURN server with the same secret ("REST API for access to TURN services",
+ * draft-uberti-behave-turn-rest-00; coturn's use-auth-secret). `until`: seconds since 1970. The user name does not identify the person.
  */
-function turnPass(secret: string, identity: string, until: number): { username: string; credential: string } {
+function turnCredential(secret: string, identity: string, until: number): { username: string; credential: string } {
   const alias = createHash('sha256').update(identity).digest('hex').slice(0, 12);
   const username = `${Math.floor(until)}:${alias}`;
   return { username, credential: createHmac('sha1', secret).update(username).digest('base64') };
 }
 
-/** Whether the people of a room can talk, and by which servers their pages find each other. `?room=` is for the proxy of a fleet. */
+/** The route that answers whether a room has voices, and by which ICE servers. A proxy in front of several processes routes by `?room=`. */
 export class VoiceRoutes {
   readonly routes: readonly Route<'client'>[];
   readonly #options: VoiceRoutesOptions;
@@ -47,7 +47,7 @@ export class VoiceRoutes {
       voices: true,
       iceServers: [
         ...(stun.length > 0 ? [{ urls: stun }] : []),
-        ...(turn ? [{ urls: turn.urls, ...turnPass(turn.secret, identity, now() + turnSeconds) }] : []),
+        ...(turn ? [{ urls: turn.urls, ...turnCredential(turn.secret, identity, now() + turnSeconds) }] : []),
       ],
       ttlSeconds: turn ? turnSeconds : null,
     });
