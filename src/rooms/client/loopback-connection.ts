@@ -7,10 +7,10 @@ import type { ClientPolicy } from './client-policy';
 import type { Connection, ConnectionStatus, ConnectionUpdate, Visitor } from './connection';
 import { RoomSession } from './room-session';
 
-/** A Room in this page: for a player alone, with bots if they like, and for tests. */
+/** A Room in this page, for a single player with bots, and for tests. */
 export interface LoopbackHost<Game extends HostedGame> {
   readonly room: Room<Game>;
-  /** `now`: this page's clock [s]. */
+  /** Joins the room. `now`: the page's clock [s]. */
   connect(visitor: Visitor, now: number): Connection<Game>;
 }
 
@@ -19,7 +19,7 @@ export interface LoopbackOptions<Game extends HostedGame> extends Partial<RoomOp
   stepped?(actions: readonly MatchAction<Game>[]): void;
 }
 
-/** The Room is the one of the server, and as it is this page's own it may be paused. It ticks when its first connection of a frame asks for news. */
+/** Creates a host of the same Room class as the server's; it may be paused. It ticks with the first `update` of a frame. */
 export function createLoopbackHost<Game extends HostedGame>(
   match: MatchPolicy<Game>,
   client: ClientPolicy<Game>,
@@ -38,7 +38,7 @@ class LoopbackRoom<Game extends HostedGame> {
   readonly #connections = new Map<ClientId, LoopbackConnection<Game>>();
   #now = 0;
   #ticked = Number.NEGATIVE_INFINITY;
-  #made = 0;
+  #count = 0;
 
   constructor(
     match: MatchPolicy<Game>,
@@ -74,15 +74,15 @@ class LoopbackRoom<Game extends HostedGame> {
 
   connect(visitor: Visitor, time: number): Connection<Game> {
     this.#now = Math.max(this.#now, time);
-    this.#made += 1;
-    const client = `client ${this.#made}`;
+    this.#count += 1;
+    const client = `client ${this.#count}`;
     const connection = new LoopbackConnection(this, client, visitor);
     this.#connections.set(client, connection);
     connection.join();
     return connection;
   }
 
-  /** The page's clock has come to this time [s]. */
+  /** Ticks the room at this time of the page's clock [s]. */
   advance(time: number): void {
     this.#now = Math.max(this.#now, time);
     if (this.#now <= this.#ticked) return;

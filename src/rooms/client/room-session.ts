@@ -25,10 +25,10 @@ import { RoomReplica } from './room-replica';
 
 const poseSeconds = 1 / 30;
 
-/** The last frames while no one asks (a hidden page) are not kept longer than this [packets]. */
+/** The most packets that are kept while the page is hidden and calls no `update`. */
 const mostWaiting = 256;
 
-/** A client's half of the protocol. Each kind of connection carries it over a wire of its own, in `transmit` and `transmitPose`. */
+/** The client's side of the protocol. Subclasses send its messages, in `transmit` and `transmitPose`. */
 export abstract class RoomSession<Game extends HostedGame> implements Connection<Game> {
   readonly voices: VoiceChannel = {
     setVoice: (voice) => this.#setVoice(voice),
@@ -38,7 +38,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     },
   };
   readonly #visitor: Visitor;
-  /** The Room's clock is this page's own. */
+  /** Whether the Room uses this page's clock. */
   readonly #knowsClock: boolean;
   readonly #clock = createClockSync();
   readonly #replica: RoomReplica<Game>;
@@ -48,11 +48,11 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   #voiceListener: VoiceListener | null = null;
   #skeleton: Skeleton;
   #seatRequest: { spectate: boolean; seat: number | null };
-  /** What the room was told first on this connection. */
+  /** The join request of this connection. */
   #sentJoin: JoinRequest | null = null;
-  /** By its type, what was last asked for without a connection, or with its welcome on the way. */
+  /** Requests that wait for the welcome, the newest of each type. */
   readonly #queued = new Map<ClientMessage['type'], ClientMessage>();
-  /** Whether the clock is to stand; null: never asked for. */
+  /** The last requested pause state; null: never requested. */
   #pauseRequest: boolean | null = null;
   #welcomes = 0;
   #now = 0;
@@ -75,7 +75,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   abstract get status(): ConnectionStatus;
   abstract update(time: number): ConnectionUpdate<Game>;
   abstract leave(): void;
-  /** To the Room, in order; nothing while there is no connection. */
+  /** Sends a message to the Room, in order; dropped while there is no connection. */
   protected abstract transmit(message: ClientMessage): void;
   protected abstract transmitPose(bytes: Uint8Array): void;
 
@@ -101,7 +101,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
 
   sendPose(time: number, shown: ShownPose): void {
     if (this.#replica.mySeat === null || (time < this.#nextPose && !shown.jump)) return;
-    // Frames come at their own rate: on average thirty packets a second.
+    // Frames have their own rate; this keeps an average of 30 packets a second.
     this.#nextPose = Math.max(this.#nextPose + poseSeconds, time + poseSeconds / 2);
     const timeMs = packetMs((time + this.#ahead) * 1000);
     const bytes = encodePose({ ...shown, timeMs }, this.#skeleton);
@@ -151,7 +151,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     return this.#replica.arenaFromFloor(seat);
   }
 
-  /** What to say first on every new connection. */
+  /** Returns the first message of every new connection. */
   protected joinRequest(): JoinRequest {
     const { name, bot = false } = this.#visitor;
     const own = { calibration: this.#calibration, avatar: this.#avatar, voice: this.#voice };
@@ -169,14 +169,14 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     this.#queued.clear();
   }
 
-  /** What was changed while the welcome was on its way has not been sent. */
+  /** Sends what has changed since the join request. */
   #sendChanges({ calibration, avatar, voice }: JoinRequest): void {
     if (calibration !== this.#calibration) this.transmit({ type: 'calibration', calibration: this.#calibration });
     if (avatar !== this.#avatar) this.transmit({ type: 'wear', avatar: this.#avatar });
     if (voice !== this.#voice) this.transmit({ type: 'voice', voice: this.#voice });
   }
 
-  /** Takes a message of the Room in, heard at this time of the page's clock [s]. */
+  /** Handles a message of the Room that arrived at this time of the page's clock [s]. */
   protected onMessage(message: RoomMessage<Game>, at: number): void {
     this.#now = Math.max(this.#now, at);
     this.#view = null;
@@ -191,11 +191,11 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
         if (this.#replica.onWelcome(message)) this.#news.push('voided');
         this.#news.push('welcome');
         this.#welcomes += 1;
-        // A player who returns to a server that has forgotten them asks for the same seat.
+        // After a restart of the server the player requests the same seat.
         if (message.seat !== null) this.#seatRequest = { spectate: false, seat: message.seat };
         if (this.#sentJoin) this.#sendChanges(this.#sentJoin);
         this.#sendQueued();
-        // The room may have forgotten the wish, or have been told otherwise before the connection was lost.
+        // The room may have lost the request, or have received another one before the connection was lost.
         if (this.#pauseRequest !== null && message.seat !== null)
           this.transmit({ type: 'pause', pause: this.#pauseRequest });
         this.#voiceListener?.onSeatsChanged();
@@ -205,9 +205,9 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     }
   }
 
-  /** Takes a frame of poses in, heard at this time of the page's clock [s]. */
+  /** Handles a frame of poses that arrived at this time of the page's clock [s]. */
   protected onFrame(frame: Uint8Array, arrivedAt: number): void {
-    // A bot looks at no one: it plays by what the match says.
+    // Bots need no poses: they play from the state of the match.
     if (this.#visitor.bot) return;
     for (const { seat, bytes } of decodeFrame(frame) ?? []) {
       const skeleton = this.#replica.skeletonOf(seat);
@@ -218,21 +218,21 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     if (this.#poses.length > mostWaiting) this.#poses = this.#poses.slice(-mostWaiting);
   }
 
-  /** This page's clock left out `seconds` of a pause that ended at `now`; the Room's went on. */
+  /** Accounts for a pause that this page's clock skipped [s] and that ended at `now`; the Room's clock ran on. */
   protected leaveOut(seconds: number, now: number): void {
     this.#clock.paused(seconds, now);
   }
 
-  /** What came since the last call; asks for the Room's time when that is due. */
+  /** Returns what has arrived since the last call, and requests the Room's time when that is due. */
   protected takeUpdate(time: number, connected: boolean): ConnectionUpdate<Game> {
     this.#now = time;
     this.#view = null;
     if (connected && !this.#knowsClock && this.#clock.due(time)) this.transmit({ type: 'ping', sent: time });
-    const since = { events: this.#events, poses: this.#poses, news: this.#news };
+    const update = { events: this.#events, poses: this.#poses, news: this.#news };
     this.#events = [];
     this.#poses = [];
     this.#news = [];
-    return since;
+    return update;
   }
 
   #setVoice(voice: Voice | null): void {
@@ -260,12 +260,12 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     }
   }
 
-  /** Seconds of the Room's clock minus seconds of this page's. */
+  /** The Room's clock minus the page's clock [s]. */
   get #ahead(): number {
     return this.#knowsClock ? 0 : this.#clock.offset;
   }
 
-  /** Seconds of the match minus seconds of this page's clock. */
+  /** The match clock minus the page's clock [s]. */
   get #matchAhead(): number {
     const { known } = this.#replica;
     if (!known) return 0;

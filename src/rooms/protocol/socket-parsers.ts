@@ -1,19 +1,18 @@
 /**
- * Parsers for socket.io that put every packet into one WebSocket frame. Pose packets and frames of poses are their bytes and nothing
- * else; all other packets are text: the digit of the packet's type and JSON. What is not like that throws, and socket.io closes
- * the connection.
+ * Parsers for socket.io that put every packet into one WebSocket frame. Pose packets and frames of poses are sent as their bytes alone; all other
+ * packets are text: the digit of the packet's type and JSON. Anything else throws, and socket.io closes the connection.
  */
 
 /** A packet of socket.io. Types: 0 connect, 1 disconnect, 2 event, 3 acknowledgement, 4 error. */
 export interface SocketPacket {
   readonly type: number;
   readonly nsp: string;
-  // biome-ignore lint/suspicious/noExplicitAny: reason: the packets of socket.io carry what their sender put into them.
+  // biome-ignore lint/suspicious/noExplicitAny: reason: packets of socket.io carry arbitrary data.
   readonly data?: any;
   readonly id?: number;
 }
 
-/** Names of the two events that are bytes alone: of one avatar to the relay, of a room from it. */
+/** The two events that are bytes alone: poses of a page to the relay, and frames of poses from the relay. */
 export const poseEvent = 'pose';
 export const frameEvent = 'frame';
 /** The event of all control messages. */
@@ -31,7 +30,7 @@ function encodeText({ type, nsp, data, id }: SocketPacket): string {
   return `${type}${JSON.stringify(parts)}`;
 }
 
-/** Names of events that socket.io or Node's emitter raise themselves: a packet that carries one would run their listeners. */
+/** Events that socket.io or Node's emitter raise themselves: a packet with such a name would run their listeners. */
 const reservedEvents: ReadonlySet<unknown> = new Set([
   ...['connect', 'connect_error', 'disconnect', 'disconnecting'],
   ...['error', 'newListener', 'removeListener'],
@@ -42,8 +41,8 @@ const isEvent = (value: unknown): boolean =>
   Array.isArray(value) && typeof value[0] === 'string' && !reservedEvents.has(value[0]);
 
 /**
- * Whether a packet of each type may carry this, by its digit. socket.io reads a packet without looking at what is in it, because its own parser
- * refuses everything else: a parser that lets more through can end the process.
+ * Returns whether a packet may carry some data, by the digit of its type. socket.io relies on its parser for this check: invalid data can crash the
+ * process.
  */
 const mayCarry: readonly ((data: unknown) => boolean)[] = [
   (data) => data === undefined || isObject(data),
@@ -53,7 +52,7 @@ const mayCarry: readonly ((data: unknown) => boolean)[] = [
   (data) => typeof data === 'string' || isObject(data),
 ];
 
-/** Whether a packet of this type may have this number: an acknowledgement must, an event may. */
+/** Returns whether a packet of this type may have this id: an acknowledgement must have one, an event may. */
 const mayHaveId = (type: number, id: unknown): boolean => {
   if (id === undefined) return type !== acknowledgementType;
   const isNumbered = type === eventType || type === acknowledgementType;
@@ -63,15 +62,15 @@ const mayHaveId = (type: number, id: unknown): boolean => {
 function decodeText(text: string): SocketPacket {
   const type = text.charCodeAt(0) - 48;
   const parts: unknown = JSON.parse(text.slice(1));
-  if (!Array.isArray(parts) || parts.length > 3) throw new Error('no packet');
+  if (!Array.isArray(parts) || parts.length > 3) throw new Error('the packet is malformed');
   const [nsp, data, id] = parts as [unknown, unknown, unknown];
-  if (typeof nsp !== 'string' || nsp.length > 60) throw new Error('no namespace');
-  if (!mayCarry[type]?.(data)) throw new Error('no packet of socket.io carries this');
-  if (!mayHaveId(type, id)) throw new Error('no id');
+  if (typeof nsp !== 'string' || nsp.length > 60) throw new Error('the namespace is invalid');
+  if (!mayCarry[type]?.(data)) throw new Error('the data does not fit the packet type');
+  if (!mayHaveId(type, id)) throw new Error('the id is invalid');
   return { type, nsp, data, ...(id !== undefined && { id: id as number }) };
 }
 
-/** The relay's encoder: text alone, its frames of poses are written below socket.io. */
+/** The relay's encoder, for text alone: frames of poses are written below socket.io. */
 class RelayEncoder {
   encode(packet: SocketPacket): (string | Uint8Array)[] {
     return [encodeText(packet)];
@@ -85,7 +84,7 @@ class PageEncoder {
   }
 }
 
-/** The relay's decoder: bytes are poses, which are heard below socket.io. Speaks as an event emitter does, because socket.io expects one. */
+/** The relay's decoder, for text alone: poses are read below socket.io. It has the methods of an event emitter that socket.io calls. */
 class RelayDecoder {
   private listeners: Listener[] = [];
 

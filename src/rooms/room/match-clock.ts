@@ -1,36 +1,36 @@
 import type { HostedGame, HostedMatch, MatchAction, MatchPolicy } from './match-policy';
 
-/** What a match's clock tells its Room. */
+/** Receives what happens to a match and its clock. */
 export interface MatchClockListener<Game extends HostedGame> {
-  /** What happened in the match, oldest first; perhaps nothing. */
+  /** Called with the events of a step, oldest first; the list may be empty. */
   onEvents(events: readonly Game['event'][]): void;
-  /** The clock stands, or runs again. */
+  /** Called when the clock is paused or resumed. */
   onPauseChange(): void;
-  /** The clock's start is elsewhere in the Room's time. */
+  /** Called when the match start has moved in room time. */
   onStartShift(): void;
-  /** Another match has begun. */
+  /** Called when another match has begun. */
   onRestart(): void;
   onStep(actions: readonly MatchAction<Game>[]): void;
 }
 
-/** A shift of the match's start by less than this [s] is rounding. */
+/** Shifts of the match start below this [s] are rounding. */
 const leastShift = 1e-3;
 
-/** One match after another, each with its clock within the Room's time [s]: started, paused, stepped. */
+/** Starts, pauses and steps one match after another, and keeps the match clock in room time [s]. */
 export class MatchClock<Game extends HostedGame> {
   readonly #policy: MatchPolicy<Game>;
   readonly #listener: MatchClockListener<Game>;
   #match: HostedMatch<Game>;
-  /** Actions that wait for the next step. */
+  /** Actions for the next step. */
   #queued: MatchAction<Game>[] = [];
-  #begun = false;
+  #hasBegun = false;
   #matchStart = 0;
-  /** For how long the clock has stood in all [s]. */
+  /** How long the match clock has stood in all [s]. */
   #pausedSeconds = 0;
-  /** Room time at which the clock was stopped; null: it runs. */
+  /** Room time at which the clock was paused; null: it runs. */
   #stoppedAt: number | null = null;
   #rotation = 0;
-  /** Roles move on with every match. */
+  /** Whether roles move on with every match. */
   rotate = false;
 
   constructor(policy: MatchPolicy<Game>, listener: MatchClockListener<Game>) {
@@ -43,7 +43,7 @@ export class MatchClock<Game extends HostedGame> {
     return this.#match.state;
   }
 
-  /** Room time [s] at which the match's clock was at 0; it moves on with every second that the clock stands. */
+  /** Room time [s] at which the match clock is 0; it moves on during a pause. */
   get matchStart(): number {
     return this.#matchStart;
   }
@@ -52,35 +52,35 @@ export class MatchClock<Game extends HostedGame> {
     return this.#stoppedAt !== null;
   }
 
-  /** A match runs, and its clock with it. */
+  /** Whether a match runs and is not paused. */
   get isRunning(): boolean {
     return this.state.phase === 'running' && !this.isPaused;
   }
 
-  /** Time alone changes nothing: no match runs, and no action waits. */
+  /** Whether time alone changes nothing: no match runs, and no action waits. */
   get isIdle(): boolean {
     return this.#queued.length === 0 && !this.isRunning;
   }
 
-  /** The second of the match at which its clock stands; null: it runs. */
+  /** The second of the match at which its clock is paused; null: it runs. */
   get pausedAt(): number | null {
     return this.#stoppedAt === null ? null : this.#stoppedAt - this.#matchStart;
   }
 
-  /** The first time that the Room is told is the beginning of its first match; later ones change nothing. */
+  /** Starts the first match at this room time [s]; later calls change nothing. */
   begin(time: number): void {
-    if (this.#begun) return;
-    this.#begun = true;
+    if (this.#hasBegun) return;
+    this.#hasBegun = true;
     this.#matchStart = time;
     this.#match.advance(this.#runningTime(time), []);
   }
 
-  /** Keeps an action for the next step. */
+  /** Queues an action for the next step. */
   add(action: MatchAction<Game>): void {
     this.#queued.push(action);
   }
 
-  /** Steps the match as far as this time, unless its clock stands or, because the players want so, is stopped now. */
+  /** Steps the match up to this time [s]. `wantPause`: whether a player requests a pause; the clock is then paused, or stays so. */
   step(time: number, wantPause: boolean): void {
     if (this.#stoppedAt !== null) {
       if (wantPause) return;
@@ -91,14 +91,14 @@ export class MatchClock<Game extends HostedGame> {
     if (stopping) due.push({ type: 'pause' });
     const tick = this.state.tick;
     this.#listener.onEvents(this.#match.advance(this.#runningTime(time), due));
-    // Between two ticks of the match nothing is stepped: then it stops with the next one. A match that these ticks ended stands by itself.
+    // The match pauses only after a tick; one that has just ended needs no pause.
     if (stopping && this.state.tick !== tick && this.state.phase === 'running') {
       this.#stoppedAt = time;
       this.#listener.onPauseChange();
       return;
     }
-    this.#followHost(time);
-    // What came since the last tick is for this match to take in: another one begins with what its last tick knew.
+    this.#adjustStart(time);
+    // A new match begins only after a tick, so that this one has handled all actions.
     if (this.state.tick !== tick) this.#restartIfWanted(time);
   }
 
@@ -106,7 +106,7 @@ export class MatchClock<Game extends HostedGame> {
     return this.#policy.start(this.#rotation, (actions) => this.#listener.onStep(actions));
   }
 
-  /** The Room's time less the time that the match's clock has stood [s]. */
+  /** Returns room time without pauses [s]. */
   #runningTime(time: number): number {
     return time - this.#pausedSeconds;
   }
@@ -124,15 +124,15 @@ export class MatchClock<Game extends HostedGame> {
     this.#listener.onPauseChange();
   }
 
-  /** A match cuts pauses of its host, which stepped nothing meanwhile, out of its time: then its start is later. */
-  #followHost(time: number): void {
+  /** Moves the match start if the match has skipped a time in which its host was suspended. */
+  #adjustStart(time: number): void {
     const start = time - this.#match.lead - this.state.tick * this.#policy.tickSeconds;
     if (Math.abs(start - this.#matchStart) <= leastShift) return;
     this.#matchStart = start;
     this.#listener.onStartShift();
   }
 
-  /** Begins another match once all who are there want one and can play it. */
+  /** Starts another match once all present players are ready and their roles permit it. */
   #restartIfWanted(time: number): void {
     const before = this.state;
     if (before.phase !== 'over') return;

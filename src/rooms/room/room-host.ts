@@ -2,10 +2,10 @@ import type { DisconnectReason, RoomMessage } from '../protocol/messages';
 import type { SeatPose } from '../protocol/pose-frame';
 import type { HostedGame, MatchAction } from './match-policy';
 
-/** One connection; a person who comes back has another one. */
+/** The id of one connection; a person who reconnects has another one. */
 export type ClientId = string;
 
-/** Why a Room refuses something; an action that the rules refuse has a reason of the game's. */
+/** Why a Room refuses a request; actions that the rules refuse have reasons of the game. */
 export type RefusalReason =
   | 'too-fast'
   | 'occupied'
@@ -19,31 +19,31 @@ export type RefusalReason =
   | 'session-taken'
   | 'no-receiver';
 
-/** Something that the Room would not do. */
+/** A request that the Room has refused. */
 export interface RoomRefusal {
   readonly client: ClientId;
   readonly seat: number | null;
   readonly what: 'pose' | 'action' | 'sit' | 'message';
-  /** A RoomReason, or one of the game's rules. */
+  /** A RefusalReason, or a reason of the game's rules. */
   readonly reason: string;
 }
 
-/** A pose packet that is to be passed on, and by which connection it came; null: that has ended since. */
+/** A pose packet to forward, and the connection from which it came; null: that has ended. */
 export interface FreshPose extends SeatPose {
   readonly from: ClientId | null;
 }
 
-/** How a Room speaks. Called from within its methods, never at another time. */
+/** What a Room needs of its host. It calls these only from within its own methods. */
 export interface RoomHost<Game extends HostedGame> {
-  /** Reliable and in order. */
+  /** Sends a message, reliably and in order. */
   send(to: ClientId, message: RoomMessage<Game>): void;
-  /** The same to all who have joined. */
+  /** Sends a message to all clients that have joined, reliably and in order. */
   broadcast(message: RoomMessage<Game>): void;
-  /** To all who have joined, to each but their own: the packets that have come since the last call, seat by seat. At least one. */
+  /** Sends the packets since the last call, at least one, by seat: to all clients that have joined, except each one's own. */
   sendPoses(poses: readonly FreshPose[]): void;
-  /** The Room has forgotten this client. */
+  /** Disconnects a client that the Room has removed. */
   disconnect(client: ClientId, reason: DisconnectReason): void;
   refused(refusal: RoomRefusal): void;
-  /** The actions of every tick before it is stepped: enough to play a match again from its start. */
+  /** Called with the actions of every tick before it is stepped; they suffice to replay a match. */
   stepped?(actions: readonly MatchAction<Game>[]): void;
 }

@@ -26,7 +26,7 @@ export class RoomVoices {
   admitted(identity: string, voice: Voice | null): Voice | null {
     if (!voice || !this.#enabled) return null;
     const taken = this.#seats.withVoice(voice.session);
-    // A page that returns finds its own session on the seat that was held for it.
+    // A page that reconnects finds its own session on the held seat.
     return taken !== null && this.#seats.at(taken)?.identity !== identity ? null : voice;
   }
 

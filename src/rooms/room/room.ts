@@ -85,7 +85,7 @@ export class Room<Game extends HostedGame> {
     return this.#match.isPaused;
   }
 
-  /** Returns the avatar of a person who has a seat, or for whom one is held; null for anyone else. */
+  /** Returns the avatar of a person with a seat, held seats included; null for anyone else. */
   avatarOf(identity: string): WornAvatar | null {
     const index = this.#seats.indexOfIdentity(identity);
     return index === null ? null : (this.#seats.at(index)?.avatar ?? null);

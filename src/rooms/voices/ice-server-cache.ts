@@ -1,46 +1,47 @@
 import type { VoiceSettings } from './voice-settings';
 
-/** Of the time that a pass is good for, the share after which another one is asked for. */
-const renewedAfter = 0.75;
-/** Where the server does not answer, it is asked again after so long [ms]. */
-const againMs = 15_000;
+/** The settings are refreshed after this share of their time to live. */
+const refreshShare = 0.75;
+/** After a failed request the next one follows after this time [ms]. */
+const retryMs = 15_000;
 
-/** What a server says of the voices in a room. The pass to its relay expires: it is asked for anew before. */
+/** Caches the voice settings of a room, and refreshes them before the credential of its TURN server expires. */
 export class IceServerCache {
-  readonly #ask: () => Promise<VoiceSettings>;
+  readonly #fetch: () => Promise<VoiceSettings>;
   readonly #now: () => number;
   #newest: VoiceSettings | null = null;
-  /** When the server is to be asked next [ms of `now`]. */
+  /** Time of the next refresh [ms of `now`]. */
   #due = Number.POSITIVE_INFINITY;
-  #asking = false;
+  #isFetching = false;
 
-  /** `now`: a clock [ms] that goes on while the device sleeps. */
-  constructor(ask: () => Promise<VoiceSettings>, now: () => number = Date.now) {
-    this.#ask = ask;
+  /** `now`: a clock [ms] that runs on while the device sleeps. */
+  constructor(fetchSettings: () => Promise<VoiceSettings>, now: () => number = Date.now) {
+    this.#fetch = fetchSettings;
     this.#now = now;
   }
 
-  /** null: the server has not said yet. */
+  /** The newest settings; null before the first answer. */
   get newest(): VoiceSettings | null {
     return this.#newest;
   }
 
-  /** Asks now. Rejects where the server does not say; what it said last stays. */
+  /** Fetches the settings now. Rejects if the server does not answer; the last settings stay. */
   async refresh(): Promise<VoiceSettings> {
-    const asked = this.#now();
-    const terms = await this.#ask();
-    this.#newest = terms;
-    this.#due = terms.ttlSeconds === null ? Number.POSITIVE_INFINITY : asked + 1000 * renewedAfter * terms.ttlSeconds;
-    return terms;
+    const sentAt = this.#now();
+    const settings = await this.#fetch();
+    this.#newest = settings;
+    this.#due =
+      settings.ttlSeconds === null ? Number.POSITIVE_INFINITY : sentAt + 1000 * refreshShare * settings.ttlSeconds;
+    return settings;
   }
 
-  /** To be called often: asks when it is time to. Resolves to what is new, or null: nothing is. Never rejects. */
+  /** Fetches the settings if they are due; to be called often. Resolves to new settings, or to null. Never rejects. */
   async refreshIfDue(): Promise<VoiceSettings | null> {
-    if (this.#asking || this.#now() < this.#due) return null;
-    this.#asking = true;
-    this.#due = this.#now() + againMs;
+    if (this.#isFetching || this.#now() < this.#due) return null;
+    this.#isFetching = true;
+    this.#due = this.#now() + retryMs;
     const renewed = await this.refresh().catch(() => null);
-    this.#asking = false;
+    this.#isFetching = false;
     return renewed;
   }
 }

@@ -28,7 +28,7 @@ describe('a relay', () => {
       await until('the farewell', () => heard.length > 0 && older.disconnected);
       expect(heard).toEqual([{ type: 'farewell', reason: 'old-page' }]);
       const status: ConnectionStatus = { phase: 'ended', attempt: 0, retryIn: null, reason: 'old-page' };
-      expect(bannerText(status)).toBe('This page and the server are of different versions. Reload the page.');
+      expect(bannerText(status)).toBe('This page and the server have different versions. Reload the page.');
       expect(ann.connection.status.phase).toBe('joined');
       expect(ann.connection.room?.seats.filter(Boolean)).toHaveLength(1);
     } finally {

@@ -7,7 +7,7 @@ function serverOf(ttlSeconds: number | null) {
   const server = { asked: 0, answers: true, nowMs: 0 };
   const ask = async (): Promise<VoiceSettings> => {
     server.asked += 1;
-    if (!server.answers) throw new Error('the server says nothing of voices (503)');
+    if (!server.answers) throw new Error('the server sent no voice settings (503)');
     return { voices: true, iceServers: [{ urls: 'turn:turn.example.org', username: `${server.asked}` }], ttlSeconds };
   };
   return { server, kept: new IceServerCache(ask, () => server.nowMs) };
