@@ -5,20 +5,20 @@ import { roundedLaunch, type Step, withBall } from './state-changes';
 import { ballInHand, ballMatchTime, tickSeconds } from './state-readings';
 import { isInZone, rackPosition } from './stations';
 
-/** No hand throws a ball faster [m/s]; a professional's baseball does 45, an arm with a controller 15. */
+/** The fastest throw [m/s]; a professional's baseball reaches 45, an arm with a controller 15. */
 export const fastestThrow = 20;
-/** What leaves the hand more slowly [m/s] is let go of, not thrown: it goes back to the rack. */
+/** The slowest throw [m/s]; a slower ball returns to the rack. */
 export const slowestThrow = 0.8;
-/** A fist takes a ball from this far [m]; clients ask for less. */
+/** The largest distance of a fist from the ball that it takes [m]; clients use less. */
 export const grabReach = 0.35;
-/** A hand is at most this far from its head [m]. */
+/** The largest distance of a hand from the head [m]. */
 export const armReach = 1.4;
-/** A ball leaves the hand at most this far from where the hand was last [m]: at 10 m/s it goes that far in 70 ms. */
+/** The largest distance of a release from the last position of the hand [m]: at 10 m/s a hand moves that far in 70 ms. */
 export const releaseReach = 0.7;
-/** What happened longer ago than this [s] happened now minus this. */
+/** The largest delay of an action [s]; older ones are moved to this age. */
 export const longestDelay = 0.5;
 
-/** Whether this number is new; and the memory of it. */
+/** Records an action number. Returns the updated record, or null if the number is invalid or has been seen. */
 export function countOnce({ sequence, seen }: BallPlayer, number: number): { sequence: number; seen: number } | null {
   if (!(Number.isInteger(number) && number > 0 && number < 2 ** 31)) return null;
   if (number > sequence) {
@@ -30,7 +30,7 @@ export function countOnce({ sequence, seen }: BallPlayer, number: number): { seq
   return { sequence, seen: seen | (1 << age) };
 }
 
-/** What the action does, or why it does nothing. */
+/** Applies an action. Returns the step, or why the action is refused. */
 export function applyAction(state: BallState, index: number, action: BallAction): Step | Refusal {
   if (state.phase !== 'running' || state.startedAt === null) return 'phase';
   if (state.players[index]!.role !== 'thrower') return 'role';

@@ -17,7 +17,7 @@ export type BallConnectionUpdate = ConnectionUpdate<BallGame>;
 export type BallRoomView = RoomView<BallGame>;
 export type BallLoopbackHost = LoopbackHost<BallGame>;
 
-/** The ball game as a client of its Room follows it. */
+/** The client policy of the ball game. */
 export const ballClientPolicy: ClientPolicy<BallGame> = {
   readMessage: ballRoomMessageFrom,
   unpack: unpackBall,
@@ -33,6 +33,6 @@ export interface BallLoopbackOptions extends LoopbackOptions<BallGame> {
   readonly ball?: Partial<BallOptions>;
 }
 
-/** Returns a Room of the ball game in this page. */
+/** Creates a Room of the ball game in this page. */
 export const createBallLoopbackHost = ({ seed = 0, ball, ...options }: BallLoopbackOptions = {}): BallLoopbackHost =>
   createLoopbackHost(new BallPolicy({ ...ball, seed }), ballClientPolicy, options);

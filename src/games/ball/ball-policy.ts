@@ -17,7 +17,7 @@ export interface BallPolicyOptions extends Partial<BallOptions> {
   readonly seed?: number;
 }
 
-/** The ball game as a Room hosts it: three seats, two throwers and the holder of the basket. */
+/** The match policy of the ball game: three seats, for two throwers and the basket holder. */
 export class BallPolicy implements MatchPolicy<BallGame> {
   readonly kind = ballKind;
   readonly seats = stations.length;

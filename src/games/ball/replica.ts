@@ -6,8 +6,8 @@ const throwerOf = (place: BallPlace | undefined): number =>
   place?.on === 'air' || place?.on === 'floor' ? place.thrower : 0;
 
 /**
- * The state after something that happened where the rules run: balls, score, phase and who is there follow from events alone. The
- * tick, heads, hands and the basket do not; a page that draws them has poses and a clock. An event that is heard twice changes nothing.
+ * Returns the state after an event of the Room: balls, score, phase and presence. The tick, heads, hands and the basket do not follow from events; a page
+ * has the clock and poses for them. An event that arrives twice changes nothing.
  */
 export function followBallEvent(state: BallState, event: BallEvent): BallState {
   switch (event.type) {
@@ -55,7 +55,7 @@ export function followBallEvent(state: BallState, event: BallEvent): BallState {
   }
 }
 
-/** The state as it will be once the rules have heard of this action, if they allow it: what a player sees of their own hands. */
+/** Returns the predicted state after the player's own action, if the rules allow it. */
 export function predictBallAction(state: BallState, player: number, action: BallAction): BallState {
   if (state.phase !== 'running') return state;
   const inHand = ballInHand(state, player, action.side);
@@ -79,7 +79,7 @@ export function predictBallAction(state: BallState, player: number, action: Ball
   }
 }
 
-/** Whether this event is what came of that action of the player's. */
+/** Returns whether an event is the Room's answer to an action of the player. */
 export function answersBallAction(event: BallEvent, player: number, action: BallAction): boolean {
   switch (event.type) {
     case 'refused':
@@ -91,7 +91,7 @@ export function answersBallAction(event: BallEvent, player: number, action: Ball
     case 'thrown':
       return action.type === 'throw' && event.player === player && event.ball === action.ball;
     case 'returned':
-      // A throw too slow to be one puts the ball back.
+      // A throw that is too slow returns the ball.
       return (
         event.player === player && (action.type === 'drop' || (action.type === 'throw' && action.ball === event.ball))
       );
@@ -100,7 +100,7 @@ export function answersBallAction(event: BallEvent, player: number, action: Ball
   }
 }
 
-/** The tick that the rules have reached at this time of the match [s]; the state as far as that. */
+/** Returns the state with the tick of this match time [s]. */
 export const withMatchTime = (state: BallState, time: number): BallState => ({
   ...state,
   tick: Math.max(0, Math.floor(time / tickSeconds)),

@@ -15,7 +15,7 @@ import type { BallConnection } from 'threepoint-games/ball/ball-client';
 import type { BallState } from 'threepoint-games/ball/ball-state';
 import { ballRadius, basketRadius, rimTube } from 'threepoint-games/ball/flight';
 import type { BallPulse } from 'threepoint-games/ball/gestures';
-import type { Performed } from 'threepoint-games/ball/player-postures';
+import type { PlayerInput } from 'threepoint-games/ball/player-postures';
 import { defaultBallOptions } from 'threepoint-games/ball/rules';
 import { ballsLeft } from 'threepoint-games/ball/state-readings';
 import type { BallSteering } from 'threepoint-games/ball/steered-players';
@@ -79,7 +79,7 @@ export interface BallActivity {
   /** Once a frame, first. */
   begin(time: number): void;
   /** Head, hands and buttons of the built-in player on the own seat; null: no seat. */
-  act(time: number, catchUp: boolean): Performed | null;
+  act(time: number, catchUp: boolean): PlayerInput | null;
   /** The tracked frame as play: what it means is heard at once, what it feels like comes back. */
   follow(frame: TrackingFrame, buttons: Buttons): readonly BallPulse[];
   send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void;
@@ -190,7 +190,7 @@ class CourtActivity implements BallActivity {
     this.#voided = voided;
   }
 
-  act(time: number, catchUp: boolean): Performed | null {
+  act(time: number, catchUp: boolean): PlayerInput | null {
     return this.play.act(time, catchUp);
   }
 

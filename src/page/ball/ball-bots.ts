@@ -12,7 +12,7 @@ import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import type { Opening } from 'threepoint-games/ball/basket';
 import { type BallGestureFrame, type BallGestures, createBallGestures } from 'threepoint-games/ball/gestures';
 import { createHolder } from 'threepoint-games/ball/holder-motion';
-import type { Performed, PlayerBody } from 'threepoint-games/ball/player-postures';
+import type { PlayerBody, PlayerInput } from 'threepoint-games/ball/player-postures';
 import { holderStation, stations } from 'threepoint-games/ball/stations';
 import { type BallBot, createThrower } from 'threepoint-games/ball/thrower-motion';
 import type { Visitor } from 'threepoint-rooms/client/connection';
@@ -94,7 +94,7 @@ export function performedAt(
   state: BallState,
   player: number,
   { stood, opening }: CourtSight,
-): Performed {
+): PlayerInput {
   const done = actor.follow(time - stood, { state, player, ...(opening && { basket: opening.position }) });
   return stood === 0 ? done : { ...done, frame: { ...done.frame, time } };
 }

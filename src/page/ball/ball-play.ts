@@ -12,7 +12,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
 import type { BallEvent } from 'threepoint-games/ball/ball-state';
 import type { BallCue, BallGestureFrame, BallGestures, BallPulse } from 'threepoint-games/ball/gestures';
-import type { Performed } from 'threepoint-games/ball/player-postures';
+import type { PlayerInput } from 'threepoint-games/ball/player-postures';
 import { holderStation } from 'threepoint-games/ball/stations';
 import {
   type BallSteering,
@@ -53,7 +53,7 @@ export interface BallPlay {
    * Head, hands and buttons of a built-in player on the own seat at `time` [s]; null: there is no seat yet. catchUp: what it does
    * between two slow frames is played as well, as no device could.
    */
-  act(time: number, catchUp?: boolean): Performed | null;
+  act(time: number, catchUp?: boolean): PlayerInput | null;
   /** The tracked frame and its buttons become play; null frame: no one is seen, or a spectator. */
   follow(time: number, frame: TrackingFrame | null, buttons: Buttons): BallFrame | null;
   /** The solved body of this frame, for the others. */
@@ -179,7 +179,7 @@ class MatchPlay implements BallPlay {
     this.others = this.remote.follow(time);
   }
 
-  act(time: number, catchUp = true): Performed | null {
+  act(time: number, catchUp = true): PlayerInput | null {
     const line = this.connection;
     const seen = line?.room;
     if (!line || !seen?.match || seen.mySeat === null) return null;
