@@ -196,7 +196,7 @@ describe('configuration of the relay', () => {
     [{ THREEPOINT_FILES_FROM: 'https:' }, 'THREEPOINT_FILES_FROM must list origins'],
     [{ THREEPOINT_HOSTS: 'a.example:8080' }, 'must list names such as study.example.org'],
     [{ THREEPOINT_REDIS_URL: 'localhost:6379' }, 'must be like redis://localhost:6379'],
-    [{ THREEPOINT_REDIS_URL: 'redis://localhost:6379' }, 'need a common THREEPOINT_SECRET'],
+    [{ THREEPOINT_REDIS_URL: 'redis://localhost:6379' }, 'need the same THREEPOINT_SECRET'],
     [{ THREEPOINT_LOG_LEVEL: 'loud' }, 'must be one of trace'],
   ])('%o is refused with a sentence', (environment, words) => {
     expect(() => relayConfigurationFrom(environment)).toThrow(words);
