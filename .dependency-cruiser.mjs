@@ -25,13 +25,13 @@ const packageRules = [...manifests].map(([folder, { name, dependencies = {} }]) 
 });
 
 /** Returns the rules of a package's rooms: each room and the rooms of the package that it may import. */
-const roomRules = (folder, rooms) =>
+const roomRules = (folder, rooms, to = `^${folder}/`) =>
   Object.entries(rooms).map(([room, known]) => ({
     name: `${folder.replaceAll('/', '-')}-${room}`,
     comment: `${folder}/${room} may import ${known.join(', ') || 'no other room'}: anything else would let a change travel upwards.`,
     severity: 'error',
     from: { path: `^${folder}/${room}/` },
-    to: { path: `^${folder}/`, pathNot: `^${folder}/(${[room, ...known].join('|')})/` },
+    to: { path: to, pathNot: `^${folder}/(${[room, ...known].join('|')})/` },
   }));
 
 const coreRooms = {
@@ -58,6 +58,15 @@ const roomsRooms = {
   client: ['protocol', 'room'],
   voices: ['protocol', 'client'],
   server: ['protocol', 'room'],
+};
+const roomServerRooms = {
+  settings: [],
+  access: ['settings'],
+  sockets: ['settings'],
+  hosting: ['settings', 'access', 'sockets'],
+  lobby: ['hosting'],
+  avatars: ['settings', 'access'],
+  voices: ['settings', 'access'],
 };
 const studyRooms = {
   statistics: [],
@@ -100,6 +109,7 @@ export default {
     ...roomRules('src/threepoint/core', coreRooms),
     ...roomRules('src/threepoint', libraryRooms),
     ...roomRules('src/rooms', roomsRooms),
+    ...roomRules('src/rooms/server', roomServerRooms, '^src/rooms/server/[^/]+/'),
     ...roomRules('src/study', studyRooms),
     ...roomRules('src/study/model', modelRooms),
     ...roomRules('src/study/server', studyServerRooms),

@@ -2,25 +2,25 @@ import { parseArgs } from 'node:util';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { weaknessOf } from 'threepoint-http/secret-bits';
 
-/** How this process serves, from the command line and the environment. */
+/** The settings of this process, from the command line and the environment. */
 export interface Configuration {
   /** The port to try first; 0: any free one. */
   readonly port: number;
   /** Serve HTTPS to the whole network instead of HTTP to this machine alone. */
   readonly lan: boolean;
-  /** Where studies are kept; null: beside the program. */
+  /** The folder of the studies; null: `study-data` next to the program. */
   readonly studyDirectory: string | null;
-  /** What the experimenter's page asks for; null: the server draws one and keeps it with the studies. */
+  /** The token for the experimenter's page; null: the server generates one and stores it with the studies. */
   readonly experimenterToken: string | null;
 }
 
 export const usage = `Usage: npm start -- [options]
   --port NUMBER  port to serve on (or the environment variable PORT); default 3333, the next free one if it is taken
-  --lan          HTTPS for every device on the network, with a certificate of our own
-  --studies DIR  where studies are kept (or the environment variable STUDIES); default study-data
+  --lan          HTTPS for every device on the network, with a self-signed certificate
+  --studies DIR  folder of the studies (or the environment variable STUDIES); default study-data
   --help         this text
-The environment variable EXPERIMENTER_TOKEN (128 bits or more, as "openssl rand -base64 32" draws them) replaces the token that the
-server draws for itself.`;
+The environment variable EXPERIMENTER_TOKEN (128 bits or more, as from "openssl rand -base64 32") replaces the token that the server
+generates.`;
 
 function portFrom(text: string, source: string): number {
   const port = Number(text);
@@ -30,7 +30,7 @@ function portFrom(text: string, source: string): number {
   return port;
 }
 
-/** Reads the arguments after the script's name and the environment; 'help' when that is what was asked for. */
+/** Reads the arguments after the script's name, and the environment. Returns 'help' for --help. Throws a ConfigurationError. */
 export function configurationFrom(
   args: readonly string[],
   environment: Readonly<Record<string, string | undefined>>,
@@ -65,6 +65,6 @@ export function configurationFrom(
     if (weakness) throw new ConfigurationError(`The token in the environment variable EXPERIMENTER_TOKEN ${weakness}`);
   }
   const studyDirectory = values.studies ?? (environment.STUDIES || null);
-  if (studyDirectory === '') throw new ConfigurationError('--studies needs the name of a directory.');
+  if (studyDirectory === '') throw new ConfigurationError('--studies needs the name of a folder.');
   return { port, lan: values.lan ?? false, studyDirectory, experimenterToken };
 }

@@ -1,13 +1,13 @@
 import { resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { secretIn } from 'threepoint-rooms/server/relay';
-import { relayConfigurationFrom, relayEnvironment } from 'threepoint-rooms/server/relay-configuration';
-import { welcome } from 'threepoint-rooms/server/welcome';
+import { loadOrCreateSecret } from 'threepoint-rooms/server/relay';
+import { relayConfigurationFrom, relayEnvironment } from 'threepoint-rooms/server/settings/relay-configuration';
 import { certificateFor } from './certificate';
 import { configurationFrom, usage } from './configuration';
 import { lanAddresses } from './lan-addresses';
 import { startServer } from './start';
+import { startupMessage } from './startup-message';
 
 const pathInRepository = (path: string) => fileURLToPath(new URL(`../${path}`, import.meta.url));
 
@@ -27,14 +27,14 @@ async function main(): Promise<void> {
       : pathInRepository('study-data'),
     experimenterToken,
     relay,
-    secret: relay.secret ?? secretIn(pathInRepository('.cache/relay-secret')),
+    secret: relay.secret ?? loadOrCreateSecret(pathInRepository('.cache/relay-secret')),
     host: relay.host ?? (addresses ? '0.0.0.0' : '127.0.0.1'),
     port: configuration.port,
     ...(addresses && { credentials: await certificateFor(addresses, pathInRepository('.cache'), new Date()) }),
     log: (line) => console.error(line),
   });
   const { port, tokenFile } = server;
-  console.log(welcome({ port, requestedPort: configuration.port, addresses, tokenFile }));
+  console.log(startupMessage({ port, requestedPort: configuration.port, addresses, tokenFile }));
   for (const signal of ['SIGINT', 'SIGTERM'] as const) {
     process.once(signal, () => {
       console.log('Stopping.');

@@ -30,7 +30,7 @@ const contentTypes: Readonly<Record<string, string>> = {
   '.gltf': 'model/gltf+json',
 };
 
-/** Smallest first: the order in which a browser that takes several gets them. */
+/** The encodings, smallest first: a browser that accepts several gets the first. */
 const encodings = [
   { name: 'br', suffix: '.br' },
   { name: 'gzip', suffix: '.gz' },
@@ -61,7 +61,7 @@ function filesBelow(directory: string, prefix = ''): string[] {
 }
 
 export interface PageOptions {
-  /** The page may use the microphone. */
+  /** Whether the page may use the microphone. Default: false. */
   readonly microphone?: boolean;
   /** Origins of other servers from which the page may read files that are named by address. */
   readonly filesFrom?: readonly string[];
@@ -75,10 +75,10 @@ function load(directory: string, { microphone = false, filesFrom = [] }: PageOpt
     if (encoding && paths.has(path.slice(0, -encoding.suffix.length))) continue;
     const headers = {
       'content-type': contentTypes[extname(path).toLowerCase()] ?? 'application/octet-stream',
-      // Vite names what is in assets/ by its content; everything else keeps its name when it changes.
+      // Vite puts a content hash into the names in assets/; other files keep their names when they change.
       'cache-control': path.startsWith('/assets/') ? 'public, max-age=31536000, immutable' : 'no-cache',
       vary: 'accept-encoding',
-      // The page where people talk to each other and open files by address, and no other file.
+      // Only this page has voices and opens files by address.
       ...(path === '/index.html' && {
         'permissions-policy': permissionsPolicy(microphone),
         'content-security-policy': contentSecurityPolicy(filesFrom),
@@ -95,7 +95,7 @@ function load(directory: string, { microphone = false, filesFrom = [] }: PageOpt
   return files;
 }
 
-/** Whether an Accept-Encoding header takes this encoding: named, and not with q=0. */
+/** Returns whether an Accept-Encoding header accepts this encoding: it is named, and not with q=0. */
 function accepts(header: string | undefined, encoding: string): boolean {
   return (header ?? '').split(',').some((part) => {
     const [name, ...parameters] = part
@@ -107,12 +107,12 @@ function accepts(header: string | undefined, encoding: string): boolean {
 }
 
 /**
- * Serves a built page from memory: the files are read once, so that a request touches no disk, no path leads out of the
- * directory, and a rebuild under a running server breaks no download. Throws where there is no index.html.
+ * Creates a handler that serves a built page from memory. Files are read once: a request touches no disk, no path leads out of the directory,
+ * and a rebuild breaks no download. Throws if there is no index.html.
  */
 export function createPageHandler(directory: string, options: PageOptions = {}): RequestListener {
   if (!existsSync(join(directory, 'index.html'))) {
-    throw new Error(`${directory} holds no index.html: build the page first (npm run build)`);
+    throw new Error(`${directory} holds no index.html. Build the page first: npm run build`);
   }
   const files = load(directory, options);
 
@@ -126,7 +126,7 @@ export function createPageHandler(directory: string, options: PageOptions = {}):
     const path = decodeURIComponent(target.path);
     if (path === '/healthz') return plain('ok');
     const name = path.endsWith('/') ? `${path}index.html` : path;
-    // Pages are asked for by their name alone: /results is results.html.
+    // Pages are requested by name: /results is results.html.
     const file = files.get(name) ?? files.get(`${name}.html`);
     if (!file) return plain('Not found.', 404);
     const encoding = encodings.find(

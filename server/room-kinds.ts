@@ -1,8 +1,8 @@
 import { ballKind } from 'threepoint-games/ball/ball-messages';
 import { BallPolicy } from 'threepoint-games/ball/ball-policy';
-import type { RoomKinds } from 'threepoint-rooms/server/room-kinds';
+import type { RoomKinds } from 'threepoint-rooms/server/hosting/room-kinds';
 
-/** The games of this project. `ballSeconds`: length of a round of the ball game where the terms name none. */
+/** Returns the games of this project. `ballSeconds`: length of a round of the ball game whose room has no terms. */
 export const shippedRoomKinds = ({ ballSeconds }: { readonly ballSeconds: number }): RoomKinds =>
   new Map([
     [

@@ -4,16 +4,16 @@ import { createSitePolicy } from 'threepoint-http/site-policy';
 import { softwareIn } from 'threepoint-http/software';
 import { type Credentials, serve } from 'threepoint-http/web-server';
 import { createRelay } from 'threepoint-rooms/server/relay';
-import type { RelayConfiguration } from 'threepoint-rooms/server/relay-configuration';
+import type { RelayConfiguration } from 'threepoint-rooms/server/settings/relay-configuration';
 import { openStudyService } from 'threepoint-study/server/service';
 import { createPageHandler } from './page';
 import { shippedRoomKinds } from './room-kinds';
 
 export interface StartOptions {
-  /** Holds the built page. */
+  /** The folder of the built page. */
   readonly pageDirectory: string;
   readonly studyDirectory: string;
-  /** null: the one kept with the studies. */
+  /** null: the token that is stored with the studies. */
   readonly experimenterToken: string | null;
   readonly relay: RelayConfiguration;
   /** Signs the passes into rooms. */
@@ -21,21 +21,21 @@ export interface StartOptions {
   readonly host: string;
   readonly port: number;
   readonly credentials?: Credentials;
-  /** Told of faults, wrong guesses and deletions of the studies, one line each. */
+  /** Receives a line for each fault, wrong guess and deletion of the studies. */
   readonly log: (line: string) => void;
 }
 
-/** The page, the studies and the relay on one port. */
+/** The running server: page, studies and relay on one port. */
 export interface RunningServer {
   readonly port: number;
-  /** Where the experimenter's token lies; null: it was given. */
+  /** The file of the experimenter's token; null: the token is a setting. */
   readonly tokenFile: string | null;
-  /** Everything that is answered below the page. */
+  /** The routes of all services. */
   readonly routes: readonly Route[];
   close(): Promise<void>;
 }
 
-/** Starts all that `npm start` serves. Throws where there is no built page. */
+/** Starts the server of `npm start`. Throws if the page is not built. */
 export async function startServer(options: StartOptions): Promise<RunningServer> {
   const { relay: relaying, host, port, credentials, log } = options;
   const now = () => Date.now() / 1000;
@@ -66,7 +66,7 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
     upgrade: relay.upgrade,
     connectionLimiter,
   }).catch(async (error: unknown) => {
-    // Their timers would keep the process from ending.
+    // Their timers would keep the process alive.
     await relay.close();
     await studies.close();
     throw error;

@@ -1,5 +1,5 @@
 import { parentPort } from 'node:worker_threads';
-import { createRoomTokens } from 'threepoint-rooms/server/room-tokens';
+import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { serveStudies } from 'threepoint-study/server/thread';
 
 // The thread of the studies: its seats are signed by the tokens that the rooms of this server accept.

@@ -11,10 +11,10 @@ import { protocolVersion } from 'threepoint-rooms/protocol/messages';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
 import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
-import { createRoomTokens } from 'threepoint-rooms/server/room-tokens';
+import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { WebSocket } from 'ws';
 import { countingKind } from '../../tests/rooms/room/counting-game';
-import type { ClientAnswer, Heard, Load, Meeting } from './conversation';
+import { type ClientAnswer, type Heard, type Load, type Meeting } from './conversation';
 
 /** A pose packet as players send it most: two controllers and a body. */
 function packet(): Uint8Array {

@@ -88,7 +88,9 @@ test('a headset that was not asked, or has no body, is said to have none, and th
   await open(page, 'emulate&quality=low&estimator=device');
   await emulatedHeadset(page);
   await enterVr(page, { stepMs: null });
-  await expect(page.locator('#about-device')).toContainText('Learned is used instead: the headset was not asked for its body.');
+  await expect(page.locator('#about-device')).toContainText(
+    'Learned is used instead: the headset was not asked for its body.',
+  );
   expect((await probe(page)).estimator).toBe('device');
   await press(page, 'button', 'Exit VR');
   await expect(page.locator('#about-device')).toContainText('The body that the headset itself tracks');

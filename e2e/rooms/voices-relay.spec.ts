@@ -49,7 +49,7 @@ async function shortPasses(page: Page, url: string, seconds: number) {
     if (!server.answers) return route.fulfill({ status: 503, body: '' });
     server.given += 1;
     const iceServers = [{ urls: [url], ...passFor(seconds) }];
-    return route.fulfill({ json: { voices: true, iceServers, goodFor: seconds } });
+    return route.fulfill({ json: { voices: true, iceServers, ttlSeconds: seconds } });
   });
   return server;
 }

@@ -222,7 +222,7 @@ test('a microphone that its device ends is taken again; refused then, a sentence
 
   // Taking the permission back ends the microphone too.
   await ben.context().clearPermissions();
-  await expect(bar(ben)).toContainText('The browser does not let this page use the microphone');
+  await expect(bar(ben)).toContainText('The browser blocks the microphone');
   await expect(bar(ben)).toContainText('You can still hear the others.');
   await silent(ann);
   await expect.poll(async () => (await otherOf(ann))?.voice).toBe('muted');
@@ -242,7 +242,7 @@ test('what keeps a person from talking is a sentence: refused, no microphone, no
   const { origin } = await serve();
   const { page: refused } = await talker(origin, 'Ann', { microphone: 'refused', seldomDrawn: true });
   await joinVoices(refused);
-  await expect(bar(refused)).toContainText('The browser does not let this page use the microphone');
+  await expect(bar(refused)).toContainText('The browser blocks the microphone');
   await expect(bar(refused)).toContainText('You can still hear the others.');
 
   const { page: without } = await talker(origin, 'Ben', { microphone: 'none' });

@@ -1,15 +1,15 @@
 import { addScaled, type MutableVec3, normalise, setVec3, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 
-/** Downward [m/s²]. Nothing else acts on what flies: no drag, no wind. */
+/** Gravity, downward [m/s²]; there is neither drag nor wind. */
 export const gravity = 9.81;
 
-/** How an arrow's tip or a ball's middle sets off: position [m] and velocity [m/s], arena frame. */
+/** The launch of an arrow's tip or of a ball's centre: position [m] and velocity [m/s], arena frame. */
 export interface Launch {
   readonly position: Vec3;
   readonly velocity: Vec3;
 }
 
-/** Where it is after `seconds` of flight. */
+/** Returns the position after `seconds` of flight [m]. */
 export const positionAt = (
   { position, velocity }: Launch,
   seconds: number,
@@ -20,13 +20,13 @@ export const positionAt = (
   return target;
 };
 
-/** How fast it is after `seconds` of flight [m/s]. */
+/** Returns the velocity after `seconds` of flight [m/s]. */
 export const velocityAt = ({ velocity }: Launch, seconds: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
   setVec3(target, velocity.x, velocity.y - gravity * seconds, velocity.z);
 
 /**
- * Real roots of a·t² + b·t + c, ascending, without cancellation; a line where a vanishes, none where nothing crosses. They are written
- * into `target`.
+ * Writes the real roots of a·t² + b·t + c into `target`, ascending and without cancellation. With a near 0 the equation is linear; without real roots
+ * the list is empty.
  */
 export function roots(a: number, b: number, c: number, target: number[] = []): readonly number[] {
   target.length = 0;
@@ -34,14 +34,14 @@ export function roots(a: number, b: number, c: number, target: number[] = []): r
   if (discriminant < 0) return target;
   const q = -0.5 * (b + (b < 0 ? -1 : 1) * Math.sqrt(discriminant));
   if (q !== 0) target.push(c / q);
-  // A coefficient this small is the rounding of an upright disc's normal: its root lies beyond every flight.
+  // A coefficient this small is the rounding of an upright disc's normal; its root lies beyond every flight.
   if (Math.abs(a) > 1e-12) target.push(q / a);
   return target.sort(ascending);
 }
 
 const ascending = (first: number, second: number): number => first - second;
 
-/** Seconds until it comes down through this height [m]; 0 where it starts below, or there and does not rise. */
+/** Returns the seconds until the flight comes down through a height [m]; 0 if it starts below, or at the height without rising. */
 export function fallsTo({ position, velocity }: Launch, height: number): number {
   const above = position.y - height;
   if (above < 0 || (above === 0 && velocity.y <= 0)) return 0;
@@ -52,8 +52,8 @@ export function fallsTo({ position, velocity }: Launch, height: number): number 
 const offset = vec3(0, 0, 0);
 
 /**
- * The unit direction in which something at `from` must leave with `speed` [m/s] to pass through `target`: the flatter of the two
- * parabolas; written into `direction`. null: out of reach at this speed.
+ * Writes into `direction` the unit direction of a launch at `from` with `speed` [m/s] through `target`, the flatter of two parabolas. Returns null if the
+ * target is out of reach.
  */
 export function launchTowards(
   target: Vec3,

@@ -14,26 +14,26 @@ import {
   vec3,
 } from 'threepoint/core/math/vec3';
 
-/** The middle of the fist in the wrist's frame [m]: 8 cm towards the knuckles, 2.5 cm towards the palm. */
+/** The centre of the fist in the wrist's frame [m]: 8 cm towards the knuckles, 2.5 cm towards the palm. */
 export const fistInWrist: Vec3 = vec3(0, -0.025, -0.08);
 
-/** The skin of the palm lies this far below the wrist's middle [m]. */
+/** Distance of the palm's skin below the centre of the wrist [m]. */
 const palm = 0.015;
 
-/** The middle of a ball of this radius [m] that lies in the palm of a hand: it is drawn there, and thrown from there. */
+/** Returns the centre of a ball with this radius [m] in the palm of a hand, where it is drawn and thrown from. */
 export function ballInPalm(wrist: Pose<Frame>, radius: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
   setVec3(target, 0, -palm - radius, fistInWrist.z);
   return add(wrist.position, rotate(wrist.orientation, target, target), target);
 }
 
-/** Out of the fist on the thumb's side, in the wrist's frame. */
+/** The direction of the thumb in the wrist's frame, unit. */
 const thumbInWrist: Readonly<Record<Side, Vec3>> = { left: vec3(1, 0, 0), right: vec3(-1, 0, 0) };
 
-/** What a fist closes round (a bow's grip, a ball), of a wrist. */
+/** Returns the centre of the fist of a wrist, where it holds a bow's grip or a ball. */
 export const fistOf = (wrist: Pose<Frame>, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
   add(wrist.position, rotate(wrist.orientation, fistInWrist, target), target);
 
-/** Out of the fist on the thumb's side, unit. */
+/** Returns the direction of the thumb, unit. */
 export const thumbOf = (side: Side, orientation: Quat, target?: MutableVec3): MutableVec3 =>
   rotate(orientation, thumbInWrist[side], target);
 
@@ -41,7 +41,7 @@ const wristX = vec3(0, 0, 0);
 const wristY = vec3(0, 0, 0);
 const wristZ = vec3(0, 0, 0);
 
-/** The wrist whose fist closes round `fist`, its knuckles and thumb in these directions as nearly as right angles allow. */
+/** Writes the wrist whose fist is at `fist`. The knuckles point in their direction; the thumb is as near to its own as a right angle permits. */
 export function wristAround<F extends Frame>(
   side: Side,
   fist: Vec3,

@@ -1,29 +1,29 @@
 import type { GameRules } from './game-rules';
 
-/** A match in progress: the newest state and the way from frames to ticks. */
+/** A match in progress: it holds the newest state, and steps ticks from frames. */
 export interface Match<State, Action, Event> {
   readonly state: State;
-  /** Seconds from the end of the last tick stepped to the newest frame, mostly below 0: what is drawn is drawn for then. */
+  /** Seconds from the end of the last tick to the newest frame, usually negative; drawing extrapolates by it. */
   readonly lead: number;
   /**
-   * Steps every tick that has begun by `time` [s, any monotonic clock; the first call is the start of tick 0] and returns what
-   * happened. The actions belong to this frame: to the tick it lies in, or where that has been stepped already, to the next.
+   * Steps every tick that has begun by `time` [s, any monotonic clock; the first call starts tick 0], and returns the events. The actions belong to the
+   * tick in which the frame lies, or to the next one if that has been stepped.
    */
   advance(time: number, actions: readonly Action[]): readonly Event[];
 }
 
-/** What a match can be asked to tell and how its actions learn where in their tick they lie. */
+/** Optional callbacks of a match. */
 export interface MatchHooks<Action> {
-  /** The same action, `delay` [s] into its tick. */
+  /** Returns the action with its delay after the start of its tick [s]. */
   delayed?(action: Action, delay: number): Action;
-  /** Hears of each tick before it is stepped: enough to play the match again. */
+  /** Called before each tick with its actions, which suffice to replay the match. */
   onTick?(actions: readonly Action[]): void;
 }
 
-/** After a pause of more than this the match goes on where it stood, instead of catching up in one frame [s]. */
+/** After a gap longer than this [s] the match continues where it was, instead of catching up in one frame. */
 const longestGap = 1;
 
-/** Plays the rules frame by frame from `start`. */
+/** Creates a match that plays the rules frame by frame from `start`. */
 export function createMatch<State, Action, Event, Options>(
   rules: GameRules<State, Action, Event, Options>,
   start: State,
@@ -31,11 +31,11 @@ export function createMatch<State, Action, Event, Options>(
 ): Match<State, Action, Event> {
   let state = start;
   let stepped = 0;
-  let zero: number | null = null;
+  let startedAt: number | null = null;
   let last = 0;
   let waiting: Action[] = [];
 
-  /** Adds the actions of a frame, `delay` [s] into their tick. */
+  /** Adds the actions of a frame with their delay in the tick [s]. */
   function place(actions: readonly Action[], delay: number, due: Action[]): void {
     for (const action of actions) due.push(hooks.delayed ? hooks.delayed(action, delay) : action);
   }
@@ -45,14 +45,14 @@ export function createMatch<State, Action, Event, Options>(
       return state;
     },
     get lead() {
-      return zero === null ? 0 : last - zero - stepped * rules.tickSeconds;
+      return startedAt === null ? 0 : last - startedAt - stepped * rules.tickSeconds;
     },
     advance(time, actions) {
-      zero ??= time;
-      // A frame's own duration was at most a tick or two: a pause is cut out of the match's time.
-      if (time - last > longestGap && stepped > 0) zero += time - last;
+      startedAt ??= time;
+      // A longer gap than a frame is a pause, which is removed from the match's time.
+      if (time - last > longestGap && stepped > 0) startedAt += time - last;
       last = time;
-      const now = time - zero;
+      const now = time - startedAt;
       const tick = Math.floor(now / rules.tickSeconds);
       const inTick = Math.min(Math.max(now - tick * rules.tickSeconds, 0), rules.tickSeconds * (1 - 1e-9));
       const events: Event[] = [];

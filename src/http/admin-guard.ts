@@ -15,7 +15,7 @@ export interface AdminSettings {
   readonly trustProxy: boolean;
 }
 
-/** Knows the holder of the admin's token, and limits how often an address may guess it. */
+/** Checks the admin token, and limits how often an address may guess it. */
 export class AdminGuard {
   readonly #configuration: AdminSettings;
   readonly #throttle: AuthThrottle;
@@ -25,7 +25,7 @@ export class AdminGuard {
     this.#throttle = createAuthThrottle((guess) => log.warn(guess, 'wrong token of an admin'));
   }
 
-  /** Whether the request brings the token; throws the answer 429 after too many wrong ones. */
+  /** Returns whether the request has the token. Throws an HttpError 429 after too many wrong ones. */
   async admits(request: IncomingMessage): Promise<boolean> {
     const { adminToken, trustProxy } = this.#configuration;
     const secret = /^Bearer (\S{1,256})$/.exec(request.headers.authorization ?? '')?.[1];

@@ -2,18 +2,18 @@ import { type IncomingMessage, type ServerResponse, STATUS_CODES } from 'node:ht
 import type { Duplex } from 'node:stream';
 import { securityHeaders } from './security-headers';
 
-/** What a request gets, not yet on its way. */
+/** The answer to a request, before it is sent. */
 export interface Answer {
   readonly status: number;
-  /** Names in lower case; these replace the usual ones. */
+  /** Headers by their names in lower case; they replace the default ones. */
   readonly headers?: Readonly<Record<string, string | number>>;
   readonly body?: string | Uint8Array;
 }
 
-/** A refusal for the person at the other end: the status that fits and a sentence. */
+/** A refusal that the client receives: a status and a sentence. */
 export class HttpError extends Error {
   readonly status: number;
-  /** What of the body was wrong, as `records[1].body.age`; null: not a matter of one field. */
+  /** The invalid field of the body, as `records[1].body.age`; null: no single field is at fault. */
   readonly field: string | null;
   readonly headers: Readonly<Record<string, string>>;
 
@@ -41,7 +41,7 @@ export const plain = (text: string, status = 200): Answer => ({
   body: `${text}\n`,
 });
 
-/** An answer of nothing but its status. */
+/** An answer without a body. */
 export const done: Answer = { status: 204 };
 
 export const refusal = ({ status, message, field, headers }: HttpError): Answer => {
@@ -49,7 +49,7 @@ export const refusal = ({ status, message, field, headers }: HttpError): Answer 
   return { ...answer, headers: { ...answer.headers, ...headers } };
 };
 
-/** So much more of a body that is not wanted is read [bytes], and for so long [ms], that the refusal is heard before the connection ends. */
+/** Bytes and time [ms] of an unread body that are drained before closing, so that the client receives the error. */
 const lingerBytes = 2 ** 20;
 const lingerMs = 1000;
 
@@ -63,7 +63,7 @@ const headersOf = ({ headers, body }: Answer): Record<string, string | number> =
 const announcesBody = ({ headers }: IncomingMessage): boolean =>
   headers['transfer-encoding'] !== undefined || Number(headers['content-length'] ?? 0) > 0;
 
-/** Calls back once the body has ended or its sender has had enough of our time. */
+/** Drains the body, then calls `done`: at its end, or when `lingerBytes` or `lingerMs` is exceeded. */
 function linger(request: IncomingMessage, done: () => void): void {
   let read = 0;
   const finish = (): void => {
@@ -79,7 +79,7 @@ function linger(request: IncomingMessage, done: () => void): void {
   request.on('data', count).on('end', finish).on('close', finish).resume();
 }
 
-/** Sends an answer with the headers that every answer has. The rest of an unread body ends the connection instead of being read. */
+/** Sends an answer with the security headers. After an unread body the connection is closed. */
 export function sendAnswer(request: IncomingMessage, response: ServerResponse, answer: Answer): void {
   if (response.destroyed || response.headersSent) return;
   const unread = announcesBody(request) && !request.complete;
@@ -89,20 +89,20 @@ export function sendAnswer(request: IncomingMessage, response: ServerResponse, a
     response.end(body);
     return;
   }
-  // What ends later is heard whole: its length is in its head.
+  // The response ends later, but the client knows its length from the header.
   if (body !== undefined) response.write(body);
   else response.flushHeaders();
   linger(request, () => response.end());
 }
 
-/** The same on a connection that has no response to write to: its request was not understood, or asked for an upgrade. */
+/** Sends an answer on a raw socket: the request could not be parsed, or asked for an upgrade. */
 export function sendRawAnswer(socket: Duplex, answer: Answer): void {
   const headers = { ...headersOf(answer), connection: 'close' };
   const lines = Object.entries(headers).map(([name, value]) => `${name}: ${value}\r\n`);
   const head = `HTTP/1.1 ${answer.status} ${STATUS_CODES[answer.status]}\r\n${lines.join('')}\r\n`;
   const timer = setTimeout(() => socket.destroy(), lingerMs);
   socket.once('close', () => clearTimeout(timer));
-  // Without a reader the end of the other side would never be seen.
+  // Without a reader the client's end would not be noticed.
   socket.resume();
   socket.end(Buffer.concat([Buffer.from(head, 'latin1'), Buffer.from(answer.body ?? '')]));
 }

@@ -2,13 +2,13 @@ import type { IncomingMessage } from 'node:http';
 import { BlockList, isIP, isIPv4, SocketAddress } from 'node:net';
 import { HttpError } from './answer';
 
-/** The address of a client in its one normal form, whatever its connection or a proxy wrote. Every limit of the server counts `network`. */
+/** The normalised address of a client. Every limit of the server counts by `network`. */
 export interface ClientAddress {
   /** An IPv4 address, IPv4-mapped IPv6 included, or an IPv6 address in its shortest form without a zone. */
   readonly text: string;
   /** The IPv4 address, or the /64 of the IPv6 address: one subscriber has at least a /64 to draw addresses from. */
   readonly network: string;
-  /** The client is a program on this machine. */
+  /** Whether the client is a program on this machine. */
   readonly isLoopback: boolean;
 }
 
@@ -53,7 +53,10 @@ export function findClientAddress({ headers, socket }: IncomingMessage, trustPro
 /** Returns the address for a limit that counts it. Throws an HttpError 400 where there is none. */
 export function requiredAddress(address: ClientAddress | null): ClientAddress {
   if (address) return address;
-  throw new HttpError(400, 'the last entry of X-Forwarded-For is no IP address; correct the proxy in front');
+  throw new HttpError(
+    400,
+    'the last entry of X-Forwarded-For is not an IP address; correct the configuration of the proxy',
+  );
 }
 
 /** Returns the address of the client behind a request, for a limit that counts it. Throws an HttpError 400 where there is none. */

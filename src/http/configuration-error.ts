@@ -1,2 +1,2 @@
-/** A setting of the server that cannot be used; the message is for the person at the terminal. */
+/** An invalid setting of the server; the message is for the person at the terminal. */
 export class ConfigurationError extends Error {}

@@ -14,11 +14,11 @@ export interface ConnectionLimiter {
 export interface ConnectionLimiterOptions {
   /** Open connections allowed for one address. */
   readonly perAddress: number;
-  /** Connections come from a proxy, which limits its own clients: nothing is refused here. */
+  /** Whether connections come from a proxy, which limits its clients itself; then none is refused here. */
   readonly behindProxy: boolean;
 }
 
-/** Counts slots in use by key, `most` for each; keys without any are dropped. */
+/** Creates a counter of slots in use, `most` for each key. */
 export function createSlotCounter(most: number): { acquire(key: string): boolean; release(key: string): void } {
   const counts = new Map<string, number>();
   return {
@@ -48,7 +48,7 @@ export function createConnectionLimiter({ perAddress, behindProxy }: ConnectionL
       return refused;
     },
     admit(socket) {
-      // A connection that its client has closed before it was accepted has no address any more.
+      // A connection that was closed before it was accepted has no address.
       const network = parseClientAddress(socket.remoteAddress ?? '')?.network;
       if (network === undefined || !addresses.acquire(network)) {
         if (network !== undefined) refused += 1;

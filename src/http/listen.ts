@@ -2,12 +2,12 @@ import { once } from 'node:events';
 import type { AddressInfo, Server } from 'node:net';
 import { ConfigurationError } from './configuration-error';
 
-/** How many ports after the first one are tried. */
+/** The number of ports that are tried. */
 const attempts = 20;
 
 /**
- * Listens on the port, or on the next free one within twenty, and resolves to the port it got; 0 asks for any. Rejects with
- * a sentence when none is free or the system refuses.
+ * Listens on the port, or on the next free one of twenty, and resolves to that port; 0: any. Rejects with a ConfigurationError if none is free
+ * or the system refuses.
  */
 export async function listenOnFreePort(server: Server, host: string, port: number): Promise<number> {
   for (let candidate = port; candidate < port + attempts && candidate <= 65535; candidate++) {
@@ -19,13 +19,13 @@ export async function listenOnFreePort(server: Server, host: string, port: numbe
       const { code } = error as NodeJS.ErrnoException;
       if (code === 'EACCES') {
         throw new ConfigurationError(
-          `The system does not let this user serve on port ${candidate}; choose one from 1024 up: npm start -- --port 3333`,
+          `This user may not listen on port ${candidate}. Choose one from 1024 up: npm start -- --port 3333`,
         );
       }
       if (code !== 'EADDRINUSE') throw error;
     }
   }
   throw new ConfigurationError(
-    `Port ${port} and the ${attempts - 1} after it are in use; name another: npm start -- --port 4000`,
+    `Port ${port} and the ${attempts - 1} after it are in use. Choose another: npm start -- --port 4000`,
   );
 }

@@ -5,40 +5,40 @@ import { wholeBody } from './body';
 import { createSitePolicy, type SitePolicy } from './site-policy';
 import { targetOf } from './target';
 
-/** A request to a route, its body read. */
+/** A request to a route, with its body. */
 export interface Call {
   readonly request: IncomingMessage;
-  /** What stands in the address for the route's ":names"; not yet checked. */
+  /** The path segments by the route's ":names"; not validated. */
   readonly names: Readonly<Record<string, string>>;
   readonly query: URLSearchParams;
-  /** Empty for a route that takes none. */
+  /** The body; empty for a route whose `bodyLimit` is 0. */
   readonly body: Uint8Array<ArrayBuffer>;
 }
 
-/** One line of a service's table. */
+/** One route of a service. */
 export interface Route<Access extends string = string> {
   readonly method: 'GET' | 'POST' | 'PUT' | 'DELETE';
-  /** ":name" stands for one segment. */
+  /** The path; ":name" matches one segment. */
   readonly path: string;
-  /** Who may: what its service's `admit` makes sure of. */
+  /** Who may call the route; the service's `admit` checks it. */
   readonly access: Access;
-  /** Longest body of JSON [bytes]; 0: what is sent is not read, unless `handle` does. */
+  /** The longest JSON body [bytes]; 0: the router does not read the body. */
   readonly bodyLimit: number;
   handle(call: Call): Answer | Promise<Answer>;
 }
 
-/** Routes that admit and refuse alike. */
+/** A set of routes with common access rules and errors. */
 export interface Service<Access extends string = string> {
   readonly routes: readonly Route<Access>[];
-  /** Throws an HttpError where this request may not; asked before the body is read. */
+  /** Throws an HttpError if the request may not use the route. Called before the body is read. */
   admit(route: Route<Access>, call: Omit<Call, 'body'>): void | Promise<void>;
-  /** What an error that only this service knows is to the other side; null: a fault of ours. */
+  /** Returns what the client receives for an error of this service; null: an internal error. */
   refusalOf(error: unknown): HttpError | null;
-  /** Told of faults of ours; the other side hears only that there was one. */
+  /** Called with each internal error; the client receives status 500 without details. */
   onFault(error: unknown): void;
 }
 
-/** Lists and objects in each other: nothing that is stored needs as many, and code that recurses has no stack for 100,000. */
+/** The deepest nesting of a JSON body. Stored data needs less, and recursion would overflow the stack at 100,000. */
 const deepest = 64;
 
 function depthExceeds(value: unknown, limit: number): boolean {
@@ -46,23 +46,23 @@ function depthExceeds(value: unknown, limit: number): boolean {
   return limit === 0 || Object.values(value).some((inner) => depthExceeds(inner, limit - 1));
 }
 
-/** The body as text. */
+/** Returns the body as text. */
 export const textOf = ({ body }: Pick<Call, 'body'>): string => Buffer.from(body.buffer).toString('utf8');
 
-/** The body's JSON; an HttpError 400 where it is none, or nested beyond reason. */
+/** Returns the parsed JSON body. Throws an HttpError 400 if it is not JSON or nested too deeply. */
 export function jsonOf(call: Pick<Call, 'body'>): unknown {
   let value: unknown;
   try {
     value = JSON.parse(textOf(call));
   } catch (error) {
     if (!(error instanceof SyntaxError)) throw error;
-    throw new HttpError(400, `the body is no JSON: ${error.message}`);
+    throw new HttpError(400, `the body is not JSON: ${error.message}`);
   }
   if (depthExceeds(value, deepest)) throw new HttpError(400, `the body is nested more than ${deepest} deep`);
   return value;
 }
 
-/** What an error is to the other side; null: a fault of the server. */
+/** Returns what the client receives for an error; null: an internal error. */
 export function refusalOf(error: unknown): HttpError | null {
   if (error instanceof ValidationError) return new HttpError(400, error.message, { field: error.field || null });
   return error instanceof HttpError ? error : null;
@@ -75,7 +75,7 @@ function matcherOf<Access extends string>(service: Service<Access>, route: Route
   const pattern = new RegExp(`^${route.path.replace(/:\w+/g, segment)}/?$`);
   return {
     route,
-    /** The named segments; null: another path. */
+    /** Returns the named segments; null: the path does not match. */
     match(path: string): Readonly<Record<string, string>> | null {
       const found = pattern.exec(path);
       return found && Object.fromEntries(names.map((name, i) => [name, decodeURIComponent(found[i + 1] as string)]));
@@ -84,7 +84,7 @@ function matcherOf<Access extends string>(service: Service<Access>, route: Route
       await service.admit(route, call);
       if (route.bodyLimit === 0) return route.handle({ ...call, body: new Uint8Array() });
       if (!/^application\/json(;|$)/i.test(call.request.headers['content-type'] ?? '')) {
-        throw new HttpError(415, 'send application/json');
+        throw new HttpError(415, 'the content type must be application/json');
       }
       return route.handle({ ...call, body: await wholeBody(call.request, route.bodyLimit) });
     },
@@ -92,18 +92,17 @@ function matcherOf<Access extends string>(service: Service<Access>, route: Route
       const known = refusalOf(error) ?? service.refusalOf(error);
       if (known) return refusal(known);
       service.onFault(error);
-      return refusal(new HttpError(500, 'the server failed; nothing was stored'));
+      return refusal(new HttpError(500, 'the server failed, and stored nothing; try again'));
     },
   };
 }
 
-/** The paths of services; below it nothing is a file. */
+/** The prefix of the services' paths; no file is served below it. */
 const api = /^\/api(\/|$)/;
 
 /**
- * The one entry of every request: answers what is a route's, and leaves other paths to `page`. Each request gets an answer and
- * nothing is thrown: 400 for a target that is not well formed, 403 and 421 for other sites (`site`), 404, 405, 413, 415, and 500 for
- * faults of ours.
+ * Creates the listener for all requests: it dispatches to the routes, and passes other paths to `page`. It never throws. Statuses: 400 for a
+ * malformed target, 403 and 421 for other sites (`site`), 404, 405, 413, 415, and 500 for internal errors.
  */
 export function createRouter(
   services: readonly Service[],
@@ -118,7 +117,7 @@ export function createRouter(
       return;
     }
     const { path, query } = target;
-    // The page itself may be linked to from anywhere; what answers or changes something may be used by our own pages alone.
+    // Any site may link to the page; only pages of this server may use the API.
     const reading = (request.method === 'GET' || request.method === 'HEAD') && !api.test(path);
     const stranger = site.refusalOfHost(request) ?? (reading ? null : site.refusalOfOrigin(request));
     if (stranger) {
@@ -152,6 +151,6 @@ export function createRouter(
   };
 }
 
-/** The page for a server that has none. */
+/** The listener for a server without a page: answers 404. */
 export const noPage: RequestListener = (request, response) =>
   sendAnswer(request, response, json({ error: 'there is nothing at this address', field: null }, 404));

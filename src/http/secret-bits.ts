@@ -1,7 +1,7 @@
-/** What a secret that opens a server must have: guessing one of 2^128 takes longer than there is time. */
+/** The least entropy of a secret [bits]: 2^128 guesses are out of reach. */
 export const fewestSecretBits = 128;
 
-/** Bits of one character, by the smallest of these alphabets that the whole secret fits in. */
+/** Alphabets, smallest first; the first one that contains the whole secret decides the bits of a character. */
 const alphabets = [
   { pattern: /^[0-9]*$/, size: 10 },
   { pattern: /^([0-9a-f]*|[0-9A-F]*)$/, size: 16 },
@@ -10,16 +10,16 @@ const alphabets = [
 ] as const;
 const largestAlphabet = 64;
 
-/** English text has one to two bits a letter (Shannon, Bell System Technical Journal 30, 1951). */
+/** Entropy of a letter of English text, one to two bits (Shannon, Bell System Technical Journal 30, 1951). */
 const bitsOfTextLetter = 2;
-/** So many letters of one case in a row may be text, and are taken for it where they make up this share of a secret. */
+/** Runs of four or more letters of one case count as text if they make up this share of the secret. */
 const textLetters = /[a-z]{4,}|[A-Z]{4,}/g;
 const textShare = 0.45;
-/** What stood there before, this long or longer, costs no more than saying where and how long. */
+/** A repeated substring of this length or more adds only the bits that name its place and length. */
 const shortestRepeat = 3;
 const bitsOfRepeat = 8;
 
-/** The text with every piece that stood there before left out, and how many pieces that were. */
+/** Returns the text without repeated substrings, and how many there were. */
 function withoutRepeats(text: string): { readonly kept: string; readonly repeats: number } {
   let kept = '';
   let repeats = 0;
@@ -38,8 +38,8 @@ function withoutRepeats(text: string): { readonly kept: string; readonly repeats
 }
 
 /**
- * How many bits a chosen secret has at most: by its length and alphabet, with words and repetitions counted for the little that they
- * are. It cannot know whether a secret was drawn or made up; it finds those that were plainly made up.
+ * Returns an upper bound of a secret's entropy [bits] from its length and alphabet; words and repetitions count little. It cannot prove that a
+ * secret is random, but finds those that plainly are not.
  */
 export function secretBits(secret: string): number {
   const { kept, repeats } = withoutRepeats(secret);
@@ -51,9 +51,9 @@ export function secretBits(secret: string): number {
   return (kept.length - textual) * perCharacter + textual * bitsOfTextLetter + repeats * bitsOfRepeat;
 }
 
-/** Why this secret may not guard anything, as a sentence that goes on after its name; null: it may. */
+/** Returns why a secret is too weak, as the rest of a sentence that begins with its name; null: it is strong enough. */
 export function weaknessOf(secret: string): string | null {
   const bits = Math.floor(secretBits(secret));
   if (bits >= fewestSecretBits) return null;
-  return `has some ${bits} bits, and a secret that cannot be guessed needs ${fewestSecretBits}: let "openssl rand -base64 32" draw one.`;
+  return `has some ${bits} bits; it needs ${fewestSecretBits}. Generate one: openssl rand -base64 32`;
 }

@@ -1,24 +1,23 @@
 /**
- * Whether a server of ours is where the page came from: not known yet, being asked, there, not there (a host of files answered instead), or
- * silent (nothing answered now).
+ * Whether the page's host is a threepoint server: not known yet, asked, here, none (a host of static files answered), or silent (no answer).
  */
 export type ServerState = 'unknown' | 'asked' | 'here' | 'none' | 'silent';
 
-/** Without an answer in this time [ms] the server counts as silent. */
+/** Timeout of the request [ms]; then the server counts as silent. */
 const patienceMs = 4000;
 
 function parsed(json: string): unknown {
   try {
     return JSON.parse(json);
   } catch {
-    // reason: hosts of files answer with pages of their own, which are no JSON; that is what tells them apart
+    // reason: static hosts answer with an HTML page; not being JSON is the result, not a fault
     return null;
   }
 }
 
-/** What an answer to the question for rooms says of who gave it; rejects where it breaks off. */
+/** Returns the state that the answer to /api/rooms implies. Rejects if the answer is cut off. */
 async function stateFrom(response: Response): Promise<ServerState> {
-  // Proxies say these while the server behind them is away.
+  // Proxies answer with these while the server behind them is down.
   if (response.status >= 500 || response.status === 429) return 'silent';
   const said = parsed(await response.text());
   if (typeof said !== 'object' || said === null) return 'none';
@@ -26,8 +25,8 @@ async function stateFrom(response: Response): Promise<ServerState> {
 }
 
 /**
- * Finds out whether rooms and studies can be had, by asking: a host says nothing by its name. A built page carries an answer of its own,
- * public/api/rooms, which a host of files gives; a server of ours never gives files below /api.
+ * Finds out by a request whether the page's host has rooms and studies. The built page includes a file public/api/rooms, which a static host
+ * serves; a threepoint server never serves files below /api.
  */
 export class ServerPresence {
   readonly #server: string;
@@ -35,7 +34,7 @@ export class ServerPresence {
   #state: ServerState = 'unknown';
   #answer: Promise<ServerState> | null = null;
 
-  /** `server`: the folder of the page, no slash at its end. */
+  /** `server`: the folder of the page, without a trailing slash. */
   constructor(server: string, onChange: () => void) {
     this.#server = server;
     this.#onChange = onChange;
@@ -45,12 +44,12 @@ export class ServerPresence {
     return this.#state;
   }
 
-  /** What is known; asked for where nothing is. Never rejects. */
+  /** Resolves to the known state, after a request if there is none. Never rejects. */
   known(): Promise<ServerState> {
     return this.#state === 'unknown' ? this.ask() : (this.#answer ?? Promise.resolve(this.#state));
   }
 
-  /** Asks anew, unless a question is on its way. Never rejects. */
+  /** Asks again, unless a request is under way. Never rejects. */
   ask(): Promise<ServerState> {
     this.#answer ??= this.#ask();
     return this.#answer;
@@ -62,7 +61,7 @@ export class ServerPresence {
       const asked = { cache: 'no-store', signal: AbortSignal.timeout(patienceMs) } as const;
       this.#change(await stateFrom(await fetch(`${this.#server}/api/rooms`, asked)));
     } catch {
-      // reason: why nothing answered is no matter; that it did not is the state
+      // reason: no answer is a state, whatever its cause
       this.#change('silent');
     }
     this.#answer = null;

@@ -2,40 +2,40 @@ import type { IncomingMessage } from 'node:http';
 import { isIP } from 'node:net';
 import { hostname } from 'node:os';
 
-/** Why a request is not answered. */
+/** The reason for refusing a request. */
 export interface SiteRefusal {
   readonly status: 400 | 403 | 421;
   readonly message: string;
 }
 
-/** Which names this server goes by, and pages of which sites may use it. */
+/** Checks the host and the origin of requests. */
 export interface SitePolicy {
   /**
-   * Whether the request asks for this server by one of its names. A page of another site whose name was pointed at this machine
-   * (DNS rebinding) asks by that site's name; addresses in digits cannot be pointed anywhere.
+   * Returns why the request's Host is not a name of this server; null: it is. This blocks DNS rebinding, in which another site's name points at
+   * this machine. IP addresses are allowed, because they cannot be rebound.
    */
   refusalOfHost(request: IncomingMessage): SiteRefusal | null;
-  /** Whether the page behind the request is one of ours. Programs that are no browsers name no origin: they need a secret all the same. */
+  /** Returns why the request's origin may not use the server; null: it may. Programs other than browsers send no origin; they need a secret. */
   refusalOfOrigin(request: IncomingMessage): SiteRefusal | null;
 }
 
 export interface SitePolicyOptions {
-  /** Origins of pages that may use the server; empty: pages of the very address that they speak to. */
+  /** Origins of pages that may use the server; empty: the server's own origin. */
   readonly origins: readonly string[];
-  /** Names of the server besides those of this machine and of the origins. */
+  /** Further names of the server, beyond those of this machine and of the origins. */
   readonly hosts: readonly string[];
-  /** A proxy stands in front and says by X-Forwarded-Proto how its client came. */
+  /** Whether a proxy in front sets X-Forwarded-Proto. */
   readonly trustProxy: boolean;
 }
 
-/** A host's name without its port, dot at the end or brackets, in small letters; null: no host. */
+/** Returns a host's name in lower case, without port, trailing dot and brackets; null: not a host. */
 function nameIn(host: string): string | null {
   const url = `http://${host}`;
   if (!/^[\w.[\]:-]+$/.test(host) || !URL.canParse(url)) return null;
   return new URL(url).hostname.replace(/^\[|\]$/g, '').replace(/\.$/, '');
 }
 
-/** What browsers say of a request that a page of this origin sent, or a person by themselves. */
+/** Values of Sec-Fetch-Site for requests by a page of this origin or by the user. */
 const ownFetchSites: readonly unknown[] = [undefined, 'same-origin', 'none'];
 
 export function createSitePolicy({ origins, hosts, trustProxy }: SitePolicyOptions): SitePolicy {
@@ -56,14 +56,14 @@ export function createSitePolicy({ origins, hosts, trustProxy }: SitePolicyOptio
 
   return {
     refusalOfHost({ headers: { host } }) {
-      // Browsers always name one; what names none (HTTP/1.0) is a program on its own behalf.
+      // Browsers always send Host; a request without one (HTTP/1.0) comes from another program.
       if (host === undefined) return null;
       const name = nameIn(host);
-      if (name === null) return { status: 400, message: 'the Host of this request is no name of a server' };
+      if (name === null) return { status: 400, message: 'the Host of this request is not a valid host name' };
       if (isIP(name) !== 0 || name.endsWith('.localhost') || names.has(name)) return null;
       return {
         status: 421,
-        message: `this server does not go by the name ${name}; THREEPOINT_HOSTS lists the names that it goes by`,
+        message: `this server does not accept the name ${name}; add it to THREEPOINT_HOSTS`,
       };
     },
     refusalOfOrigin(request) {

@@ -2,11 +2,11 @@ import { createHash } from 'node:crypto';
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-/** What drew the bodies of a study. */
+/** The software that drew the bodies of a study. */
 export interface Software {
   readonly name: string;
   readonly version: string;
-  /** Of the networks that it serves, by name. */
+  /** The files of the networks, with their hashes. */
   readonly weights: readonly { readonly file: string; readonly sha256: string }[];
 }
 

@@ -1,15 +1,15 @@
 import type { IncomingMessage } from 'node:http';
 
-/** Where a request goes. */
+/** The target of a request. */
 export interface Target {
-  /** As sent: begins with one slash, percent signs and dots untouched. */
+  /** The path as sent: it begins with one slash; percent signs and dots are not decoded. */
   readonly path: string;
   readonly query: URLSearchParams;
 }
 
-/** What an absolute request target begins with; a proxy sends such. */
+/** The prefix of an absolute request target, as proxies send it. */
 const absolute = /^https?:\/\/[^/?#]+/i;
-/** Visible ASCII but the backslash, which some clients read as a slash. */
+/** Visible ASCII without the backslash, which some clients read as a slash. */
 const wellFormed = /^\/(?!\/)[!-[\]-~]*$/;
 
 /** Returns the target of a request line, or null where it is not well formed. Never throws. */
@@ -30,19 +30,19 @@ export function targetOf(url: string | undefined): Target | null {
 }
 
 /**
- * Returns what is wrong with the names that a request gives its server, or null. A request has one Host line (HTTP/1.0: at most one), and an
- * absolute target names the same authority. Servers and proxies that choose differently between two names can be played against each other.
+ * Returns what is wrong with the host of a request, or null. A request has one Host header (HTTP/1.0: at most one), and an absolute target names
+ * the same authority. With two names a proxy and a server could route differently.
  */
 export function complaintAboutHost({ url = '', headersDistinct, httpVersion }: IncomingMessage): string | null {
   const { host: hosts = [] } = headersDistinct;
   const [host] = hosts;
-  if (hosts.length > 1) return 'a request names its host once';
-  if (host === undefined && httpVersion === '1.1') return 'a request names its host';
+  if (hosts.length > 1) return 'the request has more than one Host header';
+  if (host === undefined && httpVersion === '1.1') return 'the request has no Host header';
   const named = absolute.exec(url)?.[0];
   // A target that cannot be parsed is refused where it is read.
   if (named === undefined || !URL.canParse(named)) return null;
   const { protocol, origin } = new URL(named);
   const expected = `${protocol}//${host}`;
   const isSame = host !== undefined && URL.canParse(expected) && new URL(expected).origin === origin;
-  return isSame && !named.includes('@') ? null : 'the target of this request names another server than its Host';
+  return isSame && !named.includes('@') ? null : 'the request target and the Host header name different servers';
 }

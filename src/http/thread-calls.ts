@@ -1,20 +1,20 @@
 import { type MessagePort, Worker } from 'node:worker_threads';
 
-/** The functions that a thread offers. Arguments and results are copied; bytes that have a buffer to themselves are transferred. */
+/** The functions of a thread. Arguments and results are copied; bytes that fill their buffer are transferred. */
 export type ThreadApi = { readonly [name: string]: (...args: never[]) => unknown };
 
 export interface ThreadLimits {
-  /** Calls that the thread has not finished, those that nobody waits for any more included. */
+  /** The most unfinished calls, those whose caller has timed out included. */
   readonly mostCalls: number;
-  /** Bytes of their arguments. */
+  /** The most bytes of their arguments. */
   readonly mostBytes: number;
   /** How long a caller waits [ms]. */
   readonly deadlineMs: number;
 }
 
-/** The reason why a call has no result. */
+/** A call has no result, because the thread is busy or has ended. */
 export class ThreadUnavailable extends Error {
-  /** full: nothing was asked. late: whether it is done is not known. ended: the same, and the thread is gone. */
+  /** full: the call was not made. late: the call timed out, and may still run. ended: the thread ended, perhaps after the call. */
   readonly reason: 'full' | 'late' | 'ended';
 
   constructor(reason: ThreadUnavailable['reason']) {
@@ -23,11 +23,11 @@ export class ThreadUnavailable extends Error {
   }
 }
 
-interface Question {
+interface CallMessage {
   readonly id: number;
   readonly name: string;
   readonly args: readonly unknown[];
-  /** By `clockMs`: later the thread leaves it undone; null: no limit. */
+  /** Deadline by `clockMs`, after which the thread skips the call; null: none. */
   readonly until: number | null;
 }
 
@@ -42,10 +42,10 @@ interface Waiting {
   reject(error: Error): void;
 }
 
-/** Milliseconds of a clock that all threads of the process share and nobody sets. */
+/** Returns the time of a monotonic clock that all threads of the process share [ms]. */
 const clockMs = (): number => Number(process.hrtime.bigint() / 1_000_000n);
 
-/** The bytes among these values, and in the fields of their objects. */
+/** Returns the byte arrays among these values and in their fields. */
 function bytesIn(values: readonly unknown[]): readonly Uint8Array<ArrayBuffer>[] {
   return values.flatMap((value) => {
     if (value instanceof Uint8Array) return [value as Uint8Array<ArrayBuffer>];
@@ -53,7 +53,7 @@ function bytesIn(values: readonly unknown[]): readonly Uint8Array<ArrayBuffer>[]
   });
 }
 
-/** The buffers that hold such bytes and nothing else. */
+/** Returns the buffers that such byte arrays fill, which can be transferred. */
 const buffersIn = (values: readonly unknown[]): ArrayBuffer[] =>
   bytesIn(values).flatMap(({ byteLength, buffer }) => (byteLength === buffer.byteLength ? [buffer] : []));
 
@@ -61,17 +61,17 @@ const buffersIn = (values: readonly unknown[]): ArrayBuffer[] =>
 export const startThread = (script: URL, workerData?: object): Worker =>
   new Worker(script, { workerData, execArgv: [] });
 
-/** What a thread or process lacked that ended by this error, as a sentence with what to do; null: the error is another one. */
+/** Returns what a thread or process ran out of, and what to do; null: the error has another cause. */
 export function shortageOf(error: Error): string | null {
   const text = `${(error as NodeJS.ErrnoException).code} ${error.message}`;
   if (/\b(EMFILE|ENFILE)\b/.test(text)) {
-    return 'The server may not have more files open. Raise the limit: ulimit -n 1024.';
+    return 'The server has too many files open. Raise the limit: ulimit -n 1024.';
   }
   if (!/ERR_WORKER_OUT_OF_MEMORY|ERR_WORKER_INIT_FAILED|\bENOMEM\b|out of memory/i.test(text)) return null;
-  return 'The memory of the server does not suffice. Give it more: NODE_OPTIONS=--max-old-space-size=512.';
+  return 'The server is out of memory. Give it more: NODE_OPTIONS=--max-old-space-size=512.';
 }
 
-/** Calls the functions of a thread, within limits: a thread that hangs makes its callers wait for `deadlineMs` and holds up nothing else. */
+/** Calls the functions of a thread, within limits: if the thread hangs, callers wait for `deadlineMs` at most. */
 export class ThreadCalls<Api extends ThreadApi> {
   readonly #worker: Worker;
   readonly #limits: ThreadLimits;
@@ -89,7 +89,7 @@ export class ThreadCalls<Api extends ThreadApi> {
     });
   }
 
-  /** Rejects with ThreadUnavailable where the thread has no room or no answer in time; an error of the function itself comes as its text. */
+  /** Calls a function. Rejects with ThreadUnavailable if the thread is full or late, and with the text of an error that the function throws. */
   call<Name extends keyof Api & string>(
     name: Name,
     args: Parameters<Api[Name]>,
@@ -116,12 +116,12 @@ export class ThreadCalls<Api extends ThreadApi> {
           reject(error);
         },
       });
-      const question: Question = { id, name, args, until: patient ? null : clockMs() + deadlineMs };
+      const question: CallMessage = { id, name, args, until: patient ? null : clockMs() + deadlineMs };
       this.#worker.postMessage(question, buffersIn(args));
     });
   }
 
-  /** The thread has ended: rejects all calls that it has not finished. */
+  /** Rejects all unfinished calls, after the thread has ended. */
   end(): void {
     for (const { reject } of this.#waiting.values()) reject(new ThreadUnavailable('ended'));
     this.#waiting.clear();
@@ -138,9 +138,9 @@ export class ThreadCalls<Api extends ThreadApi> {
   }
 }
 
-/** The thread's side: answers the calls that come by this port. A call whose caller has stopped waiting is left undone. */
+/** Answers, in the thread, the calls that arrive at this port. A call past its deadline is skipped. */
 export function answerCalls<Api extends ThreadApi>(port: MessagePort, api: Api): void {
-  const answer = async ({ id, name, args, until }: Question): Promise<void> => {
+  const answer = async ({ id, name, args, until }: CallMessage): Promise<void> => {
     try {
       const late = until !== null && clockMs() > until;
       const result = late ? undefined : await api[name as keyof Api]?.(...(args as never[]));
@@ -149,10 +149,10 @@ export function answerCalls<Api extends ThreadApi>(port: MessagePort, api: Api):
       port.postMessage({ id, fault: error instanceof Error ? (error.stack ?? error.message) : String(error) });
     }
   };
-  port.on('message', (question: Question) => void answer(question));
+  port.on('message', (question: CallMessage) => void answer(question));
 }
 
-/** The thread's side: adds a line to the log of the process. */
+/** Returns a function that sends a line from the thread to the log of the process. */
 export const logFrom =
   (port: MessagePort) =>
   (line: string): void =>

@@ -19,14 +19,14 @@ export interface Credentials {
   readonly cert: string;
 }
 
-/** A page being served. */
+/** A listening server. */
 export interface WebServer {
   readonly port: number;
   /** Stops listening and ends what is open; resolves when all is closed. */
   close(): Promise<void>;
 }
 
-/** Takes a connection that asks to become a WebSocket and returns true; false where this address has none. */
+/** Handles an upgrade request and returns true; false where the address has no WebSocket. */
 export type UpgradeListener = (request: IncomingMessage, socket: Duplex, head: Buffer) => boolean;
 
 export interface ServeOptions {
@@ -36,47 +36,47 @@ export interface ServeOptions {
   readonly upgrade?: UpgradeListener;
   /** Limits the connections of each address; every connection is accepted without it. */
   readonly connectionLimiter?: ConnectionLimiter;
-  /** A connection on which nothing moves for so long [ms], an answer that is not read included, is ended; WebSockets have their own pings. */
+  /** Idle timeout of a connection [ms], also while a client does not read; WebSockets have their own pings. Default: 30,000. */
   readonly silenceMs?: number;
 }
 
 /** The first byte of a TLS handshake record; no HTTP request begins with it. */
 const tlsHandshake = 0x16;
-/** A connection that has not said within this time [ms] what it wants is ended: TLS handshake and the head of a request alike. */
+/** Timeout of the TLS handshake and of the request headers [ms]. */
 export const handshakeMs = 5000;
-/** So long a request may take to arrive whole [ms]: 16 MB of motion at 1.1 Mbit/s. */
+/** Timeout of a whole request [ms]: 16 MB of motion at 1.1 Mbit/s. */
 export const requestMs = 120_000;
-/** How often connections are looked at for that [ms]. */
+/** Interval at which Node checks these timeouts [ms]. */
 const checkMs = 1000;
 
-/** Answers plain HTTP with the same address under https: people leave the "https://" out. */
+/** Redirects plain HTTP to https, because people omit the "https://". */
 const redirectToHttps: RequestListener = (request, response) => {
   const host = request.headers.host;
   const target = targetOf(request.url);
   if (!target || !host || !/^[\w.:[\]-]+$/.test(host)) {
-    sendAnswer(request, response, refusal(new HttpError(400, 'this address is not well formed')));
+    sendAnswer(request, response, refusal(new HttpError(400, 'the address of this request is malformed')));
     return;
   }
   const search = target.query.size > 0 ? `?${target.query}` : '';
   sendAnswer(request, response, { status: 308, headers: { location: `https://${host}${target.path}${search}` } });
 };
 
-/** What the parser of Node found wrong with a request. */
+/** Returns the refusal for an error of Node's HTTP parser. */
 function refusalOfParser({ code }: NodeJS.ErrnoException): HttpError {
-  if (code === 'HPE_HEADER_OVERFLOW') return new HttpError(431, 'the head of this request is too long');
+  if (code === 'HPE_HEADER_OVERFLOW') return new HttpError(431, 'the headers of this request are too long');
   if (code === 'HPE_CHUNK_EXTENSIONS_OVERFLOW') return new HttpError(413, 'the chunks of this body are too long');
   if (code === 'ERR_HTTP_REQUEST_TIMEOUT') return new HttpError(408, 'the request did not arrive in time');
-  return new HttpError(400, 'this is no HTTP request');
+  return new HttpError(400, 'this is not an HTTP request');
 }
 
-/** Answers all that arrives at this server: requests, upgrades, tunnels and what is none of them. */
+/** Attaches handlers for everything that reaches a server: requests, upgrades, tunnels and malformed input. */
 function answerAll(server: HttpServer, listener: RequestListener, upgrade: UpgradeListener): void {
   const answering = new WeakMap<Duplex, ServerResponse>();
   const refused = new WeakSet<Duplex>();
 
   const guarded = (request: IncomingMessage, response: Parameters<RequestListener>[1]): void => {
     answering.set(request.socket, response);
-    // A connection that ends while its answer is on the way is no fault of ours.
+    // A client may disconnect before it has read its answer; that is not an error.
     request.on('error', () => undefined);
     response.on('error', () => undefined);
     const complaint = complaintAboutHost(request);
@@ -87,15 +87,18 @@ function answerAll(server: HttpServer, listener: RequestListener, upgrade: Upgra
     listener(request, response);
   };
 
-  // reason: not in the types, yet Node's own switch (http.Server): a client that has said all and closed its side still hears the answer.
+  // reason: missing in the types, but an option of http.Server: a client that has closed its side still receives the answer.
   (server as HttpServer & { httpAllowHalfOpen: boolean }).httpAllowHalfOpen = true;
   server.on('request', guarded);
   server.on('checkExpectation', (request: IncomingMessage, response: ServerResponse) => {
-    sendAnswer(request, response, refusal(new HttpError(417, 'no expectation but 100-continue is met here')));
+    sendAnswer(request, response, refusal(new HttpError(417, 'this server supports no expectation but 100-continue')));
   });
   server.on('connect', (_request: IncomingMessage, socket: Duplex) => {
     socket.on('error', () => socket.destroy());
-    sendRawAnswer(socket, refusal(new HttpError(405, 'this server is no proxy', { headers: { allow: 'GET, HEAD' } })));
+    sendRawAnswer(
+      socket,
+      refusal(new HttpError(405, 'this server is not a proxy', { headers: { allow: 'GET, HEAD' } })),
+    );
   });
   server.on('upgrade', (request: IncomingMessage, socket: Duplex, head: Buffer) => {
     socket.on('error', () => socket.destroy());
@@ -106,10 +109,10 @@ function answerAll(server: HttpServer, listener: RequestListener, upgrade: Upgra
     }
     if (upgrade(request, socket, head)) return;
     if (head.length > 0) {
-      sendRawAnswer(socket, refusal(new HttpError(400, 'there is nothing to upgrade to at this address')));
+      sendRawAnswer(socket, refusal(new HttpError(400, 'this address supports no upgrade')));
       return;
     }
-    // An offer of another protocol may be passed over: the request is answered as if it had made none.
+    // A server may ignore an offer of another protocol; the request is answered as if it had none.
     const response = new ServerResponse(request);
     response.shouldKeepAlive = false;
     response.assignSocket(socket as Socket);
@@ -124,7 +127,7 @@ function answerAll(server: HttpServer, listener: RequestListener, upgrade: Upgra
     }
     const response = answering.get(socket);
     if (response?.headersSent && !response.writableEnded) {
-      // Its answer is on the way, and the connection ends with it: what is wrong is the rest of a body that was not wanted.
+      // The answer is being sent and closes the connection; the error is in the rest of an unread body.
       response.end();
       return;
     }
@@ -134,7 +137,7 @@ function answerAll(server: HttpServer, listener: RequestListener, upgrade: Upgra
   server.on('tlsClientError', (_error: Error, socket: Socket) => socket.destroy());
 }
 
-/** One port for both: TLS goes to the page, plain HTTP is told to use TLS. */
+/** Creates a server that splits one port: TLS goes to `secure`, plain HTTP to `plain`. */
 function divide(secure: HttpServer, plain: HttpServer): NetServer {
   return createNetServer((socket) => {
     socket.setTimeout(handshakeMs, () => socket.destroy());
@@ -155,11 +158,11 @@ const limits = {
   headersTimeout: handshakeMs,
   requestTimeout: requestMs,
   connectionsCheckingInterval: checkMs,
-  // Said in a sentence and with our headers instead.
+  // Answered by `complaintAboutHost` instead, with a sentence and the security headers.
   requireHostHeader: false,
 };
 
-/** Serves on the port or the next free one: HTTP, or with credentials HTTPS (and HTTP only as a redirect to it). */
+/** Serves on the port or the next free one: HTTP, or with credentials HTTPS and a redirect from HTTP. */
 export async function serve(
   listener: RequestListener,
   { host, port, credentials, upgrade = () => false, connectionLimiter, silenceMs = 30_000 }: ServeOptions,
@@ -173,7 +176,7 @@ export async function serve(
   const entrance: NetServer = credentials ? divide(requests, redirects) : requests;
   for (const server of [requests, redirects]) {
     server.timeout = silenceMs;
-    // Node keeps its deadlines from then on; a server that is handed its connections never hears it.
+    // Node starts to check timeouts on this event; a server that receives its connections from another never emits it.
     if (server !== entrance) server.emit('listening');
   }
   const sockets = new Set<Socket>();
@@ -189,7 +192,7 @@ export async function serve(
       new Promise((resolve, reject) => {
         entrance.close((error) => (error ? reject(error) : resolve()));
         for (const socket of sockets) socket.destroy();
-        // Ends their watch over deadlines.
+        // Stops their checks of timeouts.
         if (credentials) requests.close();
         redirects.close();
       }),

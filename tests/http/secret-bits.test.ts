@@ -13,7 +13,7 @@ describe('a secret', () => {
     ['digits alone', '31415926535897932384626433832795028'],
     ['a drawn one that is too short', 'kN3vQ9xT1mB7rW5c'],
   ])('that is %s is refused', (_what, secret) => {
-    expect(weaknessOf(secret)).toMatch(/^has some \d+ bits, and a secret that cannot be guessed needs 128/);
+    expect(weaknessOf(secret)).toMatch(/^has some \d+ bits; it needs 128/);
   });
 
   test('of 32 drawn bytes is taken, for every draw, in letters or in hexadecimal', () => {

@@ -43,7 +43,7 @@ describe('the port', () => {
     });
     await until('the end of the process', () => !isAlive(child), 30);
     expect(child.exitCode).toBe(1);
-    expect(said).toContain('are in use; name another');
+    expect(said).toContain('are in use. Choose another');
   });
 
   test('is free again once the server has closed, even with a connection open', async () => {

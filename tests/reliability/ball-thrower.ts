@@ -23,7 +23,7 @@ export function ballThrower(rateHz = 90) {
   const floorFromArena = invertTransform(arenaFromFloor);
   let { state } = told();
   const gestures = createBallGestures(() => ({ player: leftThrower, matchAhead: -100, arenaFromFloor, state }));
-  const deeds: string[] = [];
+  const actions: string[] = [];
   let time = 100;
   let held: Readonly<Record<Side, number | null>> = { left: null, right: null };
   const tracked = (side: Side, hand: Hand | null): TrackedPose | null =>
@@ -53,10 +53,10 @@ export function ballThrower(rateHz = 90) {
         ...(suspended && { suspended }),
       };
       const done = gestures.follow(frame, { left: buttonsOf(left), right: buttonsOf(right) });
-      for (const action of done.actions) if (action.type !== 'pose') deeds.push(action.type);
+      for (const action of done.actions) if (action.type !== 'pose') actions.push(action.type);
       const stepped = ballRules.step(state, done.actions);
       state = stepped.state;
-      gestures.hear(stepped.events);
+      gestures.onEvents(stepped.events);
       held = done.held;
       return self;
     },
@@ -75,8 +75,8 @@ export function ballThrower(rateHz = 90) {
     get held() {
       return held;
     },
-    get deeds() {
-      return deeds;
+    get actions() {
+      return actions;
     },
     get state() {
       return state;

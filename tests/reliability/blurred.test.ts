@@ -68,8 +68,8 @@ test('behind a menu a ball stays in its hand; let go there, it is not thrown', (
     open.hold(null, null, menuSeconds, true);
     open.hold({ fist: open.side, trigger: 0 }, { fist: open.chest, trigger: 0 }, 0.2);
     expect(open.state.balls[0]).toEqual({ on: 'rack' });
-    thrown += [...still.deeds, ...open.deeds].filter((deed) => deed === 'throw').length;
-    expect(still.deeds).toEqual(['grab']);
+    thrown += [...still.actions, ...open.actions].filter((action) => action === 'throw').length;
+    expect(still.actions).toEqual(['grab']);
   }
   expect(thrown).toBe(0);
   measured('blurred', {

@@ -10,7 +10,7 @@ test('a controller that holds a ball goes off: back to the rack; on again: the h
   thrower.hold({ fist: thrower.side, trigger: 0, device: 2 }, { fist: thrower.chest, trigger: 1, device: 3 }, 0.5);
   expect(thrower.held.right).toBeNull();
   expect(thrower.state.balls[0]).toEqual({ on: 'rack' });
-  expect(thrower.deeds).toEqual(['grab', 'drop']);
+  expect(thrower.actions).toEqual(['grab', 'drop']);
 });
 
 test('off for a moment and on again as another device of the same hand: what it held is held', () => {
@@ -35,7 +35,7 @@ test('the two change sides while one holds a ball: it is let go of, never thrown
       const there = { ...thrower.chest, x: thrower.chest.x + distance };
       // Each side is another device at once, at the other's place, with the other's trigger.
       thrower.hold({ fist: thrower.chest, trigger: 1, device: 4 }, { fist: there, trigger, device: 3 }, 0.5);
-      thrown += thrower.deeds.filter((deed) => deed === 'throw').length;
+      thrown += thrower.actions.filter((action) => action === 'throw').length;
       stuck += thrower.held.right === null && thrower.held.left === null ? 0 : 1;
       expect(thrower.state.balls[0]).toEqual({ on: 'rack' });
     }

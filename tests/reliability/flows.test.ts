@@ -1,7 +1,7 @@
 import { allReleased } from 'threepoint/core/input/button-presses';
 import { otherSide, type Side } from 'threepoint/core/math/side';
 import { archeryRules } from 'threepoint-games/archery/rules';
-import type { BallAction, BallState } from 'threepoint-games/ball/ball-state';
+import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import { createBallGestures } from 'threepoint-games/ball/gestures';
 import { createHolder } from 'threepoint-games/ball/holder-motion';
 import { ballRules } from 'threepoint-games/ball/rules';
@@ -57,7 +57,7 @@ function ballMatch(eyeHeight: number, oneHanded: { readonly player: number; read
   const gestures = stations.map((arenaFromFloor, player) =>
     createBallGestures(() => ({ player, state, arenaFromFloor, matchAhead: 0 })),
   );
-  let waiting: BallAction[] = [0, 1, 2].flatMap((player): BallAction[] => [
+  let waiting: BallInput[] = [0, 1, 2].flatMap((player): BallInput[] => [
     { type: 'join', player },
     { type: 'ready', player, ready: true },
   ]);
@@ -75,7 +75,7 @@ function ballMatch(eyeHeight: number, oneHanded: { readonly player: number; read
       waiting = [];
       state = done.state;
       thrown += done.events.filter(({ type }) => type === 'thrown').length;
-      for (const gesture of gestures) gesture.hear(done.events);
+      for (const gesture of gestures) gesture.onEvents(done.events);
     }
   }
   return { state, thrown };

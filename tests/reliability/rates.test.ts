@@ -9,7 +9,7 @@ import type { ArcheryState } from 'threepoint-games/archery/archery-state';
 import { arrowLength } from 'threepoint-games/archery/bow';
 import { releaseTowards } from 'threepoint-games/archery/flight';
 import { archeryRules, delayed } from 'threepoint-games/archery/rules';
-import type { BallAction, BallState } from 'threepoint-games/ball/ball-state';
+import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import { createHandSpeed } from 'threepoint-games/ball/hand-speed';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { rackPosition } from 'threepoint-games/ball/stations';
@@ -61,17 +61,17 @@ test('balls fly the same at every rate', () => {
     const match = createMatch(ballRules, ballRules.start(['ann', 'ben', 'cal'], 1));
     const ball = rackPosition(0, 20);
     let thrown: BallState['balls'][number] | null = null;
-    let deed = 0;
+    let action = 0;
     for (const time of framesOf(rate, drop, 3)) {
       const fist = time < 0.8 ? ball : vec3(ball.x + 0.1, 1.4, ball.z - 0.3);
-      const actions: BallAction[] = [stand(leftThrower, time, fist), hold(time, inFront)];
-      if (deed === 0) {
+      const actions: BallInput[] = [stand(leftThrower, time, fist), hold(time, inFront)];
+      if (action === 0) {
         for (const player of [0, 1, 2]) actions.push({ type: 'join', player }, { type: 'ready', player, ready: true });
-        deed = 1;
-      } else if (deed === 1 && time > 0.5) {
+        action = 1;
+      } else if (action === 1 && time > 0.5) {
         actions.push({ type: 'grab', player: leftThrower, sequence: 1, side: 'right', ball: 0 });
-        deed = 2;
-      } else if (deed === 2 && time > 1) {
+        action = 2;
+      } else if (action === 2 && time > 1) {
         // When in its frame a hand let go is the hand's own time, whenever the frame came.
         actions.push({
           type: 'throw',
@@ -83,7 +83,7 @@ test('balls fly the same at every rate', () => {
           position: fist,
           velocity,
         });
-        deed = 3;
+        action = 3;
       }
       match.advance(200 + time, actions);
       const place = match.state.balls[0];

@@ -1,7 +1,7 @@
 import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { welcome } from 'threepoint-rooms/server/welcome';
 import { describe, expect, test } from 'vitest';
 import { configurationFrom } from '../../server/configuration';
+import { startupMessage } from '../../server/startup-message';
 
 const noStudies = { studyDirectory: null, experimenterToken: null };
 
@@ -33,7 +33,7 @@ describe('the configuration', () => {
     [
       [],
       { EXPERIMENTER_TOKEN: 'our-laboratory-token' },
-      /EXPERIMENTER_TOKEN has some \d+ bits, .* needs 128: let "openssl rand -base64 32" draw one/,
+      /EXPERIMENTER_TOKEN has some \d+ bits; it needs 128. Generate one: openssl rand -base64 32/,
     ],
     [['--studies='], {}, /--studies needs/],
     [['--lam'], {}, /--lam[\s\S]*Usage: npm start/],
@@ -51,7 +51,7 @@ describe('the configuration', () => {
 
 describe('the welcome', () => {
   test('on this machine: the address, the cable and the network', () => {
-    const text = welcome({ port: 3333, requestedPort: 3333, addresses: null });
+    const text = startupMessage({ port: 3333, requestedPort: 3333, addresses: null });
     expect(text).toContain('http://localhost:3333');
     expect(text).toContain('adb reverse tcp:3333 tcp:3333');
     expect(text).toContain('npm start -- --lan');
@@ -59,7 +59,7 @@ describe('the welcome', () => {
   });
 
   test('on the network: every address, and the warning that will come', () => {
-    const text = welcome({ port: 3334, requestedPort: 3333, addresses: ['192.168.7.20', '10.1.2.3'] });
+    const text = startupMessage({ port: 3334, requestedPort: 3333, addresses: ['192.168.7.20', '10.1.2.3'] });
     expect(text).toContain('Port 3333 is taken; using 3334.');
     expect(text).toContain('https://192.168.7.20:3334');
     expect(text).toContain('https://10.1.2.3:3334');
@@ -67,6 +67,6 @@ describe('the welcome', () => {
   });
 
   test('without a network it says so', () => {
-    expect(welcome({ port: 3333, requestedPort: 3333, addresses: [] })).toContain('on no network');
+    expect(startupMessage({ port: 3333, requestedPort: 3333, addresses: [] })).toContain('on no network');
   });
 });

@@ -3,7 +3,7 @@ import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { monitorEventLoopDelay } from 'node:perf_hooks';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { relayConfigurationFrom } from 'threepoint-rooms/server/relay-configuration';
+import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { startServer } from '../../server/start';
 import type { ServerHello, ServerState } from './server-child';
 

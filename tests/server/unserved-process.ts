@@ -4,7 +4,7 @@ import { mkdirSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:net';
 import { join } from 'node:path';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { relayConfigurationFrom } from 'threepoint-rooms/server/relay-configuration';
+import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { startServer } from '../../server/start';
 
 /** None follows it that could be tried. */

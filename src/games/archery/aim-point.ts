@@ -1,12 +1,11 @@
 import { addScaled, distance, dot, subtract, type Vec3 } from 'threepoint/core/math/vec3';
 import type { Target } from './archery-state';
 
-/** How far away an archer aims who points at the sky [m]. */
+/** Distance of the aim point for a ray into the sky [m]. */
 const farthest = 14;
 
 /**
- * What a ray (unit direction, arena frame) points at: the nearest target in its way, else the ground, else a place as far away
- * as the range is long.
+ * Returns the point at which a ray (unit direction, arena frame) aims: on the nearest target, else on the ground, else as far away as the range is long.
  */
 export function aimPoint(origin: Vec3, direction: Vec3, targets: readonly Target[]): Vec3 {
   let nearest = farthest;

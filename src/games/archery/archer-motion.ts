@@ -6,25 +6,25 @@ import { minimumJerk, yawOf } from '../posture';
 import { type ArcherBody, createArcherPostures, mix, type Posture } from './archer-postures';
 import type { ArcheryState, Target } from './archery-state';
 
-/** A movement to a posture, at rest at both ends; the button's pressure goes along. */
+/** A movement to a posture, with its pressure on the button; at rest at both ends. */
 interface Movement {
   readonly to: Posture;
   readonly seconds: number;
   readonly pressure: number;
   /** How far the string hand swings outward on its way [m]. */
   readonly arc?: number;
-  /** true: lasts until no arrow flies. */
+  /** Whether the movement lasts until no arrow flies. */
   readonly waits?: boolean;
 }
 
-/** The built-in archer: hands and buttons for a whole round. */
+/** The built-in archer, which produces hands and buttons for a whole round. */
 export interface Archer {
-  /** Head, hands (floor frame) and buttons at `time` [s, never falling], seeing the match as it stands then. */
+  /** Returns head, hands (floor frame) and buttons at `time` [s, not decreasing], for this state of the match. */
   follow(time: number, state: ArcheryState): { readonly frame: TrackingFrame; readonly buttons: Buttons };
 }
 
-/** Nearest first; with nothing left to score that counts once, the one worth most. */
-function chosen(state: ArcheryState): Target | null {
+/** Returns the next target: the nearest one that has not scored; if all have and every hit counts, the one worth most. */
+function nextTarget(state: ArcheryState): Target | null {
   if (state.phase === 'over' || state.arrowsLeft === 0) return null;
   const scored = (index: number) => state.arrows.some(({ landing }) => landing?.target === index);
   const open = state.targets.filter((_, index) => !scored(index)).sort((a, b) => a.distance - b.distance);
@@ -32,12 +32,12 @@ function chosen(state: ArcheryState): Target | null {
   return open[0] ?? (state.options.everyHitCounts ? (best[0] ?? null) : null);
 }
 
-/** Stands at the zone's middle, shoots at every target that has not scored, nearest first, then rests. Deterministic. */
+/** Creates an archer that stands at the centre of the zone, shoots at every target, nearest first, and then rests. Deterministic. */
 export function createArcher(body: ArcherBody): Archer {
   const postures = createArcherPostures(body);
   const { eyes } = postures;
 
-  /** A whole shot: take an arrow, nock, raise and begin to draw, draw, aim, let go, follow through. */
+  /** Returns the movements of a shot: take an arrow, nock, raise, draw, aim, release, follow through. */
   function shotAt(target: Target): Movement[] {
     const yaw = yawOf(subtract(target.centre, eyes));
     const full = postures.drawn(target.centre);
@@ -70,7 +70,7 @@ export function createArcher(body: ArcherBody): Archer {
   let fromPressure = 0;
   let began = 0;
   let plan: Movement[] = [];
-  /** On the way to rest, or there. */
+  /** Whether the archer rests, or is about to. */
   let idle = true;
 
   /** Ends the movements that are over by `time` and plans the next. */
@@ -78,7 +78,7 @@ export function createArcher(body: ArcherBody): Archer {
     for (;;) {
       const current = plan[0];
       if (!current) {
-        const target = chosen(state);
+        const target = nextTarget(state);
         if (!target && idle) return;
         if (idle) began = time;
         idle = target === null;
@@ -89,10 +89,10 @@ export function createArcher(body: ArcherBody): Archer {
       if (current.waits && state.arrows.some(({ landing }) => landing === null)) return;
       from = current.to;
       fromPressure = current.pressure;
-      // A wait ends when it is seen to end; everything else exactly on time, at any frame rate.
+      // A wait ends with the frame that sees its end; other movements end exactly on time.
       began = current.waits ? time : began + current.seconds;
       plan = plan.slice(1);
-      // Whether an arrow has left is known once a frame has shown the open hand.
+      // The arrow leaves with the frame that shows the open hand; wait for it.
       if (plan[0]?.waits) return;
     }
   }

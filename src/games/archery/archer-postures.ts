@@ -34,42 +34,42 @@ import {
 import { arrowRestHeight, braceHeight, maximumDraw } from './bow';
 import { releaseTowards } from './flight';
 
-/** Who shoots. */
+/** The body of an archer. */
 export interface ArcherBody {
   readonly bowSide: Side;
-  /** Height of the eyes above the floor [m], standing or seated as the archer is. */
+  /** Height of the eyes above the floor [m], standing or seated. */
   readonly eyeHeight: number;
-  /** Shoulder to wrist [m]. Default: that of a person who stands with eyes at this height. */
+  /** Shoulder to wrist [m]. Default: the average for a standing person with this eye height. */
   readonly armLength?: number;
   /** The button that the string hand presses. */
   readonly button?: Button;
-  /** Where the range lies in the room; default: the zone's middle is the floor's origin. */
+  /** Transform from the arena to the floor. Default: the identity. */
   readonly floorFromArena?: Transform<'floor', 'arena'>;
 }
 
-/** The bow shoulder goes ahead: the trunk turns this far away from the target [rad], standing ready and drawing. */
+/** Turn of the trunk away from the target [rad], when ready and when drawing: the bow shoulder leads. */
 const readyTurn = 0.45;
 const drawnTurn = 1.05;
 
-/** Roll of the string hand [rad]: 0 thumb up and elbow low, a quarter turn: palm down and elbow high. */
+/** Roll of the string hand [rad]; 0: thumb up and elbow low, π/2: palm down and elbow high. */
 const elbowLift = 0.95;
 
 /** A bow and the hand on its string at one moment, relative to the eyes, arena axes. */
 export interface Hold {
-  /** Where the arrow passes the bow. */
+  /** The arrow rest, at which the arrow passes the bow. */
   readonly arrowRest: Vec3;
-  /** Unit: where the arrow would point. */
+  /** Direction of the arrow, unit. */
   readonly direction: Vec3;
   /** Draw beyond brace height [m]. */
   readonly draw: number;
 }
 
-/** Everything that moves: head and trunk by their yaw, the bow, and the string hand where it is not on the string. */
+/** A posture: the gaze, the yaw of the trunk, the bow, and the string hand while it is not on the string. */
 export interface Posture {
   readonly gaze: Quat;
   readonly trunkYaw: number;
   readonly hold: Hold;
-  /** Fist of the string hand from the eyes [m] and its knuckles; `onString` 1: at the nock, along the arrow. */
+  /** The string hand relative to the eyes [m], while `onString` is 0; with 1 it is at the nock, along the arrow. */
   readonly free: { readonly fist: Vec3; readonly knuckles: Vec3; readonly thumb: Vec3 };
   readonly onString: number;
 }
@@ -92,32 +92,32 @@ export const mix = (a: Posture, b: Posture, share: number): Posture => ({
   onString: a.onString + (b.onString - a.onString) * share,
 });
 
-/** An archer as a headset and two hands see them: new objects in every frame, which may be kept. */
-export interface Performance {
+/** An archer's head, hands and buttons: new objects in every frame. */
+export interface ArcherInput {
   readonly frame: TrackingFrame;
   readonly buttons: Buttons;
 }
 
-/** The postures of one archer, and what they look like to a headset and two hands. */
+/** The postures of one archer, and their head, hands and buttons. */
 export interface ArcherPostures {
-  /** Of the eyes, standing at the zone's middle, arena frame. */
+  /** The eyes of the archer at the centre of the zone, arena frame. */
   readonly eyes: Vec3;
-  /** Standing about, facing this yaw [rad, 0: ahead, positive: to the left]. */
+  /** Returns a resting posture that faces a yaw [rad, 0: ahead, positive: to the left]. */
   resting(yaw: number): Posture;
-  /** The bow up at the chest, low towards the target, the string hand on its way to an arrow. */
+  /** Returns the posture with the bow at the chest, and the string hand about to take an arrow. */
   ready(yaw: number): Posture;
-  /** Full draw, the arrow where it must point to hit this point of the arena. */
+  /** Returns full draw, aimed to hit a point of the arena. */
   drawn(target: Vec3): Posture;
-  /** A moment after the release from this posture. */
+  /** Returns the posture just after the release. */
   followedThrough(shot: Posture): Posture;
   /**
-   * Head, hands (floor frame) and buttons in a posture at a time [s]; pressure: of the string hand's button, 0 to 1; swing: how far
-   * that hand is off its way, outward [m].
+   * Returns head, hands (floor frame) and buttons of a posture at a time [s]. `pressure`: on the string hand's button, 0 to 1. `swing`: outward offset of
+   * that hand [m].
    */
-  seen(posture: Posture, time: number, pressure: number, swing: number): Performance;
+  seen(posture: Posture, time: number, pressure: number, swing: number): ArcherInput;
 }
 
-/** How an archer of this body stands, draws and lets go. */
+/** Computes the postures for one body. */
 class BodyPostures implements ArcherPostures {
   readonly eyes: Vec3;
   readonly #bowSide: Side;
@@ -126,7 +126,7 @@ class BodyPostures implements ArcherPostures {
   readonly #arm: number;
   readonly #halfShoulders: number;
   readonly #floorFromArena: Transform<'floor', 'arena'>;
-  /** Towards the string hand's side, as a factor of +X. */
+  /** The sign of x on the side of the string hand. */
   readonly #aside: -1 | 1;
 
   constructor({
@@ -146,7 +146,6 @@ class BodyPostures implements ArcherPostures {
     this.#aside = bowSide === 'left' ? 1 : -1;
   }
 
-  /** Standing about, the bow low before the thigh, facing this yaw. */
   resting(yaw: number): Posture {
     const arm = this.#arm;
     const gaze = fromAxisAngle(up, yaw);
@@ -170,7 +169,6 @@ class BodyPostures implements ArcherPostures {
     };
   }
 
-  /** The bow up at the chest, pointing low towards the target, its string within reach of the other hand. */
   ready(yaw: number): Posture {
     const arm = this.#arm;
     const gaze = multiply(fromAxisAngle(up, yaw - this.#aside * 0.12), fromAxisAngle(right, -0.3));
@@ -185,7 +183,7 @@ class BodyPostures implements ArcherPostures {
         direction: normalise(this.#facing(yaw, -0.15, -0.3, 1)),
         draw: 0,
       },
-      // Between belt quiver and string the free hand is where an arrow is taken.
+      // The free hand is at the belt quiver.
       free: {
         ...this.resting(yaw).free,
         fist: add(string, this.#facing(yaw, 0.16 * arm, -0.88 * arm, 0.02 * arm)),
@@ -194,7 +192,6 @@ class BodyPostures implements ArcherPostures {
     };
   }
 
-  /** Full draw at a target: the nock beside the chin, the bow arm nearly straight, the arrow where it must point to hit. */
   drawn(target: Vec3): Posture {
     const arm = this.#arm;
     const to = subtract(target, this.eyes);
@@ -206,7 +203,7 @@ class BodyPostures implements ArcherPostures {
     const atNock = add(this.eyes, nock);
     let draw = 0.4;
     let direction = normalise(to);
-    // Draw and direction depend on each other, a little: a longer draw is faster and flies flatter.
+    // Draw and direction depend on each other: a longer draw is faster and flies flatter.
     for (let round = 0; round < 6; round++) {
       direction = releaseTowards(target, atNock, draw) ?? normalise(to);
       draw = this.#drawOf(nock, shoulder, direction);
@@ -220,7 +217,6 @@ class BodyPostures implements ArcherPostures {
     };
   }
 
-  /** The bow where it was, the string at rest, the string hand gone on backward: a moment after the release. */
   followedThrough(shot: Posture): Posture {
     const { arrowRest, direction, draw } = shot.hold;
     const nock = addScaled(arrowRest, direction, -braceHeight - draw);
@@ -232,7 +228,7 @@ class BodyPostures implements ArcherPostures {
     };
   }
 
-  seen(now: Posture, time: number, pressure: number, swing: number): Performance {
+  seen(now: Posture, time: number, pressure: number, swing: number): ArcherInput {
     const head = add(this.eyes, swayAt(time));
     const bowHand = this.#inFloor(head, this.#bowWrist(now));
     const stringHand = this.#inFloor(head, this.#stringWrist(now, swing));
@@ -249,17 +245,17 @@ class BodyPostures implements ArcherPostures {
     };
   }
 
-  /** A vector given as (towards the string side, up, ahead) of an archer who faces this yaw. */
+  /** Returns the vector of (towards the string side, up, ahead) for an archer that faces a yaw. */
   #facing(yaw: number, outward: number, upward: number, ahead: number): Vec3 {
     return rotate(fromAxisAngle(up, yaw), vec3(this.#aside * outward, upward, -ahead));
   }
 
-  /** The thumb of the hand on the string: leaning inward, as it does with an elbow behind the arrow rather than under it. */
+  /** Returns the thumb of the hand on the string, which leans inward because the elbow is behind the arrow. */
   #hooked(direction: Vec3): Vec3 {
     return this.#facing(yawOf(direction), -Math.sin(elbowLift), Math.cos(elbowLift), 0);
   }
 
-  /** A shoulder from the eyes: the trunk turns under a neck that lies behind the eyes along the gaze's yaw. */
+  /** Returns a shoulder relative to the eyes. The neck lies behind the eyes along the gaze; the trunk turns about it. */
   #shoulderOf(side: Side, gaze: Quat, trunkYaw: number): Vec3 {
     const arm = this.#arm;
     const half = this.#halfShoulders;
@@ -267,7 +263,7 @@ class BodyPostures implements ArcherPostures {
     return add(neck, this.#facing(trunkYaw, side === this.#stringSide ? half : -half, 0, 0));
   }
 
-  /** The draw [m] at which the bow arm is nearly straight. */
+  /** Returns the draw [m] at which the bow arm is nearly straight. */
   #drawOf(nock: Vec3, shoulder: Vec3, direction: Vec3): number {
     const wrist = wristAround(this.#bowSide, zero, direction, up).position;
     const upper = normalise(reject(up, direction));
@@ -294,7 +290,7 @@ class BodyPostures implements ArcherPostures {
     );
   }
 
-  /** A pose that is given from `origin`, in the room. */
+  /** Returns the pose, given relative to `origin`, in the floor frame. */
   #inFloor(origin: Vec3, { position, orientation }: Pose<'arena'>): TrackedPose {
     const seen = makeTracked();
     add(origin, position, seen.position);

@@ -7,37 +7,37 @@ export interface ArcheryOptions {
   readonly arrows: number;
   /** Seconds from the first release or the start signal until the bell. */
   readonly seconds: number;
-  /** true: a target scores with every hit; false: once. */
+  /** true: a target scores with every hit; false: only once. */
   readonly everyHitCounts: boolean;
-  /** What makes the clock run: the first arrow or the start signal, whichever is first, or the signal alone. No arrow flies before it. */
+  /** What starts the clock: the first arrow or the start signal, or the signal alone. No arrow flies before the start. */
   readonly startedBy: 'arrow' | 'signal';
-  /** Targets at the same angular height for an archer whose eyes are this high above the floor [m]. */
+  /** Eye height of the archer above the floor [m], by which the targets are placed. */
   readonly eyeHeight: number;
 }
 
 /** A disc that faces the archer. Arena frame: the archer's zone lies about the origin, the range ahead along −Z. */
 export interface Target {
   readonly centre: Vec3;
-  /** Unit, out of the painted side. */
+  /** Normal of the painted side, unit. */
   readonly normal: Vec3;
   readonly radius: number;
-  /** Along the floor from the origin [m]. */
+  /** Distance along the floor from the origin [m]. */
   readonly distance: number;
   readonly points: number;
 }
 
-/** Where an arrow ended its flight. */
+/** The end of an arrow's flight. */
 export interface Landing {
-  /** Seconds of the match. */
+  /** Time of the match [s]. */
   readonly time: number;
-  /** Of the tip. */
+  /** Position of the tip [m]. */
   readonly position: Vec3;
-  /** Unit: how the arrow flew at the end. */
+  /** Direction of flight at the end, unit. */
   readonly direction: Vec3;
   readonly on: 'target' | 'ground' | 'wall';
   /** Index of the target hit; null elsewhere. */
   readonly target: number | null;
-  /** What it scored; 0 for a target that had scored already. */
+  /** Points scored; 0 for a target that has scored before. */
   readonly points: number;
 }
 
@@ -45,17 +45,17 @@ export interface Landing {
 export interface Arrow {
   readonly id: number;
   readonly release: {
-    /** Seconds of the match. */
+    /** Time of the match [s]. */
     readonly time: number;
-    /** Of the tip. */
+    /** Position of the tip [m]. */
     readonly position: Vec3;
-    /** Metres per second. */
+    /** Velocity [m/s]. */
     readonly velocity: Vec3;
   };
   readonly landing: Landing | null;
 }
 
-/** Why a round is over: every arrow shot and landed, every target scored, or the bell. */
+/** Why a round is over: every arrow has landed, every target has scored, or the bell has rung. */
 export type RoundEnd = 'arrows' | 'targets' | 'time';
 
 export interface ArcheryState {
@@ -71,21 +71,21 @@ export interface ArcheryState {
   readonly targets: readonly Target[];
   /** Arrows shot, in order. */
   readonly arrows: readonly Arrow[];
-  /** Where the archer's head was last, arena frame; before the first word of it: over the origin. */
+  /** The archer's last head position, arena frame; above the origin before the first one. */
   readonly head: Vec3;
-  /** Whether the archer's head is above the zone. Coming back counts a little inside its edge, so that the edge does not flicker. */
+  /** Whether the archer's head is above the zone; it re-enters slightly inside the edge, which avoids flicker. */
   readonly inZone: boolean;
 }
 
 export type ArcheryAction =
   | { readonly type: 'start' }
-  /** Where the archer's head is; ignored unless finite and within 50 m. */
+  /** The archer's head position; ignored unless finite and within 50 m. */
   | { readonly type: 'stand'; readonly head: Vec3 }
   | {
       readonly type: 'release';
-      /** Of the tip, arena frame. */
+      /** Position of the tip, arena frame [m]. */
       readonly position: Vec3;
-      /** Unit. */
+      /** Direction of the arrow, unit. */
       readonly direction: Vec3;
       /** Draw length beyond brace height [m]. */
       readonly draw: number;
@@ -101,12 +101,12 @@ export type ArcheryEvent =
   | { readonly type: 'entered-zone' }
   | { readonly type: 'ended'; readonly end: RoundEnd; readonly score: number };
 
-/** What the hands do with the bow right now, for those who draw it, in the frame of the tracked poses (floor). */
+/** The bow as it is drawn in a frame, in the floor frame. */
 export interface BowView {
   readonly bowSide: 'left' | 'right';
   /** Grip of the bow; −Z to the target, +Y along the upper limb. */
   readonly bow: { readonly position: Vec3; readonly orientation: Quat };
-  /** Where the middle of the string is. */
+  /** The middle of the string. */
   readonly nockPoint: Vec3;
   /** Draw length beyond brace height [m]; 0: at rest. */
   readonly draw: number;

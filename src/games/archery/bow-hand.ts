@@ -22,12 +22,12 @@ const limb = vec3(0, 0, 0);
 const back = vec3(0, 0, 0);
 const aside = vec3(0, 0, 0);
 
-/** Points the bow whose limb and back are in the two vectors of this file, which are at right angles and of length 1. */
+/** Orients the bow by `limb` and `back` of this file, which must be orthogonal unit vectors. */
 const setOrientation = (bow: MutablePose<'floor'>): void => {
   fromAxes(cross(limb, back, aside), limb, back, bow.orientation);
 };
 
-/** A bow that hangs in a fist, no arrow on it: −Z with the knuckles, +Y (the upper limb) with the thumb. */
+/** Writes the bow in a fist without an arrow: −Z along the knuckles, +Y (the upper limb) along the thumb. */
 export function bowInHand(
   side: Side,
   wrist: Pose<'floor'>,
@@ -40,7 +40,7 @@ export function bowInHand(
   return target;
 }
 
-/** The bow turned so that its −Z is the unit `direction` and its upper limb is as near as may be to where it was. */
+/** Writes the bow turned to the unit `direction` (−Z), with its upper limb as near as possible to its previous direction. */
 export function turnBow(
   bow: Pose<'floor'>,
   direction: Vec3,
@@ -49,7 +49,7 @@ export function turnBow(
   scale(direction, -1, back);
   rotate(bow.orientation, up, limb);
   reject(limb, back, limb);
-  // The limb along the arrow: any limb at right angles to it.
+  // If the limb is parallel to the arrow, any orthogonal one will do.
   normalise(limb, normalise(cross(back, right, aside), forward, aside), limb);
   setOrientation(target);
   target.position.x = bow.position.x;
@@ -58,27 +58,27 @@ export function turnBow(
   return target;
 }
 
-/** Where a bow points, unit. */
+/** Returns the direction of a bow (−Z), unit. */
 export const forwardOf = (bow: Pose<'floor'>, target?: MutableVec3): MutableVec3 =>
   rotate(bow.orientation, forward, target);
 
 const restInBow = vec3(0, arrowRestHeight, 0);
 const stringInBow = vec3(0, 0, braceHeight);
 
-/** Where the arrow passes the bow. */
+/** Returns the arrow rest of a bow. */
 export const arrowRestOf = (bow: Pose<'floor'>, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
   add(bow.position, rotate(bow.orientation, restInBow, target), target);
 
 const toNock = vec3(0, 0, 0);
 
-/** The nocking point of a bow with nothing on its string. */
+/** Returns the nocking point of a bow without an arrow. */
 export const stringAtRest = (bow: Pose<'floor'>, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
   add(arrowRestOf(bow, target), rotate(bow.orientation, stringInBow, toNock), target);
 
 const arc = quat(0, 0, 0, 1);
 const turned = vec3(0, 0, 0);
 
-/** The unit vector on the shorter arc from a to b, `share` of the way. */
+/** Writes the unit vector at `share` of the shorter arc from a to b. */
 export function turnTowards(a: Vec3, b: Vec3, share: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
   rotate(slerp(identity, rotationBetween(a, b, arc), share, arc), a, turned);
   return normalise(turned, a, target);

@@ -3,30 +3,30 @@ import { fallsTo, gravity, type Launch, launchTowards, positionAt, roots } from 
 import type { Target } from './archery-state';
 import { arrowLength, arrowSpeed } from './bow';
 
-/** A net across the range: upright, from the ground to `height`. Stops what comes from the inside. */
+/** A vertical net from the ground to `height`, which stops arrows from the inside. */
 export interface Wall {
   readonly axis: 'x' | 'z';
-  /** Where it stands on its axis [m]. */
+  /** Position on its axis [m]. */
   readonly at: number;
-  /** The direction of its axis that leads into the range. */
+  /** The direction along its axis into the range. */
   readonly inward: 1 | -1;
   readonly height: number;
 }
 
 /** The end of a flight. */
 export interface Hit {
-  /** Seconds after the release. */
+  /** Time after the release [s]. */
   readonly after: number;
   readonly on: 'target' | 'ground' | 'wall';
   /** Index of the target; null elsewhere. */
   readonly target: number | null;
 }
 
-// Memory of one call: an arrow in the air is looked at in every tick.
+// Scratch of one call: every tick computes the flying arrows.
 const point = vec3(0, 0, 0);
 const crossings: number[] = [];
 
-/** Seconds until the tip first goes through the disc from its painted side; null: it never does. */
+/** Returns the seconds until the tip passes through the disc from its painted side; null: it never does. */
 export function reachesTarget(launch: Launch, { centre, normal, radius }: Target): number | null {
   const towards = dot(normal, launch.velocity);
   const away = dot(normal, subtract(launch.position, centre, point));
@@ -37,10 +37,10 @@ export function reachesTarget(launch: Launch, { centre, normal, radius }: Target
   return null;
 }
 
-/** Seconds until the tip is at y = 0; 0 where it starts in the ground. */
+/** Returns the seconds until the tip is at y = 0; 0 if it starts in the ground. */
 export const reachesGround = (launch: Launch): number => (launch.position.y <= 0 ? 0 : fallsTo(launch, 0));
 
-/** Seconds until the tip goes through the net from the inside; null: it flies over, along or away from it. */
+/** Returns the seconds until the tip reaches the net from the inside; null: it flies over, along or away from it. */
 export function reachesWall(launch: Launch, { axis, at, inward, height }: Wall): number | null {
   const inside = (launch.position[axis] - at) * inward;
   const approach = -launch.velocity[axis] * inward;
@@ -49,7 +49,7 @@ export function reachesWall(launch: Launch, { axis, at, inward, height }: Wall):
   return positionAt(launch, time, point).y <= height ? time : null;
 }
 
-/** What the tip meets first on its parabola: solved, not stepped, so that nothing is ever too thin or too fast. */
+/** Returns the first hit of the tip on its parabola. It is solved instead of stepped, so that nothing tunnels. */
 export function firstHit(launch: Launch, targets: readonly Target[], walls: readonly Wall[]): Hit {
   let first: Hit = { after: reachesGround(launch), on: 'ground', target: null };
   for (const wall of walls) {
@@ -64,8 +64,8 @@ export function firstHit(launch: Launch, targets: readonly Target[], walls: read
 }
 
 /**
- * The unit direction in which an arrow whose nock is at `nock` must be released at this draw [m] to hit `target`: its tip lies
- * an arrow's length ahead along that direction; written into `result`. null: out of reach.
+ * Writes into `result` the unit direction in which an arrow with its nock at `nock` and this draw [m] hits `target`; the tip is an arrow's length ahead.
+ * Returns null if the target is out of reach.
  */
 export function releaseTowards(
   target: Vec3,
@@ -75,7 +75,7 @@ export function releaseTowards(
 ): MutableVec3 | null {
   const speed = arrowSpeed(draw);
   let direction = launchTowards(target, nock, speed, result);
-  // Each round shrinks the error by a tenth or more: the tip moves with the direction's small change alone.
+  // Each iteration shrinks the error to a tenth or less: the tip moves only with the change of direction.
   for (let round = 0; round < 12 && direction; round++) {
     direction = launchTowards(target, addScaled(nock, direction, arrowLength, point), speed, result);
   }

@@ -28,15 +28,15 @@ import { HeldBow, holdSeconds } from './held-bow';
 import { NockedArrow } from './nocked-arrow';
 import { releaseInterval } from './rules';
 
-/** What the archer, the menu and the round decide; asked for in every frame, so that all of it can change during play. */
+/** Settings of the gestures, which are read in every frame and may change during play. */
 export interface ArcheryGestureSettings {
-  /** The hand that holds the bow; null: it hangs on its rest until a hand takes it. A change takes effect at once. */
+  /** The hand that holds the bow; null: it hangs on its rest until a hand takes it. A change applies at once. */
   readonly bowSide: Side | null;
-  /** Where the bow hangs, floor frame [m]. */
+  /** Position of the bow's rest, floor frame [m]. */
   readonly rest: Vec3;
-  /** true: the hand with the bow draws by holding a button and aims where its knuckles point. */
+  /** Whether one hand does both: it draws by holding a button and aims along its knuckles. */
   readonly oneHanded: boolean;
-  /** false: there is no arrow to nock, because the quiver is empty or the bell has rung. */
+  /** Whether there is an arrow to nock: the quiver is not empty, and the bell has not rung. */
   readonly armed: boolean;
   readonly arenaFromFloor: Transform<'arena', 'floor'>;
 }
@@ -49,7 +49,7 @@ export const defaultArcheryGestureSettings: ArcheryGestureSettings = {
   arenaFromFloor: { position: zero, orientation: identity },
 };
 
-/** A buzz for one hand. */
+/** A haptic pulse for one hand. */
 export interface HapticPulse {
   readonly side: Side;
   /** 0 to 1. */
@@ -58,9 +58,8 @@ export interface HapticPulse {
 }
 
 /**
- * Something to hear, see in a caption, or remember. taken: `side` has the bow now. near-string: a press here would nock.
- * creak: another few centimetres of draw. lost, resumed: a hand left and came back to a drawn bow. cancelled: the arrow is back
- * in the quiver.
+ * A cue for sounds, captions and logs. taken: `side` has the bow now. near-string: a press here would nock. creak: another few centimetres of draw. lost,
+ * resumed: a hand was lost and tracked again at a drawn bow. cancelled: the arrow is back in the quiver.
  */
 export interface BowCue {
   readonly type:
@@ -74,42 +73,41 @@ export interface BowCue {
     | 'lost'
     | 'resumed';
   readonly side: Side;
-  /** Where it happens, floor frame. */
+  /** Position of the cue, floor frame [m]. */
   readonly position: Vec3;
   /** Draw at that moment [m]. */
   readonly draw: number;
 }
 
 /**
- * What one frame of hands and buttons means. The frame, its lists and the view of the bow are the same objects in every frame, which
- * the next one overwrites; actions, pulses and cues are new ones, and may be kept.
+ * The gestures of one frame. The frame, its lists and the view of the bow are reused by the next frame; actions, pulses and cues are new objects.
  */
 export interface GestureFrame {
-  /** null: no hand holds the bow, or the hand that does has not been seen for long. */
+  /** The bow; null: no hand holds it, or its hand has been lost for long. */
   readonly bow: BowView | null;
-  /** Arena frame, `delay` 0: the match knows where in its ticks the frame lies. */
+  /** Actions in the arena frame, with `delay` 0: the match adds the delay in its tick. */
   readonly actions: readonly ArcheryAction[];
   readonly haptics: readonly HapticPulse[];
   readonly cues: readonly BowCue[];
 }
 
-/** Turns tracked hands and their buttons into what archers do (src/games/README.md). */
+/** Turns tracked hands and their buttons into archery actions (src/games/README.md). */
 export interface ArcheryGestures {
-  /** Frames in the order of their time; irregular ones are fine. */
+  /** Processes a frame; times must rise, at any interval. The result is valid until the next call. */
   follow(frame: TrackingFrame, buttons: Buttons): GestureFrame;
-  /** The floor lies elsewhere from the next frame on. */
+  /** Announces that the floor frame jumps before the next frame. */
   jumped(): void;
 }
 
-/** A press nocks when the fist is this near to the nocking point [m]; it stays near until it is a little further away. */
+/** A press nocks within this distance of the fist from the nocking point [m]; the margin is hysteresis. */
 export const nockReach = 0.18;
 const nearMargin = 0.03;
-/** Frames further apart than this [s] have a pause between them, of which the page's clock counts its longest step, give or take a rounding. */
+/** A longer interval between two frames [s] is a pause: the page's clock counts its longest step for it. */
 const longestFrame = longestStep - 1e-3;
 
 const none: readonly never[] = [];
 
-/** The view of the bow, in memory that every frame overwrites. */
+/** Creates the view of the bow, which every frame overwrites. */
 const makeView = () => ({
   bowSide: 'left' as Side,
   bow: makePose<'floor'>(),
@@ -119,7 +117,7 @@ const makeView = () => ({
   arrow: null as BowView['arrow'],
 });
 
-/** The two hands of one frame: who holds the bow, and who is at its string. One hand may do both. */
+/** The roles of the hands in one frame: one holds the bow, one is at its string; one hand may do both. */
 interface Roles {
   bowSide: Side;
   stringSide: Side;
@@ -130,14 +128,14 @@ interface Roles {
 class BowGestures implements ArcheryGestures {
   readonly #settings: () => ArcheryGestureSettings;
   readonly #presses = createButtonPresses();
-  /** The hand that was asked for last. */
-  #asked: Side | null | undefined;
+  /** The last `bowSide` of the settings. */
+  #requestedSide: Side | null | undefined;
   readonly #bow = new HeldBow();
   #nocked: NockedArrow | null = null;
   #wasNear = false;
   #shotAt = Number.NEGATIVE_INFINITY;
   #lastTime: number | null = null;
-  // Of the frame that is followed now.
+  // The frame that is being processed.
   #now: ArcheryGestureSettings = defaultArcheryGestureSettings;
   #time = 0;
   #delta = 0;
@@ -145,19 +143,19 @@ class BowGestures implements ArcheryGestures {
   readonly #hands: Record<Side, TrackedPose | null> = { left: null, right: null };
   readonly #pressed: Record<Side, readonly Button[]> = { left: none, right: none };
   readonly #roles: Roles = { bowSide: 'left', stringSide: 'right', bowHand: null, stringHand: null };
-  // What it means, and the memory for it.
+  // The result, and its buffers.
   readonly #actions: ArcheryAction[] = [];
   readonly #haptics: HapticPulse[] = [];
   readonly #cues: BowCue[] = [];
   readonly #view = makeView();
   readonly #arrowView = { nock: this.#view.nockPoint, direction: vec3(0, 0, 0) };
-  readonly #told = {
+  readonly #result = {
     bow: null as BowView | null,
     actions: this.#actions,
     haptics: this.#haptics,
     cues: this.#cues,
   };
-  // For one step of a frame.
+  // Scratch.
   readonly #fist = vec3(0, 0, 0);
   readonly #point = vec3(0, 0, 0);
 
@@ -168,8 +166,8 @@ class BowGestures implements ArcheryGestures {
   follow(frame: TrackingFrame, buttons: Buttons): GestureFrame {
     this.#begin(frame, buttons);
     if (frame.suspended) this.#wait();
-    else this.#told.bow = this.#play(frame);
-    return this.#told;
+    else this.#result.bow = this.#play(frame);
+    return this.#result;
   }
 
   jumped(): void {
@@ -189,7 +187,7 @@ class BowGestures implements ArcheryGestures {
     this.#actions.push({ type: 'stand', head: transformPoint(this.#now.arenaFromFloor, head.position) });
   }
 
-  /** Another thing is before the page: an arrow on the string waits for the hands to come back, the bow is shown as it was. */
+  /** Handles a suspended session: an arrow on the string waits for the hands, and the bow is shown as it was. */
   #wait(): void {
     for (const side of sides) this.#presses.follow(side, allReleased, false);
     this.#bow.wait(this.#time);
@@ -239,17 +237,17 @@ class BowGestures implements ArcheryGestures {
     this.#haptics.push({ side, strength, seconds });
   }
 
-  /** The menu gives the bow to another hand. */
+  /** Gives the bow to the hand that the settings name, if that has changed. */
   #changeHands(): void {
     const { bowSide } = this.#now;
-    if (bowSide === this.#asked) return;
-    this.#asked = bowSide;
+    if (bowSide === this.#requestedSide) return;
+    this.#requestedSide = bowSide;
     if (bowSide === this.#bow.side) return;
     if (this.#bow.side) this.#cancel(this.#bow.side);
     this.#bow.giveTo(bowSide);
   }
 
-  /** A free hand takes the bow from its rest, or out of the other hand when no arrow is on the string. */
+  /** Lets a free hand take the bow from its rest, or from the other hand while no arrow is nocked. */
   #take(): void {
     for (const taker of sides) {
       const hand = this.#hands[taker];
@@ -261,7 +259,7 @@ class BowGestures implements ArcheryGestures {
       this.#wasNear = true;
       this.#cue('taken', taker, fist);
       this.#pulse(taker, 0.5, 0.04);
-      // The same press shall not also nock.
+      // This press must not also nock.
       this.#pressed[taker] = none;
     }
   }
@@ -274,13 +272,13 @@ class BowGestures implements ArcheryGestures {
     return !oneHanded && giver !== null && this.#bow.isInHandAt(fist, side, giver);
   }
 
-  /** An archer who stops watching for that long, has no arrows left, or puts the controller away, does not shoot on going on. */
+  /** Returns whether to cancel the shot: after a pause, without arrows, or when the input device has changed. */
   #mustCancel({ stringSide }: Roles): boolean {
     if (this.#delta > longestFrame || !this.#now.armed || this.#presses.changedKind(stringSide)) return true;
     return this.#nocked !== null && this.#nocked.side !== stringSide;
   }
 
-  /** An arrow on the string goes back to the quiver. */
+  /** Returns a nocked arrow to the quiver. */
   #cancel(side: Side): void {
     if (!this.#nocked) return;
     this.#cue('cancelled', side, this.#bow.inHand.position);
@@ -309,13 +307,13 @@ class BowGestures implements ArcheryGestures {
   #drawOrRelease(arrow: NockedArrow, roles: Roles): void {
     const { bowSide, stringSide, bowHand, stringHand } = roles;
     if (!bowHand || !stringHand) {
-      this.#missHand(arrow, roles);
+      this.#onLostHand(arrow, roles);
       return;
     }
     const cameBack = arrow.lostAt !== null;
     if (pressureOf(this.#buttons[stringSide], arrow.button) < releasedBelow) {
       if (cameBack) this.#cancel(stringSide);
-      else this.#letGo(arrow, roles);
+      else this.#release(arrow, roles);
       return;
     }
     if (cameBack) {
@@ -323,13 +321,13 @@ class BowGestures implements ArcheryGestures {
       this.#cue('resumed', stringSide, arrow.nock(this.#bow.inHand, this.#point));
     }
     arrow.opened = false;
-    // Any other button puts the arrow of one hand back: a held button cannot be drawn any less.
+    // With one hand any other button cancels, because a held button cannot reduce the draw.
     if (this.#now.oneHanded && this.#pressed[bowSide].some((button) => button !== arrow.button)) this.#cancel(bowSide);
     else this.#draw(arrow, stringHand, roles);
   }
 
-  /** The button of a hand that no camera sees says nothing: many devices let go of it when they lose the hand. */
-  #missHand(arrow: NockedArrow, { bowSide, stringSide, bowHand }: Roles): void {
+  /** Handles a lost hand. Its button is ignored: many devices release it when they lose the hand. */
+  #onLostHand(arrow: NockedArrow, { bowSide, stringSide, bowHand }: Roles): void {
     arrow.opened = false;
     if (arrow.lostAt === null) {
       arrow.lostAt = this.#time;
@@ -339,7 +337,7 @@ class BowGestures implements ArcheryGestures {
     if (this.#time - arrow.lostAt >= holdSeconds) this.#cancel(stringSide);
   }
 
-  #letGo(arrow: NockedArrow, roles: Roles): void {
+  #release(arrow: NockedArrow, roles: Roles): void {
     if (arrow.button === 'pinch' && !arrow.opened) arrow.opened = true;
     else if (arrow.draw < minimumDraw || this.#time - this.#shotAt < releaseInterval) this.#cancel(roles.stringSide);
     else this.#shoot(arrow, roles);
@@ -353,9 +351,9 @@ class BowGestures implements ArcheryGestures {
       this.#cue('anchored', stringSide, arrow.nock(this.#bow.inHand, this.#point));
       this.#pulse(stringSide, 0.5, 0.03);
     }
-    // The harder the string pulls, the more of it the hand feels.
-    if (arrow.feels()) this.#pulse(stringSide, 0.08 + 0.42 * (arrow.draw / maximumDraw), 0.012);
-    if (arrow.creaks()) this.#cue('creak', bowSide, this.#bow.inHand.position);
+    // The pulse grows with the draw.
+    if (arrow.passesHapticNotch()) this.#pulse(stringSide, 0.08 + 0.42 * (arrow.draw / maximumDraw), 0.012);
+    if (arrow.passesCreakNotch()) this.#cue('creak', bowSide, this.#bow.inHand.position);
   }
 
   #shoot(arrow: NockedArrow, { bowSide, stringSide }: Roles): void {
@@ -396,6 +394,6 @@ class BowGestures implements ArcheryGestures {
   }
 }
 
-/** One per archer. */
+/** Creates the gestures of one archer. */
 export const createArcheryGestures = (settings: () => ArcheryGestureSettings): ArcheryGestures =>
   new BowGestures(settings);

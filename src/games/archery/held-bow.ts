@@ -4,30 +4,30 @@ import type { Side } from 'threepoint/core/math/side';
 import { distance, dot, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { bowInHand, forwardOf, stringAtRest, turnBow, turnTowards } from './bow-hand';
 
-/** A press takes the bow when the fist is this near to its grip in the other hand, or to the bow on its rest [m]. */
+/** A press takes the bow within these distances of the fist: from its grip in the other hand, or from the bow on its rest [m]. */
 export const takeReach = 0.1;
 export const restReach = 0.25;
-/** Without its arrow the bow turns half the way back to how the hand holds it in this time [s]. */
+/** Half-life of the bow's return to the hand's orientation after a shot [s]. */
 export const settleHalfLife = 0.08;
-/** A hand may be lost for this long [s]; then the bow is no longer held, and a drawn arrow goes back to the quiver. */
+/** After this long without its hand [s] the bow is no longer held, and a drawn arrow returns to the quiver. */
 export const holdSeconds = 0.5;
 
-/** Cosine of the angle at which a bow that turns back is back: a quarter of a degree. */
+/** Cosine of the angle at which the bow has returned: a quarter of a degree. */
 const settled = Math.cos(Math.PI / 720);
 
-// Memory of one call: a frame makes no garbage.
+// Scratch of one call.
 const ahead = vec3(0, 0, 0);
 const string = vec3(0, 0, 0);
 
-/** The bow of one archer: which hand has it, how it is held, and how it turns back when its arrow has gone; floor frame. */
+/** The bow of one archer: the hand that holds it, its pose, and its return after a shot; floor frame. */
 export class HeldBow {
-  /** The hand that has the bow; null: it hangs on its rest. */
+  /** The hand that holds the bow; null: it hangs on its rest. */
   side: Side | null = null;
-  /** As the hand held it last, before an arrow turned it. */
+  /** The bow's last pose in the hand, without an arrow. */
   readonly inHand = makePose<'floor'>();
-  /** When that was [s]; null: no hand holds it. */
+  /** The time of that pose [s]; null: no hand holds the bow. */
   #heldAt: number | null = null;
-  /** Where a bow points that is turning back after its arrow has gone, unit; null: with the hand. */
+  /** The direction of the bow while it returns after a shot, unit; null: that of the hand. */
   #settling: MutableVec3 | null = null;
   readonly #turned = makePose<'floor'>();
 
@@ -41,19 +41,19 @@ export class HeldBow {
     this.#settling = null;
   }
 
-  /** Whether a fist is near enough to the bow on its rest to take it. */
+  /** Returns whether a fist can take the bow from its rest. */
   isOnRestAt(fist: Vec3, rest: Vec3): boolean {
     return distance(fist, rest) <= restReach;
   }
 
-  /** Whether a fist is near enough to take the bow out of the hand that has it, and nearer to its grip than to its string. */
+  /** Returns whether a fist can take the bow from the other hand: it is within reach, and nearer to the grip than to the string. */
   isInHandAt(fist: Vec3, side: Side, giver: Pose<'floor'>): boolean {
     const bow = bowInHand(side, giver, this.#turned);
     const toGrip = distance(fist, bow.position);
     return toGrip <= takeReach && toGrip <= distance(fist, stringAtRest(bow, string));
   }
 
-  /** The bow goes with its hand. With no hand in sight it stays: as long as an arrow is on the string, else for `holdSeconds`. */
+  /** Moves the bow with its hand. Without a tracked hand it stays: while an arrow is nocked, otherwise for `holdSeconds`. */
   follow(side: Side, hand: Pose<'floor'> | null, time: number, nocked: boolean): void {
     if (hand) {
       bowInHand(side, hand, this.inHand);
@@ -61,22 +61,22 @@ export class HeldBow {
     } else if (this.#heldAt !== null && !nocked && time - this.#heldAt > holdSeconds) this.#heldAt = null;
   }
 
-  /** No hand is looked for: the bow stays as it was. */
+  /** Keeps the bow as it is while the session is suspended. */
   wait(time: number): void {
     if (this.#heldAt !== null) this.#heldAt = time;
   }
 
-  /** The arrow has gone: the bow points where it did, and turns back from there. The direction is the bow's own from now on. */
+  /** Starts the return after a shot, from the arrow's direction; the bow takes over this vector. */
   settleFrom(direction: MutableVec3): void {
     this.#settling = direction;
   }
 
-  /** The floor lies elsewhere from the next frame on: the bow is there as the hand holds it. */
+  /** Announces that the floor frame jumps: the return ends at once. */
   jumped(): void {
     this.#settling = null;
   }
 
-  /** Turns back to how the hand holds it. */
+  /** Continues the return by `delta` seconds. */
   settle(delta: number): void {
     if (!this.#settling) return;
     forwardOf(this.inHand, ahead);
@@ -84,7 +84,7 @@ export class HeldBow {
     if (dot(this.#settling, ahead) > settled) this.#settling = null;
   }
 
-  /** The bow while no arrow is on its string; overwritten by the next call. */
+  /** Returns the bow without an arrow; the next call overwrites it. */
   empty(): Pose<'floor'> {
     return this.#settling ? turnBow(this.inHand, this.#settling, this.#turned) : this.inHand;
   }

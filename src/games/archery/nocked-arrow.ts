@@ -17,58 +17,58 @@ import type { BowView } from './archery-state';
 import { braceHeight, maximumDraw } from './bow';
 import { arrowRestOf, forwardOf, turnBow, turnTowards } from './bow-hand';
 
-/** The direction of a drawn arrow goes half the way to where the hands point in this time [s]. */
+/** Half-life of a drawn arrow's direction [s]. */
 export const aimHalfLife = 0.05;
-/** The same for one hand, which trembles more [s]. */
+/** Half-life with one hand, which trembles more [s]. */
 export const oneHandedAimHalfLife = 0.08;
-/** One-handed: growth of the draw [m/s] and where it ends [m]. */
+/** Speed of a one-handed draw [m/s], and its end [m]. */
 export const oneHandedDrawSpeed = 0.5;
 export const oneHandedDraw = 0.6;
 
-/** Below the first the bow's hand aims, above the second both hands do, between them some of each [m of draw]. */
+/** Up to the first draw [m] the bow hand aims, from the second both hands do; between them the direction is blended. */
 const handAims = 0.03;
 const lineAims = 0.15;
-/** The string leaves the stage `nocked` at this draw [m]. */
+/** Draw [m] at which the stage `nocked` ends. */
 const drawingFrom = 0.05;
-/** Anchored: at least this draw [m], changing more slowly than this [m/s] for this long [s]; until it changes by this much [m]. */
+/** The draw is anchored from this length [m], if it changes more slowly than this [m/s] for this time [s], until it changes by this much [m]. */
 const anchorDraw = 0.25;
 const anchorSpeed = 0.12;
 const anchorSeconds = 0.15;
 const anchorSlack = 0.05;
 const drawSpeedHalfLife = 0.03;
-/** The string hand feels every centimetre and a half; the bow creaks every six [m]. */
+/** Draw between two haptic pulses, and between two creaks [m]. */
 const hapticNotch = 0.015;
 const creakNotch = 0.06;
 
-// Memory of one call: a frame makes no garbage.
+// Scratch of one call.
 const held = vec3(0, 0, 0);
 const line = vec3(0, 0, 0);
 const goal = vec3(0, 0, 0);
 const rest = vec3(0, 0, 0);
 const turned = makePose<'floor'>();
 
-/** An arrow on the string, from the press that nocks it to its release; floor frame. `inHand`: the bow as the hand holds it. */
+/** An arrow on the string, from nocking to release; floor frame. `inHand` is the bow's pose in the hand. */
 export class NockedArrow {
   stage: Exclude<BowView['stage'], 'empty'> = 'nocked';
-  /** Beyond brace height [m]. */
+  /** Draw beyond brace height [m]. */
   draw = 0;
-  /** Unit: where the arrow points. */
+  /** Direction of the arrow, unit. */
   readonly direction: MutableVec3;
-  /** Time of the first frame that missed a hand [s]; null: both seen. */
+  /** Time of the first frame without a hand [s]; null: both are tracked. */
   lostAt: number | null = null;
-  /** An opened pinch counts with the next frame that sees the hand: fingers also seem to open when a camera loses them. */
+  /** Whether a pinch has opened. It counts in the next frame with a tracked hand, because fingers also seem to open when tracking is lost. */
   opened = false;
-  /** `direction` is one of a floor that lay elsewhere. */
+  /** Whether `direction` dates from before a jump of the floor frame. */
   #jumped = false;
   #drawSpeed = 0;
-  /** Seconds for which the draw has been steady, and the draw at which it anchored. */
+  /** How long the draw has been steady [s], and the draw at the anchor [m]. */
   #steady = 0;
   #anchoredAt = 0;
   #feltDraw = 0;
-  #heardDraw = 0;
+  #creakedDraw = 0;
 
   constructor(
-    /** What holds it, and of which hand. */
+    /** The button that holds the arrow, and its hand. */
     readonly button: Button,
     readonly side: Side,
     direction: Vec3,
@@ -76,12 +76,12 @@ export class NockedArrow {
     this.direction = copyVec3(direction);
   }
 
-  /** The string goes where the fist of the string hand is. true: with this frame the draw is anchored. */
+  /** Draws the string to the fist of the string hand. Returns whether this frame anchors the draw. */
   drawWithHand(inHand: Pose<'floor'>, fist: Vec3, delta: number): boolean {
     const { direction } = this;
     this.#leap(forwardOf(inHand, held));
     const reference = this.draw < drawingFrom ? held : direction;
-    // The arrow rest lies above the fist at right angles to the arrow, whichever way the knuckles point.
+    // The arrow rest lies above the fist, orthogonal to the arrow, whatever the direction of the knuckles.
     normalise(subtract(arrowRestOf(inHand, rest), fist, line), reference, line);
     subtract(arrowRestOf(turnBow(inHand, line, turned), rest), fist, line);
     const behind = dot(line, reference) > 0;
@@ -95,7 +95,7 @@ export class NockedArrow {
     return this.#settle(delta);
   }
 
-  /** The draw grows while the button is held, and the bow's hand aims. true: with this frame the draw is anchored. */
+  /** Draws with the button, while the bow hand aims. Returns whether this frame anchors the draw. */
   drawWithButton(inHand: Pose<'floor'>, delta: number): boolean {
     this.#leap(forwardOf(inHand, held));
     turnTowards(this.direction, held, this.#smoothing(oneHandedAimHalfLife, delta), this.direction);
@@ -105,43 +105,43 @@ export class NockedArrow {
     return false;
   }
 
-  /** The floor lies elsewhere from the next frame on: the arrow is there at once where the hands point. */
+  /** Announces that the floor frame jumps: the next frame sets the direction without a filter. */
   jumped(): void {
     this.#jumped = true;
   }
 
-  /** The hand that was lost is back. */
+  /** Resumes after a lost hand is tracked again. */
   resume(): void {
     this.lostAt = null;
     this.stage = this.#stageOfDraw();
   }
 
-  /** Where the nock is: behind the arrow rest, so that the arrow always passes the bow where it lies on it. */
+  /** Returns the position of the nock, in line with the arrow rest. */
   nock(inHand: Pose<'floor'>, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
     arrowRestOf(turnBow(inHand, this.direction, turned), target);
     return addScaled(target, this.direction, -braceHeight - this.draw, target);
   }
 
-  /** Whether the draw has changed by another notch that the string hand feels. */
-  feels(): boolean {
+  /** Returns whether the draw has changed by another haptic notch. */
+  passesHapticNotch(): boolean {
     if (!(Math.abs(this.draw - this.#feltDraw) >= hapticNotch)) return false;
     this.#feltDraw = this.draw;
     return true;
   }
 
-  /** Whether the draw has grown by another notch at which the bow creaks. */
-  creaks(): boolean {
-    const further = this.draw - this.#heardDraw >= creakNotch;
-    if (further || this.draw < this.#heardDraw) this.#heardDraw = this.draw;
+  /** Returns whether the draw has grown by another creak notch. */
+  passesCreakNotch(): boolean {
+    const further = this.draw - this.#creakedDraw >= creakNotch;
+    if (further || this.draw < this.#creakedDraw) this.#creakedDraw = this.draw;
     return further;
   }
 
-  /** After a jump of the floor the arrow points as the bow's hand does. */
+  /** Sets the direction to that of the bow hand after a jump of the floor frame. */
   #leap(held: Vec3): void {
     if (this.#jumped) copyVec3(held, this.direction);
   }
 
-  /** The share of the way to where the hands point that this frame goes. */
+  /** Returns the filter's share for this frame; 1 after a jump. */
   #smoothing(halfLife: number, delta: number): number {
     const share = this.#jumped ? 1 : smoothingFactor(halfLife, delta);
     this.#jumped = false;

@@ -26,13 +26,13 @@ import type {
 import { arrowLength, arrowSpeed, minimumDraw } from './bow';
 import { firstHit, type Wall } from './flight';
 
-/** Where the archer stands: a rectangle on the floor about the origin [m]. */
+/** The archer's zone: a rectangle on the floor about the origin [m]. */
 export const zone = { width: 1.1, depth: 1 } as const;
 
-/** The head is back above the zone when it is this far inside the edge [m]. */
+/** A head re-enters the zone this far inside the edge [m]. */
 const zoneMargin = 0.02;
 
-/** The nets round the range, 5 m high. What flies over them comes down outside. */
+/** The nets around the range, 5 m high. An arrow that flies over them lands outside. */
 export const walls: readonly Wall[] = [
   { axis: 'z', at: -14, inward: 1, height: 5 },
   { axis: 'z', at: 4, inward: -1, height: 5 },
@@ -40,14 +40,14 @@ export const walls: readonly Wall[] = [
   { axis: 'x', at: 6, inward: -1, height: 5 },
 ];
 
-/** Of every target [m]. */
+/** Radius of every target [m]. */
 export const targetRadius = 0.45;
 
 const radians = (degrees: number): number => (degrees * Math.PI) / 180;
 
 /**
- * What the range is built of. Bearing: from −Z to the right, as seen from the origin. Elevation: of the centre, as seen by eyes
- * above the origin. The bearings keep every target in sight of every place in the zone.
+ * The layout of the range. Bearing: from −Z to the right, seen from the origin. Elevation: that of the centre, seen by eyes above the origin. With these
+ * bearings every target is visible from everywhere in the zone.
  */
 const layout = [
   { distance: 4.5, points: 5, bearing: radians(-25), elevation: radians(-4.5) },
@@ -56,19 +56,19 @@ const layout = [
   { distance: 10.5, points: 20, bearing: radians(5), elevation: radians(-0.3) },
 ] as const;
 
-/** A match's bearings differ from the layout's by this much at most [rad], and left and right may change places. */
+/** The most by which a match's bearings differ from the layout [rad]; left and right may also be swapped. */
 const bearingSpread = radians(1.5);
 
-/** No disc hangs lower than this above the ground [m], however low the eyes. */
+/** The least clearance of a target above the ground [m]. */
 const groundClearance = 0.1;
 
-/** A nock is in the archer's hand: at most this far from the head [m]. */
+/** The largest distance of a nock from the head [m]. */
 export const reach = 1.2;
 
-/** Further from the origin than this there are no heads [m]. */
+/** The largest distance of a head from the origin [m]. */
 const farthestHead = 50;
 
-/** Seconds between two releases at least. */
+/** The shortest interval between two releases [s]. */
 export const releaseInterval = 0.5;
 
 /** The paper's game: five arrows, 70 s, every target once. */
@@ -80,7 +80,7 @@ export const defaultArcheryOptions: ArcheryOptions = {
   eyeHeight: 1.6,
 };
 
-/** Eyes lower or higher than these are no archer's [m]; the targets are placed for the nearer of them. */
+/** Limits of the eye height by which targets are placed [m]; it is clamped to them. */
 export const eyeHeightLimits = { min: 0.6, max: 2.4 } as const;
 
 function placeTargets(eyeHeight: number, random: RandomState): { targets: Target[]; random: RandomState } {
@@ -126,20 +126,20 @@ function checkedOptions(options: Partial<ArcheryOptions>): ArcheryOptions {
 
 const tickSeconds = 1 / 90;
 
-/** Seconds of the match that have passed. */
+/** Returns the time of the match [s]. */
 export const matchTime = (state: ArcheryState): number => state.tick * tickSeconds;
 
-/** When a round ended that its arrows ended [s]: as the last of them came down. */
+/** Returns when the last arrow landed [s]. */
 const lastLanding = ({ arrows }: ArcheryState): number =>
   Math.max(0, ...arrows.map(({ landing }) => landing?.time ?? 0));
 
-/** Seconds until the bell, 0 when it has rung; of a round that is over, what was left at its end. */
+/** Returns the seconds until the bell, 0 after it; for a finished round, those left at its end. */
 export function secondsLeft(state: ArcheryState): number {
   if (state.phase === 'over' && state.end === 'time') return 0;
   return Math.max(0, state.options.seconds - (state.phase === 'over' ? lastLanding(state) : matchTime(state)));
 }
 
-/** The points of all targets together, or, where every hit counts, of the best one with every arrow. */
+/** Returns the highest possible score: all targets, or with `everyHitCounts` the best one with every arrow. */
 export function fullScore({ options, targets }: ArcheryState): number {
   let sum = 0;
   let best = 0;
@@ -150,14 +150,14 @@ export function fullScore({ options, targets }: ArcheryState): number {
   return options.everyHitCounts ? options.arrows * best : sum;
 }
 
-/** Whether there is an arrow to nock: one is left, and the bell has not rung. */
+/** Returns whether there is an arrow to nock: one is left, and the bell has not rung. */
 export const isArmed = (state: ArcheryState): boolean =>
   state.phase !== 'over' && state.arrowsLeft > 0 && matchTime(state) < state.options.seconds;
 
 const isAbove = ({ x, z }: Vec3, margin: number): boolean =>
   Math.abs(x) <= zone.width / 2 - margin && Math.abs(z) <= zone.depth / 2 - margin;
 
-/** The action, `delay` [s] into its tick; only releases care. */
+/** Returns the action with its delay in the tick [s], which only releases use. */
 export const delayed = (action: ArcheryAction, delay: number): ArcheryAction =>
   action.type === 'release' ? { ...action, delay } : action;
 
@@ -179,7 +179,7 @@ function stand(state: ArcheryState, head: Vec3): Step {
   };
 }
 
-/** Shoots, and starts a match that was ready; a release that no archer can have made changes nothing. */
+/** Shoots, and starts a match that is ready. An impossible release changes nothing. */
 function release(state: ArcheryState, action: Extract<ArcheryAction, { type: 'release' }>): Step {
   const { position, direction, draw, delay } = action;
   const possible =
@@ -226,7 +226,7 @@ function act(state: ArcheryState, action: ArcheryAction): Step {
 const hasScored = (state: ArcheryState, target: number): boolean =>
   state.arrows.some(({ landing }) => landing?.target === target);
 
-/** The arrows that come down before `time` [s], in the order in which they do. */
+/** Lands the arrows that come down before `time` [s], in order. */
 function land(state: ArcheryState, time: number): Step {
   const due = state.arrows
     .filter(({ landing }) => landing === null)
@@ -261,7 +261,7 @@ function land(state: ArcheryState, time: number): Step {
   return { state: next, events };
 }
 
-/** Why the round is over; null: it goes on. While an arrow flies it does. */
+/** Returns why the round is over; null: it continues, as it does while an arrow flies. */
 function roundEnd(state: ArcheryState, time: number): RoundEnd | null {
   if (state.arrows.some(({ landing }) => landing === null)) return null;
   if (!state.options.everyHitCounts && state.targets.every((_, index) => hasScored(state, index))) return 'targets';
@@ -270,8 +270,8 @@ function roundEnd(state: ArcheryState, time: number): RoundEnd | null {
 }
 
 /**
- * One archer's round (src/games/README.md): four targets, a few arrows, a bell. Tick 1/90 s, arena frame. The first release or
- * `start` starts the clock, or `start` alone (`startedBy`). With `everyHitCounts` the round does not end before arrows or time do.
+ * The rules of one archer's round (src/games/README.md): four targets, some arrows and a bell. Tick 1/90 s, arena frame. `startedBy` decides what starts
+ * the clock. With `everyHitCounts` the round ends only when no arrow is left or the bell rings.
  */
 export const archeryRules: GameRules<ArcheryState, ArcheryAction, ArcheryEvent, ArcheryOptions> = {
   tickSeconds,

@@ -5,23 +5,23 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { minimumJerk, yawOf } from '../posture';
 import { type ArcherBody, createArcherPostures, mix, type Posture } from './archer-postures';
 
-/** What a person at a desk wants of an archer. */
+/** The mouse input that steers an archer. */
 export interface Steering {
   /** The point of the arena to hit. */
   readonly target: Vec3;
-  /** true: nock and draw; let go to shoot. */
+  /** true: nock and draw; releasing shoots. */
   readonly pressed: boolean;
   /** true: put the arrow back. */
   readonly cancelled: boolean;
 }
 
-/** An archer who aims and draws as told: a mouse in the place of two hands. */
+/** An archer that is steered by a mouse instead of two hands. */
 export interface SteeredArcher {
-  /** Head, hands (floor frame) and buttons at `time` [s, never falling]. */
+  /** Returns head, hands (floor frame) and buttons at `time` [s, not decreasing]. */
   follow(time: number, steering: Steering): { readonly frame: TrackingFrame; readonly buttons: Buttons };
 }
 
-/** Half-life [s] of the aim: a mouse jumps, arms do not. */
+/** Half-life of the aim [s], because a mouse jumps and arms do not. */
 const aimHalfLife = 0.06;
 const nockSeconds = 0.4;
 const grabSeconds = 0.12;
@@ -32,7 +32,7 @@ const returnSeconds = 0.45;
 
 type Phase = 'ready' | 'nocking' | 'grabbing' | 'drawing' | 'loosing' | 'following' | 'returning' | 'lowering';
 
-/** Stands at the zone's middle; every posture is that of the built-in archer, so the gestures see no difference. */
+/** Creates an archer at the centre of the zone, with the postures of the built-in archer. */
 export function createSteeredArcher(body: ArcherBody): SteeredArcher {
   const postures = createArcherPostures(body);
   const { eyes } = postures;
@@ -40,9 +40,9 @@ export function createSteeredArcher(body: ArcherBody): SteeredArcher {
   let began = 0;
   let last: number | null = null;
   let aim: Vec3 | null = null;
-  /** How much of the draw there was when the string went, or the arrow began to be put back. */
+  /** Share of the full draw at the release, or when the arrow was cancelled. */
   let share = 0;
-  /** What the hands return from. */
+  /** The posture from which the hands return. */
   let left: Posture | null = null;
 
   function enter(next: Phase, time: number): void {

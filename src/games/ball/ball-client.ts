@@ -9,7 +9,7 @@ import { ballRoomMessageFrom } from './ball-messages';
 import { type BallGame, BallPolicy } from './ball-policy';
 import { unpackBall } from './ball-snapshot';
 import type { BallOptions } from './ball-state';
-import { answersDeed, followBallEvent, predictDeed, withMatchTime } from './replica';
+import { answersBallAction, followBallEvent, predictBallAction, withMatchTime } from './replica';
 import { arenaFromSeatFloor } from './stations';
 
 export type BallConnection = Connection<BallGame>;
@@ -17,14 +17,14 @@ export type BallConnectionUpdate = ConnectionUpdate<BallGame>;
 export type BallRoomView = RoomView<BallGame>;
 export type BallLoopbackHost = LoopbackHost<BallGame>;
 
-/** The ball game as a client of its Room follows it. */
+/** The client policy of the ball game. */
 export const ballClientPolicy: ClientPolicy<BallGame> = {
   readMessage: ballRoomMessageFrom,
   unpack: unpackBall,
   follow: followBallEvent,
   at: withMatchTime,
-  predict: predictDeed,
-  answers: answersDeed,
+  predict: predictBallAction,
+  answers: answersBallAction,
   arenaFromFloor: arenaFromSeatFloor,
 };
 
@@ -33,6 +33,6 @@ export interface BallLoopbackOptions extends LoopbackOptions<BallGame> {
   readonly ball?: Partial<BallOptions>;
 }
 
-/** Returns a Room of the ball game in this page. */
+/** Creates a Room of the ball game in this page. */
 export const createBallLoopbackHost = ({ seed = 0, ball, ...options }: BallLoopbackOptions = {}): BallLoopbackHost =>
   createLoopbackHost(new BallPolicy({ ...ball, seed }), ballClientPolicy, options);

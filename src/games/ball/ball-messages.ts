@@ -7,19 +7,19 @@ import {
 } from 'threepoint-rooms/protocol/messages';
 import * as v from 'valibot';
 import { type PackedBall, packedBallSchema } from './ball-snapshot';
-import type { BallDeed, BallEvent } from './ball-state';
+import type { BallAction, BallEvent } from './ball-state';
 
-/** The ball game as the messages of its Room carry it. */
+/** The types of the ball game in the messages of its Room. */
 export interface SentBallGame {
   readonly snapshot: PackedBall;
   readonly event: BallEvent;
 }
 export type BallRoomMessage = RoomMessage<SentBallGame>;
 
-/** The name by which pages ask for a room of this game. */
+/** The name of the ball game, by which pages request a room. */
 export const ballKind = 'ball';
 
-/** Not in the order of a vector: see `Vec3` for why an object with schemas in it must not be written like one. */
+/** Returns the schema of a vector. Its keys are not in the order of a vector; `Vec3` explains why. */
 const vector = (limit: number) =>
   v.strictObject({ z: finiteWithin(limit), y: finiteWithin(limit), x: finiteWithin(limit) });
 const side = v.picklist(['left', 'right']);
@@ -27,7 +27,7 @@ const ball = wholeFrom(0, 19);
 const player = wholeFrom(0, 2);
 const sequence = wholeFrom(1, 2 ** 31 - 1);
 
-/** Limits here are those of a message; what no arm can do the rules refuse, with their reason. */
+/** The schema limits what a message may carry; the rules refuse impossible actions with a reason. */
 const ballAction = v.variant('type', [
   v.strictObject({ type: v.literal('grab'), sequence, side, ball }),
   v.strictObject({ type: v.literal('drop'), sequence, side }),
@@ -42,8 +42,8 @@ const ballAction = v.variant('type', [
   }),
 ]);
 
-/** What a player does with a ball, checked field by field; null for anything else. */
-export function ballActionFrom(value: unknown): BallDeed | null {
+/** Returns the validated action; null for anything else. */
+export function ballActionFrom(value: unknown): BallAction | null {
   const result = v.safeParse(ballAction, value, { abortEarly: true });
   return result.success ? result.output : null;
 }
@@ -82,5 +82,5 @@ const ballEvent = v.variant('type', [
   v.strictObject({ type: v.literal('ended'), end: v.picklist(['balls', 'time']), score: wholeFrom(0, 20) }),
 ]);
 
-/** What a Room of the ball game says, checked field by field; null for anything else. */
+/** Returns the validated message of a Room of the ball game; null for anything else. */
 export const ballRoomMessageFrom = roomMessageReader<SentBallGame>(ballKind, packedBallSchema, ballEvent);

@@ -3,21 +3,21 @@ import type { HostedMatch, MatchPolicy } from 'threepoint-rooms/room/match-polic
 import { createMatch } from '../match';
 import { ballActionFrom, ballKind, type SentBallGame } from './ball-messages';
 import { type PackedBall, packBall } from './ball-snapshot';
-import type { BallAction, BallDeed, BallEvent, BallOptions, BallState } from './ball-state';
+import type { BallAction, BallEvent, BallInput, BallOptions, BallState } from './ball-state';
 import { ballRules } from './rules';
 import { arenaFromSeatFloor, rotationForRound, stations } from './stations';
 
 /** The types of the ball game as a Room hosts it. */
 export interface BallGame extends SentBallGame {
   readonly state: BallState;
-  readonly action: BallDeed;
+  readonly action: BallAction;
 }
 
 export interface BallPolicyOptions extends Partial<BallOptions> {
   readonly seed?: number;
 }
 
-/** The ball game as a Room hosts it: three seats, two throwers and the holder of the basket. */
+/** The match policy of the ball game: three seats, for two throwers and the basket holder. */
 export class BallPolicy implements MatchPolicy<BallGame> {
   readonly kind = ballKind;
   readonly seats = stations.length;
@@ -30,7 +30,7 @@ export class BallPolicy implements MatchPolicy<BallGame> {
     this.#seed = seed;
   }
 
-  start(rotation: number, onTick: (actions: readonly BallAction[]) => void): HostedMatch<BallGame> {
+  start(rotation: number, onTick: (actions: readonly BallInput[]) => void): HostedMatch<BallGame> {
     const players = stations.map((_, seat) => `seat ${seat}`);
     const options = { ...this.#options, rotation: (this.#options.rotation ?? 0) + rotation };
     return createMatch(ballRules, ballRules.start(players, this.#seed, options), { onTick });
@@ -45,11 +45,11 @@ export class BallPolicy implements MatchPolicy<BallGame> {
     return packBall(state);
   }
 
-  readAction(value: unknown): BallDeed | null {
+  readAction(value: unknown): BallAction | null {
     return ballActionFrom(value);
   }
 
-  refusalInPause(player: number, { sequence }: BallDeed): BallEvent {
+  refusalInPause(player: number, { sequence }: BallAction): BallEvent {
     return { type: 'refused', player, sequence, reason: 'phase' };
   }
 

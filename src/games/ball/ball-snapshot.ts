@@ -6,10 +6,10 @@ import { ballRules } from './rules';
 const finite = v.pipe(v.number(), v.finite());
 const whole = v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(2 ** 31));
 const player = v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(2));
-/** Time, position, velocity. */
+/** Schema of a launch: time, position, velocity. */
 const launch = v.tuple([finite, finite, finite, finite, finite, finite, finite]);
 
-/** rack · hand: player, right? · air: thrower, missed?, launch · floor: thrower, launch · basket: thrower. */
+/** Schema of a ball. rack · hand: player, right? · air: thrower, missed?, launch · floor: thrower, launch · basket: thrower. */
 const place = v.union([
   v.literal(0),
   v.tuple([v.literal(1), player, v.boolean()]),
@@ -21,19 +21,19 @@ const place = v.union([
 const phases = ['ready', 'running', 'over'] as const;
 const ends = ['balls', 'time'] as const;
 
-/** A match of the ball game in few bytes: what a player who arrives late needs to see and to follow it. */
+/** Schema of a compact match state, which a client receives on joining. */
 export const packedBallSchema = v.strictObject({
-  /** Balls, seconds, rotation. */
+  /** Options: balls, seconds, rotation. */
   o: v.tuple([whole, finite, v.pipe(v.number(), v.integer())]),
   tick: whole,
   phase: v.picklist(phases),
   start: v.nullable(finite),
   end: v.nullable(v.picklist(ends)),
   score: whole,
-  /** Of each player: here (1) and ready (2). */
+  /** Flags of each player: present (1) and ready (2). */
   p: v.array(v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(3))),
   balls: v.array(place),
-  /** When, opening, normal. */
+  /** Basket: time, opening, normal. */
   basket: launch,
 });
 export type PackedBall = v.InferOutput<typeof packedBallSchema>;
@@ -83,7 +83,7 @@ function unpackPlace(packed: PackedBall['balls'][number]): BallPlace {
   }
 }
 
-/** Everything but where heads and hands are: that the pose packets tell. */
+/** Packs a state without heads and hands, which pose packets carry. */
 export const packBall = (state: BallState): PackedBall => ({
   o: [state.options.balls, state.options.seconds, state.options.rotation],
   tick: state.tick,
@@ -96,7 +96,7 @@ export const packBall = (state: BallState): PackedBall => ({
   basket: packLaunch({ time: state.basket.at, position: state.basket.position, velocity: state.basket.normal }),
 });
 
-/** The state as it was packed, heads and hands unknown, deeds counted from 0; null where the parts contradict each other. */
+/** Unpacks a state; heads and hands are unknown, and actions count from 0. Returns null if the parts contradict each other. */
 export function unpackBall(packed: PackedBall): BallState | null {
   const [balls, seconds, rotation] = packed.o;
   if (balls < 1 || balls > 20 || packed.balls.length !== balls || !(seconds > 0 && seconds <= 3600)) return null;

@@ -6,39 +6,39 @@ import type { Launch } from '../ballistics';
 
 /** What may differ between matches. */
 export interface BallOptions {
-  /** Half of them in each thrower's rack. */
+  /** The number of balls; half of them are in each thrower's rack. */
   readonly balls: number;
   /** Seconds from the start signal until the bell. */
   readonly seconds: number;
-  /** Roles move on by this many seats: 0: the first two throw, the third holds the basket. */
+  /** Seats by which roles have moved on; 0: the first two throw, the third holds the basket. */
   readonly rotation: number;
-  /** No round begins before every seat has a player who is ready; otherwise a thrower and the holder are enough. Only the authority knows. */
+  /** Whether a round needs a ready player on every seat; otherwise a thrower and the holder suffice. Only the Room uses it. */
   readonly everySeat: boolean;
 }
 
 export type BallRole = 'thrower' | 'holder';
 
-/** One of the three. All numbers in a state are rounded to 0.1 mm or 0.1 ms, so that a state is short to tell. */
+/** One of the three players. All numbers in a state are rounded to 0.1 mm or 0.1 ms, which keeps messages short. */
 export interface BallPlayer {
   readonly id: string;
   readonly role: BallRole;
-  /** Index into `stations`. */
+  /** Index in `stations`. */
   readonly station: number;
   readonly present: boolean;
   readonly ready: boolean;
   /** Time of the newest pose [s of the match]; −1: none yet. */
   readonly at: number;
-  /** Arena frame. */
+  /** Position of the head, arena frame. */
   readonly head: Vec3 | null;
-  /** The middle of each fist, arena frame; null: not seen. */
+  /** The centre of each fist, arena frame; null: not tracked. */
   readonly left: Vec3 | null;
   readonly right: Vec3 | null;
-  /** The highest action number seen, and which of the 31 before it were (bit 0: the highest itself). */
+  /** The highest action number, and a bit mask of it and the 30 before it (bit 0: the highest itself). */
   readonly sequence: number;
   readonly seen: number;
 }
 
-/** How a ball set off, after a throw or a bounce: its flight follows in closed form. */
+/** The launch of a ball by a throw or a bounce; its flight follows in closed form. */
 export interface TimedLaunch extends Launch {
   /** Seconds of the match. */
   readonly time: number;
@@ -47,48 +47,48 @@ export interface TimedLaunch extends Launch {
 export type BallPlace =
   | { readonly on: 'rack' }
   | { readonly on: 'hand'; readonly player: number; readonly side: Side }
-  /** missed: it has touched the floor and can be caught no more. */
+  /** missed: it has touched the floor and can no longer be caught. */
   | { readonly on: 'air'; readonly launch: TimedLaunch; readonly thrower: number; readonly missed: boolean }
-  /** Rolls on from here and comes to rest. */
+  /** It rolls from here and comes to rest. */
   | { readonly on: 'floor'; readonly launch: TimedLaunch; readonly thrower: number }
   | { readonly on: 'basket'; readonly thrower: number };
 
-/** The basket as it was seen last: a round opening that looks along its normal. Arena frame. */
+/** The last pose of the basket: a round opening that faces along its normal. Arena frame. */
 export interface Basket {
-  /** Seconds of the match. Until then every flight is decided. */
+  /** Time of the match [s], up to which every flight is decided. */
   readonly at: number;
-  /** The middle of the opening. */
+  /** The centre of the opening. */
   readonly position: Vec3;
-  /** Unit, out of the opening. */
+  /** The normal out of the opening, unit. */
   readonly normal: Vec3;
 }
 
-/** Why a round is over: no ball is left to throw, or the bell. */
+/** Why a round is over: no ball is left, or the bell has rung. */
 export type BallEnd = 'balls' | 'time';
 
 export interface BallState {
   readonly options: BallOptions;
   readonly random: RandomState;
-  /** Ticks since the match was made; its clock runs while it waits for players too. */
+  /** Ticks since the match was created, waiting for players included. */
   readonly tick: number;
   readonly phase: 'ready' | 'running' | 'over';
-  /** When the start signal was [s of the match]; null: not yet. */
+  /** Match time of the start signal [s]; null: not yet. */
   readonly startedAt: number | null;
   readonly end: BallEnd | null;
   readonly score: number;
   readonly players: readonly BallPlayer[];
-  /** By number; the first half belongs in the first thrower's rack. */
+  /** The balls by number; the first half belongs in the first thrower's rack. */
   readonly balls: readonly BallPlace[];
   readonly basket: Basket;
 }
 
-/** What the rules hear: the Room, and each player's own deeds. */
-export type BallAction = SeatAction | (BallDeed & { readonly player: number });
+/** An input of the rules: from the Room, or a player's action with the seat. */
+export type BallInput = SeatAction | (BallAction & { readonly player: number });
 
-/** What a player does with a ball. Numbered by the player from 1: a number counts once, even if it arrives twice or out of order. */
-export type BallDeed =
+/** An action of a player with a ball. The player's page numbers them from 1; a number counts once, even if it arrives twice or out of order. */
+export type BallAction =
   | { readonly type: 'grab'; readonly sequence: number; readonly side: Side; readonly ball: number }
-  /** Back to the rack. */
+  /** Returns the ball to the rack. */
   | { readonly type: 'drop'; readonly sequence: number; readonly side: Side }
   | {
       readonly type: 'throw';
@@ -96,13 +96,13 @@ export type BallDeed =
       readonly side: Side;
       readonly ball: number;
       readonly at: number;
-      /** Of the ball's middle, arena frame. */
+      /** Centre of the ball, arena frame [m]. */
       readonly position: Vec3;
-      /** Metres per second. */
+      /** Velocity [m/s]. */
       readonly velocity: Vec3;
     };
 
-/** Why a deed changed nothing. */
+/** Why the rules refuse an action. */
 export type Refusal =
   | 'phase'
   | 'role'
@@ -124,7 +124,7 @@ export type BallEvent =
   | { readonly type: 'grabbed'; readonly ball: number; readonly player: number; readonly side: Side }
   | { readonly type: 'returned'; readonly ball: number; readonly player: number }
   | { readonly type: 'thrown'; readonly ball: number; readonly player: number; readonly launch: TimedLaunch }
-  /** A bounce: off the rim or outside of the basket, or off the floor. */
+  /** A bounce off the rim or the outside of the basket, or off the floor. */
   | { readonly type: 'bounced'; readonly ball: number; readonly off: 'basket' | 'floor'; readonly launch: TimedLaunch }
   | { readonly type: 'missed'; readonly ball: number; readonly player: number }
   | { readonly type: 'rolls'; readonly ball: number; readonly launch: TimedLaunch }

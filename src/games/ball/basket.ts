@@ -20,7 +20,7 @@ import {
 import { fistOf, thumbOf } from '../fist';
 import { basketRadius } from './flight';
 
-/** The opening of a basket: its middle, and the unit normal that looks out of it. */
+/** The opening of a basket: its centre, and the unit normal out of it. */
 export interface Opening {
   readonly position: Vec3;
   readonly normal: Vec3;
@@ -34,7 +34,7 @@ export interface MutableOpening extends Opening {
 
 export const makeOpening = (): MutableOpening => ({ position: vec3(0, 0, 0), normal: vec3(0, 1, 0) });
 
-/** A fist whose palm lies on the rim from outside is so far from the middle of the opening [m]: the rim's tube lies before the palm's skin. */
+/** Distance of a fist at the rim from the centre of the opening [m]; the palm lies on the rim from outside. */
 export const gripRadius = basketRadius + 0.01;
 
 const fist = vec3(0, 0, 0);
@@ -42,18 +42,18 @@ const otherFist = vec3(0, 0, 0);
 const across = vec3(0, 0, 0);
 const thumb = vec3(0, 0, 0);
 
-/** Of a basket in one hand. */
+/** Writes the opening of a basket in one hand. */
 function openingInHand(side: Side, hand: Pose<Frame>, { position, normal }: MutableOpening): void {
   thumbOf(side, hand.orientation, normal);
-  // The palm, and where that looks along the thumb the knuckles.
+  // The opening lies on the palm's side; if that is parallel to the thumb, on the knuckles' side.
   reject(rotate(hand.orientation, down, across), normal, across);
   normalise(across, rotate(hand.orientation, forward, thumb), across);
   addScaled(fistOf(hand, fist), across, gripRadius, position);
 }
 
 /**
- * A basket held by its rim with both hands, palms inward and thumbs up, or with one, which is enough; hands in the basket's own
- * frame. It opens where the thumbs point. null: no hand is seen.
+ * Writes the opening of a basket that is held by its rim with one or both hands, palms inward and thumbs up, in the frame of the hands. It opens where
+ * the thumbs point. Returns null if no hand is tracked.
  */
 export function basketInHands(
   left: Pose<Frame> | null,
@@ -72,7 +72,7 @@ export function basketInHands(
   normalise(across, rightward, across);
   add(thumbOf('left', left.orientation, normal), thumbOf('right', right.orientation, thumb), normal);
   if (line > 1e-3) reject(normal, across, normal);
-  // Thumbs that point at each other or apart say nothing: then upward.
+  // Thumbs that point at each other or apart define no direction: the basket opens upward.
   if (!(length(normal) > 1e-3)) reject(up, across, normal);
   normalise(normal, up, normal);
   lerp(fist, otherFist, 0.5, position);

@@ -4,7 +4,7 @@ import { round, roundedLaunch, type Step, withBall } from './state-changes';
 
 type InAir = Extract<BallPlace, { on: 'air' }>;
 
-/** What comes next of a ball in the air while the basket moves, told in `events`; null: it flies on. */
+/** Returns the next place of a flying ball while the basket moves, and adds the events; null: it flies on. */
 function nextPlace(
   ball: number,
   place: InAir,
@@ -34,13 +34,13 @@ function nextPlace(
   return rolls ? { on: 'floor', launch: bounced, thrower } : { on: 'air', launch: bounced, thrower, missed: true };
 }
 
-/** The basket moves from one place to another. */
+/** A movement of the basket from one pose to another. */
 interface BasketWay {
   readonly from: Basket;
   readonly to: Basket;
 }
 
-/** Follows every ball in the air while the basket moves from where it is to `to`. */
+/** Decides the flight of every ball while the basket moves to `to`. */
 export function decide(state: BallState, to: Basket): Step {
   const way = { from: state.basket, to };
   const events: BallEvent[] = [];
@@ -56,6 +56,6 @@ export function decide(state: BallState, to: Basket): Step {
   return { state: next, events };
 }
 
-/** A bounce is never earlier than the flight before it, however it is rounded, and each takes a little time. */
+/** Returns a bounce whose rounded time is later than that of the flight before it. */
 const settled = (bounce: TimedLaunch, flight: TimedLaunch): TimedLaunch =>
   bounce.time > flight.time ? bounce : { ...bounce, time: round(flight.time + 1e-4) };

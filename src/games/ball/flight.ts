@@ -19,29 +19,29 @@ import {
 import { fallsTo, positionAt, velocityAt } from '../ballistics';
 import type { Basket, TimedLaunch } from './ball-state';
 
-/** Of every ball [m]. */
+/** Radius of every ball [m]. */
 export const ballRadius = 0.075;
-/** The basket: a round opening, walls straight down from it [m]. */
+/** Radius of the basket's opening, and depth of its straight walls [m]. */
 export const basketRadius = 0.22;
 export const basketDepth = 0.3;
-/** The rim is a tube of this radius about the opening's edge [m]. */
+/** Radius of the rim's tube about the edge of the opening [m]. */
 export const rimTube = 0.017;
 
-/** Share of the speed into a surface that a bounce gives back. */
+/** Restitution: the share of the normal speed after a bounce. */
 const floorBounce = 0.62;
 const basketBounce = 0.45;
-/** Share of the speed along the floor that a bounce leaves. */
+/** The share of the tangential speed after a bounce on the floor. */
 const floorGrip = 0.8;
-/** A bounce that would leave the floor more slowly than this [m/s] rolls instead. */
+/** A bounce slower than this [m/s] becomes rolling. */
 const rollsBelow = 0.7;
-/** A rolling ball's speed shrinks to 1/e in this time [s]. */
+/** Time constant of a rolling ball's speed [s]. */
 const rollSeconds = 1.1;
 
-/** Where a ball in the air is at a time [s of the match]; before its launch: where it set off. */
+/** Returns the position of a flying ball at a match time [s]; before its launch the launch position. */
 export const ballInAir = (launch: TimedLaunch, time: number, target?: MutableVec3): MutableVec3 =>
   positionAt(launch, Math.max(time - launch.time, 0), target);
 
-/** Where a rolling ball is: it loses speed by the second and goes speed · rollSeconds in all. */
+/** Returns the position of a rolling ball at a match time [s]; its speed decays exponentially. */
 export const ballOnFloor = (launch: TimedLaunch, time: number, target?: MutableVec3): MutableVec3 =>
   addScaled(
     launch.position,
@@ -50,10 +50,10 @@ export const ballOnFloor = (launch: TimedLaunch, time: number, target?: MutableV
     target,
   );
 
-/** When a ball in the air touches the floor [s of the match]. */
+/** Returns the match time at which a flying ball touches the floor [s]. */
 export const touchesFloor = (launch: TimedLaunch): number => launch.time + fallsTo(launch, ballRadius);
 
-/** How a ball leaves the floor that it touches at `time`; `rolls`: for good. */
+/** Returns the launch after a bounce on the floor at `time`. `rolls`: the ball stays on the floor. */
 export function floorBounceOf(
   launch: TimedLaunch,
   time: number,
@@ -73,26 +73,26 @@ interface MutableOpening {
   readonly normal: MutableVec3;
 }
 
-/** The basket between two of its places, moved along the straight line and turned evenly. */
+/** Writes the basket's opening between two poses, interpolated linearly. */
 function basketAt(from: Basket, to: Basket, time: number, target: MutableOpening): void {
   const share = to.at > from.at ? clamp((time - from.at) / (to.at - from.at), 0, 1) : 1;
   lerp(from.position, to.position, share, target.position);
   normalise(lerp(from.normal, to.normal, share, target.normal), to.normal, target.normal);
 }
 
-/** What the outside of the basket is to a ball: how far away, and which way out. */
+/** The position of a ball relative to the basket. */
 interface Nearness {
-  /** From the ball's skin to the basket, or from its middle to the opening if that is next [m]; below 0: within. */
+  /** Distance of the ball's surface from the basket, or of its centre from the opening above it [m]; negative: inside. */
   far: number;
-  /** How far the ball can go at least before it meets either, or the rim on its way out over it [m]. */
+  /** Distance that the ball can move at least before it meets the basket or its opening [m]. */
   free: number;
-  /** Unit: from the basket to the ball. */
+  /** Direction from the basket to the ball, unit. */
   readonly out: MutableVec3;
-  /** Above the opening: what comes further down is in. */
+  /** Whether the ball is above the opening, where a descent is a catch. */
   overOpening: boolean;
 }
 
-// Memory of one call: a ball in the air is looked at in every tick.
+// Scratch of one call: every tick computes the flying balls.
 const outward = vec3(0, 0, 0);
 const sideways = vec3(0, 0, 0);
 const askew = vec3(0, 0, 0);
@@ -106,16 +106,16 @@ function measure(ball: Vec3, { position, normal }: MutableOpening, near: Nearnes
   near.overOpening = height > 0 && radial <= basketRadius;
   if (near.overOpening) {
     near.far = height;
-    // On its way out the skin meets the rim where the middle is no higher over it than the ball's radius.
+    // Sideways the ball meets the rim only if its centre is at most its radius above the opening.
     near.free = Math.min(height, Math.max(height - ballRadius, basketRadius - radial));
     copyVec3(normal, near.out);
     return;
   }
-  // The nearest point of a closed cylinder that hangs under the opening.
+  // The nearest point of the closed cylinder below the opening.
   const beyond = radial - basketRadius;
   const above = Math.max(height, -basketDepth - height);
   if (beyond <= 0 && above <= 0) {
-    // Inside the walls: the way out that is shorter.
+    // Inside the walls: take the shorter way out.
     near.far = near.free = Math.max(beyond, above) - ballRadius;
     if (beyond > above) copyVec3(outward, near.out);
     else scale(normal, height > -basketDepth / 2 ? 1 : -1, near.out);
@@ -128,28 +128,28 @@ function measure(ball: Vec3, { position, normal }: MutableOpening, near: Nearnes
   normalise(near.out, outward, near.out);
 }
 
-/** A ball meets the basket. */
+/** A catch by the basket, or a bounce off it. */
 export type BasketMeeting =
   | { readonly kind: 'caught'; readonly time: number }
   | { readonly kind: 'bounced'; readonly launch: TimedLaunch };
 
-/** As near as a ball comes before it touches [m]; steps end this far from everything. */
+/** Distance at which a ball counts as touching [m]; steps end this far from the basket. */
 const touching = 5e-4;
-/** A ball that touches and parts is looked at again after this [s]. */
+/** Step for a ball that touches the basket and moves away [s]. */
 const partingStep = 1 / 1000;
 
-/** The ball's middle and velocity. */
+/** Scratch: the ball's centre and velocity, and the basket. */
 const middle = vec3(0, 0, 0);
 const flown = vec3(0, 0, 0);
 const relative = vec3(0, 0, 0);
 const opening: MutableOpening = { position: vec3(0, 0, 0), normal: vec3(0, 0, 0) };
 const near: Nearness = { far: 0, free: 0, out: vec3(0, 0, 0), overOpening: false };
 
-/** How fast ball and basket may come nearer to each other at most [m/s]. */
+/** Returns an upper bound of the closing speed of ball and basket [m/s]. */
 function closingSpeed(launch: TimedLaunch, from: Basket, to: Basket, start: number, end: number): number {
   const seconds = to.at - from.at;
   const turning = Math.acos(clamp(dot(from.normal, to.normal), -1, 1));
-  // Everything of the basket within reach of the ball turns about the opening's middle.
+  // The basket turns about the centre of its opening; this is the longest lever.
   const arm = Math.hypot(basketRadius, basketDepth) + ballRadius;
   const basketSpeed = (distance(from.position, to.position) + 2 * turning * arm) / seconds;
   const fastest = Math.max(
@@ -160,9 +160,8 @@ function closingSpeed(launch: TimedLaunch, from: Basket, to: Basket, start: numb
 }
 
 /**
- * What happens first between a flying ball and the basket that moves from one place to another meanwhile; null: nothing. The ball's
- * middle going down through the opening is a catch; rim, walls and bottom bounce. Steps are as long as the distance allows at
- * the greatest speed there is, so nothing is too fast or too thin to be met.
+ * Returns the first meeting of a flying ball and the moving basket; null: none. It is a catch if the ball's centre descends through the opening; rim,
+ * walls and bottom bounce. Steps are as long as the distance permits at the closing speed (conservative advancement), so that nothing tunnels.
  */
 export function meetsBasket(launch: TimedLaunch, from: Basket, to: Basket): BasketMeeting | null {
   const start = Math.max(launch.time, from.at);
@@ -183,7 +182,7 @@ export function meetsBasket(launch: TimedLaunch, from: Basket, to: Basket): Bask
     if (near.overOpening && into < 0) return { kind: 'caught', time };
     if (!near.overOpening && into < 0) {
       const velocity = addScaled(flown, near.out, -(1 + basketBounce) * into);
-      // From just outside, so that the same touch is not met again.
+      // Start just outside, so that the same contact is not found again.
       const position = addScaled(middle, near.out, 1.2 * touching - near.far);
       return { kind: 'bounced', launch: { time, position, velocity } };
     }
@@ -197,14 +196,14 @@ const turning = vec3(0, 0, 0);
 const offset = vec3(0, 0, 0);
 const flat = vec3(0, 0, 0);
 
-/** How fast the basket's body moves where the ball touches it, both as they were measured last. */
+/** Returns the basket's velocity at the contact with the ball, from the last `measure`. */
 function basketVelocity(from: Basket, to: Basket): Vec3 {
   const seconds = to.at - from.at;
   scale(subtract(to.position, from.position, moved), 1 / seconds, moved);
   const { position, normal } = opening;
   scale(subtract(to.normal, from.normal, turning), 1 / seconds, turning);
   subtract(middle, position, offset);
-  // A normal that changes by n' carries what lies at h·n + s along by h·n' − (s·n')·n.
+  // A change n' of the normal moves the point h·n + s by h·n' − (s·n')·n.
   const height = dot(offset, normal);
   const along = dot(reject(offset, normal, flat), turning);
   return add(moved, addScaled(scale(turning, height, turning), normal, -along, turning), moved);

@@ -21,25 +21,25 @@ import { type Side, sides } from 'threepoint/core/math/side';
 import { copyVec3, distance, length, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { ballInPalm, fistOf } from '../fist';
-import type { BallAction, BallDeed, BallEvent, BallState } from './ball-state';
-import { slowestThrow } from './deeds';
+import { slowestThrow } from './actions';
+import type { BallAction, BallEvent, BallInput, BallState } from './ball-state';
 import { ballRadius } from './flight';
 import { createHandSpeed, type HandSpeed } from './hand-speed';
 import { ballInHand } from './state-readings';
 import { rackPosition } from './stations';
 
-/** Who plays and how the match stands; asked for in every frame. */
+/** The player and the match, which the gestures read in every frame. */
 export interface BallGestureSettings {
   /** The player's index. */
   readonly player: number;
-  /** As far as it is known here. */
+  /** The state of the match, with predictions. */
   readonly state: BallState;
   readonly arenaFromFloor: Transform<'arena', 'floor'>;
   /** Seconds of the match minus the seconds of the frames. */
   readonly matchAhead: number;
 }
 
-/** A buzz for one hand. */
+/** A haptic pulse for one hand. */
 export interface BallPulse {
   readonly side: Side;
   /** 0 to 1. */
@@ -47,45 +47,48 @@ export interface BallPulse {
   readonly seconds: number;
 }
 
-/** Something to hear or see in a caption. slipped: the match has the ball elsewhere. */
+/** A cue for sounds and captions. slipped: the match has the ball elsewhere. */
 export interface BallCue {
   readonly type: 'near' | 'grabbed' | 'thrown' | 'dropped' | 'slipped';
   readonly side: Side;
   readonly ball: number;
 }
 
-/** What one frame of hands and buttons means; the pose among its actions, `held` and `near` are the same objects in every frame. */
+/** The gestures of one frame. The pose among its actions, `held` and `near` are the same objects in every frame. */
 export interface BallGestureFrame {
-  /** Arena frame; the pose first. */
-  readonly actions: readonly BallAction[];
+  /** Inputs of the rules, arena frame; the pose is the first. */
+  readonly actions: readonly BallInput[];
   readonly haptics: readonly BallPulse[];
   readonly cues: readonly BallCue[];
-  /** The ball in each hand, by what the hand did; null: none. */
+  /** The ball in each hand, by the hand's own actions; null: none. */
   readonly held: Readonly<Record<Side, number | null>>;
   /** The ball that a press would take; null: none. */
   readonly near: Readonly<Record<Side, number | null>>;
 }
 
-/** Turns tracked hands and their buttons into what ball players do. */
+/** Turns tracked hands and their buttons into actions of the ball game. */
 export interface BallGestures {
-  /** Frames in the order of their time; irregular ones are fine. */
+  /** Processes a frame; times must rise, at any interval. */
   follow(frame: TrackingFrame, buttons: Buttons): BallGestureFrame;
-  /** What the match said: a ball that was refused is in no hand. */
-  hear(events: readonly BallEvent[]): void;
-  /** The floor lies elsewhere from the next frame on: hands have no way behind them. */
+  /** Processes events of the match: a refused ball leaves the hand. */
+  onEvents(events: readonly BallEvent[]): void;
+  /** Announces that the floor frame jumps: velocities start over. */
   jumped(): void;
-  /** The match is known afresh, perhaps without deeds of these hands: from the next frame on they hold no ball that it has elsewhere, and put back what only it has in them. */
+  /**
+   * Announces a new state of the match, which may lack actions of these hands. From the next frame on the hands release balls that it has elsewhere, and
+   * return balls that only it has in them.
+   */
   resume(): void;
 }
 
-/** A press takes a ball from this far from the fist [m]. */
+/** A press takes a ball within this distance of the fist [m]. */
 export const takeReach = 0.2;
-/** A hand may be lost for this long [s] with a ball in it; then the ball goes back to the rack. */
+/** After this long without its hand [s] a held ball returns to the rack. */
 export const holdSeconds = 0.5;
 /** A pause of this length [s] throws nothing. */
 const longestPause = 0.3;
 
-/** How a hand was when it opened, arena frame. */
+/** The state of a hand when it opened, arena frame. */
 interface Opened {
   readonly time: number;
   readonly position: Vec3;
@@ -96,25 +99,25 @@ interface Holding {
   readonly ball: number;
   readonly button: Button;
   readonly sequence: number;
-  /** Time of the first frame that missed the hand [s]; null: seen. */
+  /** Time of the first frame without the hand [s]; null: tracked. */
   lostAt: number | null;
-  /** An opened pinch counts with the next frame that sees the hand: fingers also seem to open when a camera loses them. */
+  /** An opened pinch. It counts in the next frame with a tracked hand, because fingers also seem to open when tracking is lost. */
   opened: Opened | null;
 }
 
-/** What a hand does with balls, and what it did before. */
+/** The state of one hand. */
 interface HandMemory {
   readonly speed: HandSpeed;
   holding: Holding | null;
-  /** The newest throw, until it is known to be refused: then the ball is still in the hand. */
+  /** The newest throw, until it is refused: then the match still has the ball in the hand. */
   thrown: { readonly sequence: number; readonly ball: number } | null;
-  /** The match has a ball in this hand that is not there, as after a throw that was refused: it is to be put back. */
+  /** Whether the match has a ball in this hand that the hand does not hold, as after a refused throw; it is returned. */
   unthrown: boolean;
-  /** The middle of the fist in this frame, arena frame. */
+  /** The centre of the fist in this frame, arena frame. */
   readonly fist: MutableVec3;
-  /** The middle of the ball that it holds, or would, arena frame: from there it is thrown. */
+  /** The centre of a ball in the palm, arena frame, from which it is thrown. */
   readonly palm: MutableVec3;
-  /** As the match hears of it. */
+  /** The wrist, arena frame. */
   readonly pose: MutablePose<'arena'>;
 }
 
@@ -128,14 +131,14 @@ const makeHandMemory = (): HandMemory => ({
   pose: makePose<'arena'>(),
 });
 
-type PoseAction = Extract<BallAction, { type: 'pose' }>;
+type PoseAction = Extract<BallInput, { type: 'pose' }>;
 
 class PlayerGestures implements BallGestures {
-  /** The number of the last deed. */
+  /** The number of the last action. */
   private sequence = 0;
-  /** The hands have not been compared with the match that is known now. */
+  /** Whether the hands must be compared with a new state of the match. */
   private stale = true;
-  /** Since when a hand may hold a ball by the word of the match alone [s]; null: none does. */
+  /** Since when a ball may be in a hand only by the match's state [s]; null: none is. */
   private strayedAt: number | null = null;
   private readonly presses: ButtonPresses = createButtonPresses();
   private readonly hands: Readonly<Record<Side, HandMemory>> = { left: makeHandMemory(), right: makeHandMemory() };
@@ -145,10 +148,10 @@ class PlayerGestures implements BallGestures {
   private lastTime = Number.NaN;
   private readonly head = vec3(0, 0, 0);
   private readonly pose: { -readonly [Key in keyof PoseAction]: PoseAction[Key] };
-  // Of the frame that is followed now.
+  // The frame that is being processed.
   private now: BallGestureSettings;
   private time = 0;
-  private actions: BallAction[] = [];
+  private actions: BallInput[] = [];
   private haptics: BallPulse[] = [];
   private cues: BallCue[] = [];
 
@@ -177,13 +180,13 @@ class PlayerGestures implements BallGestures {
     }
     this.followHand('left', left, buttons, playing, paused);
     this.followHand('right', right, buttons, playing, paused);
-    return this.told();
+    return this.finish();
   }
 
-  hear(events: readonly BallEvent[]): void {
+  onEvents(events: readonly BallEvent[]): void {
     if (events.length === 0) return;
     const { player } = this.settings();
-    for (const event of events) for (const side of sides) this.hearOf(side, event, player);
+    for (const event of events) for (const side of sides) this.onEvent(side, event, player);
   }
 
   jumped(): void {
@@ -205,7 +208,7 @@ class PlayerGestures implements BallGestures {
     this.haptics = [];
   }
 
-  /** Takes out of the hands what the match has elsewhere. */
+  /** Removes from the hands what the match has elsewhere. */
   private compare(state: BallState, player: number): void {
     this.stale = false;
     this.strayedAt = this.time;
@@ -217,7 +220,7 @@ class PlayerGestures implements BallGestures {
     }
   }
 
-  /** What a while later still is in a hand by the word of the match alone is to be put back; what the last player on a new seat held is back by then. */
+  /** Marks balls for return that only the match has in a hand for `holdSeconds`; by then the seat's previous player has lost theirs. */
   private findStrays(state: BallState, player: number): void {
     if (this.strayedAt === null || this.time - this.strayedAt < holdSeconds) return;
     this.strayedAt = null;
@@ -227,7 +230,7 @@ class PlayerGestures implements BallGestures {
     }
   }
 
-  /** Another thing is before the page: what is held is held until the hands come back. */
+  /** Handles a suspended session: held balls stay in the hands. */
   private wait(): BallGestureFrame {
     this.lastTime = this.time;
     this.pose.left = null;
@@ -242,16 +245,16 @@ class PlayerGestures implements BallGestures {
       holding.lostAt = this.time;
       holding.opened = null;
     }
-    return this.tell();
+    return this.result();
   }
 
-  private told(): BallGestureFrame {
+  private finish(): BallGestureFrame {
     this.cues = this.slipped.length > 0 ? [...this.slipped, ...this.cues] : this.cues;
     this.slipped = [];
-    return this.tell();
+    return this.result();
   }
 
-  private tell(): BallGestureFrame {
+  private result(): BallGestureFrame {
     const { actions, haptics, cues, held, near, hands } = this;
     held.left = hands.left.holding?.ball ?? null;
     held.right = hands.right.holding?.ball ?? null;
@@ -259,8 +262,8 @@ class PlayerGestures implements BallGestures {
     return { actions, haptics, cues, held, near };
   }
 
-  private act(deed: BallDeed): void {
-    this.actions.push({ ...deed, player: this.now.player });
+  private act(action: BallAction): void {
+    this.actions.push({ ...action, player: this.now.player });
   }
 
   private number(): number {
@@ -310,7 +313,7 @@ class PlayerGestures implements BallGestures {
 
   private carry(side: Side, held: Holding, seen: boolean, pressure: number): void {
     if (!seen) {
-      // The button of a hand that no camera sees says nothing: many devices let go of it when they lose the hand.
+      // The button of a lost hand is ignored: many devices release it when they lose the hand.
       held.opened = null;
       held.lostAt ??= this.time;
       if (this.time - held.lostAt >= holdSeconds) this.drop(side, held);
@@ -328,10 +331,10 @@ class PlayerGestures implements BallGestures {
     const { palm, speed } = this.hands[side];
     const now: Opened = { time: this.time, position: copyVec3(palm), velocity: speed.velocity() };
     if (held.button === 'pinch' && !held.opened) held.opened = now;
-    else this.letGo(side, held, held.opened ?? now);
+    else this.release(side, held, held.opened ?? now);
   }
 
-  private letGo(side: Side, held: Holding, { time, position, velocity }: Opened): void {
+  private release(side: Side, held: Holding, { time, position, velocity }: Opened): void {
     const { ball } = held;
     const speed = length(velocity);
     if (speed < slowestThrow) {
@@ -347,7 +350,7 @@ class PlayerGestures implements BallGestures {
     this.haptics.push({ side, strength: Math.min(1, 0.3 + speed / 15), seconds: 0.05 });
   }
 
-  private hearOf(side: Side, event: BallEvent, player: number): void {
+  private onEvent(side: Side, event: BallEvent, player: number): void {
     const hand = this.hands[side];
     const { thrown, holding } = hand;
     if (event.type === 'refused' && event.player === player && event.sequence === thrown?.sequence) {
@@ -366,10 +369,10 @@ class PlayerGestures implements BallGestures {
   }
 }
 
-/** One per player; deeds are numbered from 1. */
+/** Creates the gestures of one player; actions are numbered from 1. */
 export const createBallGestures = (settings: () => BallGestureSettings): BallGestures => new PlayerGestures(settings);
 
-/** The ball in a rack that a fist would take, unless one of the two hands has just taken it. */
+/** Returns the ball in a rack that a fist would take, without those that a hand has just taken. */
 function nearestBall(state: BallState, fist: Vec3, left: Holding | null, right: Holding | null): number | null {
   let nearest: number | null = null;
   let least = takeReach;

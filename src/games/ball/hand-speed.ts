@@ -10,22 +10,22 @@ import {
   zero,
 } from 'threepoint/core/math/vec3';
 
-/** The path of something over the last moments, and how fast it went. */
+/** Measures the velocity of a hand over its recent path. */
 export interface HandSpeed {
-  /** Times rise; a time that does not is ignored. The position is copied. */
+  /** Adds a position; it is copied. A time that does not rise is ignored. */
   follow(time: number, position: Vec3): void;
-  /** Velocity [m/s] over the last `throwWindow` before the newest time; zero with fewer than two places. */
+  /** Returns the velocity [m/s] over the last `throwWindow`; zero with fewer than two positions. */
   velocity(): Vec3;
   reset(): void;
 }
 
-/** A throw goes as fast as the hand did on average over this time [s]. */
+/** A throw has the hand's average velocity over this time [s]. */
 export const throwWindow = 0.08;
 
-/** Places at which the path is looked at: the same ones at every frame rate, and with every frame that is missing. */
+/** Number of sample times on the path, which does not depend on the frame rate. */
 const places = 17;
 
-/** A gap between two places longer than this [s] is no path. */
+/** A gap longer than this [s] starts another path. */
 const longestGap = 0.25;
 
 interface Place {
@@ -36,13 +36,12 @@ interface Place {
 const makePlace = (): Place => ({ time: 0, position: vec3(0, 0, 0) });
 
 /**
- * The slope of the straight line that fits the path best (least squares), the path being the straight lines between the frames: so a
- * dropped frame changes no more of it than what the hand did off that line.
+ * Computes the slope of a least-squares line through the path, which is linear between frames; a dropped frame therefore changes little.
  */
 class PathSpeed implements HandSpeed {
   /** Oldest first. */
   readonly #path: Place[] = [];
-  /** Places of the past, for those to come. */
+  /** Objects for reuse. */
   readonly #spare: Place[] = [];
   readonly #at = vec3(0, 0, 0);
 
@@ -55,7 +54,7 @@ class PathSpeed implements HandSpeed {
     place.time = time;
     copyVec3(position, place.position);
     path.push(place);
-    // One place from before the window is needed, to know where the path enters it.
+    // Keep one position before the window, to interpolate at its start.
     while (path.length > 2 && path[1]!.time <= time - throwWindow) this.#spare.push(path.shift()!);
   }
 

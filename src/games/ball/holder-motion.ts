@@ -23,39 +23,39 @@ import {
   createPlayerPostures,
   type MutableGrasp,
   makePosture,
-  type Performed,
   type PlayerBody,
+  type PlayerInput,
   type PlayerPostures,
 } from './player-postures';
 import { ballMatchTime } from './state-readings';
 import type { BallBot, BotSight } from './thrower-motion';
 
-/** Half the way to where the basket should be in this time [s], twice over: it starts softly. */
+/** Half-life of each of two filters in series for the basket's motion [s], which make it start softly. */
 const moveHalfLife = 0.055;
-/** Half the way to what the eyes follow in this time [s]. */
+/** Half-life of the gaze [s]. */
 const lookHalfLife = 0.06;
-/** How far the basket leans towards a ball [share of the way from upright to the ball's own direction]. */
+/** Lean of the basket towards a ball [share from upright to the ball's direction]. */
 const lean = 0.5;
-/** A ball further from the arms than this [m] is let go by. */
+/** A ball further from the home position than this [m] is ignored. */
 const widest = 0.85;
 
-/** Where the opening is to be, own floor frame, when it waits at `home`; written into `target`. */
+/** Writes the wanted position of the opening into `target`, own floor frame. `home`: the position at which it waits. */
 export type HolderGoal = (home: Vec3, target: MutableVec3) => Vec3;
 
-/** How a basket opens that waits. */
+/** Normal of a waiting basket. */
 const waiting = normalise(vec3(0, 1, -0.25));
 const upright = scale(up, 1 - lean);
 const aheadOfEyes = vec3(0, -0.3, -2);
 
-// Memory of one call: a frame makes no garbage.
+// Scratch of one call.
 const point = vec3(0, 0, 0);
 const wanted = vec3(0, 0, 0);
 const across = vec3(0, 0, 0);
 
 class Holder implements BallBot {
   readonly #postures: PlayerPostures;
-  readonly #told: HolderGoal | undefined;
-  /** Where the opening waits, and how far from there the arms alone carry it. */
+  readonly #goalOf: HolderGoal | undefined;
+  /** The position at which the opening waits, and the distance that the arms alone cover. */
   readonly #home: Vec3;
   readonly #level: Vec3;
   readonly #comfort: number;
@@ -66,14 +66,14 @@ class Holder implements BallBot {
   readonly #look: MutableVec3;
   readonly #posture = makePosture();
   readonly #goal = vec3(0, 0, 0);
-  /** Where and how the next ball comes down to the basket's height, floor frame. */
+  /** Position and direction of the next ball at the basket's height, floor frame. */
   readonly #at = vec3(0, 0, 0);
   readonly #into = vec3(0, 0, 0);
   #lastTime: number | null = null;
 
-  constructor(body: PlayerBody, told?: HolderGoal) {
+  constructor(body: PlayerBody, goalOf?: HolderGoal) {
     this.#postures = createPlayerPostures(body);
-    this.#told = told;
+    this.#goalOf = goalOf;
     const { arm, eyes } = this.#postures;
     this.#home = add(eyes, vec3(0, -0.62 * arm - 0.06, -0.82 * arm));
     this.#level = vec3(this.#home.x, 0, this.#home.z);
@@ -83,7 +83,7 @@ class Holder implements BallBot {
     this.#look = add(eyes, aheadOfEyes);
   }
 
-  follow(time: number, { state }: BotSight): Performed {
+  follow(time: number, { state }: BotSight): PlayerInput {
     const elapsed = this.#lastTime === null ? 0 : clamp(time - this.#lastTime, 0, 0.1);
     this.#lastTime = time;
     const comes = this.#findNextBall(state);
@@ -97,7 +97,7 @@ class Holder implements BallBot {
     return this.#postures.seen(this.#posture, time, 1, 1);
   }
 
-  /** false: no ball comes down within reach. */
+  /** Finds the next ball that comes down within reach; returns false if there is none. */
   #findNextBall(state: BallState): boolean {
     const now = ballMatchTime(state);
     let next: TimedLaunch | null = null;
@@ -121,9 +121,9 @@ class Holder implements BallBot {
     return true;
   }
 
-  /** The basket goes where the ball comes down, or where it is told to be, and turns towards the ball. */
+  /** Moves the basket to its goal or to where the ball comes down, and turns it towards the ball. */
   #carry(comes: boolean, elapsed: number): void {
-    const goal = this.#told?.(this.#home, this.#goal) ?? (comes ? this.#at : this.#home);
+    const goal = this.#goalOf?.(this.#home, this.#goal) ?? (comes ? this.#at : this.#home);
     if (comes) {
       add(upright, scale(this.#into, -lean, wanted), wanted);
       normalise(wanted, undefined, wanted);
@@ -135,7 +135,7 @@ class Holder implements BallBot {
     normalise(this.#normal, undefined, this.#normal);
   }
 
-  /** Arms first; what they lack the feet give. */
+  /** Moves the body as far as the arms do not reach. */
   #stand(): void {
     const { eyes } = this.#postures;
     const off = subtract(this.#opening, this.#home, point);
@@ -144,7 +144,7 @@ class Holder implements BallBot {
     add(eyes, setVec3(off, off.x * share, clamp(off.y, -0.25, 0) * 0.6, off.z * share), this.#posture.eyes);
   }
 
-  /** The eyes follow the ball in the air. */
+  /** Turns the gaze to the flying ball. */
   #watch(comes: boolean, state: BallState, elapsed: number): void {
     const { eyes, gaze } = this.#posture;
     if (comes) this.#findFlying(state, point);
@@ -153,7 +153,7 @@ class Holder implements BallBot {
     this.#postures.looking(eyes, this.#look, gaze);
   }
 
-  /** Where the first ball in the air is now, floor frame; with none: the opening. */
+  /** Writes the position of the first flying ball, floor frame; without one that of the opening. */
   #findFlying(state: BallState, target: MutableVec3): void {
     for (const place of state.balls) {
       if (place.on !== 'air' || place.missed) continue;
@@ -163,10 +163,10 @@ class Holder implements BallBot {
     copyVec3(this.#opening, target);
   }
 
-  /** A hand at the rim, on the left (−1) or right of the opening. */
+  /** Places a hand at the rim, on the left (−1) or right (1) of the opening. */
   #grip({ fist, knuckles, thumb }: MutableGrasp, sign: -1 | 1): void {
     addScaled(this.#opening, across, sign * gripRadius, fist);
-    // Hands come from the body, and lie along the rim: knuckles ahead, thumbs out of the opening.
+    // Hands lie along the rim: knuckles ahead, thumbs out of the opening.
     reject(setVec3(knuckles, -0.1 * sign, -0.2, -1), this.#normal, knuckles);
     normalise(knuckles, undefined, knuckles);
     copyVec3(this.#normal, thumb);
@@ -174,7 +174,7 @@ class Holder implements BallBot {
 }
 
 /**
- * Holds the basket before the belly and carries it to where the next ball comes down, stepping aside as far as needed. `told`: where
- * the opening is to be instead.
+ * Creates a holder that carries the basket to where the next ball comes down, with steps aside if needed. `goalOf`: the position of the opening
+ * instead.
  */
-export const createHolder = (body: PlayerBody, told?: HolderGoal): BallBot => new Holder(body, told);
+export const createHolder = (body: PlayerBody, goalOf?: HolderGoal): BallBot => new Holder(body, goalOf);

@@ -19,18 +19,18 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { wristAround } from '../fist';
 import { armShare, makeTracked, shoulderBehind, shoulderDrop, shoulderShare, swayAt, yawOf } from '../posture';
 
-/** Who plays, and where. */
+/** The body and the station of a player. */
 export interface PlayerBody {
-  /** Height of the eyes above the floor [m], standing or seated as the player is. */
+  /** Height of the eyes above the floor [m], standing or seated. */
   readonly eyeHeight: number;
-  /** Shoulder to wrist [m]. Default: that of a person who stands with eyes at this height. */
+  /** Shoulder to wrist [m]. Default: the average for a standing person with this eye height. */
   readonly armLength?: number;
   readonly arenaFromFloor: Transform<'arena', 'floor'>;
   /** The button that takes and throws. */
   readonly button?: Button;
 }
 
-/** Where a fist is and how it is turned, floor frame. */
+/** Position and directions of a fist, floor frame. */
 export interface Grasp {
   readonly fist: Vec3;
   readonly knuckles: Vec3;
@@ -52,7 +52,7 @@ export interface MutableGrasp extends Grasp {
   readonly thumb: MutableVec3;
 }
 
-/** A posture that its owner overwrites: an optional last argument `target`, as with vectors. */
+/** A posture that its owner overwrites. */
 export interface MutablePosture extends PlayerPosture {
   readonly eyes: MutableVec3;
   readonly gaze: MutableQuat;
@@ -83,13 +83,13 @@ export function copyPosture(posture: PlayerPosture, target: MutablePosture = mak
   return target;
 }
 
-/** A player whom no person moves, as a headset and two hands see them: new objects in every frame, which may be kept. */
-export interface Performed {
+/** Head, hands and buttons of a simulated player: new objects in every frame. */
+export interface PlayerInput {
   readonly frame: TrackingFrame;
   readonly buttons: Buttons;
 }
 
-/** A head turns and nods this far [rad]. */
+/** Limits of the head's yaw and pitch [rad]. */
 const mostYaw = 0.8;
 const mostPitch = 0.6;
 
@@ -99,7 +99,7 @@ function mixGrasp(a: Grasp, b: Grasp, share: number, target: MutableGrasp): void
   normalise(lerp(a.thumb, b.thumb, share, target.thumb), undefined, target.thumb);
 }
 
-/** On the way from one posture to another, floor frame. */
+/** Interpolates between two postures, floor frame. */
 export function mixPostures(
   a: PlayerPosture,
   b: PlayerPosture,
@@ -113,26 +113,26 @@ export function mixPostures(
   return target;
 }
 
-/** What the postures of throwers and holders are made of. */
+/** Building blocks for the postures of throwers and holders. */
 export interface PlayerPostures {
   /** Shoulder to wrist [m]. */
   readonly arm: number;
-  /** Of the eyes of a player who stands upright on the mark, floor frame. */
+  /** The eyes of an upright player at the station, floor frame. */
   readonly eyes: Vec3;
   inFloor(pointInArena: Vec3, target?: MutableVec3): MutableVec3;
-  /** A shoulder of a player who faces −Z with the eyes there. */
+  /** Returns a shoulder for these eyes of a player that faces −Z. */
   shoulder(side: Side, eyes: Vec3, target?: MutableVec3): MutableVec3;
-  /** The gaze at a point from the eyes. */
+  /** Returns the gaze from the eyes to a point. */
   looking(eyes: Vec3, at: Vec3, target?: MutableQuat): MutableQuat;
-  /** A hand that hangs. */
+  /** Writes a hanging hand. */
   hang(side: Side, eyes: Vec3, target: MutableGrasp): void;
-  /** The posture with its drift as a headset and two hands see it at a time [s], fists' pressures 0 to 1. */
-  seen(posture: PlayerPosture, time: number, leftPressure: number, rightPressure: number): Performed;
+  /** Returns head, hands and buttons of a posture at a time [s], with postural sway; pressures in [0, 1]. */
+  seen(posture: PlayerPosture, time: number, leftPressure: number, rightPressure: number): PlayerInput;
 }
 
 const signOf = (side: Side): -1 | 1 => (side === 'left' ? -1 : 1);
 
-/** How a hand hangs: far enough from the thigh that a ball in it is beside it. */
+/** Directions of a hanging hand, far enough from the thigh for a ball. */
 const hangingKnuckles = normalise(vec3(0, -1, -0.25));
 const hangingThumb = { left: normalise(vec3(-0.2 * -1, 0, -1)), right: normalise(vec3(-0.2, 0, -1)) };
 
@@ -146,7 +146,7 @@ const ofBothSides = <T>(make: (sign: -1 | 1) => T): Readonly<Record<Side, T>> =>
   right: make(signOf('right')),
 });
 
-/** How a player of this body stands at their station, facing −Z of their floor. */
+/** Creates the postures of a body that faces −Z of its floor frame. */
 export function createPlayerPostures({
   eyeHeight,
   arenaFromFloor,
@@ -175,7 +175,7 @@ export function createPlayerPostures({
     shoulder,
     looking(eyes, at, target) {
       const { x, y, z } = subtract(at, eyes, sight);
-      // Eyes do the rest: a player does not look over the shoulder for a ball that lies beside them.
+      // The head turns only within its limits; the eyes would do the rest.
       const yaw = clamp(yawOf(sight), -mostYaw, mostYaw);
       const pitch = clamp(Math.atan2(y, Math.hypot(x, z)), -mostPitch, mostPitch);
       const turn = fromAxisAngle(up, yaw, target);

@@ -1,4 +1,4 @@
-import type { BallDeed, BallEvent, BallPlace, BallState } from './ball-state';
+import type { BallAction, BallEvent, BallPlace, BallState } from './ball-state';
 import { withBall, withPlayer } from './state-changes';
 import { ballInHand, tickSeconds } from './state-readings';
 
@@ -6,8 +6,8 @@ const throwerOf = (place: BallPlace | undefined): number =>
   place?.on === 'air' || place?.on === 'floor' ? place.thrower : 0;
 
 /**
- * The state after something that happened where the rules run: balls, score, phase and who is there follow from events alone. The
- * tick, heads, hands and the basket do not; a page that draws them has poses and a clock. An event that is heard twice changes nothing.
+ * Returns the state after an event of the Room: balls, score, phase and presence. The tick, heads, hands and the basket do not follow from events; a page
+ * has the clock and poses for them. An event that arrives twice changes nothing.
  */
 export function followBallEvent(state: BallState, event: BallEvent): BallState {
   switch (event.type) {
@@ -55,20 +55,20 @@ export function followBallEvent(state: BallState, event: BallEvent): BallState {
   }
 }
 
-/** The state as it will be once the rules have heard of this deed, if they allow it: what a player sees of their own hands. */
-export function predictDeed(state: BallState, player: number, deed: BallDeed): BallState {
+/** Returns the predicted state after the player's own action, if the rules allow it. */
+export function predictBallAction(state: BallState, player: number, action: BallAction): BallState {
   if (state.phase !== 'running') return state;
-  const inHand = ballInHand(state, player, deed.side);
-  switch (deed.type) {
+  const inHand = ballInHand(state, player, action.side);
+  switch (action.type) {
     case 'grab':
-      return inHand < 0 && state.balls[deed.ball]?.on === 'rack'
-        ? withBall(state, deed.ball, { on: 'hand', player, side: deed.side })
+      return inHand < 0 && state.balls[action.ball]?.on === 'rack'
+        ? withBall(state, action.ball, { on: 'hand', player, side: action.side })
         : state;
     case 'drop':
       return inHand >= 0 ? withBall(state, inHand, { on: 'rack' }) : state;
     case 'throw': {
-      if (inHand !== deed.ball) return state;
-      const { at: time, position, velocity } = deed;
+      if (inHand !== action.ball) return state;
+      const { at: time, position, velocity } = action;
       return withBall(state, inHand, {
         on: 'air',
         launch: { time, position, velocity },
@@ -79,24 +79,28 @@ export function predictDeed(state: BallState, player: number, deed: BallDeed): B
   }
 }
 
-/** Whether this event is what came of that deed of the player's. */
-export function answersDeed(event: BallEvent, player: number, deed: BallDeed): boolean {
+/** Returns whether an event is the Room's answer to an action of the player. */
+export function answersBallAction(event: BallEvent, player: number, action: BallAction): boolean {
   switch (event.type) {
     case 'refused':
-      return event.player === player && event.sequence === deed.sequence;
+      return event.player === player && event.sequence === action.sequence;
     case 'grabbed':
-      return deed.type === 'grab' && event.player === player && event.ball === deed.ball && event.side === deed.side;
+      return (
+        action.type === 'grab' && event.player === player && event.ball === action.ball && event.side === action.side
+      );
     case 'thrown':
-      return deed.type === 'throw' && event.player === player && event.ball === deed.ball;
+      return action.type === 'throw' && event.player === player && event.ball === action.ball;
     case 'returned':
-      // A throw too slow to be one puts the ball back.
-      return event.player === player && (deed.type === 'drop' || (deed.type === 'throw' && deed.ball === event.ball));
+      // A throw that is too slow returns the ball.
+      return (
+        event.player === player && (action.type === 'drop' || (action.type === 'throw' && action.ball === event.ball))
+      );
     default:
       return false;
   }
 }
 
-/** The tick that the rules have reached at this time of the match [s]; the state as far as that. */
+/** Returns the state with the tick of this match time [s]. */
 export const withMatchTime = (state: BallState, time: number): BallState => ({
   ...state,
   tick: Math.max(0, Math.floor(time / tickSeconds)),

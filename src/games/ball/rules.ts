@@ -1,10 +1,10 @@
 import { distance, isFiniteVec3, length, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { fistOf } from '../fist';
 import type { GameRules } from '../game-rules';
-import type { BallAction, BallEnd, BallEvent, BallOptions, BallPlayer, BallState, Basket, Refusal } from './ball-state';
+import { applyAction, armReach, countOnce, longestDelay } from './actions';
+import type { BallEnd, BallEvent, BallInput, BallOptions, BallPlayer, BallState, Basket, Refusal } from './ball-state';
 import { basketInHands, makeOpening } from './basket';
 import { decide } from './decided-flights';
-import { armReach, countOnce, deedOf, longestDelay } from './deeds';
 import { round, rounded, type Step, unchanged, withBall, withPlayer } from './state-changes';
 import { ballMatchTime, ballSecondsLeft, ballsLeft, tickSeconds } from './state-readings';
 import { holderStation, isInZone, stations } from './stations';
@@ -12,9 +12,9 @@ import { holderStation, isInZone, stations } from './stations';
 /** The paper's game: 20 balls, 90 s. */
 export const defaultBallOptions: BallOptions = { balls: 20, seconds: 90, rotation: 0, everySeat: false };
 
-/** The holder's hands are waited for this long [s]; then the basket stands where it was. */
+/** The basket waits for the holder's next pose this long [s]; then it counts as unmoved. */
 export const basketPatience = 0.25;
-/** A basket faster than this [m/s] has jumped: nothing is caught on the way. */
+/** A basket faster than this [m/s] has jumped, and catches nothing on its way. */
 const fastestBasket = 12;
 
 function checkedOptions(options: Partial<BallOptions>): BallOptions {
@@ -29,14 +29,14 @@ function checkedOptions(options: Partial<BallOptions>): BallOptions {
   return { balls, seconds, rotation, everySeat };
 }
 
-/** A basket before it is held. */
+/** The basket before it is held. */
 const restingBasket: Basket = {
   at: 0,
   position: rounded(vec3(stations[holderStation]!.position.x, 1.1, stations[holderStation]!.position.z + 0.4)),
   normal: vec3(0, 1, 0),
 };
 
-/** What this player holds goes back to its rack; null: what any player holds. */
+/** Returns the balls that a player holds to their rack; null: those of all players. */
 function returnHeld(state: BallState, player: number | null): Step {
   let next = state;
   const events: BallEvent[] = [];
@@ -51,7 +51,7 @@ function returnHeld(state: BallState, player: number | null): Step {
 
 const forgotten = { head: null, left: null, right: null } as const;
 
-/** Deeds are numbered by a page, from 1: those of another page of the same player's as well. */
+/** Action numbers start over with another page of the same player. */
 const uncounted = { sequence: 0, seen: 0 } as const;
 
 function join(state: BallState, index: number): Step {
@@ -69,7 +69,7 @@ function leave(state: BallState, index: number): Step {
   };
 }
 
-/** Before the clock stops: what is held goes back, for hands do not stop; flights go on where they were. */
+/** Prepares a pause: held balls return to their racks, because hands do not pause; flights continue afterwards. */
 function pause(state: BallState): Step {
   const returned = returnHeld(state, null);
   const players = returned.state.players.map((player) => ({ ...player, ...forgotten }));
@@ -82,7 +82,7 @@ function setReady(state: BallState, index: number, ready: boolean): Step {
   return { state: withPlayer(state, index, { ready }), events: [{ type: 'ready', player: index, ready }] };
 }
 
-/** All players who are there are ready, a thrower and the holder among them; all are there, where the round is for every seat. */
+/** Returns whether a round can start: all present players are ready, with a thrower and the holder; with `everySeat` all are present. */
 function canStart({ players, phase, options }: BallState): boolean {
   if (phase !== 'ready') return false;
   let throwers = 0;
@@ -97,13 +97,13 @@ function canStart({ players, phase, options }: BallState): boolean {
   return throwers > 0 && holders > 0;
 }
 
-type PoseAction = Extract<BallAction, { type: 'pose' }>;
+type PoseAction = Extract<BallInput, { type: 'pose' }>;
 
-// Memory of one call: every player's pose comes some thirty times a second.
+// Scratch of one call: poses arrive about 30 times a second.
 const fists = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
 const opening = makeOpening();
 
-/** Writes the middle of a hand's fist into `fist`; false: the hand is not seen, or cannot be there. */
+/** Writes the centre of a fist into `fist`. Returns false if the hand is not tracked or not plausible. */
 function isReachable(hand: PoseAction['left'], head: Vec3, fist: MutableVec3): hand is NonNullable<PoseAction['left']> {
   if (!hand) return false;
   fistOf(hand, fist);
@@ -111,7 +111,7 @@ function isReachable(hand: PoseAction['left'], head: Vec3, fist: MutableVec3): h
   return isFiniteVec3(fist) && Number.isFinite(x + y + z + w) && distance(fist, head) <= armReach;
 }
 
-/** Where a player is now. The holder's hands move the basket, and what it meets on the way is decided. */
+/** Applies a pose. The holder's hands move the basket, and flights are decided along its way. */
 function pose(state: BallState, action: PoseAction): Step {
   const { player: index, head } = action;
   const player = state.players[index]!;
@@ -133,18 +133,18 @@ function pose(state: BallState, action: PoseAction): Step {
   return holds ? carryBasket(moved, at) : unchanged(moved);
 }
 
-/** The basket comes to where its opening was seen at a time [s of the match]. */
+/** Moves the basket to its opening at a match time [s]. */
 function carryBasket(state: BallState, at: number): Step {
   const held = { position: rounded(opening.position), normal: rounded(opening.normal) };
   const before = state.basket;
-  // A pose from before what is decided moves the basket, but not the past.
+  // A late pose moves the basket, but does not change what is decided.
   if (at <= before.at) return unchanged({ ...state, basket: { ...held, at: before.at } });
   const jumped = distance(held.position, before.position) > fastestBasket * (at - before.at);
   const from = jumped ? { ...held, at: before.at } : before;
   return decide({ ...state, basket: from }, { ...held, at });
 }
 
-function act(state: BallState, action: BallAction): Step {
+function act(state: BallState, action: BallInput): Step {
   if (action.type === 'pause') return pause(state);
   const player = state.players[action.player];
   if (!player) return unchanged(state);
@@ -172,7 +172,7 @@ function act(state: BallState, action: BallAction): Step {
       const counted = countOnce(player, action.sequence);
       if (!counted) return refused(state, 'seen-before');
       const remembered = withPlayer(state, action.player, counted);
-      const done = deedOf(remembered, action.player, action);
+      const done = applyAction(remembered, action.player, action);
       return typeof done === 'string' ? refused(remembered, done) : done;
     }
     default:
@@ -180,11 +180,11 @@ function act(state: BallState, action: BallAction): Step {
   }
 }
 
-/** Whether a throw from before the bell can no longer arrive. */
+/** Returns whether a throw from before the bell can no longer arrive. */
 const isPastThrows = (state: BallState): boolean =>
   state.startedAt !== null && ballMatchTime(state) >= state.startedAt + state.options.seconds + longestDelay;
 
-/** Why the round is over; null: it goes on. While a ball may be caught that is in the air or may have been thrown by now, it does. */
+/** Returns why the round is over; null: it continues, as it does while a ball is held or flies. */
 function roundEnd(state: BallState): BallEnd | null {
   for (const place of state.balls) if (place.on === 'hand' || (place.on === 'air' && !place.missed)) return null;
   if (ballsLeft(state) === 0) return 'balls';
@@ -192,11 +192,10 @@ function roundEnd(state: BallState): BallEnd | null {
 }
 
 /**
- * Three players, two throwers and a basket holder 5 m away, a point for every catch (the paper's section 5.3). Tick 1/60 s, arena
- * frame. What the players do carries its own time: a flight and the basket are compared as the holder saw them, however late
- * either arrives.
+ * The rules for two throwers and a basket holder 5 m away, with a point for every catch (section 5.3 of the paper). Tick 1/60 s, arena frame. Actions and
+ * poses carry their own times, so that flights and the basket are compared as the holder saw them, despite delays.
  */
-export const ballRules: GameRules<BallState, BallAction, BallEvent, BallOptions> = {
+export const ballRules: GameRules<BallState, BallInput, BallEvent, BallOptions> = {
   tickSeconds,
 
   start(players, seed, options = {}) {

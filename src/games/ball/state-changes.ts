@@ -1,14 +1,14 @@
 import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { BallEvent, BallPlace, BallPlayer, BallState, TimedLaunch } from './ball-state';
 
-/** A state and what happened on the way to it. */
+/** A state and the events that led to it. */
 export type Step = { readonly state: BallState; readonly events: readonly BallEvent[] };
 
 const nothing: readonly never[] = [];
 
 export const unchanged = (state: BallState): Step => ({ state, events: nothing });
 
-/** What a state says is rounded: 0.1 mm or 0.1 ms. */
+/** Rounds a number of a state to 0.1 mm or 0.1 ms. */
 export const round = (value: number): number => Math.round(value * 1e4) / 1e4;
 export const rounded = ({ x, y, z }: Vec3): Vec3 => vec3(round(x), round(y), round(z));
 export const roundedLaunch = ({ time, position, velocity }: TimedLaunch): TimedLaunch => ({
@@ -17,7 +17,7 @@ export const roundedLaunch = ({ time, position, velocity }: TimedLaunch): TimedL
   velocity: rounded(velocity),
 });
 
-/** The same list but for the one item. */
+/** Returns a copy of the list with one item replaced. */
 function withItem<T>(items: readonly T[], index: number, item: T): readonly T[] {
   const changed = items.slice();
   if (index < changed.length) changed[index] = item;

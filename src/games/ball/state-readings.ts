@@ -4,19 +4,19 @@ import type { BallPlace, BallState } from './ball-state';
 import { ballInAir, ballOnFloor, ballRadius, basketRadius } from './flight';
 import { rackPosition } from './stations';
 
-/** Of a match [s]. */
+/** Length of a tick [s]. */
 export const tickSeconds = 1 / 60;
 
-/** Seconds of the match at the state's tick. */
+/** Returns the match time of a state [s]. */
 export const ballMatchTime = (state: BallState): number => state.tick * tickSeconds;
 
-/** Seconds until the bell: all of them before the start, 0 when it has rung. */
+/** Returns the seconds until the bell: all of them before the start, 0 after it. */
 export const ballSecondsLeft = (state: BallState): number =>
   state.startedAt === null
     ? state.options.seconds
     : Math.max(0, state.options.seconds - (ballMatchTime(state) - state.startedAt));
 
-/** Balls that may still be caught. */
+/** Returns the number of balls that may still be caught. */
 export function ballsLeft({ balls }: BallState): number {
   let count = 0;
   for (const place of balls) if (isOpen(place)) count += 1;
@@ -26,7 +26,7 @@ export function ballsLeft({ balls }: BallState): number {
 const isOpen = (place: BallPlace): boolean =>
   place.on === 'rack' || place.on === 'hand' || (place.on === 'air' && !place.missed);
 
-/** The ball in a hand of this player; −1: none. */
+/** Returns the ball in a hand of a player; −1: none. */
 export function ballInHand({ balls }: BallState, player: number, side: Side): number {
   for (let ball = 0; ball < balls.length; ball++) {
     const place = balls[ball];
@@ -36,8 +36,8 @@ export function ballInHand({ balls }: BallState, player: number, side: Side): nu
 }
 
 /**
- * Where a ball is drawn at a time [s of the match], written into `target`; in a hand: null, it goes with the hand; in the basket: at
- * its bottom.
+ * Writes the drawn position of a ball at a match time [s] into `target`. Returns null for a ball in a hand, which moves with the hand; a caught ball is at
+ * the bottom of the basket.
  */
 export function ballPosition(
   state: BallState,

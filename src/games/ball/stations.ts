@@ -4,20 +4,20 @@ import { type MutableVec3, setVec3, up, type Vec3, vec3 } from 'threepoint/core/
 import type { BallState } from './ball-state';
 import { ballRadius } from './flight';
 
-/** From each thrower to the basket holder, along the floor [m]. */
+/** Distance from each thrower to the basket holder along the floor [m]. */
 export const throwingDistance = 5;
 
 const aside = 0.8;
 const ahead = Math.sqrt(throwingDistance * throwingDistance - aside * aside);
 
-/** Where the floor of each seat lies in the arena: the throwers look along −Z, the holder looks back at them. */
+/** The transform from the floor of each station to the arena: the throwers face −Z, the holder faces them. */
 export const stations: readonly Transform<'arena', 'floor'>[] = [
   { position: vec3(-aside, 0, 0), orientation: identity },
   { position: vec3(aside, 0, 0), orientation: identity },
   { position: vec3(0, 0, -ahead), orientation: fromAxisAngle(up, Math.PI) },
 ];
 
-/** Where the floor of a seat lies in the arena: at its station in the match, or before any (null) at the station of its number. */
+/** Returns the transform from a seat's floor to the arena, by its station in the match; without a match (null) by its number. */
 export function arenaFromSeatFloor(seat: number, match: BallState | null): Transform<'arena', 'floor'> {
   return stations[match?.players[seat]?.station ?? seat] ?? stations[0]!;
 }
@@ -26,8 +26,8 @@ export function arenaFromSeatFloor(seat: number, match: BallState | null): Trans
 export const holderStation = 2;
 
 /**
- * By how many stations those who have these move on for another round, which needs a thrower and the holder: with `rotate` by one where that
- * gives a round, so that everyone has every role in turn; null where no move gives one.
+ * Returns by how many stations the players move on for another round, which needs a thrower and the holder: with `rotate` by one if possible, so that
+ * everybody has every role in turn. null: no move permits a round.
  */
 export function rotationForRound(taken: readonly number[], rotate: boolean): number | null {
   const gives = (by: number): boolean =>
@@ -35,10 +35,10 @@ export function rotationForRound(taken: readonly number[], rotate: boolean): num
   return (rotate ? [1, 2, 0] : [0]).find(gives) ?? null;
 }
 
-/** Every player stays this near to their own station [m]. */
+/** Radius of a player's zone about the station [m]. */
 export const zoneRadius = 1.2;
 
-/** Whether a head is that near to a station; arena frame. */
+/** Returns whether a head is in the zone of a station; arena frame. */
 export function isInZone(head: Vec3, station: number): boolean {
   const { x, z } = stations[station]!.position;
   return Math.hypot(head.x - x, head.z - z) <= zoneRadius;
@@ -48,12 +48,12 @@ const rackHeight = 0.85;
 const spacing = 0.17;
 const columns = 2;
 
-/** The first so many balls of a match belong in the first thrower's rack, the others in the second's. */
+/** Returns the number of balls in the first thrower's rack; the others are in the second's. */
 export const ballsPerRack = (balls: number): number => Math.ceil(balls / 2);
 
 /**
- * Where a ball lies in its rack, arena frame: beside the thrower, towards the other one, so that both can reach the nearer balls
- * of both racks.
+ * Writes the position of a ball in its rack, arena frame. The rack is next to its thrower, on the side of the other one, so that both reach the nearer
+ * balls of both racks.
  */
 export function rackPosition(ball: number, balls: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
   const perRack = ballsPerRack(balls);

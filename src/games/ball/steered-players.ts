@@ -23,8 +23,8 @@ import {
   createPlayerPostures,
   makePosture,
   mixPostures,
-  type Performed,
   type PlayerBody,
+  type PlayerInput,
   type PlayerPosture,
   type PlayerPostures,
 } from './player-postures';
@@ -33,45 +33,45 @@ import { rackPosition } from './stations';
 import { type SwungThrow, ThrowPostures } from './throw-postures';
 import { type BallBot, type BotSight, nearestBall } from './thrower-motion';
 
-/** What a person at a desk wants of a player: a mouse in the place of two hands. Own floor frame. */
+/** The mouse input that steers a player; own floor frame. */
 export interface BallSteering {
-  /** Unit direction. */
+  /** The ray of the pointer; its direction is unit. */
   readonly ray: Ray;
-  /** A thrower swings back for as long as this is true, the longer the further the ball goes, and then throws. */
+  /** A thrower swings back while this is true, and then throws: the longer, the farther. */
   readonly pressed: boolean;
-  /** true: the arm comes down again, the ball in hand. */
+  /** Whether to lower the arm without a throw. */
   readonly cancelled: boolean;
 }
 
-/** A player who does as told. */
+/** A player that is steered by a mouse instead of two hands. */
 export interface SteeredPlayer extends BallBot {
-  /** How the ball would leave the hand now, arena frame, the same object in every frame; null: no throw is being aimed. */
+  /** The launch of the throw that is being aimed, arena frame, the same object in every frame; null: none. */
   readonly aim: Launch | null;
 }
 
-/** A hold this long [s] is the hardest throw; from the first to the second speed [m/s]. */
+/** Time of a press for the hardest throw [s], and speeds of the softest and the hardest throw [m/s]. */
 const fullSeconds = 1.3;
 const softest = 4;
 const hardest = 8.8;
-/** No throw is meant steeper or flatter than these [rad above the horizon], and most are meant like this one. */
+/** Flattest, steepest and usual elevation of a throw [rad]. */
 const flattest = 0.45;
 const steepest = 1.2;
 const usual = 0.85;
-/** How much further up a throw goes than the pointer. */
+/** Gain from the pointer's elevation to that of the throw. */
 const lift = 1.5;
-/** Half-lives of the way to a posture [s]. */
+/** Half-lives of the motion to a posture [s]. */
 const moveHalfLife = 0.07;
 const windHalfLife = 0.045;
-/** A fist this near to a ball [m] takes it, and waits this long [s] for it to be its own. */
+/** Distance at which a fist takes a ball [m], and how long it waits for the match to confirm [s]. */
 const atBall = 0.07;
 const takePatience = 0.6;
-/** From where the arm is to where it swings from, and after the throw [s]. */
+/** Time to the start of the swing, and after the throw [s]. */
 const leadSeconds = 0.1;
 const followSeconds = 0.25;
-/** A basket is carried this far to each side of where it waits [m]. */
+/** Reach of the basket from where it waits [m]. */
 const basketReach = 0.65;
 
-/** Where a ray comes to the upright plane this far ahead [m]; beside or behind: as far aside as it can be meant. */
+/** Writes the point at which a ray meets the vertical plane at `z` [m], clamped to a useful range. */
 function ahead({ origin, direction }: Ray, z: number, target: MutableVec3): MutableVec3 {
   const along = direction.z < -0.05 ? (z - origin.z) / direction.z : 20;
   addScaled(origin, direction, clamp(along, 0, 20), target);
@@ -80,16 +80,16 @@ function ahead({ origin, direction }: Ray, z: number, target: MutableVec3): Muta
 
 type Phase = 'idle' | 'reaching' | 'taking' | 'ready' | 'drawing' | 'swinging' | 'following';
 
-/** One frame of a player at the mouse. */
+/** The input of one frame. */
 interface Moment {
   time: number;
   sight: BotSight;
-  wish: BallSteering;
+  input: BallSteering;
   /** Whether the ball is in the throwing hand. */
   holds: boolean;
 }
 
-// Memory of one call: a frame makes no garbage.
+// Scratch of one call.
 const level = vec3(0, 0, 0);
 const rack = vec3(0, 0, 0);
 
@@ -102,9 +102,9 @@ class SteeredThrower implements SteeredPlayer {
   #began = 0;
   #last: number | null = null;
   readonly #posture = makePosture();
-  /** Whether `#posture` has been taken. */
+  /** Whether `#posture` is set. */
   #posed = false;
-  /** The posture that a swing begins with. */
+  /** The posture at the start of a swing. */
   readonly #from = makePosture();
   readonly #goal = makePosture();
   #side: Side = 'right';
@@ -112,9 +112,9 @@ class SteeredThrower implements SteeredPlayer {
   readonly #swung: SwungThrow;
   readonly #aim = { position: vec3(0, 0, 0), velocity: vec3(0, 0, 0) };
   #aims = false;
-  /** A press throws once. */
+  /** Whether the current press has already thrown or been cancelled. */
   #spent = false;
-  /** Own floor frame: the ball in its rack, the basket, and where the mouse points above or below it. */
+  /** The ball in its rack, the basket, and the pointer's target at the basket's distance; own floor frame. */
   readonly #rack = vec3(0, 0, 0);
   readonly #basket = vec3(0, 0, 0);
   readonly #target = vec3(0, 0, 0);
@@ -132,15 +132,15 @@ class SteeredThrower implements SteeredPlayer {
     return this.#aims ? this.#aim : null;
   }
 
-  follow(time: number, sight: BotSight): Performed {
-    const wish = this.#steering();
+  follow(time: number, sight: BotSight): PlayerInput {
+    const input = this.#steering();
     const elapsed = this.#last === null ? 0 : clamp(time - this.#last, 0, 0.1);
     this.#last = time;
     this.#postures.inFloor(sight.basket ?? sight.state.basket.position, this.#basket);
-    ahead(wish.ray, this.#basket.z, this.#target);
-    if (!wish.pressed) this.#spent = false;
+    ahead(input.ray, this.#basket.z, this.#target);
+    if (!input.pressed) this.#spent = false;
     const holds = ballInHand(sight.state, sight.player, this.#side) >= 0;
-    this.#decide({ time, sight, wish, holds });
+    this.#decide({ time, sight, input, holds });
     this.#pose(time, sight, elapsed);
     const pressure = this.#pressure(time);
     const left = this.#side === 'left';
@@ -153,7 +153,7 @@ class SteeredThrower implements SteeredPlayer {
     if (next !== 'drawing') this.#aims = false;
   }
 
-  /** Whether another phase begins. */
+  /** Enters another phase if its condition is met. */
   #decide(moment: Moment): void {
     const { time } = moment;
     switch (this.#phase) {
@@ -194,14 +194,14 @@ class SteeredThrower implements SteeredPlayer {
       this.#enter('taking', time);
   }
 
-  #prepare({ time, wish, holds }: Moment): void {
+  #prepare({ time, input, holds }: Moment): void {
     if (!holds) this.#enter('idle', time);
     else if (this.#phase === 'ready') {
-      if (wish.pressed && !wish.cancelled && !this.#spent) this.#enter('drawing', time);
-    } else if (wish.cancelled) {
+      if (input.pressed && !input.cancelled && !this.#spent) this.#enter('drawing', time);
+    } else if (input.cancelled) {
       this.#spent = true;
       this.#enter('ready', time);
-    } else if (!wish.pressed) {
+    } else if (!input.pressed) {
       copyPosture(this.#posture, this.#from);
       this.#enter('swinging', time);
     }
@@ -237,7 +237,7 @@ class SteeredThrower implements SteeredPlayer {
     this.#posed = true;
   }
 
-  /** The throw that is meant after so much of a hold. */
+  /** Aims the throw by the duration of the press. */
   #draw(time: number): void {
     const share = clamp((time - this.#began) / fullSeconds, 0, 1);
     const from = this.#moves.release(this.#side);
@@ -256,7 +256,7 @@ class SteeredThrower implements SteeredPlayer {
     this.#aims = true;
   }
 
-  /** From where the arm is to where it swings from, and on as the throw has it. */
+  /** Moves the arm to the start of the swing, and then along the throw. */
   #swing(time: number): void {
     const { wound, thrown, seconds } = this.#swung;
     const here = time - this.#began;
@@ -274,21 +274,21 @@ class SteeredThrower implements SteeredPlayer {
     return this.#phase === 'taking' || this.#phase === 'ready' || this.#phase === 'drawing' ? 1 : 0;
   }
 
-  /** Where its ball lies in the rack. */
+  /** Returns the position of the player's ball in its rack. */
   #findBall({ state }: BotSight): Vec3 {
     return this.#postures.inFloor(rackPosition(this.#ball, state.options.balls, rack), this.#rack);
   }
 }
 
-/** Takes ball after ball by itself; swings back while told to, and throws where the ray points. */
+/** Creates a thrower that takes balls by itself, and throws where the ray points. */
 export const createSteeredThrower = (body: PlayerBody, steering: () => BallSteering): SteeredPlayer =>
   new SteeredThrower(body, steering);
 
-/** Carries the basket, at its own height, to where the ray points; it leans towards balls by itself. */
+/** Creates a holder that carries the basket to where the ray points; it leans towards balls by itself. */
 export function createSteeredHolder(body: PlayerBody, steering: () => BallSteering): SteeredPlayer {
   const holder = createHolder(body, (home, target) => {
     const { origin, direction } = steering().ray;
-    // A ray at the sky means as far as it goes.
+    // A ray into the sky aims as far as possible.
     const along = direction.y < -0.02 ? (home.y - origin.y) / direction.y : 20;
     addScaled(origin, direction, clamp(along, 0, 20), target);
     setVec3(target, target.x - home.x, 0, target.z - home.z);

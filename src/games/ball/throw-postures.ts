@@ -19,7 +19,7 @@ import { ballInPalm, wristAround } from '../fist';
 import { ballRadius } from './flight';
 import { type MutablePosture, makePosture, type PlayerPosture, type PlayerPostures } from './player-postures';
 
-/** The arm runs up over this way [m], then is evenly fast for as long as a throw's speed is measured and a slow frame more [s]. */
+/** Length of the acceleration [m], then a time at constant speed: the window in which a throw is measured, plus a slow frame [s]; then the deceleration [m]. */
 const runUp = 0.24;
 const measuredSeconds = 0.095;
 const evenSeconds = measuredSeconds + 0.02;
@@ -27,14 +27,14 @@ const slowDown = 0.24;
 
 const outwardOf = (side: Side): -1 | 1 => (side === 'left' ? -1 : 1);
 
-/** An underarm throw of a given velocity; floor frame. Its owner may give it another velocity: then all of it changes. */
+/** An underarm throw with a given velocity, floor frame; `aim` changes it. */
 export class SwungThrow {
   readonly #postures: PlayerPostures;
   readonly #moves: ThrowPostures;
   readonly #wound = makePosture();
   readonly #thrown = makePosture();
   readonly #back = vec3(0, 0, 0);
-  /** Unit: where the ball sets off to. */
+  /** Direction of the throw, unit. */
   readonly #way = vec3(0, 0, 0);
   readonly #point = vec3(0, 0, 0);
   #speed = 0;
@@ -46,12 +46,12 @@ export class SwungThrow {
     this.#moves = moves;
   }
 
-  /** The arm swung back, ready to go. */
+  /** The posture with the arm swung back. */
   get wound(): PlayerPosture {
     return this.#wound;
   }
 
-  /** At its end. */
+  /** The posture at the end of the throw. */
   get thrown(): PlayerPosture {
     return this.#thrown;
   }
@@ -60,12 +60,12 @@ export class SwungThrow {
     return this.#runSeconds + evenSeconds + this.#slowSeconds;
   }
 
-  /** The hand opens after this many seconds of it. */
+  /** Time of the throw at which the hand opens [s]. */
   get releaseAt(): number {
     return this.#runSeconds + measuredSeconds;
   }
 
-  /** Makes it a throw with this velocity [m/s], eyes at a point. */
+  /** Sets the velocity of the throw [m/s] and the point at which the eyes look. */
   aim(side: Side, velocity: Vec3, at: Vec3): void {
     this.#speed = length(velocity);
     normalise(velocity, undefined, this.#way);
@@ -77,8 +77,7 @@ export class SwungThrow {
   }
 
   /**
-   * Where the fist is after so many seconds: from rest to the throw's speed, on at that speed until the ball has left the hand, then
-   * to rest.
+   * Writes the position of the fist after `elapsed` seconds: it accelerates, moves at constant speed until the ball has left, and decelerates.
    */
   swing(elapsed: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
     const running = clamp(elapsed, 0, this.#runSeconds);
@@ -98,7 +97,7 @@ export class SwungThrow {
     this.#postures.looking(target.eyes, at, target.gaze);
   }
 
-  /** The body leans back, the throwing arm behind, the other one ahead. */
+  /** Computes the posture with the arm swung back: the body leans back, the other arm is ahead. */
   #wind(side: Side, at: Vec3): void {
     const { arm, eyes } = this.#postures;
     const wound = this.#wound;
@@ -122,7 +121,7 @@ export class SwungThrow {
     normalise(setVec3(point, 0.5 * outward, 0.8, 0), undefined, other.thumb);
   }
 
-  /** The body leans ahead, the arm at the end of its swing. */
+  /** Computes the posture at the end: the body leans ahead. */
   #follow(side: Side, at: Vec3): void {
     const thrown = this.#thrown;
     const outward = outwardOf(side);
@@ -138,12 +137,12 @@ export class SwungThrow {
 const setPalmAhead = (outward: -1 | 1, target: MutableVec3): MutableVec3 =>
   normalise(setVec3(target, outward, 0.35, 0), undefined, target);
 
-// Memory of one call: a frame makes no garbage.
+// Scratch of one call.
 const shoulder = vec3(0, 0, 0);
 const offset = vec3(0, 0, 0);
 const wrist = makePose<'floor'>();
 
-/** What throws are made of, for a player who faces −Z of their floor; floor frame throughout. */
+/** The postures of a thrower that faces −Z; floor frame. */
 export class ThrowPostures {
   readonly #postures: PlayerPostures;
   readonly #release: Readonly<Record<Side, Vec3>>;
@@ -155,12 +154,12 @@ export class ThrowPostures {
     this.#release = { left: releaseOf('left'), right: releaseOf('right') };
   }
 
-  /** Arms down, eyes at a point. */
+  /** Returns the posture with arms down and eyes on a point. */
   resting(at: Vec3, target: MutablePosture = makePosture()): MutablePosture {
     return this.#rest(this.#postures.eyes, at, target);
   }
 
-  /** The fist round a ball of the rack, the body leaning towards it as far as the arm is too short. */
+  /** Returns the posture with the fist at a ball of the rack; the body leans as far as the arm is too short. */
   reaching(side: Side, ball: Vec3, target: MutablePosture = makePosture()): MutablePosture {
     const { arm, eyes } = this.#postures;
     const longest = 0.97 * arm + 0.05;
@@ -178,7 +177,7 @@ export class ThrowPostures {
     return target;
   }
 
-  /** The ball before the chest, eyes at a point. */
+  /** Returns the posture with the ball before the chest and eyes on a point. */
   carrying(side: Side, at: Vec3, target: MutablePosture = makePosture()): MutablePosture {
     const { arm, eyes } = this.#postures;
     const outward = outwardOf(side);
@@ -191,18 +190,18 @@ export class ThrowPostures {
     return target;
   }
 
-  /** Where the fist is when it opens. */
+  /** Returns the position of the fist at the release. */
   release(side: Side): Vec3 {
     return this.#release[side];
   }
 
-  /** Where a ball that sets off that way (a unit direction) leaves the hand: it lies in the palm. */
+  /** Writes the position at which a ball leaves the palm in this unit direction. */
   leaving(side: Side, way: Vec3, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
     wristAround(side, this.#release[side], way, setPalmAhead(outwardOf(side), offset), wrist);
     return ballInPalm(wrist, ballRadius, target);
   }
 
-  /** A throw, to be aimed. */
+  /** Creates a throw, which must be aimed. */
   makeThrow(): SwungThrow {
     return new SwungThrow(this.#postures, this);
   }

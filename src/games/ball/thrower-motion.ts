@@ -23,8 +23,8 @@ import {
   createPlayerPostures,
   makePosture,
   mixPostures,
-  type Performed,
   type PlayerBody,
+  type PlayerInput,
   type PlayerPosture,
   type PlayerPostures,
 } from './player-postures';
@@ -32,46 +32,46 @@ import { ballMatchTime } from './state-readings';
 import { rackPosition, stations } from './stations';
 import { type SwungThrow, ThrowPostures } from './throw-postures';
 
-/** What a bot sees of the match: the state as far as it is known, and which player it is. */
+/** A bot's view of the match: the state, and its own player index. */
 export interface BotSight {
   readonly state: BallState;
   readonly player: number;
-  /** The middle of the basket's opening where it is seen, arena frame; absent: where the state has it. */
+  /** The centre of the basket's opening as drawn, arena frame. Default: that of the state. */
   readonly basket?: Vec3;
 }
 
-/** A built-in player: hands and buttons for a whole match. */
+/** A built-in player, which produces hands and buttons for a whole match. */
 export interface BallBot {
-  /** Head, hands (own floor frame) and buttons at `time` [s, never falling]. */
-  follow(time: number, sight: BotSight): Performed;
+  /** Returns head, hands (own floor frame) and buttons at `time` [s, not decreasing]. */
+  follow(time: number, sight: BotSight): PlayerInput;
 }
 
 interface Movement {
   readonly to: PlayerPosture;
   readonly seconds: number;
-  /** Of the throwing hand's button at its end. */
+  /** Pressure on the throwing hand's button at the end. */
   readonly pressure: number;
-  /** Rises on its way by this much [m]. */
+  /** Height of the arc on the way [m]. */
   readonly arc?: number;
-  /** Lasts until this is true. */
+  /** The movement lasts until this returns true. */
   readonly until?: (sight: BotSight) => boolean;
-  /** The throwing fist goes as this throw has it, which also lets go of the button, instead of on the way to the end. */
+  /** The throw that moves the fist and releases the button. */
   readonly swung?: SwungThrow;
 }
 
-/** A ball is this long in the air [s]; longer throws are higher. */
+/** Flight time of a throw [s]. */
 const flightSeconds = 0.86;
-/** Two balls in the air at once are one too many for a basket: throws are this far apart [s]. */
+/** Interval between two throws [s], because a basket catches one ball at a time. */
 const betweenThrows = 0.75;
-/** No two throws are alike [m]. */
+/** Scatter of the throws' targets [m]. */
 const scatter = 0.14;
 
-// Memory of one call: a frame makes no garbage.
+// Scratch of one call.
 const rack = vec3(0, 0, 0);
 const mark = vec3(0, 0, 0);
 const rise = vec3(0, 0, 0);
 
-/** The ball of the racks that is nearest to this thrower; null: none is within reach, or there is nothing to do. */
+/** Returns the nearest ball in a rack; null: none is within reach, or no round runs. */
 export function nearestBall({ state, player }: BotSight): number | null {
   if (state.phase !== 'running') return null;
   const station = stations[state.players[player]?.station ?? 0];
@@ -89,7 +89,7 @@ export function nearestBall({ state, player }: BotSight): number | null {
   return nearest;
 }
 
-/** No other player has just thrown, and it is this thrower's turn. */
+/** Returns whether it is this thrower's turn, and nobody has just thrown. */
 function mayThrow({ state, player }: BotSight): boolean {
   if (state.phase !== 'running') return true;
   const now = ballMatchTime(state);
@@ -111,7 +111,7 @@ class Thrower implements BallBot {
   #idle = true;
   #throwing: Side = 'right';
   readonly #now = makePosture();
-  /** Of the basket, own floor frame. */
+  /** The basket's opening, own floor frame. */
   readonly #basket = vec3(0, 0, 0);
 
   constructor(body: PlayerBody, seed: number) {
@@ -120,15 +120,15 @@ class Thrower implements BallBot {
     this.#random = { seed };
   }
 
-  follow(time: number, sight: BotSight): Performed {
+  follow(time: number, sight: BotSight): PlayerInput {
     this.#postures.inFloor(sight.basket ?? sight.state.basket.position, this.#basket);
     this.#proceed(time, sight);
     const current = this.#plan[0];
     return current ? this.#move(current, time) : this.#postures.seen(this.#from, time, 0, 0);
   }
 
-  /** Somewhere within a movement. */
-  #move(current: Movement, time: number): Performed {
+  /** Returns head, hands and buttons within a movement. */
+  #move(current: Movement, time: number): PlayerInput {
     const { swung } = current;
     const elapsed = Math.min(time - (this.#began ?? 0), current.seconds);
     const share = minimumJerk(clamp(elapsed / current.seconds, 0, 1));
@@ -161,7 +161,7 @@ class Thrower implements BallBot {
     }
   }
 
-  /** The next throw, or the way to rest; false: it rests already. */
+  /** Plans the next throw, or the movement to rest; returns false if the thrower rests already. */
   #planNext(time: number, sight: BotSight): boolean {
     const ball = nearestBall(sight);
     if (ball === null && this.#idle) return false;
@@ -174,14 +174,14 @@ class Thrower implements BallBot {
     return true;
   }
 
-  /** From −1 to 1. */
+  /** Returns a random number in [−1, 1]. */
   #chance(): number {
     const next = nextRandom(this.#random);
     this.#random = next.state;
     return 2 * next.value - 1;
   }
 
-  /** Take a ball that lies there, bring it before the chest, wait for a turn, swing back, throw, follow through. */
+  /** Returns the movements of a throw: take the ball, bring it before the chest, wait for the turn, swing back, throw, follow through. */
   #throwOf(at: Vec3): Movement[] {
     const moves = this.#moves;
     const basket = copyVec3(this.#basket);
@@ -192,7 +192,7 @@ class Thrower implements BallBot {
     const ready = moves.carrying(side, basket);
     const velocityFrom = (start: Vec3) =>
       add(scale(subtract(target, start), 1 / flightSeconds), vec3(0, 0.5 * gravity * flightSeconds, 0));
-    // Where the ball lies in the hand depends on the throw a little, and the other way round.
+    // The ball's position in the hand depends slightly on the throw: one iteration suffices.
     const nearly = velocityFrom(moves.release(side));
     const velocity = velocityFrom(moves.leaving(side, normalise(nearly)));
     const swung = moves.makeThrow();
@@ -210,5 +210,5 @@ class Thrower implements BallBot {
   }
 }
 
-/** Takes ball after ball from the rack, throws it at the basket underarm, and rests. `seed`: of the scatter of its throws. */
+/** Creates a thrower that throws the balls of the racks underarm at the basket, and then rests. `seed` is that of the scatter. */
 export const createThrower = (body: PlayerBody, seed: number): BallBot => new Thrower(body, seed);

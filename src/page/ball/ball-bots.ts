@@ -8,11 +8,11 @@ import { identity } from 'threepoint/core/math/quat';
 import { zero } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
-import type { BallAction, BallState } from 'threepoint-games/ball/ball-state';
+import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import type { Opening } from 'threepoint-games/ball/basket';
 import { type BallGestureFrame, type BallGestures, createBallGestures } from 'threepoint-games/ball/gestures';
 import { createHolder } from 'threepoint-games/ball/holder-motion';
-import type { Performed, PlayerBody } from 'threepoint-games/ball/player-postures';
+import type { PlayerBody, PlayerInput } from 'threepoint-games/ball/player-postures';
 import { holderStation, stations } from 'threepoint-games/ball/stations';
 import { type BallBot, createThrower } from 'threepoint-games/ball/thrower-motion';
 import type { Visitor } from 'threepoint-rooms/client/connection';
@@ -32,7 +32,7 @@ export function momentsUntil(time: number, last: number | null): readonly number
   return moments;
 }
 
-const isHandAction = (action: BallAction): action is Extract<BallAction, { type: 'grab' | 'drop' | 'throw' }> =>
+const isHandAction = (action: BallInput): action is Extract<BallInput, { type: 'grab' | 'drop' | 'throw' }> =>
   action.type === 'grab' || action.type === 'drop' || action.type === 'throw';
 
 export const bodyAt = (station: number, calibration: Calibration): PlayerBody => ({
@@ -94,7 +94,7 @@ export function performedAt(
   state: BallState,
   player: number,
   { pausedSeconds, opening }: CourtSight,
-): Performed {
+): PlayerInput {
   const done = actor.follow(time - pausedSeconds, { state, player, ...(opening && { basket: opening.position }) });
   return pausedSeconds === 0 ? done : { ...done, frame: { ...done.frame, time } };
 }
@@ -217,7 +217,7 @@ export class BallBots {
     const { match, mySeat } = seen;
     bot.gestures ??= gesturesOf(line);
     if (update.news.length > 0) bot.gestures.resume();
-    bot.gestures.hear(update.events);
+    bot.gestures.onEvents(update.events);
     const actor = this.actorOf(bot, stationOf(seen, mySeat), match.phase, mySeat);
     const mover = { line, gestures: bot.gestures, actor, estimator };
     for (const moment of momentsUntil(time, bot.movedAt)) moveOnce(mover, moment, this.sight);

@@ -2,7 +2,7 @@ import { type BallConnection, ballClientPolicy, createBallLoopbackHost } from 't
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
 import type { LocalClock, Visitor } from 'threepoint-rooms/client/connection';
 import type { RoomTerms } from 'threepoint-rooms/protocol/messages';
-import type { VoiceTerms } from 'threepoint-rooms/voices/voice-terms';
+import type { VoiceSettings } from 'threepoint-rooms/voices/voice-settings';
 import type { SignedSeat } from 'threepoint-study/model/progress/study-api';
 import { pageFolder } from 'threepoint-ui/page-folder';
 
@@ -25,7 +25,7 @@ export interface BallPlace {
   /** The exchange of the players' avatar files; null: avatars are not exchanged. */
   readonly avatars: AvatarExchange | null;
   /** Asks whether its people can talk; null: they cannot. */
-  readonly voiceTerms: (() => Promise<VoiceTerms>) | null;
+  readonly voiceTerms: (() => Promise<VoiceSettings>) | null;
 }
 
 /** Connects to the seat that a server assigns by a signed pass. An expired pass is requested again. All players wear the same avatar there. */
@@ -52,12 +52,12 @@ export async function connectionsFor(
     const { pausable: _, ...ball } = terms;
     return { connect: createBallLoopbackHost({ seed, ball }).connect, avatars: null, voiceTerms: null };
   }
-  const [{ createSocketConnection }, { createRoomPass }, { createAvatarExchange }, { askVoiceTerms }] =
+  const [{ createSocketConnection }, { createRoomPass }, { createAvatarExchange }, { fetchVoiceSettings }] =
     await Promise.all([
       import('threepoint-rooms/client/socket-connection'),
       import('threepoint-rooms/client/room-pass'),
       import('threepoint-rooms/client/avatar-exchange'),
-      import('threepoint-rooms/voices/voice-terms'),
+      import('threepoint-rooms/voices/voice-settings'),
     ]);
   const server = pageFolder();
   const person = createRoomPass(server, room, 'ball', tabStorage(), terms);
@@ -73,6 +73,6 @@ export async function connectionsFor(
   return {
     connect,
     avatars: createAvatarExchange(server, room, person),
-    voiceTerms: () => askVoiceTerms(server, room, person),
+    voiceTerms: () => fetchVoiceSettings(server, room, person),
   };
 }

@@ -11,9 +11,9 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
 import type { BallEvent } from 'threepoint-games/ball/ball-state';
 import type { BallGestureFrame, BallGestures } from 'threepoint-games/ball/gestures';
-import type { Performed } from 'threepoint-games/ball/player-postures';
+import type { PlayerInput } from 'threepoint-games/ball/player-postures';
 import type { BallSteering } from 'threepoint-games/ball/steered-players';
-import type { ConnectionStatus, Visitor, VoiceLine } from 'threepoint-rooms/client/connection';
+import type { ConnectionStatus, Visitor, VoiceChannel } from 'threepoint-rooms/client/connection';
 import { createRemotePlayers, type RemotePlayer } from 'threepoint-rooms/client/remote-players';
 import { BallBots, type CourtSight, gesturesOf, play, readyAfter } from './ball-bots';
 import { type BallFrame, type BallProbe, CourtPeople, probeOf } from './ball-frame';
@@ -24,14 +24,14 @@ export interface BallPlay {
   readonly status: ConnectionStatus;
   readonly room: BallRoomView | null;
   /** How this page sets up voices with the others; null: not connected yet. */
-  readonly voices: VoiceLine | null;
+  readonly voices: VoiceChannel | null;
   /** The arena in the user's floor frame, by the user's seat. A spectator's floor frame is the arena frame. Every change yields another object. */
   readonly floorFromArena: Transform<'floor', 'arena'>;
   readonly newest: BallFrame | null;
   /** Receives messages from the room and moves the bots. Call it first in every frame. */
   begin(time: number): void;
   /** Returns the input of the simulated player on the user's seat at a time [s], or null without a seat. `catchUp`: also plays the moments between two slow frames, which no device could. */
-  act(time: number, catchUp?: boolean): Performed | null;
+  act(time: number, catchUp?: boolean): PlayerInput | null;
   /** The tracked frame and its buttons become play; null frame: no one is seen, or a spectator. */
   follow(time: number, frame: TrackingFrame | null, buttons: Buttons): BallFrame | null;
   /** The solved body of this frame, for the others. */
@@ -105,7 +105,7 @@ class MatchPlay implements BallPlay {
     return this.connection?.room ?? null;
   }
 
-  get voices(): VoiceLine | null {
+  get voices(): VoiceChannel | null {
     return this.connection?.voices ?? null;
   }
 
@@ -128,7 +128,7 @@ class MatchPlay implements BallPlay {
     for (const pose of update.poses) this.remote.receive(pose);
     if (update.events.length > 0) this.events = [...this.events, ...update.events];
     if (update.news.length > 0) this.gestures?.resume();
-    this.gestures?.hear(update.events);
+    this.gestures?.onEvents(update.events);
     this.watchSeats();
     this.bots.seat(this.connection, time);
     this.bots.move(time);
@@ -136,7 +136,7 @@ class MatchPlay implements BallPlay {
     this.others = this.remote.follow(time);
   }
 
-  act(time: number, catchUp = true): Performed | null {
+  act(time: number, catchUp = true): PlayerInput | null {
     if (!this.connection) return null;
     this.gestures ??= gesturesOf(this.connection);
     return this.simulated.act(this.connection, this.gestures, time, catchUp);

@@ -3,7 +3,7 @@ import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { zero } from 'threepoint/core/math/vec3';
 import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
 import type { BallCue, BallGestures, BallPulse } from 'threepoint-games/ball/gestures';
-import type { Performed } from 'threepoint-games/ball/player-postures';
+import type { PlayerInput } from 'threepoint-games/ball/player-postures';
 import { holderStation } from 'threepoint-games/ball/stations';
 import {
   type BallSteering,
@@ -72,7 +72,7 @@ export class SimulatedPlayer {
    * Returns the player's input at a time [s], or null without a seat. `catchUp`: also plays the moments between two slow pictures, which no device
    * could.
    */
-  act(line: BallConnection, gestures: BallGestures, time: number, catchUp: boolean): Performed | null {
+  act(line: BallConnection, gestures: BallGestures, time: number, catchUp: boolean): PlayerInput | null {
     const view = line.room;
     if (!view?.match || view.mySeat === null) return null;
     this.#steering = this.#options.steering?.() ?? null;

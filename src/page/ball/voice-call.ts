@@ -35,7 +35,7 @@ export class VoiceCall {
     const { context, configuration, signal } = options;
     this.#options = options;
     this.#sound = new VoiceSound(context);
-    this.#mesh = new VoiceMesh({ configuration, signal, heard: (session, stream) => this.#play(session, stream) });
+    this.#mesh = new VoiceMesh({ configuration, signal, onStream: (session, stream) => this.#play(session, stream) });
   }
 
   /** The name of this page among the voices. Both pages of a connection need a new one to reconnect. */
@@ -65,7 +65,7 @@ export class VoiceCall {
   }
 
   receive(from: string, body: SignalBody): void {
-    this.#mesh.take(from, body);
+    this.#mesh.receive(from, body);
   }
 
   /** Sends this track to the others; null: sends nothing. */

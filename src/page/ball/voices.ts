@@ -1,8 +1,8 @@
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import type { VoiceLine } from 'threepoint-rooms/client/connection';
-import { KeptTerms } from 'threepoint-rooms/voices/kept-terms';
+import type { VoiceChannel } from 'threepoint-rooms/client/connection';
+import { IceServerCache } from 'threepoint-rooms/voices/ice-server-cache';
 import { Microphone } from 'threepoint-rooms/voices/microphone';
-import { hasRelay, type VoiceTerms } from 'threepoint-rooms/voices/voice-terms';
+import { hasRelay, type VoiceSettings } from 'threepoint-rooms/voices/voice-settings';
 import type { BallPlay } from './ball-play';
 import type { BlockList } from './block-list';
 import { SeatVoices } from './seat-voices';
@@ -13,7 +13,7 @@ export interface VoicesOptions {
   readonly play: Pick<BallPlay, 'room' | 'status' | 'voices'>;
   readonly blocked: Pick<BlockList, 'has' | 'mutes'>;
   /** Requests the server's terms of voices; null: the room is in this page, or belongs to a study. */
-  readonly terms: (() => Promise<VoiceTerms>) | null;
+  readonly terms: (() => Promise<VoiceSettings>) | null;
   /** Opens the audio that the game's own sounds play in. */
   openAudio(): Promise<AudioContext>;
   /** Voices are sent through the TURN relay only, so that no page learns this one's address. */
@@ -31,8 +31,8 @@ export class Voices {
     this.#sendTrack();
     if (this.#silent !== this.#announcedSilent) this.#announce();
   });
-  readonly #terms: KeptTerms | null;
-  #line: VoiceLine | null = null;
+  readonly #terms: IceServerCache | null;
+  #line: VoiceChannel | null = null;
   #requested = false;
   #phase: 'off' | 'asked' | 'joining' | 'in' = 'off';
   #muted = true;
@@ -47,7 +47,7 @@ export class Voices {
 
   constructor(options: VoicesOptions) {
     this.#options = options;
-    this.#terms = options.terms && new KeptTerms(options.terms);
+    this.#terms = options.terms && new IceServerCache(options.terms);
     this.seats = new SeatVoices(options.blocked, () => options.play.room);
   }
 
@@ -62,7 +62,7 @@ export class Voices {
       relay,
       relayOnly: relay && relayOnly(),
       message: this.#message,
-      deaf: this.#phase === 'in' && this.#microphone.complaint !== null,
+      deaf: this.#phase === 'in' && this.#microphone.errorMessage !== null,
     };
   }
 
@@ -72,15 +72,15 @@ export class Voices {
     if (play.voices !== this.#line) {
       this.#line = play.voices;
       this.#line?.listen({
-        seatsChanged: () => this.seats.update(),
-        signalled: (from, body) => this.#call?.receive(from, body),
+        onSeatsChanged: () => this.seats.update(),
+        onSignal: (from, body) => this.#call?.receive(from, body),
       });
       this.seats.update();
     }
     if (!this.#requested && this.#terms && play.room) {
       this.#requested = true;
       // reason: a server that does not answer has no voices
-      void this.#terms.renew().catch(() => undefined);
+      void this.#terms.refresh().catch(() => undefined);
     }
     if ((this.#call || this.#phase === 'joining') && play.status.phase === 'ended') this.leave();
   }
@@ -101,7 +101,7 @@ export class Voices {
     this.#fault = null;
     this.#muted = true;
     try {
-      const [context, fresh] = await Promise.all([openAudio(), terms.renew()]);
+      const [context, fresh] = await Promise.all([openAudio(), terms.refresh()]);
       if (turn !== this.#turn) return;
       await this.#microphone.open();
       if (turn === this.#turn) this.#enter(context, fresh);
@@ -117,7 +117,7 @@ export class Voices {
     this.#turn += 1;
     this.#phase = 'off';
     this.#muted = true;
-    this.#line?.say(null);
+    this.#line?.setVoice(null);
     this.#microphone.close();
     clearInterval(this.#watching);
     this.seats.setCall(null);
@@ -160,15 +160,15 @@ export class Voices {
   get #message(): string | null {
     if (this.#phase !== 'in') return this.#fault;
     if (this.#options.play.room?.mySeat === null) return 'You are watching. Only players on the seats can talk.';
-    const { complaint } = this.#microphone;
-    return complaint && `${complaint} You can still hear the others.`;
+    const { errorMessage } = this.#microphone;
+    return errorMessage && `${errorMessage} You can still hear the others.`;
   }
 
-  #configurationOf({ iceServers }: VoiceTerms): RTCConfiguration {
+  #configurationOf({ iceServers }: VoiceSettings): RTCConfiguration {
     return { iceServers: [...iceServers], iceTransportPolicy: this.state.relayOnly ? 'relay' : 'all' };
   }
 
-  #enter(context: AudioContext, terms: VoiceTerms): void {
+  #enter(context: AudioContext, terms: VoiceSettings): void {
     this.#call = new VoiceCall({
       context,
       configuration: this.#configurationOf(terms),
@@ -185,7 +185,7 @@ export class Voices {
 
   #announce(): void {
     this.#announcedSilent = this.#silent;
-    if (this.#call) this.#line?.say({ session: this.#call.session, muted: this.#announcedSilent });
+    if (this.#call) this.#line?.setVoice({ session: this.#call.session, muted: this.#announcedSilent });
   }
 
   /** Sends the microphone unless it is muted. It stays open, so that unmuting in a headset shows no permission prompt. */
@@ -198,6 +198,8 @@ export class Voices {
 
   #watch(): void {
     this.#call?.watch(this.#options.play.status.phase === 'joined');
-    void this.#terms?.watch().then((renewed) => renewed && this.#call?.configure(this.#configurationOf(renewed)));
+    void this.#terms
+      ?.refreshIfDue()
+      .then((renewed) => renewed && this.#call?.configure(this.#configurationOf(renewed)));
   }
 }

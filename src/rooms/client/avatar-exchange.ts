@@ -2,31 +2,31 @@ import { type AvatarHash, avatarHash } from 'threepoint/core/body/avatar-ref';
 import * as v from 'valibot';
 import type { RoomPass } from './room-pass';
 
-/** What a server says of the store of its rooms. */
+/** What a server's avatar store accepts, and what it has of this person. */
 export interface AvatarTerms {
-  /** Longest file that it takes [bytes]; 0: none. */
+  /** The largest file that it accepts [bytes]; 0: none. */
   readonly mostBytes: number;
-  /** The folder of another server that has avatars by the same names; null: none. */
+  /** A folder on another server with avatars by hash; null: none. */
   readonly elsewhere: string | null;
-  /** The file that it has of this person. */
+  /** The stored file of this person; null: none. */
   readonly yours: AvatarHash | null;
 }
 
-/** Where a file can be had, and what to say there. */
+/** The address of a file, with the headers of the request. */
 export interface AvatarAddress {
   readonly url: string;
   readonly headers: Readonly<Record<string, string>>;
 }
 
-/** The store of avatars of one room, for the holder of a pass. */
+/** Uploads and finds the avatars of one room, with a pass. */
 export interface AvatarExchange {
-  /** Rejects with a sentence where the server does not say. */
+  /** Fetches the terms of the store. Rejects with a sentence if the server does not answer. */
   terms(): Promise<AvatarTerms>;
-  /** Whether the other server that is named has this file: it need not be stored then. */
-  liesElsewhere(hash: AvatarHash): Promise<boolean>;
-  /** Stores the own file; kept for as long as its owner has it on, on a seat. Rejects with a sentence where the server does not take it. */
+  /** Resolves to whether the other server has this file, which then needs no upload. */
+  isStoredElsewhere(hash: AvatarHash): Promise<boolean>;
+  /** Uploads a file; the server keeps it while its owner wears it on a seat. Rejects with a sentence if the server refuses it. */
   store(hash: AvatarHash, file: Blob): Promise<void>;
-  /** Where this file may be, the likeliest first. */
+  /** Resolves to the addresses at which this file may be, the likeliest first. */
   addressesOf(hash: AvatarHash): Promise<readonly AvatarAddress[]>;
 }
 
@@ -36,12 +36,12 @@ const terms = v.object({
   yours: v.nullable(v.pipe(v.string(), v.regex(avatarHash))),
 });
 
-/** At the relay at `base`, no slash at its end. */
+/** Creates the exchange of a room. `base`: the address of the relay, without a trailing slash. */
 export function createAvatarExchange(base: string, room: string, pass: RoomPass): AvatarExchange {
   const addressOf = (hash?: AvatarHash): string => `${base}/api/avatars${hash ? `/${hash}` : ''}?room=${room}`;
   const bearing = (token: string) => ({ authorization: `Bearer ${token}` });
 
-  /** Once more with a renewed pass where this one has expired. */
+  /** Sends a request, and repeats it with a renewed pass if this one has expired. */
   async function ask(hash: AvatarHash | undefined, file?: Blob): Promise<Response> {
     for (const afresh of [false, true]) {
       const headers = bearing(await pass.token(afresh));
@@ -52,25 +52,27 @@ export function createAvatarExchange(base: string, room: string, pass: RoomPass)
       });
       if (response.status !== 401 || afresh) return response;
     }
-    throw new Error('the server let no one in');
+    throw new Error('the server does not accept the pass to this room');
   }
 
   async function refusalOf(response: Response): Promise<Error> {
-    const said = (await response.json().catch(() => null)) as { error?: unknown } | null;
-    return new Error(typeof said?.error === 'string' ? said.error : `the server answers ${response.status}`);
+    const body = (await response.json().catch(() => null)) as { error?: unknown } | null;
+    return new Error(
+      typeof body?.error === 'string' ? body.error : `the server answered with status ${response.status}`,
+    );
   }
 
   async function askTerms(): Promise<AvatarTerms> {
     const response = await ask(undefined);
     if (!response.ok) throw await refusalOf(response);
     const read = v.safeParse(terms, await response.json().catch(() => null));
-    if (!read.success) throw new Error('the server says nothing of avatars');
+    if (!read.success) throw new Error('the server has no avatar store');
     return read.output;
   }
 
   return {
     terms: askTerms,
-    async liesElsewhere(hash) {
+    async isStoredElsewhere(hash) {
       const { elsewhere } = await askTerms();
       if (!elsewhere) return false;
       return fetch(`${elsewhere}${hash}`, { method: 'HEAD', cache: 'no-store' }).then(
@@ -83,10 +85,10 @@ export function createAvatarExchange(base: string, room: string, pass: RoomPass)
       if (!response.ok) throw await refusalOf(response);
     },
     async addressesOf(hash) {
-      // By the way a pass that has expired is renewed.
+      // This request also renews an expired pass.
       const { elsewhere } = await askTerms();
       const here = { url: addressOf(hash), headers: bearing(await pass.token(false)) };
-      // Another server learns nothing of the room.
+      // The other server does not receive the pass.
       return elsewhere ? [here, { url: `${elsewhere}${hash}`, headers: {} }] : [here];
     },
   };

@@ -1,8 +1,8 @@
-/** When to try again after failing. */
+/** An exponential back-off with jitter. */
 export interface BackOff {
   /** Failures since the last success. */
   readonly attempts: number;
-  /** Seconds until the next attempt. */
+  /** Counts a failure and returns the seconds until the next attempt. */
   next(): number;
   succeeded(): void;
 }
@@ -11,8 +11,8 @@ const first = 0.5;
 const longest = 3;
 
 /**
- * Twice as long after every failure, at most 3 s, each time between half and one and a half of that by chance: pages that
- * lost a server at the same moment do not all come back to it at the same moment. `chance` gives numbers in [0, 1).
+ * Creates a back-off that doubles with every failure, up to 3 s, with a jitter of ±50 %: pages that lose a server at the same moment do not all
+ * return at the same moment. `chance` returns numbers in [0, 1).
  */
 export function createBackOff(chance: () => number = Math.random): BackOff {
   let attempts = 0;

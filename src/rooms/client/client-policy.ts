@@ -2,7 +2,7 @@ import type { Transform } from 'threepoint/core/math/pose';
 import type { RoomMessage } from '../protocol/messages';
 import type { HostedGame } from '../room/match-policy';
 
-/** All that a client must know of the game that is played in its Room: the client's counterpart of MatchPolicy. */
+/** What a client needs of its Room's game: the counterpart of MatchPolicy. */
 export interface ClientPolicy<Game extends HostedGame> {
   /** Returns a message of the Room, checked field by field; null for anything else. */
   readMessage(value: unknown): RoomMessage<Game> | null;

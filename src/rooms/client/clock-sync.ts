@@ -1,41 +1,41 @@
-/** What is known of another clock by asking it for the time. */
+/** Estimates the offset of another clock from timed requests. */
 export interface ClockSync {
-  /** The other clock minus ours [s]; 0 before the first answer. */
-  readonly ahead: number;
-  /** Round trip of the answer that `ahead` is taken from [s]; Infinity before the first. */
+  /** The other clock minus this one [s]; 0 before the first answer. */
+  readonly offset: number;
+  /** Round trip of the answer from which `offset` is taken [s]; Infinity before the first. */
   readonly roundTrip: number;
-  /** Median round trip of the last five answers [s], as long as the newest has been waited for where that is longer; null: none yet. */
+  /** Returns the median round trip of the last five answers [s], or the age of an open request if that is longer; null: no answer yet. */
   delayAt(now: number): number | null;
-  /** Whether to ask now: often at first, then every two seconds. */
+  /** Returns whether to send a request now: often at first, then every two seconds. */
   due(now: number): boolean;
-  /** An answer: asked at `sent`, heard at `now` (ours), given at `there` (theirs). */
-  hear(sent: number, there: number, now: number): void;
-  /** Our clock left out `seconds` of a pause that ended at `now`: theirs is so much further ahead, until it is asked afresh. */
+  /** Adds an answer: requested at `sent` and received at `now` by this clock, answered at `there` by the other one. */
+  receive(sent: number, there: number, now: number): void;
+  /** Adds a pause that this clock skipped [s] and that ended at `now` to the offset, until the next answer. */
   paused(seconds: number, now: number): void;
-  /** Forgets everything: after a pause of the machine clocks may have gone on differently. */
+  /** Discards all answers: during a pause of the machine the clocks may have drifted apart. */
   reset(): void;
 }
 
-/** Answers older than this [s] count no more: clocks drift. */
+/** Answers older than this [s] are discarded, because clocks drift. */
 const memory = 30;
 const eager = { asks: 5, every: 0.2 } as const;
 const every = 2;
-/** No answer in this time [s], or a clock that went this far between two calls: start afresh. */
+/** After this long without an answer, or between two calls [s], the estimate is reset. */
 const longestSilence = 5;
 
 /**
- * The answer with the shortest round trip tells best: half of it is the largest error it can have. Clocks in seconds, monotonic;
- * a gap of more than 5 s between two calls of `due` counts as a pause of the machine.
+ * Creates a clock estimate from the answer with the shortest round trip, half of which bounds its error. Clocks in seconds, monotonic; a gap of
+ * more than 5 s between two calls of `due` counts as a pause of the machine.
  */
 export function createClockSync(): ClockSync {
   let answers: { readonly at: number; readonly ahead: number; readonly roundTrip: number }[] = [];
   let trips: readonly number[] = [];
-  /** The oldest question that waits for its answer. */
+  /** The time of the oldest open request. */
   let unanswered: number | null = null;
   let asked = 0;
   let nextAsk = Number.NEGATIVE_INFINITY;
   let lastCall: number | null = null;
-  /** Questions from before a pause are answered too late to tell anything. */
+  /** Answers to requests from before a pause are ignored. */
   let askedFrom = Number.NEGATIVE_INFINITY;
   let best: { readonly ahead: number; readonly roundTrip: number } = {
     ahead: 0,
@@ -44,14 +44,14 @@ export function createClockSync(): ClockSync {
 
   function reset(): void {
     unanswered = null;
-    // The old answer serves until the first new one.
+    // `best` stays in use until the first new answer.
     answers = [];
     asked = 0;
     nextAsk = Number.NEGATIVE_INFINITY;
   }
 
   return {
-    get ahead() {
+    get offset() {
       return best.ahead;
     },
     get roundTrip() {
@@ -66,7 +66,7 @@ export function createClockSync(): ClockSync {
       nextAsk = now + (asked < eager.asks ? eager.every : every);
       return true;
     },
-    hear(sent, there, now) {
+    receive(sent, there, now) {
       const roundTrip = now - sent;
       if (!(roundTrip >= 0 && roundTrip < longestSilence) || sent < askedFrom) return;
       unanswered = null;
@@ -74,7 +74,7 @@ export function createClockSync(): ClockSync {
       answers = answers.filter(({ at }) => now - at < memory);
       answers.push({ at: now, ahead: there - (sent + now) / 2, roundTrip });
       best = answers.reduce((least, answer) => (answer.roundTrip < least.roundTrip ? answer : least));
-      // A clock that was set, or a machine that slept: no answer can be wrong by more than half its round trip.
+      // No answer is wrong by more than half its round trip: a larger difference means that a clock was set or a machine slept.
       const newest = answers[answers.length - 1]!;
       if (Math.abs(newest.ahead - best.ahead) > (newest.roundTrip + best.roundTrip) / 2 + 0.005) {
         answers = [newest];

@@ -1,56 +1,55 @@
 import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { Transform } from 'threepoint/core/math/pose';
-import type { Farewell, SeatInfo } from '../protocol/messages';
+import type { DisconnectReason, SeatInfo } from '../protocol/messages';
 import type { PosePacket } from '../protocol/pose-packet';
 import type { SignalBody, Voice } from '../protocol/voice-messages';
 import type { HostedGame } from '../room/match-policy';
 
-/** This page's clock, that of the tracked frames [s]; it never goes back. */
+/** The page's clock, by which tracked frames are timed [s]; it never goes back. */
 export interface LocalClock {
   now(): number;
-  /** What it left out of the page's pauses in all [s]: other clocks went on meanwhile. */
+  /** The total of the pauses that it skipped [s]; other clocks ran on. */
   readonly leftOut: number;
 }
 
-/** How it stands between this page and its room. */
+/** The state of a page's connection to its room. */
 export interface ConnectionStatus {
-  /** ended: for good, see `reason`; nothing more comes. */
+  /** ended: for good, see `reason`; nothing more arrives. */
   readonly phase: 'connecting' | 'joined' | 'reconnecting' | 'ended';
-  /** Attempts since the connection was last whole; 0: none needed. */
+  /** Failed attempts since the last connection; 0: none. */
   readonly attempt: number;
   /** Seconds until the next attempt; null: one is under way, or none will be made. */
   readonly retryIn: number | null;
-  /** Why it ended, or why the last attempt failed; null: nothing to tell. */
-  readonly reason: Farewell | 'unreachable' | 'refused' | null;
+  /** Why it ended, or why the last attempt failed; null: neither has happened. */
+  readonly reason: DisconnectReason | 'unreachable' | 'refused' | null;
 }
 
-/** The room as it is known here. */
+/** The room as this page knows it. */
 export interface RoomView<Game extends HostedGame> {
   readonly id: string;
-  /** Another one where the room was made anew under its name, and what was played in it is forgotten. */
+  /** Changes when the server has created the room again and lost its match. */
   readonly epoch: string;
-  /** By seat number; null: free. */
+  /** The players by seat number; null: free. */
   readonly seats: readonly (SeatInfo | null)[];
-  /** Ours; null: a spectator. Also the player's index in the match. */
+  /** This page's seat, which is also the player's index in the match; null: a spectator. */
   readonly mySeat: number | null;
   readonly spectators: number;
-  /** Roles move on with every rematch. */
+  /** Whether roles move on with every rematch. */
   readonly rotate: boolean;
   /**
-   * The match with the player's own actions as they turn out if the rules allow them; null before the first welcome. The poses of the players
-   * are not in it: RemotePlayers has them.
+   * The match, with the player's own actions predicted; null before the first welcome. It has no poses: RemotePlayers has them.
    */
   readonly match: Game['state'] | null;
-  /** How long the room takes to answer [s]; null: it is in this page, or has not answered yet. */
+  /** Response time of the room [s]; null: it runs in this page, or has not answered yet. */
   readonly delay: number | null;
   /** Seconds of the match minus seconds of this page's clock. */
   readonly matchAhead: number;
-  /** The match's clock stands because a player stopped it. */
+  /** Whether a player has paused the match clock. */
   readonly paused: boolean;
-  /** How often the room has been known afresh, after joining and after each return. */
+  /** The number of welcome messages: one after joining and one after each reconnection. */
   readonly welcomes: number;
-  /** How many rounds were cut short because the room had forgotten them (its server was restarted). */
+  /** The number of rounds that were lost because the server was restarted. */
   readonly voided: number;
 }
 
@@ -58,80 +57,81 @@ export interface RoomView<Game extends HostedGame> {
 export interface ArrivedPose {
   readonly seat: number;
   readonly packet: PosePacket;
-  /** By this page's clock [s]. */
+  /** Time of arrival by this page's clock [s]. */
   readonly arrivedAt: number;
 }
 
-/** What came since the last call. */
+/** What has arrived since the last call. */
 export interface ConnectionUpdate<Game extends HostedGame> {
-  /** What happened in the match, oldest first. Not what happened before we came: that is in the match as it was told. */
+  /** Events of the match, oldest first. Earlier ones are part of the state in the welcome message. */
   readonly events: readonly Game['event'][];
   readonly poses: readonly ArrivedPose[];
-  /** welcome: the room is known afresh, after joining or returning. match: another round began. voided: see `RoomView.voided`. */
+  /** welcome: joined or reconnected. match: another round began. voided: see `RoomView.voided`. */
   readonly news: readonly ('welcome' | 'match' | 'voided' | 'seats')[];
 }
 
-/** What one frame of this avatar shows to the others, floor frame. */
+/** The pose of this page's avatar in one frame, as it is sent to the others; floor frame. */
 export type ShownPose = Omit<PosePacket, 'timeMs'>;
 
-/** What a room says of its voices: told at once and not with a frame, as a page that is hidden draws none. */
+/** Receives voice changes of a room at once instead of with a frame, because a hidden page draws no frames. */
 export interface VoiceListener {
-  /** The room's seats are known anew: others may take part or no longer. */
-  seatsChanged(): void;
-  /** The page with this session among the voices has something to say about the connection to it. */
-  signalled(from: string, body: SignalBody): void;
+  /** Called when the seats have changed, and with them perhaps who takes part in the voices. */
+  onSeatsChanged(): void;
+  /** Called with a signal from the page that has this voice session. */
+  onSignal(from: string, body: SignalBody): void;
 }
 
-/** How a page sets up its voices with the others of its room. */
-export interface VoiceLine {
-  /** Takes part as this says; null: not. Said again after every return. */
-  say(voice: Voice | null): void;
-  /** To the page with this session; lost without a word while there is no connection. */
+/** Sends the voice state and signals of a page to the others in its room. */
+export interface VoiceChannel {
+  /** Sets the own voice; null: takes no part. Sent again after every reconnection. */
+  setVoice(voice: Voice | null): void;
+  /** Sends a signal to the page with this session; dropped while there is no connection. */
   signal(to: string, body: SignalBody): void;
-  /** One listener; null: none. */
+  /** Sets the listener; null: none. */
   listen(listener: VoiceListener | null): void;
 }
 
 /**
- * A place in a room, whether the Room runs on a server or in this page. Times are this page's clock [s], that of the tracked frames.
+ * A client's connection to a room, whether the Room runs on a server or in this page. Times are the page's clock [s], by which tracked frames are
+ * timed.
  */
 export interface Connection<Game extends HostedGame> {
   readonly status: ConnectionStatus;
-  /** null: never joined yet. Kept, as it was, while the connection is lost. */
+  /** The room; null before the first welcome. It keeps its last state while the connection is lost. */
   readonly room: RoomView<Game> | null;
-  /** Once a frame: what came since the last call. */
+  /** Returns what has arrived since the last call; to be called once a frame. */
   update(time: number): ConnectionUpdate<Game>;
-  /** Once a frame; sends 30 of them a second. `time`: of the tracked frame. Nothing while a spectator or not connected. */
+  /** Sends the pose of a tracked frame at `time`, 30 times a second; to be called once a frame. Spectators send nothing. */
   sendPose(time: number, shown: ShownPose): void;
-  /** Sends an action in the game: it is predicted at once and judged by the Room. */
+  /** Sends an action of the game. It is predicted at once; the Room decides. */
   act(action: Game['action']): void;
   ready(ready: boolean): void;
   rotate(rotate: boolean): void;
-  /** Wants the match's clock to stand; refused where the room's terms do not allow it. Said again after every return. */
+  /** Pauses or resumes the match clock; refused unless the room is pausable. Sent again after every reconnection. */
   pause(pause: boolean): void;
   away(away: boolean): void;
-  /** Another seat that is free; null: watch. */
+  /** Moves to another free seat; null: becomes a spectator. */
   sit(seat: number | null): void;
   calibrate(calibration: Calibration): void;
-  readonly voices: VoiceLine;
-  /** To be seen with another avatar from now on. Said again after every return. */
+  readonly voices: VoiceChannel;
+  /** Changes the avatar. Sent again after every reconnection. */
   wear(avatar: AvatarRef): void;
-  /** Where a seat's floor lies in the arena. */
+  /** Returns the transform from a seat's floor to the arena. */
   arenaFromFloor(seat: number): Transform<'arena', 'floor'>;
-  /** Gives the seat up; the connection has ended. */
+  /** Gives up the seat and ends the connection. */
   leave(): void;
 }
 
-/** Who joins, and as what. */
+/** The person or bot who joins. */
 export interface Visitor {
   readonly name: string;
   readonly calibration: Calibration;
-  /** Absent: the plain one. */
+  /** Default: the plain avatar. */
   readonly avatar?: AvatarRef;
-  /** Watches only. */
+  /** Whether to join as a spectator. Default: false. */
   readonly spectate?: boolean;
-  /** Is no person: gives its seat to the first person who finds none, and is marked. */
+  /** A bot yields its seat to a person who finds no other, and is shown as a bot. Default: false. */
   readonly bot?: boolean;
-  /** A seat rather than the first that is free. */
+  /** The wanted seat. Default: the first free one. */
   readonly seat?: number;
 }

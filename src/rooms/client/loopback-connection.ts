@@ -1,16 +1,16 @@
-import type { ClientMessage, Farewell, RoomMessage } from '../protocol/messages';
+import type { ClientMessage, DisconnectReason, RoomMessage } from '../protocol/messages';
 import { encodeFrame } from '../protocol/pose-frame';
 import type { HostedGame, MatchAction, MatchPolicy } from '../room/match-policy';
 import { Room, type RoomOptions } from '../room/room';
-import type { ClientId, RoomRefusal } from '../room/room-outlet';
+import type { ClientId, RoomRefusal } from '../room/room-host';
 import type { ClientPolicy } from './client-policy';
 import type { Connection, ConnectionStatus, ConnectionUpdate, Visitor } from './connection';
 import { RoomSession } from './room-session';
 
-/** A Room in this page: for a player alone, with bots if they like, and for tests. */
+/** A Room in this page, for a single player with bots, and for tests. */
 export interface LoopbackHost<Game extends HostedGame> {
   readonly room: Room<Game>;
-  /** `now`: this page's clock [s]. */
+  /** Joins the room. `now`: the page's clock [s]. */
   connect(visitor: Visitor, now: number): Connection<Game>;
 }
 
@@ -19,7 +19,7 @@ export interface LoopbackOptions<Game extends HostedGame> extends Partial<RoomOp
   stepped?(actions: readonly MatchAction<Game>[]): void;
 }
 
-/** The Room is the one of the server, and as it is this page's own it may be paused. It ticks when its first guest of a frame asks for news. */
+/** Creates a host of the same Room class as the server's; it may be paused. It ticks with the first `update` of a frame. */
 export function createLoopbackHost<Game extends HostedGame>(
   match: MatchPolicy<Game>,
   client: ClientPolicy<Game>,
@@ -35,10 +35,10 @@ export function createLoopbackHost<Game extends HostedGame>(
 class LoopbackRoom<Game extends HostedGame> {
   readonly room: Room<Game>;
   readonly policy: ClientPolicy<Game>;
-  readonly #guests = new Map<ClientId, LoopbackConnection<Game>>();
+  readonly #connections = new Map<ClientId, LoopbackConnection<Game>>();
   #now = 0;
   #ticked = Number.NEGATIVE_INFINITY;
-  #made = 0;
+  #count = 0;
 
   constructor(
     match: MatchPolicy<Game>,
@@ -50,17 +50,17 @@ class LoopbackRoom<Game extends HostedGame> {
       match,
       { id: 'here', epoch: 'here', pausable: true, ...options },
       {
-        send: (to, message) => this.#guests.get(to)?.hear(message, this.#now),
+        send: (to, message) => this.#connections.get(to)?.receive(message, this.#now),
         broadcast: (message) => {
-          for (const guest of this.#guests.values()) guest.hear(message, this.#now);
+          for (const connection of this.#connections.values()) connection.receive(message, this.#now);
         },
-        poses: (poses) => {
+        sendPoses: (poses) => {
           const frame = encodeFrame(poses);
-          for (const guest of this.#guests.values()) guest.see(frame, this.#now);
+          for (const connection of this.#connections.values()) connection.receiveFrame(frame, this.#now);
         },
-        drop: (client, reason) => {
-          this.#guests.get(client)?.end(reason);
-          this.#guests.delete(client);
+        disconnect: (client, reason) => {
+          this.#connections.get(client)?.end(reason);
+          this.#connections.delete(client);
         },
         refused: (refusal) => refused?.(refusal),
         ...(stepped && { stepped }),
@@ -74,15 +74,15 @@ class LoopbackRoom<Game extends HostedGame> {
 
   connect(visitor: Visitor, time: number): Connection<Game> {
     this.#now = Math.max(this.#now, time);
-    this.#made += 1;
-    const client = `guest ${this.#made}`;
-    const guest = new LoopbackConnection(this, client, visitor);
-    this.#guests.set(client, guest);
-    guest.join();
-    return guest;
+    this.#count += 1;
+    const client = `client ${this.#count}`;
+    const connection = new LoopbackConnection(this, client, visitor);
+    this.#connections.set(client, connection);
+    connection.join();
+    return connection;
   }
 
-  /** The page's clock has come to this time [s]. */
+  /** Ticks the room at this time of the page's clock [s]. */
   advance(time: number): void {
     this.#now = Math.max(this.#now, time);
     if (this.#now <= this.#ticked) return;
@@ -108,18 +108,18 @@ class LoopbackConnection<Game extends HostedGame> extends RoomSession<Game> {
   }
 
   join(): void {
-    this.#shared.room.join(this.#client, this.#client, this.joining(), this.#shared.now);
+    this.#shared.room.join(this.#client, this.#client, this.joinRequest(), this.#shared.now);
   }
 
-  hear(message: RoomMessage<Game>, now: number): void {
+  receive(message: RoomMessage<Game>, now: number): void {
     this.onMessage(message, now);
   }
 
-  see(frame: Uint8Array, now: number): void {
+  receiveFrame(frame: Uint8Array, now: number): void {
     this.onFrame(frame, now);
   }
 
-  end(reason: Farewell): void {
+  end(reason: DisconnectReason): void {
     this.#status = { phase: 'ended', attempt: 0, retryIn: null, reason };
   }
 

@@ -1,39 +1,38 @@
 import { smoothstep } from 'threepoint/core/math/damper';
 import type { PosePacket } from '../protocol/pose-packet';
 
-/** A packet on a path: its time by the sender's clock, unwrapped [s], and by the page's clock when it came [s]. */
+/** A packet on a path: its time by the sender's clock, unwrapped [s], and its arrival by the page's clock [s]. */
 export interface PathSample {
   readonly time: number;
   readonly arrivedAt: number;
   readonly packet: PosePacket;
 }
 
-/** Half-width of the bell over which samples count [s]: with packets 33 ms apart three or four of them do. */
+/** Standard deviation of the Gaussian weight [s]: with packets 33 ms apart three or four count. */
 const width = 0.036;
-/** No sample further away than this counts [s]. */
+/** Samples further away than this are ignored [s]. */
 const furthest = 3.4 * width;
-/** A packet counts fully so long after it came [s]: no one leaps when it comes, however late it is. */
+/** A packet gains its full weight over this time after its arrival [s], so that a late one causes no jump. */
 const trustSeconds = 0.08;
 const leastTrust = 1e-4;
-/** Holds slope and bend at 0 where the samples do not tell them [share of the sum of weights]. */
+/** Regularisation of slope and curvature, where the samples do not determine them [share of the sum of weights]. */
 const stiffness = 1e-9;
-/** Samples that count at once, at most. */
+/** The most samples of one fit. */
 const most = 24;
 
 /**
- * How much each sample of a path counts for a place on it: that on a parabola fitted to the samples around (local quadratic regression; Cleveland,
- * Robust Locally Weighted Regression, 1979). It follows even speed and even acceleration without lag, and averages what rounding and trembling
- * add. A straight way between two packets has a corner at each.
+ * Computes the weights of a path's samples for a point on it, by local quadratic regression (Cleveland, Robust Locally Weighted Regression, 1979).
+ * It follows constant speed and acceleration without lag, and averages rounding and tremor. Linear interpolation has a corner at each packet.
  */
 export class PathFit {
-  /** Index of the first sample that counts, and how many do. */
+  /** Index of the first sample in the fit, and their number. */
   first = 0;
   count = 0;
-  /** Of the samples from `first` on; their sum is 1, and some may be below 0. */
+  /** The weights of the samples from `first` on; their sum is 1, and some may be negative. */
   readonly shares = new Float64Array(most);
 
   /**
-   * For the time `at` by the sender's clock [s], of samples[from] to samples[to]; past the last of them on the tangent there. `now`: page's
+   * Fits samples[from] to samples[to] at the time `at` of the sender's clock [s]; beyond the last sample along the tangent there. `now`: the page's
    * clock [s].
    */
   solve(samples: readonly PathSample[], from: number, to: number, at: number, now: number): void {
@@ -60,7 +59,7 @@ export class PathFit {
       m3 += weight * s * s * s;
       m4 += weight * s * s * s * s;
     }
-    // The normal equations' matrix, symmetric: m0 m1 m2, m1 slope m3, m2 m3 bend; what is wanted of its inverse are two rows.
+    // The symmetric matrix of the normal equations: m0 m1 m2, m1 slope m3, m2 m3 bend. Two rows of its inverse are needed.
     const slope = m2 + stiffness * m0;
     const bend = m4 + stiffness * m0;
     const c00 = slope * bend - m3 * m3;

@@ -3,30 +3,30 @@ import type { PosePacket } from '../protocol/pose-packet';
 import type { ArrivedPose } from './connection';
 import { Playback, type PlaybackReport } from './playback';
 
-/** Another player as they are to be drawn now: the same object in every frame, so copy what must stay. */
+/** Another player as drawn in this frame. The same object in every frame: copy what you keep. */
 export interface RemotePlayer {
   readonly seat: number;
-  /** Floor frame of their seat. */
+  /** The pose in the floor frame of the seat. */
   readonly pose: AvatarPose;
   readonly fingers: PosePacket['fingers'];
-  /** 1: live. Less: a ghost, because nothing was heard of them for a while. */
+  /** 1: live. Less: a ghost, because no packet has arrived for a while. */
   readonly opacity: number;
 }
 
-/** The newest packets of the other players, played back a moment late so that frames come evenly. */
+/** Plays the packets of the other players with a jitter buffer for each. */
 export interface RemotePlayers {
   receive(arrived: ArrivedPose): void;
-  /** The players to be drawn at this time of the page's clock [s]; silent for 3 s: not drawn. The same list in every frame. */
+  /** Returns the players to draw at this time of the page's clock [s], without those silent for 3 s. The same list in every frame. */
   follow(time: number): readonly RemotePlayer[];
-  /** Another person sits there now. */
+  /** Discards the packets of a seat that another person has taken. */
   forget(seat: number): void;
-  /** null: no one has been heard from this seat. */
+  /** Returns the measurements of a seat's playback; null: no packet has arrived from it. */
   report(seat: number): PlaybackReport | null;
 }
 
 interface Seated {
   readonly playback: Playback;
-  /** What is drawn of them, as `follow` lists it. */
+  /** The entry in the list that `follow` returns. */
   readonly remote: RemotePlayer & { opacity: number };
 }
 

@@ -2,17 +2,20 @@ import type { RoomTerms } from '../protocol/messages';
 
 /** The signed pass that lets a page into a room. */
 export interface RoomPass {
-  /** The newest one; `afresh`: a renewed one, because this one was refused. Rejects with a sentence where the server gives none. */
+  /** Resolves to the newest token; `afresh`: a renewed one, after a refusal. Rejects with a sentence if the server issues none. */
   token(afresh: boolean): Promise<string>;
 }
 
-/** Where a page keeps something for as long as its tab lives: `sessionStorage` has this shape. */
+/** Storage for the lifetime of a tab; `sessionStorage` has this shape. */
 export interface Keep {
   getItem(key: string): string | null;
   setItem(key: string, value: string): void;
 }
 
-/** Asks the relay at `base` for a pass; the same person after a reload, in the same tab. `kind`: the game. `terms`: of the room, for the first person in it. */
+/**
+ * Creates the pass to a room of the relay at `base`. A reload in the same tab keeps the person. `kind`: the name of the game; `terms`: the terms of the
+ * room, if this person is the first in it.
+ */
 export function createRoomPass(base: string, room: string, kind: string, keep?: Keep, terms: RoomTerms = {}): RoomPass {
   const key = `threepoint pass ${kind} ${room}`;
   let token = keep?.getItem(key) ?? null;
@@ -32,7 +35,9 @@ export function createRoomPass(base: string, room: string, kind: string, keep?: 
       });
       const answer = (await response.json()) as { token?: unknown; error?: unknown };
       if (!response.ok || typeof answer.token !== 'string') {
-        throw new Error(`no pass for this room: ${typeof answer.error === 'string' ? answer.error : response.status}`);
+        throw new Error(
+          `the server issued no pass for this room: ${typeof answer.error === 'string' ? answer.error : response.status}`,
+        );
       }
       token = answer.token;
       verified = true;

@@ -5,7 +5,7 @@ import { type RoomMessage, type SeatInfo, unpackSeatInfo, type Welcome } from '.
 import type { HostedGame } from '../room/match-policy';
 import type { ClientPolicy } from './client-policy';
 
-/** What a Room has said of itself. */
+/** The state of a Room, as its messages report it. */
 export interface KnownRoom
   extends Pick<Welcome<HostedGame>, 'room' | 'epoch' | 'seat' | 'spectators' | 'rotate' | 'matchStart' | 'paused'> {
   readonly seats: readonly (SeatInfo | null)[];
@@ -13,7 +13,7 @@ export interface KnownRoom
 
 const skeletonOf = (info: SeatInfo | null): Skeleton | null => info && skeletonFromCalibration(info.calibration);
 
-/** A Room as a client knows it: what the Room has confirmed, and the client's own actions that it has not answered yet. */
+/** A client's copy of a Room: the confirmed state, and the client's own actions that the Room has not answered yet. */
 export class RoomReplica<Game extends HostedGame> {
   readonly #policy: ClientPolicy<Game>;
   #known: KnownRoom | null = null;
@@ -26,22 +26,22 @@ export class RoomReplica<Game extends HostedGame> {
     this.#policy = policy;
   }
 
-  /** null: before the first welcome. */
+  /** The state of the room; null before the first welcome. */
   get known(): KnownRoom | null {
     return this.#known;
   }
 
-  /** null: a spectator, or not welcomed yet. */
+  /** This client's seat; null: a spectator, or before the first welcome. */
   get mySeat(): number | null {
     return this.#known?.seat ?? null;
   }
 
-  /** How many rounds were cut short because the room had forgotten them. */
+  /** The number of rounds that were lost because the server was restarted. */
   get voided(): number {
     return this.#voided;
   }
 
-  /** By the measures that the player on this seat told; null: the seat is empty. */
+  /** Returns the skeleton from the measures of the player on a seat; null: the seat is empty. */
   skeletonOf(seat: number): Skeleton | null {
     return this.#skeletons[seat] ?? null;
   }
@@ -50,7 +50,7 @@ export class RoomReplica<Game extends HostedGame> {
     return this.#policy.arenaFromFloor(seat, this.#confirmed);
   }
 
-  /** The match at this second, with the own actions as they will turn out if the rules allow them; null: none is known. */
+  /** Returns the match at this time [s], with the own actions predicted; null before the first welcome. */
   predicted(matchTime: number): Game['state'] | null {
     if (!this.#confirmed) return null;
     const state = this.#policy.at(this.#confirmed, matchTime);
@@ -58,14 +58,14 @@ export class RoomReplica<Game extends HostedGame> {
     return seat === null ? state : this.#pending.reduce((at, action) => this.#policy.predict(at, seat, action), state);
   }
 
-  /** Counts on an action that is about to be sent; false: there is no match to act in. */
+  /** Adds an action to the prediction; returns false if there is no match to act in. */
   expect(action: Game['action']): boolean {
     if (this.mySeat === null || !this.#confirmed) return false;
     this.#pending.push(action);
     return true;
   }
 
-  /** The whole room, on joining and on returning; true: it has forgotten a round that was running. */
+  /** Applies the whole state, after joining or reconnecting. Returns whether the server has lost a running round. */
   onWelcome(message: Welcome<Game>): boolean {
     const { room, epoch, seat, spectators, rotate, matchStart, paused } = message;
     const before = this.#known;
@@ -79,7 +79,7 @@ export class RoomReplica<Game extends HostedGame> {
     return forgotten;
   }
 
-  /** A change of a room that is known; false: none is yet, and nothing was taken in. */
+  /** Applies a change. Returns false before the first welcome, when it is ignored. */
   onChange(message: Exclude<RoomMessage<Game>, { type: 'welcome' | 'pong' | 'signal' }>): boolean {
     if (!this.#known) return false;
     switch (message.type) {

@@ -2,7 +2,7 @@ import { type AvatarRef, plainAvatar } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import type { Transform } from 'threepoint/core/math/pose';
-import { type ClientMessage, type Joining, type RoomMessage, toMillimetres } from '../protocol/messages';
+import { type ClientMessage, type JoinRequest, type RoomMessage, toMillimetres } from '../protocol/messages';
 import { packetMs } from '../protocol/packet-time';
 import { decodePose, encodePose } from '../protocol/pose-codec';
 import { decodeFrame } from '../protocol/pose-frame';
@@ -18,27 +18,27 @@ import type {
   RoomView,
   ShownPose,
   Visitor,
-  VoiceLine,
+  VoiceChannel,
   VoiceListener,
 } from './connection';
 import { RoomReplica } from './room-replica';
 
 const poseSeconds = 1 / 30;
 
-/** The last frames while no one asks (a hidden page) are not kept longer than this [packets]. */
+/** The most packets that are kept while the page is hidden and calls no `update`. */
 const mostWaiting = 256;
 
-/** A client's half of the protocol. Each kind of connection carries it over a wire of its own, in `transmit` and `transmitPose`. */
+/** The client's side of the protocol. Subclasses send its messages, in `transmit` and `transmitPose`. */
 export abstract class RoomSession<Game extends HostedGame> implements Connection<Game> {
-  readonly voices: VoiceLine = {
-    say: (voice) => this.#sayVoice(voice),
+  readonly voices: VoiceChannel = {
+    setVoice: (voice) => this.#setVoice(voice),
     signal: (to: string, body: SignalBody) => this.transmit({ type: 'signal', to, body }),
     listen: (listener) => {
       this.#voiceListener = listener;
     },
   };
   readonly #visitor: Visitor;
-  /** The Room's clock is this page's own. */
+  /** Whether the Room uses this page's clock. */
   readonly #knowsClock: boolean;
   readonly #clock = createClockSync();
   readonly #replica: RoomReplica<Game>;
@@ -47,13 +47,13 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   #voice: Voice | null = null;
   #voiceListener: VoiceListener | null = null;
   #skeleton: Skeleton;
-  #wishes: { spectate: boolean; seat: number | null };
-  /** What the room was told first on this connection. */
-  #said: Joining | null = null;
-  /** By its type, what was last asked for without a connection, or with its welcome on the way. */
-  readonly #unsaid = new Map<ClientMessage['type'], ClientMessage>();
-  /** Whether the clock is to stand; null: never asked for. */
-  #pauseWish: boolean | null = null;
+  #seatRequest: { spectate: boolean; seat: number | null };
+  /** The join request of this connection. */
+  #sentJoin: JoinRequest | null = null;
+  /** Requests that wait for the welcome, the newest of each type. */
+  readonly #queued = new Map<ClientMessage['type'], ClientMessage>();
+  /** The last requested pause state; null: never requested. */
+  #pauseRequest: boolean | null = null;
   #welcomes = 0;
   #now = 0;
   #nextPose = Number.NEGATIVE_INFINITY;
@@ -69,13 +69,13 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     this.#calibration = toMillimetres(visitor.calibration);
     this.#skeleton = skeletonFromCalibration(this.#calibration);
     this.#avatar = visitor.avatar ?? plainAvatar;
-    this.#wishes = { spectate: visitor.spectate ?? false, seat: visitor.seat ?? null };
+    this.#seatRequest = { spectate: visitor.spectate ?? false, seat: visitor.seat ?? null };
   }
 
   abstract get status(): ConnectionStatus;
   abstract update(time: number): ConnectionUpdate<Game>;
   abstract leave(): void;
-  /** To the Room, in order; nothing while there is no connection. */
+  /** Sends a message to the Room, in order; dropped while there is no connection. */
   protected abstract transmit(message: ClientMessage): void;
   protected abstract transmitPose(bytes: Uint8Array): void;
 
@@ -101,7 +101,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
 
   sendPose(time: number, shown: ShownPose): void {
     if (this.#replica.mySeat === null || (time < this.#nextPose && !shown.jump)) return;
-    // Frames come at their own rate: on average thirty packets a second.
+    // Frames have their own rate; this keeps an average of 30 packets a second.
     this.#nextPose = Math.max(this.#nextPose + poseSeconds, time + poseSeconds / 2);
     const timeMs = packetMs((time + this.#ahead) * 1000);
     const bytes = encodePose({ ...shown, timeMs }, this.#skeleton);
@@ -115,24 +115,24 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   }
 
   ready(ready: boolean): void {
-    this.#ask({ type: 'ready', ready });
+    this.#sendOrQueue({ type: 'ready', ready });
   }
 
   rotate(rotate: boolean): void {
-    this.#ask({ type: 'rotate', rotate });
+    this.#sendOrQueue({ type: 'rotate', rotate });
   }
 
   pause(pause: boolean): void {
-    this.#pauseWish = pause;
+    this.#pauseRequest = pause;
     if (this.#replica.mySeat !== null) this.transmit({ type: 'pause', pause });
   }
 
   away(away: boolean): void {
-    this.#ask({ type: 'away', away });
+    this.#sendOrQueue({ type: 'away', away });
   }
 
   sit(seat: number | null): void {
-    this.#ask({ type: 'sit', seat });
+    this.#sendOrQueue({ type: 'sit', seat });
   }
 
   calibrate(calibration: Calibration): void {
@@ -151,62 +151,63 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     return this.#replica.arenaFromFloor(seat);
   }
 
-  /** What to say first on every new connection. */
-  protected joining(): Joining {
+  /** Returns the first message of every new connection. */
+  protected joinRequest(): JoinRequest {
     const { name, bot = false } = this.#visitor;
     const own = { calibration: this.#calibration, avatar: this.#avatar, voice: this.#voice };
-    this.#said = { name, bot, ...own, ...this.#wishes };
-    return this.#said;
+    this.#sentJoin = { name, bot, ...own, ...this.#seatRequest };
+    return this.#sentJoin;
   }
 
-  #ask(message: ClientMessage): void {
+  #sendOrQueue(message: ClientMessage): void {
     if (this.status.phase === 'joined') this.transmit(message);
-    else this.#unsaid.set(message.type, message);
+    else this.#queued.set(message.type, message);
   }
 
-  #sayWhatWaited(): void {
-    for (const message of this.#unsaid.values()) this.transmit(message);
-    this.#unsaid.clear();
+  #sendQueued(): void {
+    for (const message of this.#queued.values()) this.transmit(message);
+    this.#queued.clear();
   }
 
-  /** What was changed while the welcome was on its way has not been sent. */
-  #sayChanges({ calibration, avatar, voice }: Joining): void {
+  /** Sends what has changed since the join request. */
+  #sendChanges({ calibration, avatar, voice }: JoinRequest): void {
     if (calibration !== this.#calibration) this.transmit({ type: 'calibration', calibration: this.#calibration });
     if (avatar !== this.#avatar) this.transmit({ type: 'wear', avatar: this.#avatar });
     if (voice !== this.#voice) this.transmit({ type: 'voice', voice: this.#voice });
   }
 
-  /** Takes a message of the Room in, heard at this time of the page's clock [s]. */
+  /** Handles a message of the Room that arrived at this time of the page's clock [s]. */
   protected onMessage(message: RoomMessage<Game>, at: number): void {
     this.#now = Math.max(this.#now, at);
     this.#view = null;
     switch (message.type) {
       case 'pong':
-        this.#clock.hear(message.sent, message.time, at);
+        this.#clock.receive(message.sent, message.time, at);
         return;
       case 'signal':
-        this.#voiceListener?.signalled(message.from, message.body);
+        this.#voiceListener?.onSignal(message.from, message.body);
         return;
       case 'welcome':
         if (this.#replica.onWelcome(message)) this.#news.push('voided');
         this.#news.push('welcome');
         this.#welcomes += 1;
-        // A player who returns to a server that has forgotten them asks for the same seat.
-        if (message.seat !== null) this.#wishes = { spectate: false, seat: message.seat };
-        if (this.#said) this.#sayChanges(this.#said);
-        this.#sayWhatWaited();
-        // The room may have forgotten the wish, or have been told otherwise before the connection was lost.
-        if (this.#pauseWish !== null && message.seat !== null) this.transmit({ type: 'pause', pause: this.#pauseWish });
-        this.#voiceListener?.seatsChanged();
+        // After a restart of the server the player requests the same seat.
+        if (message.seat !== null) this.#seatRequest = { spectate: false, seat: message.seat };
+        if (this.#sentJoin) this.#sendChanges(this.#sentJoin);
+        this.#sendQueued();
+        // The room may have lost the request, or have received another one before the connection was lost.
+        if (this.#pauseRequest !== null && message.seat !== null)
+          this.transmit({ type: 'pause', pause: this.#pauseRequest });
+        this.#voiceListener?.onSeatsChanged();
         return;
       default:
         if (this.#replica.onChange(message)) this.#afterChange(message);
     }
   }
 
-  /** Takes a frame of poses in, heard at this time of the page's clock [s]. */
+  /** Handles a frame of poses that arrived at this time of the page's clock [s]. */
   protected onFrame(frame: Uint8Array, arrivedAt: number): void {
-    // A bot looks at no one: it plays by what the match says.
+    // Bots need no poses: they play from the state of the match.
     if (this.#visitor.bot) return;
     for (const { seat, bytes } of decodeFrame(frame) ?? []) {
       const skeleton = this.#replica.skeletonOf(seat);
@@ -217,24 +218,24 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     if (this.#poses.length > mostWaiting) this.#poses = this.#poses.slice(-mostWaiting);
   }
 
-  /** This page's clock left out `seconds` of a pause that ended at `now`; the Room's went on. */
+  /** Accounts for a pause that this page's clock skipped [s] and that ended at `now`; the Room's clock ran on. */
   protected leaveOut(seconds: number, now: number): void {
     this.#clock.paused(seconds, now);
   }
 
-  /** What came since the last call; asks for the Room's time when that is due. */
+  /** Returns what has arrived since the last call, and requests the Room's time when that is due. */
   protected takeUpdate(time: number, connected: boolean): ConnectionUpdate<Game> {
     this.#now = time;
     this.#view = null;
     if (connected && !this.#knowsClock && this.#clock.due(time)) this.transmit({ type: 'ping', sent: time });
-    const since = { events: this.#events, poses: this.#poses, news: this.#news };
+    const update = { events: this.#events, poses: this.#poses, news: this.#news };
     this.#events = [];
     this.#poses = [];
     this.#news = [];
-    return since;
+    return update;
   }
 
-  #sayVoice(voice: Voice | null): void {
+  #setVoice(voice: Voice | null): void {
     this.#voice = voice;
     if (this.#replica.known) this.transmit({ type: 'voice', voice });
   }
@@ -243,13 +244,13 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     switch (message.type) {
       case 'seat':
         this.#news.push('seats');
-        this.#voiceListener?.seatsChanged();
+        this.#voiceListener?.onSeatsChanged();
         return;
       case 'seated':
-        this.#wishes = { spectate: message.seat === null, seat: message.seat };
+        this.#seatRequest = { spectate: message.seat === null, seat: message.seat };
         this.#news.push('seats');
-        if (this.#pauseWish && message.seat !== null) this.transmit({ type: 'pause', pause: true });
-        this.#voiceListener?.seatsChanged();
+        if (this.#pauseRequest && message.seat !== null) this.transmit({ type: 'pause', pause: true });
+        this.#voiceListener?.onSeatsChanged();
         return;
       case 'match':
         this.#news.push('match');
@@ -259,12 +260,12 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     }
   }
 
-  /** Seconds of the Room's clock minus seconds of this page's. */
+  /** The Room's clock minus the page's clock [s]. */
   get #ahead(): number {
-    return this.#knowsClock ? 0 : this.#clock.ahead;
+    return this.#knowsClock ? 0 : this.#clock.offset;
   }
 
-  /** Seconds of the match minus seconds of this page's clock. */
+  /** The match clock minus the page's clock [s]. */
   get #matchAhead(): number {
     const { known } = this.#replica;
     if (!known) return 0;

@@ -14,7 +14,7 @@ import { addScaled, copyVec3, lerp, type MutableVec3, setVec3, vec3 } from 'thre
 import type { PosePacket } from '../protocol/pose-packet';
 import type { PathFit, PathSample } from './path-fit';
 
-/** What is drawn of a player in one frame. */
+/** The pose of a player in one frame. */
 export type Shown = Omit<PosePacket, 'timeMs' | 'jump'>;
 
 interface MutableTrackedPose extends MutablePose<'floor'> {
@@ -36,7 +36,7 @@ const makeBody = (): MutableBody => ({
   >,
 });
 
-/** A buffer for what is drawn of a player, from one packet or between two; parts of it may be one of the sources. */
+/** A buffer for the drawn pose of a player; methods may use the buffer itself as a source. */
 export class ShownPlayer implements Shown {
   readonly pose: {
     readonly head: MutableTrackedPose;
@@ -53,7 +53,7 @@ export class ShownPlayer implements Shown {
     this.pose = { head: makeTracked(), leftHand: null, rightHand: null, body: null };
   }
 
-  /** As it is there. */
+  /** Copies a pose. */
   copy({ pose, fingers }: Shown): this {
     copyTracked(pose.head, this.pose.head);
     this.pose.leftHand = pose.leftHand && copyTracked(pose.leftHand, this.hands.left);
@@ -64,7 +64,7 @@ export class ShownPlayer implements Shown {
     return this;
   }
 
-  /** Where the samples around have it at a time that is fitted; what one of them lacks: from a (t = 0) to b (t = 1), the two next to it. */
+  /** Writes the pose at a fitted time. A part that is missing in a sample is interpolated from a (t = 0) to b (t = 1), the neighbouring packets. */
   follow(samples: readonly PathSample[], fit: PathFit, a: Shown, b: Shown, t: number): this {
     const { pose, hands, fingers, shapes } = this;
     const next = (t < 1 ? a : b).pose;
@@ -83,7 +83,7 @@ export class ShownPlayer implements Shown {
     return this;
   }
 
-  /** From a (t = 0) to b (t = 1), and on beyond b. */
+  /** Interpolates from a (t = 0) to b (t = 1), or extrapolates beyond b. */
   mix(a: Shown, b: Shown, t: number): this {
     mixTracked(a.pose.head, b.pose.head, t, this.pose.head);
     this.pose.leftHand = mixHand(a.pose.leftHand, b.pose.leftHand, t, this.hands.left);
@@ -118,10 +118,10 @@ function allHave(
   return true;
 }
 
-// The sums of one call, in numbers that stay unboxed.
+// The sum of one call of fitTracked or fitBody.
 const sum = quat(0, 0, 0, 0);
 
-/** Adds so much of q, or of −q where that is nearer to `near`, to `sum`. */
+/** Adds `share` times q, or −q if that is nearer to `near`, to `sum`. */
 function addShare(q: Quat, share: number, near: Quat): void {
   const k = q.x * near.x + q.y * near.y + q.z * near.z + q.w * near.w < 0 ? -share : share;
   sum.x += k * q.x;
@@ -174,7 +174,7 @@ function mixHand(
   target: MutableTrackedPose,
 ): MutableTrackedPose | null {
   if (a && b) return mixTracked(a, b, t, target);
-  // A lost hand is nowhere, so there is no way from it or to it: it stays what it was until the packet that says otherwise.
+  // Nothing is interpolated from or to a lost hand: the earlier packet applies until the later one.
   const held = t < 1 ? a : b;
   return held && copyTracked(held, target);
 }

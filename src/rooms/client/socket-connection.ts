@@ -1,6 +1,6 @@
 import { io, type Socket } from 'socket.io-client';
 import { type ClientMessage, protocolVersion } from '../protocol/messages';
-import { frameEvent, messageEvent, pageParser, poseEvent } from '../protocol/small-frames';
+import { frameEvent, messageEvent, pageParser, poseEvent } from '../protocol/socket-parsers';
 import type { HostedGame } from '../room/match-policy';
 import { type BackOff, createBackOff } from './back-off';
 import type { ClientPolicy } from './client-policy';
@@ -9,28 +9,28 @@ import type { RoomPass } from './room-pass';
 import { RoomSession } from './room-session';
 
 export interface SocketConnectionOptions {
-  /** Where the relay is, no slash at its end: mostly the folder of the page. */
+  /** The address of the relay, without a trailing slash: usually the folder of the page. */
   readonly url: string;
-  /** Proxies find the process that has the room by this name. */
+  /** The name of the room, by which a proxy finds its process. */
   readonly room: string;
   readonly visitor: Visitor;
   readonly pass: RoomPass;
-  /** Absent: the browser's own, which leaves nothing out. */
+  /** Default: `performance.now`, which skips no pauses. */
   readonly clock?: LocalClock;
-  /** Numbers in [0, 1) for the waits between attempts. */
+  /** Returns numbers in [0, 1) for the back-off. */
   readonly chance?: () => number;
 }
 
 const runningTime: LocalClock = { now: () => performance.now() / 1000, leftOut: 0 };
 
-/** Without an answer in this time [ms] an attempt has failed. */
-const patienceMs = 4000;
-/** A server that does not end a connection which was left is not waited for any longer [ms]. */
-const farewellMs = 1000;
-/** So many refusals of fresh passes are an answer. */
+/** Timeout of an attempt [ms]. */
+const timeoutMs = 4000;
+/** After `leave` the page closes the connection itself after this time [ms], if the server has not. */
+const closingMs = 1000;
+/** After this many refusals of renewed passes the connection ends. */
 const mostRefusals = 3;
 
-/** A place in a room on a relay. Connects at once, and again whenever the connection is lost, until it has ended. */
+/** Connects to a room on a relay, and reconnects whenever the connection is lost, until it has ended. */
 export const createSocketConnection = <Game extends HostedGame>(
   policy: ClientPolicy<Game>,
   options: SocketConnectionOptions,
@@ -44,7 +44,7 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
   readonly #socket: Socket;
   #phase: ConnectionStatus['phase'] = 'connecting';
   #reason: ConnectionStatus['reason'] = null;
-  /** When the next attempt will be made, by the page's clock [s]; null: one is under way, or none will be made. */
+  /** Time of the next attempt by the page's clock [s]; null: one is under way, or none will be made. */
   #retryAt: number | null = null;
   #refusals = 0;
   #waiting: ReturnType<typeof setTimeout> | null = null;
@@ -70,7 +70,7 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
       reconnection: false,
       autoConnect: false,
       forceNew: true,
-      timeout: patienceMs,
+      timeout: timeoutMs,
     });
     this.#listen();
     this.#attempt();
@@ -93,10 +93,10 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
   }
 
   leave(): void {
-    const said = this.#isJoined;
+    const isJoined = this.#isJoined;
     this.transmit({ type: 'leave' });
-    // socket.io forgets what came with the very bytes that ended the connection: the server ends it, when it has heard.
-    this.#end('left', said ? farewellMs : 0);
+    // socket.io drops a message that arrives with the end of the connection: the server closes it after the message.
+    this.#end('left', isJoined ? closingMs : 0);
   }
 
   protected transmit(message: ClientMessage): void {
@@ -111,7 +111,7 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
     return this.#phase === 'joined';
   }
 
-  /** An attempt that waits for its next try, or a connection that has ended, takes no answers. */
+  /** Whether answers count: not between two attempts, nor after the end. */
   get #takesAnswers(): boolean {
     return this.#phase !== 'ended' && this.#retryAt === null;
   }
@@ -119,7 +119,7 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
   #listen(): void {
     const socket = this.#socket;
     socket.on('connect', () => {
-      socket.emit(messageEvent, { type: 'join', version: protocolVersion, ...this.joining() });
+      socket.emit(messageEvent, { type: 'join', version: protocolVersion, ...this.joinRequest() });
     });
     socket.on('connect_error', (error) => this.#onRefusal(error.message));
     socket.on('disconnect', () => this.#retryLater(this.#reason));
@@ -162,7 +162,7 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
 
   #attempt(): void {
     this.#retryAt = null;
-    this.#wait(patienceMs, () => this.#retryLater('unreachable'));
+    this.#wait(timeoutMs, () => this.#retryLater('unreachable'));
     this.#pass.token(this.#refusals > 0).then(
       (token) => {
         if (!this.#takesAnswers) return;
@@ -173,19 +173,19 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
     );
   }
 
-  /** After a failure of any kind: once more, later. */
+  /** Schedules the next attempt after a failure. */
   #retryLater(because: ConnectionStatus['reason']): void {
     if (!this.#takesAnswers) return;
     this.#phase = this.#joinedOnce ? 'reconnecting' : 'connecting';
     this.#reason = because;
     const seconds = this.#backOff.next();
     this.#retryAt = this.#clock.now() + seconds;
-    // What is half open would answer into the next attempt.
+    // A half-open connection could answer during the next attempt.
     this.#socket.disconnect();
     this.#wait(seconds * 1000, () => this.#attempt());
   }
 
-  /** `afterMs`: how long the other side has to end the connection. */
+  /** Ends the connection. `afterMs`: how long the server has to close it. */
   #end(because: ConnectionStatus['reason'], afterMs = 0): void {
     this.#stopWaiting();
     this.#phase = 'ended';

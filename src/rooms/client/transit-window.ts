@@ -1,7 +1,7 @@
-/** Room at first: 5 s of 30 packets a second, and some. */
+/** Initial capacity: more than 5 s of 30 packets a second. */
 const firstCapacity = 256;
 
-/** How long the packets of the last seconds were on their way, in order of arrival and by length. Keeps its memory. */
+/** The transit times of the packets of the last seconds, in order of arrival and sorted. Reuses its buffers. */
 export class TransitWindow {
   private arrivals = new Float64Array(firstCapacity);
   private transits = new Float64Array(firstCapacity);
@@ -9,7 +9,7 @@ export class TransitWindow {
   private first = 0;
   private count = 0;
 
-  /** `memory`: what arrived longer ago than this is forgotten [s]. */
+  /** `memory`: packets that arrived longer ago than this [s] are dropped. */
   constructor(private readonly memory: number) {}
 
   clear(): void {
@@ -17,7 +17,7 @@ export class TransitWindow {
     this.count = 0;
   }
 
-  /** A packet that arrived at this time [s], after this long on its way [s, plus the difference of two clocks]. */
+  /** Adds a packet that arrived at this time [s] with this transit time [s, plus the offset of the two clocks]. */
   add(arrivedAt: number, transit: number): void {
     if (this.count === this.sorted.length) this.grow();
     const end = (this.first + this.count) % this.sorted.length;
@@ -35,12 +35,12 @@ export class TransitWindow {
     return this.count > 0 ? this.sorted[0]! : 0;
   }
 
-  /** How much later than the fastest all but one in twenty were [s]. */
+  /** The 95th percentile of the transit times above the shortest [s]. */
   get late(): number {
     return this.count > 0 ? this.sorted[Math.floor(this.count * 0.95)]! - this.least : 0;
   }
 
-  /** How many are shorter. */
+  /** Returns the number of shorter transit times. */
   private rankOf(transit: number): number {
     let from = 0;
     let to = this.count;

@@ -1,13 +1,13 @@
-/** Unsigned numbers of up to 24 bits one after the other, most significant bit first. */
+/** Writes unsigned numbers of up to 24 bits, most significant bit first. */
 export interface BitWriter {
   write(value: number, bits: number): void;
-  /** What was written since the last `clear`, the last byte filled up with zeros; a copy. */
+  /** Returns a copy of the bytes since the last `clear`; the last byte is padded with zeros. */
   bytes(): Uint8Array;
-  /** Begins anew, in the same memory. */
+  /** Discards what was written, and reuses the buffer. */
   clear(): void;
 }
 
-/** Room for as many bytes as a pose packet has; longer ones make more. */
+/** Initial capacity: the bytes of a pose packet. */
 const firstCapacity = 64;
 
 class BufferedBitWriter implements BitWriter {
@@ -48,11 +48,11 @@ class BufferedBitWriter implements BitWriter {
 export const createBitWriter = (): BitWriter => new BufferedBitWriter();
 
 export interface BitReader {
-  /** The next number; past the end of the bytes there are zeros, and `ended` is false for good. */
+  /** Returns the next number. Past the end it reads zeros, and `ended` stays false. */
   read(bits: number): number;
-  /** Whether everything was read and nothing more: all bytes used, the rest of the last one zero. */
+  /** Returns whether exactly all bytes were read, and the padding is zero. */
   ended(): boolean;
-  /** Begins with other bytes. */
+  /** Starts reading other bytes. */
   open(bytes: Uint8Array): void;
 }
 

@@ -51,10 +51,10 @@ import {
 import { perpendicularAxes, toCentredStep, toDirectionSteps, toQuatSteps, toStep } from './quantise';
 import { armAxis, chestAxis, RebuiltArm, RebuiltTrunk, spineAxis, swivelAxes } from './rebuild-body';
 
-/** A body's wrist this near to the tracked hand is drawn there [m, rad]; else it is sent on its own. */
+/** A wrist of the body within this of the tracked hand [m, rad] is drawn at the hand; otherwise it is sent itself. */
 const sameWrist = 0.003;
 const sameHand = (0.8 * Math.PI) / 180;
-/** A rebuilt elbow further off than this [m] is worth a wrist that is off by some tenths of a millimetre. */
+/** If the rebuilt elbow is further off than this [m], the wrist is shifted by tenths of a millimetre instead. */
 const sameElbow = 0.002;
 
 /** The joints of an arm. */
@@ -63,7 +63,7 @@ const jointsOf = {
   right: { shoulder: 'rightUpperArm', elbow: 'rightLowerArm', wrist: 'rightHand' },
 } as const;
 
-// Scratch of one call.
+// Scratch of one call of this file's functions.
 const axis = vec3(0, 0, 0);
 const toHand = vec3(0, 0, 0);
 const reached = vec3(0, 0, 0);
@@ -75,7 +75,7 @@ const acrossV = vec3(0, 0, 0);
 const difference = quat(0, 0, 0, 1);
 const bones = { upper: 0, lower: 0 };
 
-/** How far one rotation is twisted from another about an axis, as steps. */
+/** Returns the twist from one rotation to another about an axis, in steps. */
 function twistSteps(about: Vec3, from: Quat, to: Quat, range: number, bits: number): number {
   multiply(conjugate(from, difference), to, difference);
   return toStep(twistAngle(twistOf(difference, about, difference), about), range, bits);
@@ -98,14 +98,14 @@ function writeTrunk(
   target.chestTwist = twistSteps(axis, upperChest.orientation, chest.orientation, Math.PI, bits.twist);
 }
 
-/** Whether the body's wrist is elsewhere than the hand, or turned otherwise. */
+/** Returns whether the body's wrist differs from the hand in position or orientation. */
 function isFree(side: Side, joints: JointPoses, hand: Pose<'floor'>, skeleton: Skeleton): boolean {
   const names = jointsOf[side];
   const { position, orientation } = joints[names.wrist];
   const { upper, lower } = armBonesOf(skeleton, side, bones);
   const shoulder = joints[names.shoulder].position;
   const far = length(subtract(hand.position, shoulder, toHand));
-  // What a straight arm cannot reach it points at.
+  // A straight arm points at a hand beyond its reach.
   addScaled(shoulder, normalise(toHand, undefined, toHand), Math.min(far, upper + lower), reached);
   return (
     distance(position, reached) > sameWrist ||
@@ -113,16 +113,16 @@ function isFree(side: Side, joints: JointPoses, hand: Pose<'floor'>, skeleton: S
   );
 }
 
-/** A body with its joints, and the head and hands from which the receiver will rebuild it. */
+/** A body with its joints, and the head and hands from which the receiver rebuilds it. */
 interface SentBody {
   readonly body: UpperBodyPose;
   readonly joints: JointPoses;
-  /** As the receiver has them. */
+  /** The head as the receiver decodes it; so are the hands. */
   readonly head: Pose<'floor'>;
   readonly hands: Readonly<Record<Side, Pose<'floor'>>>;
 }
 
-/** What the receiver will rebuild, step by step, so that each step makes up for the rounding before it. */
+/** Rebuilds the body as the receiver will, so that each step compensates the rounding of the one before. */
 class Rebuilding {
   private readonly trunk = new RebuiltTrunk();
   private readonly arms = { left: new RebuiltArm('left'), right: new RebuiltArm('right') };
@@ -159,7 +159,7 @@ class Rebuilding {
     let nearest = this.writeBend(side, sent, 0, skeleton, steps);
     if (steps.free || nearest <= sameElbow) return;
     let { stretch, swivel, forearmTwist } = steps;
-    // An almost straight arm's elbow is as far off by a little less as it is by much more: the steps on both sides are tried.
+    // The elbow of an almost straight arm is very sensitive to the stretch: the steps on both sides are tried.
     const wanted = Math.floor((far - distance(shoulder, hands[side].position)) / stretchUnit);
     for (let step = wanted; step <= wanted + 1; step++) {
       const elbowError = this.writeBend(side, sent, limited(step, stretchBits), skeleton, steps);
@@ -172,7 +172,7 @@ class Rebuilding {
     steps.forearmTwist = forearmTwist;
   }
 
-  /** The clavicle's swing that puts the shoulder nearest to where it is, from where the receiver's clavicle begins. */
+  /** Writes the clavicle's swing that puts the receiver's shoulder nearest to the sender's. */
   private writeClavicle(side: Side, joints: JointPoses, bits: number, skeleton: Skeleton, steps: ArmSteps): void {
     const { upperChest, clavicleRoots } = this.trunk;
     normalise(clavicleRest(side, skeleton), undefined, rest);
@@ -187,8 +187,8 @@ class Rebuilding {
   }
 
   /**
-   * Swivel and twist that make the receiver's arm, between its own shoulder and a wrist that is stretched so far, look like the
-   * sender's; returns how far off its elbow is [m].
+   * Writes the swivel and the twist that make the receiver's arm, with this stretch of the wrist, most like the sender's. Returns the error of the
+   * elbow [m].
    */
   private writeBend(
     side: Side,
@@ -205,7 +205,7 @@ class Rebuilding {
     arm.aim(hands[side], steps, skeleton);
     armAxis(shoulder, arm.wrist, this.trunk.upperChest, axis);
     reject(subtract(elbow.position, shoulder, pole), axis, pole);
-    // A straight arm's elbow is on the line: then the plane in which it would bend.
+    // The elbow of a straight arm lies on the axis: its hinge defines the pole instead.
     if (!(length(pole) > 0.02)) cross(axis, rotate(joints[names.shoulder].orientation, hingeAtRest[side], pole), pole);
     swivelAxes(side, this.trunk.upperChest, axis, acrossU, acrossV);
     steps.swivel = toStep(Math.atan2(dot(pole, acrossV), dot(pole, acrossU)), Math.PI, swivelBits);
@@ -226,6 +226,6 @@ class Rebuilding {
 
 const rebuilding = new Rebuilding();
 
-/** Writes the numbers of a body. */
+/** Writes a body as steps, relative to the head and hands that the receiver decodes. */
 export const writeBodySteps = (sent: SentBody, skeleton: Skeleton, target: BodySteps): void =>
   rebuilding.write(sent, skeleton, target);

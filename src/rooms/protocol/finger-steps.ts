@@ -1,7 +1,7 @@
 import { type FingerName, type HandShape, type MutableHandShape, makeHandShape } from 'threepoint/core/body/hand-shape';
 import { clamp } from 'threepoint/core/math/damper';
 
-/** One number of a hand on the wire: even steps from `low` to `high`. */
+/** One number of a hand in a packet: uniform steps from `low` to `high`. */
 interface FingerField {
   readonly bits: number;
   readonly low: number;
@@ -9,16 +9,16 @@ interface FingerField {
   readonly read: (shape: HandShape) => number;
 }
 
-/** A fist [rad], and how far the index finger's knuckle is stretched beyond straight. */
+/** Bends of a fist [rad], and the hyperextension of the index finger's knuckle. */
 const fullKnuckle = 1.45;
 const fullMiddle = 1.75;
 const stretched = -0.15;
-/** The end joint's bend against the middle joint's, which its tendon shares. */
+/** The end joint's bend as a share of the middle joint's: both share a tendon. */
 const endShare = 0.62;
-/** The thumb's end joint against its middle one. */
+/** The thumb's end joint as a share of its middle joint. */
 const thumbEndShare = 0.9;
 
-/** A finger as a whole, 0 straight to 1 in the palm: the mean of its two larger bends. */
+/** Returns the curl of a finger, 0 straight to 1 in the palm: the mean of its two larger bends. */
 const curlOf = ({ knuckle, middle }: HandShape['middle']): number => (knuckle / fullKnuckle + middle / fullMiddle) / 2;
 
 const curl = (name: FingerName): FingerField => ({
@@ -28,7 +28,7 @@ const curl = (name: FingerName): FingerField => ({
   read: (shape) => curlOf(shape[name]),
 });
 
-/** 33 bits for a hand, thumb first. */
+/** The fields of a hand, thumb first: 33 bits. */
 export const fingerFields: readonly FingerField[] = [
   { bits: 3, low: 0, high: 1.1, read: ({ thumb }) => thumb.knuckle },
   { bits: 3, low: 0, high: 0.9, read: ({ thumb }) => thumb.spread },
@@ -43,13 +43,13 @@ export const fingerFields: readonly FingerField[] = [
 
 export interface FingerSteps {
   known: boolean;
-  /** In the order of `fingerFields`. */
+  /** The levels in the order of `fingerFields`. */
   readonly levels: number[];
 }
 
 export const makeFingerSteps = (): FingerSteps => ({ known: false, levels: fingerFields.map(() => 0) });
 
-/** The nearest steps of a hand whose numbers are finite. */
+/** Writes the nearest steps of a hand whose numbers are finite. */
 export function toFingerSteps(shape: HandShape, target: FingerSteps): void {
   target.known = true;
   for (let i = 0; i < fingerFields.length; i++) {
@@ -63,10 +63,10 @@ const fieldValue = ({ levels }: FingerSteps, field: number): number => {
   return low + (levels[field]! / (2 ** bits - 1)) * (high - low);
 };
 
-/** Fingers lie apart where they are straight, and together in a fist [rad]. */
+/** Spread of straight fingers [rad]; in a fist it is 0. */
 const fan = { index: 0.08, middle: 0, ring: -0.07, little: -0.17 } as const;
 
-/** A new hand from steps; null: it is unknown. */
+/** Returns a new hand from steps; null: it is unknown. */
 export function handShapeOf(steps: FingerSteps): HandShape | null {
   if (!steps.known) return null;
   const shape = makeHandShape();

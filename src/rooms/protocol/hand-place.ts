@@ -3,8 +3,8 @@ import type { BitReader, BitWriter } from './bits';
 import { placeUnit } from './quantise';
 
 /**
- * Where a hand is from the head, in 40 bits: steps of a quarter of a millimetre within ±1.25 m on each axis, where the hands of all people are,
- * and in the codes that those leave over coarser steps within ±2.09 m, for controllers that lie about. A buffer.
+ * The position of a hand relative to the head, in 40 bits: steps of 0.25 mm within ±1.25 m on each axis, the reach of people. The remaining codes
+ * have coarser steps within ±2.09 m, for controllers that are put down. A buffer.
  */
 export interface HandPlaceSteps {
   far: boolean;
@@ -16,9 +16,9 @@ export interface HandPlaceSteps {
 export const makeHandPlaceSteps = (): HandPlaceSteps => ({ far: false, x: 0, y: 0, z: 0 });
 
 interface Grid {
-  /** Of a step [m]. */
+  /** Size of a step [m]. */
   readonly unit: number;
-  /** Steps either way, and all of an axis. */
+  /** Steps in each direction, and all steps of an axis. */
   readonly most: number;
   readonly count: number;
 }
@@ -28,17 +28,17 @@ const near = grid(placeUnit, 4999);
 const wide = grid(0.0009, 2318);
 const nearCodes = near.count ** 3;
 const allCodes = nearCodes + wide.count ** 3;
-/** Nearer steps on all axes are of the finer grid. */
+/** Smaller steps on all axes belong to the finer grid. */
 const leastWide = Math.round(((near.most + 0.5) * near.unit) / wide.unit);
-/** A code is written as two numbers of so many bits. */
+/** Bits of each half of a code, which is written as two numbers. */
 const halfBits = 20;
 const half = 2 ** halfBits;
 
-/** Never −0, which a code does not keep. */
+/** Returns the nearest step; never −0, which a code cannot represent. */
 const stepsOf = (along: number, { unit, most }: Grid): number =>
   Math.max(-most, Math.min(most, Math.round(along / unit))) + 0;
 
-/** The nearest place to a hand; further than ±2.09 m from the head on an axis: at the edge. */
+/** Writes the steps of a hand's position [m]; beyond ±2.09 m of the head on an axis they are clamped. */
 export function toHandPlace(head: Vec3, hand: Vec3, target: HandPlaceSteps): void {
   const x = hand.x - head.x;
   const y = hand.y - head.y;
@@ -51,13 +51,13 @@ export function toHandPlace(head: Vec3, hand: Vec3, target: HandPlaceSteps): voi
   target.z = stepsOf(z, grid);
 }
 
-/** Writes the place into `target`, in the head's frame of reference [m]. */
+/** Writes the hand's position into `target`, in the frame of `head` [m]. */
 export function fromHandPlace(head: Vec3, { far, x, y, z }: HandPlaceSteps, target: MutableVec3): MutableVec3 {
   const { unit } = far ? wide : near;
   return add(head, setVec3(target, x * unit, y * unit, z * unit), target);
 }
 
-/** Writes a place as 40 bits; steps beyond its grid would write another place: `toHandPlace` makes none. */
+/** Writes a position as 40 bits. The steps must lie within their grid, as those of `toHandPlace` do. */
 export function writeHandPlace(writer: BitWriter, { far, x, y, z }: HandPlaceSteps): void {
   const { most, count } = far ? wide : near;
   const code = (far ? nearCodes : 0) + ((x + most) * count + (y + most)) * count + (z + most);
@@ -65,7 +65,7 @@ export function writeHandPlace(writer: BitWriter, { far, x, y, z }: HandPlaceSte
   writer.write(code % half, halfBits);
 }
 
-/** Reads the place; false for a code that means nothing: above all others, or coarse where finer steps reach. */
+/** Reads a position. Returns false for an invalid code: too large, or coarse within the finer grid. */
 export function readHandPlace(reader: BitReader, target: HandPlaceSteps): boolean {
   const high = reader.read(halfBits);
   const code = high * half + reader.read(halfBits);

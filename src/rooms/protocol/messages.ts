@@ -5,22 +5,22 @@ import { cleanName } from './names';
 import { packedVoice, packVoice, signalFrom, signalTo, unpackVoice, type Voice, voice } from './voice-messages';
 
 /**
- * Bumped with every change that an older page or server would misunderstand: of these messages, of pose packets and of their frames, which each
- * have a version of their own. Who joins with another one is told so, and shows nothing to those who could not read it.
+ * Rises with every incompatible change of messages, pose packets (which also have `poseVersion`) or frames of poses. The server disconnects a client
+ * with another version.
  */
 export const protocolVersion = 9;
 
-/** No control message is longer [bytes of UTF-8]; a snapshot takes at most half of it. */
+/** The longest control message [bytes of UTF-8]; a snapshot takes at most half of it. */
 export const longestMessage = 4096;
 
-/** A finite number in [−limit, limit]. */
+/** Returns the schema of a finite number in [−limit, limit]. */
 export const finiteWithin = (limit: number) => v.pipe(v.number(), v.finite(), v.minValue(-limit), v.maxValue(limit));
-/** A whole number in [min, max]. */
+/** Returns the schema of an integer in [min, max]. */
 export const wholeFrom = (min: number, max: number) =>
   v.pipe(v.number(), v.integer(), v.minValue(min), v.maxValue(max));
-/** Seconds since any clock's start: within a century and a half. */
+/** The schema of a time [s] by any clock. */
 export const seconds = finiteWithin(5e9);
-/** Sixteen seats at most. */
+/** The most seats of a room. */
 export const mostSeats = 16;
 const seat = wholeFrom(0, mostSeats - 1);
 
@@ -31,63 +31,63 @@ const calibration = v.strictObject({
 });
 
 const name = v.pipe(v.string(), v.maxLength(200), v.transform(cleanName));
-/** An AvatarRef. */
+/** The schema of a AvatarRef. */
 const avatar = v.union([v.custom<OwnAvatar>(isOwnAvatar), v.pipe(v.string(), v.regex(avatarHash))]);
 
-/** First of all: who this is to the others. Where a seat is free and none is named, the first. */
+/** The first message: what the others see of the player. Without a seat (null) the first free one is taken. */
 const join = v.strictObject({
   type: v.literal('join'),
   version: v.literal(protocolVersion),
   name,
   calibration,
   spectate: v.boolean(),
-  /** Not a person: gives its seat to the first person who finds none. */
+  /** Whether it is a bot, which yields its seat to a person who finds no other. */
   bot: v.boolean(),
   seat: v.nullable(seat),
   avatar,
-  /** How the page takes part in the voices; null: it does not. */
+  /** The voice session; null: takes no part in the voices. */
   voice: v.nullable(voice),
 });
 
 const clientMessage = v.variant('type', [
   join,
-  /** Ready for the match, or after its end for another. */
+  /** Whether the player is ready for the match, or after its end for another. */
   v.strictObject({ type: v.literal('ready'), ready: v.boolean() }),
   /** Whether roles move on with every rematch. */
   v.strictObject({ type: v.literal('rotate'), rotate: v.boolean() }),
   /** The page is hidden, or the headset is off. */
   v.strictObject({ type: v.literal('away'), away: v.boolean() }),
-  /** To another seat that is free, or to one from among the spectators; null: become a spectator. */
+  /** Requests a free seat; null: become a spectator. */
   v.strictObject({ type: v.literal('sit'), seat: v.nullable(seat) }),
   v.strictObject({ type: v.literal('calibration'), calibration }),
-  /** To be seen with another avatar; of a file, the server's store has it. */
+  /** Changes the avatar; a file must be in the server's store. */
   v.strictObject({ type: v.literal('wear'), avatar }),
-  /** To take part in the voices of the room, or no longer (null): from a seat, where the room has voices. */
+  /** Joins the voices of the room, or leaves them (null); needs a seat and a room with voices. */
   v.strictObject({ type: v.literal('voice'), voice: v.nullable(voice) }),
   signalTo,
-  /** Stop the match's clock, or take that back: in a room whose terms allow it, from a seat. */
+  /** Requests or releases a pause of the match clock; needs a seat and a pausable room. */
   v.strictObject({ type: v.literal('pause'), pause: v.boolean() }),
-  /** Answered at once; `sent` comes back as it is. */
+  /** Answered at once with `pong`, which repeats `sent`. */
   v.strictObject({ type: v.literal('ping'), sent: seconds }),
-  /** For good: the seat is not held. */
+  /** Leaves for good: the seat is not held. */
   v.strictObject({ type: v.literal('leave') }),
-  /** What the player does in the game; its policy reads it. */
+  /** An action of the game, which the match policy reads. */
   v.strictObject({ type: v.literal('action'), action: v.unknown() }),
 ]);
 
-/** What a client may say, apart from pose packets. */
+/** A control message of a client. */
 export type ClientMessage = v.InferOutput<typeof clientMessage>;
-export type Joining = Omit<v.InferOutput<typeof join>, 'type' | 'version'>;
+export type JoinRequest = Omit<v.InferOutput<typeof join>, 'type' | 'version'>;
 
-/** The message, checked field by field; null for anything else. */
+/** Returns the validated message; null for anything else. */
 export function clientMessageFrom(value: unknown): ClientMessage | null {
   const result = v.safeParse(clientMessage, value, { abortEarly: true });
   return result.success ? result.output : null;
 }
 
 /**
- * What a person may ask of a room that does not exist yet; the first person in it decides, and nothing changes them later. `seconds`,
- * `balls`: of a round of the ball game. `pausable`: players may stop the match's clock.
+ * The terms of a room, which the first person in it sets for good. `seconds` and `balls` are those of a round of the ball game. `pausable`: players may
+ * pause the match clock.
  */
 export const roomTerms = v.strictObject({
   seconds: v.exactOptional(v.pipe(v.number(), v.finite(), v.minValue(1), v.maxValue(3600))),
@@ -96,19 +96,19 @@ export const roomTerms = v.strictObject({
 });
 export type RoomTerms = v.InferOutput<typeof roomTerms>;
 
-/** What others know of a player. away: hides the page or took the headset off. gone: connection lost, the seat is held. */
+/** What others see of a player. away: the page is hidden or the headset is off. gone: the connection is lost, the seat is held. */
 export interface SeatInfo {
   readonly name: string;
   readonly calibration: Calibration;
   readonly bot: boolean;
   readonly presence: (typeof presences)[number];
   readonly avatar: AvatarRef;
-  /** null: takes no part in the voices. */
+  /** The voice session; null: takes no part in the voices. */
   readonly voice: Voice | null;
 }
 const presences = ['here', 'away', 'gone'] as const;
 
-/** Name, eye height, arm span and forearm [m] (null: not told), presence (index), 1 for a bot, avatar, voice; null: the seat is empty. */
+/** Wire form of a seat: name, eye height, arm span, forearm [m] or null, presence (index), 1 for a bot, avatar, voice; null: the seat is empty. */
 const packedSeatInfo = v.nullable(
   v.tuple([
     v.string(),
@@ -125,14 +125,14 @@ type PackedSeatInfo = v.InferOutput<typeof packedSeatInfo>;
 
 const millimetres = (metres: number): number => Math.round(metres * 1000) / 1000;
 
-/** A body as it is told to others. */
+/** Rounds the measures of a body to millimetres, as they are sent. */
 export const toMillimetres = ({ eyeHeight, armSpan, forearm }: Calibration): Calibration => ({
   eyeHeight: millimetres(eyeHeight),
   armSpan: millimetres(armSpan),
   ...(forearm !== undefined && { forearm: millimetres(forearm) }),
 });
 
-/** Wire form of a seat: lengths rounded to millimetres, null for an empty seat. */
+/** Returns the wire form of a seat, with lengths rounded to millimetres. */
 export function packSeatInfo(info: SeatInfo | null): PackedSeatInfo {
   if (!info) return null;
   const { eyeHeight, armSpan, forearm = null } = toMillimetres(info.calibration);
@@ -149,50 +149,59 @@ export function unpackSeatInfo(packed: PackedSeatInfo): SeatInfo | null {
 }
 
 /**
- * Why the Room ends a client's stay: the same person connected again (replaced), a person took a bot's seat (yielded), the client
- * asked for it (left), broke the rules, reads too slowly, or the room or its server ends.
+ * Why a client is disconnected: the same person connected again (replaced), a person took the bot's seat (yielded), the client asked for it (left),
+ * misbehaved or reads too slowly, the room was closed, the server stops, or the page has another version.
  */
-const farewells = ['replaced', 'yielded', 'left', 'misbehaved', 'slow', 'stopping', 'closed', 'old-page'] as const;
-export type Farewell = (typeof farewells)[number];
+const disconnectReasons = [
+  'replaced',
+  'yielded',
+  'left',
+  'misbehaved',
+  'slow',
+  'stopping',
+  'closed',
+  'old-page',
+] as const;
+export type DisconnectReason = (typeof disconnectReasons)[number];
 
-/** What a Room says of itself, in any game. */
+/** The messages of a Room that do not depend on its game. */
 const controlMessage = v.variant('type', [
   v.strictObject({ type: v.literal('seat'), seat, info: packedSeatInfo }),
-  /** The receiver sits here now. */
+  /** The receiver's new seat; null: a spectator. */
   v.strictObject({ type: v.literal('seated'), seat: v.nullable(seat) }),
   v.strictObject({ type: v.literal('about'), spectators: wholeFrom(0, 10_000), rotate: v.boolean() }),
-  /** The match's clock stands at this second because a player stopped it; null: it runs again, and its start is elsewhere. */
+  /** The second at which the match clock is paused; null: it runs again, with another start. */
   v.strictObject({ type: v.literal('paused'), at: v.nullable(seconds), matchStart: seconds }),
-  /** The match's start is elsewhere now: its host paused. */
+  /** The match has another start, because its host was suspended. */
   v.strictObject({ type: v.literal('match-start'), matchStart: seconds }),
   v.strictObject({ type: v.literal('pong'), sent: seconds, time: seconds }),
-  v.strictObject({ type: v.literal('farewell'), reason: v.picklist(farewells) }),
+  v.strictObject({ type: v.literal('farewell'), reason: v.picklist(disconnectReasons) }),
   signalFrom,
 ]);
 
-/** The whole room, on joining and on returning, but for the state of its game. */
+/** The state of the room after joining or reconnecting, without that of its game. */
 const welcome = v.strictObject({
   type: v.literal('welcome'),
   version: v.literal(protocolVersion),
   room: v.string(),
-  /** Another one when the room has forgotten everything. */
+  /** Changes when the server has created the room again. */
   epoch: v.string(),
-  /** The game. */
+  /** The name of the game. */
   kind: v.string(),
-  /** The receiver's; null: a spectator. */
+  /** The receiver's seat; null: a spectator. */
   seat: v.nullable(seat),
   seats: v.pipe(v.array(packedSeatInfo), v.maxLength(mostSeats)),
   spectators: wholeFrom(0, 10_000),
   rotate: v.boolean(),
-  /** Room clock [s] at which the match was at 0 s. */
+  /** Room time at which the match clock is 0 [s]. */
   matchStart: seconds,
-  /** Second of the match at which its clock stands; null: it runs. */
+  /** The second at which the match clock is paused; null: it runs. */
   paused: v.nullable(seconds),
-  /** Room clock [s], now. */
+  /** Room time now [s]. */
   time: seconds,
 });
 
-/** What a game brings into the messages of its Room: its states as they are sent, and its events. */
+/** The types of a game in the messages of its Room: its states as sent, and its events. */
 interface SentGame {
   readonly snapshot: unknown;
   readonly event: unknown;
@@ -200,15 +209,15 @@ interface SentGame {
 
 export type Welcome<Game extends SentGame> = v.InferOutput<typeof welcome> & { readonly match: Game['snapshot'] };
 
-/** What a Room says, apart from frames of poses. */
+/** A control message of a Room. */
 export type RoomMessage<Game extends SentGame> =
   | v.InferOutput<typeof controlMessage>
   | Welcome<Game>
-  /** Another match, as it begins. */
+  /** Another match at its start. */
   | { readonly type: 'match'; readonly match: Game['snapshot']; readonly matchStart: number }
   | { readonly type: 'events'; readonly events: readonly Game['event'][] };
 
-/** Reads what the Rooms of one game say: the message, checked field by field; null for anything else. */
+/** Creates a reader for the messages of one game's Rooms. It returns the validated message; null for anything else. */
 export function roomMessageReader<Game extends SentGame>(
   kind: string,
   snapshot: v.GenericSchema<unknown, Game['snapshot']>,

@@ -1,8 +1,8 @@
-/** A name has at most this many characters, and this many bytes as UTF-8. */
+/** The most characters of a name, and the most bytes as UTF-8. */
 export const longestName = 20;
 const mostNameBytes = 40;
 
-/** Bytes of a character in UTF-8. */
+/** Returns the bytes of a character in UTF-8. */
 const utf8Bytes = (character: string): number => {
   const code = character.codePointAt(0) ?? 0;
   if (code < 0x80) return 1;
@@ -10,22 +10,22 @@ const utf8Bytes = (character: string): number => {
   return code < 0x10000 ? 3 : 4;
 };
 
-/** Control characters, unassigned ones, those that turn the direction of writing, and those that draw nothing: fillers, selectors, U+2800. */
-const unseen = /[\p{Cc}\p{Cf}\p{Cs}\p{Co}\p{Cn}\p{Default_Ignorable_Code_Point}\u2800]/gu;
-/** Marks beyond the third on a letter: no language needs more, and heaps of them cover other text. */
-const heapedMarks = /(?<=\p{M}{3})\p{M}+/gu;
+/** Control and unassigned characters, direction marks, and invisible ones: fillers, selectors, U+2800. */
+const invisible = /[\p{Cc}\p{Cf}\p{Cs}\p{Co}\p{Cn}\p{Default_Ignorable_Code_Point}\u2800]/gu;
+/** Combining marks beyond the third: no language needs more, and many of them cover other text. */
+const excessMarks = /(?<=\p{M}{3})\p{M}+/gu;
 const leadingMarks = /^[\p{M} ]+/u;
 
 /**
- * A participant's name as plain text: no control characters, nothing that turns the direction of writing or cannot be seen, three marks on a
- * letter, single spaces, at most 20 characters. Empty where nothing is left.
+ * Returns a name as plain text: without control characters, direction marks and invisible characters, with at most three marks on a letter, single
+ * spaces, and at most 20 characters. Empty if nothing is left.
  */
 export function cleanName(name: string): string {
   const visible = name
     .replace(/[\s\p{Zl}\p{Zp}]+/gu, ' ')
-    .replace(unseen, '')
+    .replace(invisible, '')
     .normalize('NFC')
-    .replace(heapedMarks, '')
+    .replace(excessMarks, '')
     .replace(/ +/g, ' ')
     .replace(leadingMarks, '')
     .trim();

@@ -1,12 +1,11 @@
-/** Times of packets begin anew after so long [ms]; a power of two. */
+/** Times of packets wrap around after this time [ms], a power of two. */
 const turnMs = 2 ** 14;
 
-/** A time [ms] as a packet tells it: whole, modulo 16 384. */
+/** Returns a time as packets carry it [ms]: an integer modulo 16,384. */
 export const packetMs = (ms: number): number => Math.round(ms) & (turnMs - 1);
 
 /**
- * Seconds from one time of a pose packet to another, both in milliseconds modulo 16 384 (whole times are taken too): the shorter way
- * round, in [−8.192, 8.192).
+ * Returns the seconds from one packet time to another [ms], the shorter way round, in [−8.192, 8.192). Times that are not wrapped are accepted too.
  */
 export function packetSecondsBetween(fromMs: number, toMs: number): number {
   const half = turnMs / 2;

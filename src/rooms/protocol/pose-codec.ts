@@ -16,7 +16,7 @@ import { handPose, handSteps, headPosition, headSteps, makePacketSteps, trackedB
 import { fromQuatSteps } from './quantise';
 import { placeBody } from './rebuild-body';
 
-// Buffers of one call: what comes out of it is new.
+// Buffers of one call; results are new objects.
 const steps = makePacketSteps();
 const joints = makeJointPoses();
 const headAsSent = makePose<'floor'>();
@@ -38,8 +38,8 @@ const isFiniteAvatar = ({ head, leftHand, rightHand, body }: AvatarPose): boolea
   isFinitePose(head) && isFinitePose(leftHand) && isFinitePose(rightHand) && (!body || isFiniteBody(body));
 
 /**
- * The packet's bytes, 64 at most; null where head, a hand or the body is not finite. The skeleton is the sender's own; the body's
- * head is where the pose's head is, as every estimator has it. Positions beyond the ranges of src/rooms/README.md come out at their edges.
+ * Returns the packet's bytes, 64 at most; null if head, a hand or the body is not finite. The skeleton is the sender's own; the body's head must be
+ * where the pose's head is, as with every estimator. Positions beyond the ranges in src/rooms/README.md are clamped.
  */
 export function encodePose(packet: PosePacket, skeleton: Skeleton): Uint8Array | null {
   const { head, leftHand, rightHand, body } = packet.pose;
@@ -62,7 +62,7 @@ export function encodePose(packet: PosePacket, skeleton: Skeleton): Uint8Array |
 
 function writeHand(side: Side, { pose: { body } }: PosePacket, hand: TrackedPose | null): void {
   const target = steps.hands[side];
-  // A lost hand's place is taken by the wrist that the body shows instead.
+  // A lost hand is replaced by the body's wrist.
   const shown = hand ?? (body ? wristOf(side) : null);
   target.tracking = hand?.tracking ?? 'lost';
   target.placed = shown !== null;
@@ -71,7 +71,7 @@ function writeHand(side: Side, { pose: { body } }: PosePacket, hand: TrackedPose
   handPose(headAsSent.position, target.at, handsAsSent[side]);
 }
 
-/** The wrist of the body whose joints are in `joints`. */
+/** Returns the wrist of the body whose joints are in `joints`. */
 function wristOf(side: Side): Pose<'floor'> {
   const { position, orientation } = side === 'left' ? joints.leftHand : joints.rightHand;
   copyVec3(position, bodyWrist.position);
@@ -79,7 +79,7 @@ function wristOf(side: Side): Pose<'floor'> {
   return bodyWrist;
 }
 
-/** After the body: fingers of a hand that its arm has not caught up with are unknown, and so are those that are no numbers. */
+/** Writes the fingers, after the body. They are unknown if they are not finite, or if the arm does not end at the hand. */
 function writeFingers(side: Side, { fingers }: PosePacket, hand: TrackedPose | null): void {
   const target = steps.fingers[side];
   const shape = fingers[side];
@@ -90,7 +90,7 @@ function writeFingers(side: Side, { fingers }: PosePacket, hand: TrackedPose | n
 
 type MutableTracked = MutablePose<'floor'> & { tracking: TrackedPose['tracking'] };
 
-/** Head and hands of a packet, in memory that the next packet may use. */
+/** A buffer for head and hands of a packet. */
 interface PointsBuffer extends PointsPacket {
   timeMs: number;
   jump: boolean;
@@ -116,7 +116,7 @@ export const makePoints = (): PointsBuffer => ({
   hands: { left: makeTracked(), right: makeTracked() },
 });
 
-/** A hand in `steps`; null: lost. */
+/** Returns a hand in `steps`; null: lost. */
 function handOf(side: Side, head: Vec3, target: MutableTracked): TrackedPose | null {
   const { placed, tracking, at } = steps.hands[side];
   if (!placed || tracking === 'lost') return null;
@@ -125,7 +125,7 @@ function handOf(side: Side, head: Vec3, target: MutableTracked): TrackedPose | n
   return target;
 }
 
-/** What `steps` tell, the body apart. */
+/** Writes head and hands from `steps`. */
 function pointsOf(target: PointsBuffer): PointsBuffer {
   const { pose, hands } = target;
   const { head } = pose;
@@ -139,11 +139,11 @@ function pointsOf(target: PointsBuffer): PointsBuffer {
   return target;
 }
 
-/** What a relay needs: the whole packet checked, head and hands read; null for bytes that are no packet. */
+/** Decodes head and hands for a relay, and validates the whole packet; null for bytes that are not a packet. */
 export const decodePoints = (bytes: Uint8Array, target: PointsBuffer = makePoints()): PointsPacket | null =>
   readPacket(bytes, steps) ? pointsOf(target) : null;
 
-/** The packet as it was sent, up to rounding; null for bytes that are no packet. The skeleton is the sender's. */
+/** Decodes a packet, up to rounding; null for bytes that are not a packet. The skeleton is the sender's. */
 export function decodePose(bytes: Uint8Array, skeleton: Skeleton): PosePacket | null {
   if (!readPacket(bytes, steps)) return null;
   const { timeMs, jump, pose } = pointsOf(makePoints());

@@ -1,14 +1,14 @@
 import { packetLengthAt } from './pose-layout';
 import { poseVersion } from './pose-packet';
 
-/** A pose packet and whose it is. */
+/** A pose packet and its seat. */
 export interface SeatPose {
-  /** Below `mostSeats`, so that it has room in half a byte. */
+  /** The seat, below `mostSeats`: it fits into four bits. */
   readonly seat: number;
   readonly bytes: Uint8Array;
 }
 
-/** Bytes of the frame with the packets of all seats but one (null: of all seats); 0: none are left. */
+/** Returns the bytes of a frame with the packets of all seats but one (null: of all seats); 0: there are none. */
 export function frameLength(poses: readonly SeatPose[], except: number | null): number {
   let length = 0;
   for (const { seat, bytes } of poses) if (seat !== except) length += bytes.length;
@@ -16,8 +16,8 @@ export function frameLength(poses: readonly SeatPose[], except: number | null): 
 }
 
 /**
- * Writes a frame of a room into `target` from byte `at` on: every pose packet that has come since the last frame, but those of one seat.
- * One packet follows another, with its seat where its version was: seats in rising order, the packets of a seat in the order in which they came.
+ * Writes a frame of a room into `target` from byte `at` on: the pose packets since the last frame, except those of one seat. The seat replaces the
+ * version in each packet. Seats rise; the packets of a seat are in order of arrival.
  */
 export function writeFrame(poses: readonly SeatPose[], except: number | null, target: Uint8Array, at = 0): void {
   let to = at;
@@ -29,14 +29,14 @@ export function writeFrame(poses: readonly SeatPose[], except: number | null, ta
   }
 }
 
-/** A frame with the packets of all seats. */
+/** Returns a frame with the packets of all seats. */
 export function encodeFrame(poses: readonly SeatPose[]): Uint8Array {
   const frame = new Uint8Array(frameLength(poses, null));
   writeFrame(poses, null, frame);
   return frame;
 }
 
-/** The packets of a frame as they were sent; null for bytes that are no frame. What a packet says beyond its length is not looked at. */
+/** Returns the packets of a frame; null for bytes that are not a frame. Packets are not validated beyond their length. */
 export function decodeFrame(frame: Uint8Array): readonly SeatPose[] | null {
   const poses: SeatPose[] = [];
   let at = 0;

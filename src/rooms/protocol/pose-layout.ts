@@ -21,7 +21,7 @@ import {
 } from './pose-steps';
 import { readDirection, readQuat, readStep, writeDirection, writeQuat, writeStep } from './quantise';
 
-/** What a hand is, by its three bits: fingers are told of no lost hand, and of none whose arm has not caught up with it. */
+/** The state of a hand, by its three bits. A lost hand has no fingers, nor has one at which its arm does not end. */
 interface HandState {
   readonly tracking: Tracking;
   readonly free: boolean;
@@ -44,7 +44,7 @@ const reader = createBitReader(new Uint8Array(0));
 const writeFlag = (set: boolean): void => writer.write(set ? 1 : 0, 1);
 const readFlag = (): boolean => reader.read(1) === 1;
 
-/** The bytes of a packet. */
+/** Returns the bytes of a packet. */
 export function writePacket(packet: PacketSteps): Uint8Array {
   const { head, hands, fingers, body, hasBody } = packet;
   writer.clear();
@@ -76,20 +76,20 @@ export function writePacket(packet: PacketSteps): Uint8Array {
   return writer.bytes();
 }
 
-/** Steps of no one, to see how long a packet with such flags is. */
-const anyone = makePacketSteps();
-/** By the nine flags of a packet [bytes]; 0: there is no such packet. */
+/** A buffer with which `lengthWith` measures packets. */
+const template = makePacketSteps();
+/** Lengths of packets by their nine flags [bytes]; 0: invalid flags. */
 const lengths: (number | undefined)[] = [];
 
 function lengthWith(flags: number): number {
   const flag = (bit: number): boolean => ((flags >> bit) & 1) === 1;
-  anyone.hasBody = flag(7);
-  if (!takeState(anyone, 'left', flags >> stateBits) || !takeState(anyone, 'right', flags)) return 0;
-  anyone.body.bits = bodyBitsFor(anyone.body.arms);
-  return writePacket(anyone).length;
+  template.hasBody = flag(7);
+  if (!takeState(template, 'left', flags >> stateBits) || !takeState(template, 'right', flags)) return 0;
+  template.body.bits = bodyBitsFor(template.body.arms);
+  return writePacket(template).length;
 }
 
-/** Takes in the last three bits of `bits`; false where a body's arm is told of and there is no body. */
+/** Applies the last three bits of `bits` to a hand. Returns false for a free arm without a body. */
 function takeState({ hands, fingers, body, hasBody }: PacketSteps, side: Side, bits: number): boolean {
   const { tracking, free, fingers: known } = handStates[bits & 7]!;
   hands[side].tracking = tracking;
@@ -99,7 +99,7 @@ function takeState({ hands, fingers, body, hasBody }: PacketSteps, side: Side, b
   return hasBody || !free;
 }
 
-/** How long the packet that begins at this byte is, by its flags alone [bytes]; 0: no packet begins so. */
+/** Returns the length of the packet that begins at this byte, by its flags alone [bytes]; 0: not a packet. */
 export function packetLengthAt(bytes: Uint8Array, at: number): number {
   const flags = (((bytes[at]! & 0x0f) << 8) | (bytes[at + 1] ?? 0)) >> 3;
   lengths[flags] ??= lengthWith(flags);
@@ -128,7 +128,7 @@ function writeBody(to: BitWriter, { bits, trunk, arms }: BodySteps): void {
   }
 }
 
-/** Reads the numbers of a packet into `packet`; false for anything that `encodePose` never writes. */
+/** Reads a packet. Returns false for anything that `encodePose` never writes. */
 export function readPacket(bytes: Uint8Array, packet: PacketSteps): boolean {
   if (bytes.length > longestPose) return false;
   reader.open(bytes);

@@ -1,20 +1,20 @@
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import type { Fingers } from 'threepoint/core/body/hand-shape';
 
-/** Raised with every change of the layout or of the body proportions that packets are relative to; others are refused. */
+/** Rises with every change of the layout, or of the body proportions that packets are relative to. Other versions are rejected. */
 export const poseVersion = 4;
 
-/** No packet is longer [bytes]. */
+/** The longest packet [bytes]. */
 export const longestPose = 64;
 
-/** What one packet says. All poses in the sender's floor frame. */
+/** A pose packet. All poses are in the sender's floor frame. */
 export interface PosePacket {
-  /** When the frame was, by the sender's clock [ms], modulo 16 384. */
+  /** Time of the frame by the sender's clock [ms], modulo 16,384. */
   readonly timeMs: number;
-  /** true: the sender's frame of reference changed; no one may interpolate from the packet before. */
+  /** true: the sender's frame of reference has changed; do not interpolate from the previous packet. */
   readonly jump: boolean;
   readonly pose: AvatarPose;
-  /** How the fingers are bent; null: unknown (a lost hand, or one that its arm has not caught up with). */
+  /** The bends of the fingers; null: unknown (a lost hand, or one at which its arm does not end). */
   readonly fingers: Fingers;
 }
 

@@ -17,32 +17,32 @@ import {
   type VecSteps,
 } from './quantise';
 
-/** Bits of the head's x and z: ±8.19 m from the origin of the floor frame; beyond: at the edge. No headset plays in more than 15 m. */
+/** Bits of the head's x and z: ±8.19 m in the floor frame, clamped beyond. Headsets allow 15 m at most. */
 export const headBits = 16;
-/** Bits of the head's height: −1 to 3.095 m above the floor; beyond: at the edge. */
+/** Bits of the head's height: −1 to 3.095 m above the floor, clamped beyond. */
 export const heightBits = 14;
-/** Lowest height of a head on the wire [m], floor frame. */
+/** Lowest height of a head in a packet [m], floor frame. */
 const lowestHead = -1;
-/** Of head and hands: 0.1° at most. */
+/** Bits of the orientations of head and hands: an error of 0.1° at most. */
 export const trackedBits = 11;
 export const forearmBits = 6;
-/** Of the swivel angle over ±π: steps of 0.18°. */
+/** Bits of the swivel angle over ±π: steps of 0.18°. */
 export const swivelBits = 11;
-/** A clavicle swings ±1.3 rad about each of two axes, and mostly by less than half of that. */
+/** Range of the clavicle's swing about each of two axes [rad]; most swings are under half of it. */
 export const clavicleRange = 1.3;
-/** A wrist of its own: which way from the shoulder, how far the elbow is bent, and how the hand is turned there. */
+/** Bits of a free wrist: direction from the shoulder, flexion of the elbow, orientation of the hand. */
 export const directionBits = 8;
 export const flexionBits = 7;
 export const freeHandBits = 6;
-/** How far a wrist is drawn beyond the hand, or before it, along its arm: signed steps of so many bits. */
+/** Bits of the stretch: the signed distance along the arm from the hand to the drawn wrist. */
 export const stretchBits = 4;
-/** A step of that [m]: ±1.4 mm in all. */
+/** A step of the stretch [m]; the range is ±1.4 mm. */
 export const stretchUnit = 0.0002;
-/** What is left for the trunk when one arm has a wrist of its own, when both have, and otherwise. */
+/** Bits that remain for the trunk, by the number of free arms. */
 const trunkBitsFor = (freeArms: number): number => 10 - freeArms;
 const clavicleBitsFor = (freeArms: number): number => (freeArms === 2 ? 8 : 9);
 const twistBitsFor = (freeArms: number): number => (freeArms > 0 ? 6 : 7);
-/** A forearm twists a quarter turn either way. */
+/** Range of a forearm's twist [rad], a quarter turn each way. */
 export const forearmRange = Math.PI / 2;
 
 /** The head as steps. */
@@ -51,7 +51,7 @@ interface HeadSteps {
   readonly orientation: QuatSteps;
 }
 
-/** Where a hand is from the head, and how it is turned. */
+/** The pose of a hand relative to the head. */
 interface HandPoseSteps {
   readonly place: HandPlaceSteps;
   readonly orientation: QuatSteps;
@@ -63,9 +63,9 @@ export interface ArmSteps {
   clavicleV: number;
   swivel: number;
   forearmTwist: number;
-  /** The hand's own wrist and how far beyond it along the arm; an almost straight arm's elbow tells tenths of a millimetre apart. */
+  /** Distance along the arm from the hand to the drawn wrist: tenths of a millimetre move the elbow of an almost straight arm. */
   stretch: number;
-  /** Whether the body has a wrist of its own, told by the rest; false: the arm reaches for the hand. */
+  /** Whether the arm ends at a wrist of its own, which the next fields describe; false: it ends at the hand. */
   free: boolean;
   readonly direction: DirectionSteps;
   flexion: number;
@@ -108,7 +108,7 @@ export interface BodySteps {
   readonly arms: Readonly<Record<Side, ArmSteps>>;
 }
 
-/** What is left for the body when these of its arms have wrists of their own. */
+/** Returns the bits of the body for these arms. */
 export const bodyBitsFor = ({ left, right }: BodySteps['arms']): BodyBits =>
   bitsByFreeArms[Number(left.free) + Number(right.free)]!;
 
@@ -116,7 +116,7 @@ export type Tracking = TrackedPose['tracking'] | 'lost';
 
 interface HandSteps {
   tracking: Tracking;
-  /** Whether it is anywhere: a lost hand is where the body's wrist is. */
+  /** Whether it has a position: a lost hand has that of the body's wrist. */
   placed: boolean;
   readonly at: HandPoseSteps;
 }
@@ -127,7 +127,7 @@ const makeHandSteps = (): HandSteps => ({
   at: { place: makeHandPlaceSteps(), orientation: makeQuatSteps() },
 });
 
-/** A whole packet as whole numbers: a buffer, in which what a flag denies means nothing. */
+/** A packet as integers. A buffer: fields that a flag excludes have no meaning. */
 export interface PacketSteps {
   timeMs: number;
   jump: boolean;
@@ -162,7 +162,7 @@ export const headPosition = ({ x, y, z }: VecSteps, target: MutableVec3 = vec3(0
 export const limited = (steps: number, bits: number): number =>
   clamp(Math.round(steps), -mostSteps(bits), mostSteps(bits));
 
-/** The nearest steps to a head, floor frame; positions beyond the ranges of `headBits` and `heightBits` end at the edge. */
+/** Writes the nearest steps of a head, floor frame; positions beyond the ranges of `headBits` and `heightBits` are clamped. */
 export function headSteps({ position: { x, y, z }, orientation }: Pose<'floor'>, target: HeadSteps): HeadSteps {
   const { position } = target;
   position.x = limited(x / placeUnit, headBits);
@@ -172,14 +172,14 @@ export function headSteps({ position: { x, y, z }, orientation }: Pose<'floor'>,
   return target;
 }
 
-/** The nearest steps to a hand, floor frame, from a head at `head` [m] as the receiver has it; see `toHandPlace` for hands far off. */
+/** Writes the nearest steps of a hand, floor frame, relative to the head as the receiver decodes it [m]; see `toHandPlace` for the range. */
 export function handSteps(head: Vec3, { position, orientation }: Pose<'floor'>, target: HandPoseSteps): HandPoseSteps {
   toHandPlace(head, position, target.place);
   toQuatSteps(orientation, trackedBits, target.orientation);
   return target;
 }
 
-/** Writes the pose of a hand as steps tell it, floor frame; `head`: as the receiver has it [m]. */
+/** Writes the pose of a hand from its steps, floor frame, relative to the decoded head [m]. */
 export function handPose(
   head: Vec3,
   { place, orientation }: HandPoseSteps,
@@ -190,6 +190,6 @@ export function handPose(
   return target;
 }
 
-/** The nearest of the even steps from 0 to 1. */
+/** Returns the nearest of uniform steps from 0 to 1. */
 export const levels = (value: number, bits: number): number =>
   Math.round(clamp(Number.isFinite(value) ? value : 0, 0, 1) * (2 ** bits - 1));

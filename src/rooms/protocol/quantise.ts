@@ -3,23 +3,23 @@ import { type MutableQuat, normaliseQuat, type Quat, quat, setQuat } from 'three
 import { cross, type MutableVec3, normalise, setVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { BitReader, BitWriter } from './bits';
 
-/** A place on the wire is a multiple of this [m]. */
+/** Positions in a packet are multiples of this [m]. */
 export const placeUnit = 0.00025;
 
 /**
- * Numbers on the wire. A signed number of b bits is a step in [−m, m] with m = 2^(b−1) − 1, written as step + m: zero is exact,
- * and the code 2^b − 1 means nothing, so that a reader knows that the bytes are bad.
+ * Returns the largest step m = 2^(b−1) − 1 of a signed number of b bits. A step in [−m, m] is written as step + m: zero is exact, and the code
+ * 2^b − 1 is invalid.
  */
 export const mostSteps = (bits: number): number => (1 << (bits - 1)) - 1;
 
-/** The nearest step to a value of [−range, range]; beyond: the end of the range. */
+/** Returns the nearest step to a value in [−range, range]; clamped beyond. */
 export const toStep = (value: number, range: number, bits: number): number =>
   Math.round(clamp(value / range, -1, 1) * mostSteps(bits));
 
 export const fromStep = (step: number, range: number, bits: number): number => (step / mostSteps(bits)) * range;
 
 /**
- * Non-uniform quantiser for values concentrated near 0: half the uniform step at 0, 1.5 times at ±range. Beyond: the end of the range.
+ * Returns the step of a non-uniform quantiser for values near 0: half the uniform step at 0, 1.5 times at ±range, clamped beyond.
  */
 export function toCentredStep(value: number, range: number, bits: number): number {
   const step = toStep((Math.sqrt(1 + 8 * clamp(Math.abs(value) / range, 0, 1)) - 1) / 2, 1, bits);
@@ -34,14 +34,14 @@ export function fromCentredStep(step: number, range: number, bits: number): numb
 export const writeStep = (writer: BitWriter, step: number, bits: number): void =>
   writer.write(step + mostSteps(bits), bits);
 
-/** The step, or null for the code that means nothing. */
+/** Returns the step; null for the invalid code. */
 export function readStep(reader: BitReader, bits: number): number | null {
   const most = mostSteps(bits);
   const step = reader.read(bits) - most;
   return step <= most ? step : null;
 }
 
-/** A rotation as steps: which of x, y, z, w is largest (and taken as positive), and the other three in order. A buffer. */
+/** A rotation in smallest-three form: the index of the largest of x, y, z, w (made positive), and the other three. A buffer. */
 export interface QuatSteps {
   largest: number;
   a: number;
@@ -51,10 +51,10 @@ export interface QuatSteps {
 
 export const makeQuatSteps = (): QuatSteps => ({ largest: 3, a: 0, b: 0, c: 0 });
 
-/** The three that are not largest lie within ±1/√2. */
+/** Range of the other three components: ±1/√2. */
 const range = Math.SQRT1_2;
 
-/** The nearest steps to a unit quaternion; q and −q give the same, equal largest components the first of w, x, y, z. */
+/** Writes the nearest steps of a unit quaternion, the same for q and −q. Of equal largest components the first of w, x, y, z is taken. */
 export function toQuatSteps({ x, y, z, w }: Quat, bits: number, target: QuatSteps = makeQuatSteps()): QuatSteps {
   let largest = 3;
   let most = w;
@@ -88,7 +88,7 @@ export function writeQuat(writer: BitWriter, { largest, a, b, c }: QuatSteps, bi
   writeStep(writer, c, bits);
 }
 
-/** The rotation; null where the fourth component would not be the largest. */
+/** Reads a rotation; null if the fourth component would not be the largest. */
 export function readQuat(reader: BitReader, bits: number, target: QuatSteps = makeQuatSteps()): QuatSteps | null {
   target.largest = reader.read(2);
   const a = readStep(reader, bits);
@@ -101,12 +101,12 @@ export function readQuat(reader: BitReader, bits: number, target: QuatSteps = ma
   const most = mostSteps(bits);
   const squares = (a * a + b * b + c * c) / (2 * most * most);
   const others = Math.max(Math.abs(a), Math.abs(b), Math.abs(c)) / most;
-  // Rounding moves each of four equal components by half a step: two steps are more than it ever takes.
+  // Rounding moves each of four equal components by half a step; the tolerance of two steps is enough.
   const rest = Math.sqrt(Math.max(0, 1 - squares)) * Math.SQRT2;
   return rest >= others - 4 / most ? target : null;
 }
 
-/** Three steps: a vector. A buffer. */
+/** A vector of three steps. A buffer. */
 export interface VecSteps {
   x: number;
   y: number;
@@ -115,12 +115,12 @@ export interface VecSteps {
 
 export const makeVecSteps = (): VecSteps => ({ x: 0, y: 0, z: 0 });
 
-/** A direction as the place where it leaves a cube: through which face, and where on it. A buffer. */
+/** A direction as a point on a cube: the face, and the position on it. A buffer. */
 export interface DirectionSteps {
-  /** 0 to 2: x, y, z. */
+  /** The axis of the face, 0 to 2: x, y, z. */
   axis: number;
   negative: boolean;
-  /** The other two components, in order, against the axis's. */
+  /** The other two components, in order, divided by that of the axis. */
   a: number;
   b: number;
 }
@@ -144,7 +144,7 @@ export function toDirectionSteps(
   return target;
 }
 
-/** The unit vector through that place of the cube; `axis` in 0 to 2. */
+/** Writes the unit vector through that point of the cube; `axis` must be 0 to 2. */
 export function fromDirectionSteps(
   { axis, negative, a, b }: DirectionSteps,
   bits: number,
@@ -181,7 +181,7 @@ export function readDirection(
   return target;
 }
 
-/** Writes two unit vectors that make a right-handed frame with a unit vector. */
+/** Writes two unit vectors that form a right-handed frame with `axis`, a unit vector. */
 export function perpendicularAxes(axis: Vec3, u: MutableVec3, v: MutableVec3): void {
   if (Math.abs(axis.y) < 0.9) setVec3(u, axis.z, 0, -axis.x);
   else setVec3(u, 0, -axis.z, axis.y);

@@ -45,7 +45,7 @@ import {
 } from './pose-steps';
 import { fromCentredStep, fromDirectionSteps, fromQuatSteps, fromStep, perpendicularAxes } from './quantise';
 
-// Scratch of one call.
+// Scratch of one call of this file's functions.
 const axis = vec3(0, 0, 0);
 const turn = vec3(0, 0, 0);
 const turned = quat(0, 0, 0, 1);
@@ -56,17 +56,17 @@ const bend = vec3(0, 0, 0);
 const hinge = vec3(0, 0, 0);
 const direction = vec3(0, 0, 0);
 const circle = makeElbowCircle();
-/** A pole is a sum of both axes across the arm, so that no fallback is ever needed. */
+/** Unused fallbacks: a pole is always a sum of both axes across the arm. */
 const fallbacks: readonly [Vec3, Vec3] = [acrossU, acrossU];
 const bones = { upper: 0, lower: 0 };
 
-/** The axis a joint twists about: the way to the next one. */
+/** Writes the axis about which the spine twists: the direction to the next joint. */
 export const spineAxis = ({ restOffsets }: Skeleton, target: MutableVec3): MutableVec3 =>
   normalise(add(restOffsets.spine, restOffsets.chest, target), undefined, target);
 export const chestAxis = ({ restOffsets }: Skeleton, target: MutableVec3): MutableVec3 =>
   normalise(add(restOffsets.upperChest, restOffsets.neck, target), undefined, target);
 
-/** Rotations of the trunk's joints against the floor, and where the clavicles begin, as the receiver rebuilds them. */
+/** The trunk as the receiver rebuilds it: rotations of its joints in the floor frame, and the roots of the clavicles. */
 export class RebuiltTrunk {
   readonly hipsPosition = vec3(0, 0, 0);
   readonly hips = quat(0, 0, 0, 1);
@@ -77,7 +77,7 @@ export class RebuiltTrunk {
   readonly clavicleRoots: Readonly<Record<Side, MutableVec3>> = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
   private readonly joint = vec3(0, 0, 0);
 
-  /** From the head down: the trunk hangs from where the head is. */
+  /** Places the trunk from the head down. */
   place(head: Pose<'floor'>, steps: TrunkSteps, bits: BodyBits, skeleton: Skeleton): void {
     const { hips, spine, chest, upperChest, neck, joint } = this;
     const { restOffsets: offsets, eyesInHead } = skeleton;
@@ -99,35 +99,35 @@ export class RebuiltTrunk {
   }
 }
 
-/** A rotation followed by a twist [rad] about an axis of its own. */
+/** Writes a rotation followed by a twist [rad] about a local axis. */
 const twisted = (rotation: Quat, about: Vec3, angle: number, target: MutableQuat): MutableQuat =>
   multiply(rotation, fromAxisAngle(about, angle, turned), target);
 
-/** Down, back and a little outward from a shoulder, upper chest's frame: the direction from which swivels are counted. */
+/** The direction of swivel 0 in the upper chest's frame: down, back and a little outward from the shoulder. */
 const swivelZero: Readonly<Record<Side, Vec3>> = { left: vec3(-0.2, -0.88, 0.43), right: vec3(0.2, -0.88, 0.43) };
 
-/** Writes the directions about the line from shoulder to wrist that the swivel is counted from, and a quarter turn on. */
+/** Writes the directions of swivel 0 and of a quarter turn, about the line from shoulder to wrist. */
 export function swivelAxes(side: Side, upperChest: Quat, along: Vec3, u: MutableVec3, v: MutableVec3): void {
   reject(rotate(upperChest, swivelZero[side], u), along, u);
-  // An arm that points down and back has no such direction: then forward. Both ends know the same arm, to the last bit or nearly.
+  // For an arm that points down and back, forward replaces it. Sender and receiver decide on the same arm, up to rounding.
   if (!(length(u) > 0.1)) reject(rotate(upperChest, forward, u), along, u);
   normalise(u, undefined, u);
   cross(along, u, v);
 }
 
-/** From shoulder to wrist, unit; an arm of no length hangs. */
+/** Writes the unit vector from shoulder to wrist; down for an arm without length. */
 export function armAxis(shoulder: Vec3, wrist: Vec3, upperChest: Quat, target: MutableVec3): MutableVec3 {
   rotate(upperChest, down, turn);
   return normalise(subtract(wrist, shoulder, target), turn, target);
 }
 
-/** An arm as the receiver rebuilds it: clavicle, then where it ends, then how it bends. */
+/** An arm as the receiver rebuilds it: the clavicle, then the wrist, then the elbow. */
 export class RebuiltArm {
-  /** The shoulder joint, and the rotation of the clavicle. */
+  /** The position of the shoulder joint, and the rotation of the clavicle. */
   readonly shoulder = makePose<'floor'>();
   readonly wrist = vec3(0, 0, 0);
   readonly elbow = vec3(0, 0, 0);
-  /** Floor frame. */
+  /** Rotations of the bones, floor frame. */
   readonly rotations = { upperArm: quat(0, 0, 0, 1), lowerArm: quat(0, 0, 0, 1), hand: quat(0, 0, 0, 1) };
 
   constructor(private readonly side: Side) {}
@@ -143,7 +143,7 @@ export class RebuiltArm {
     add(trunk.clavicleRoots[this.side], rotate(orientation, rest, position), position);
   }
 
-  /** Where the arm ends: at its own wrist, or at the hand. */
+  /** Writes the wrist: the arm's own, or that at the hand. */
   aim(
     hand: Pose<'floor'>,
     { free, stretch, direction: towards, flexion, hand: turnedAs }: ArmSteps,
@@ -163,7 +163,7 @@ export class RebuiltArm {
     handBoneRotation(this.side, hand.orientation, this.rotations.hand);
   }
 
-  /** The elbow swivels to where it is told, the forearm twists. */
+  /** Writes the elbow from the swivel, and twists the forearm. */
   bend({ upperChest }: RebuiltTrunk, { swivel, forearmTwist }: ArmSteps, skeleton: Skeleton): void {
     const { side, wrist, elbow } = this;
     const { upperArm, lowerArm } = this.rotations;
@@ -184,7 +184,7 @@ export class RebuiltArm {
 const receivedTrunk = new RebuiltTrunk();
 const receivedArms = { left: new RebuiltArm('left'), right: new RebuiltArm('right') };
 
-/** The body that a packet's numbers stand for. */
+/** Returns the body that a packet's steps describe. */
 export function placeBody(
   head: Pose<'floor'>,
   hands: Readonly<Record<Side, Pose<'floor'>>>,

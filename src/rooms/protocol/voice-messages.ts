@@ -1,16 +1,16 @@
 import * as v from 'valibot';
 
-/** A room in which there are voices has no more seats than this: each page has a connection to each other one. */
+/** The most seats of a room with voices: each page connects to every other one. */
 export const mostVoices = 6;
 
 /** Identifies one page's voice session; a new id after a reload, or when all peer connections restart. */
 const session = v.pipe(v.string(), v.regex(/^[\w-]{8,16}$/));
 
-/** How a page takes part in the voices of its room. */
+/** A page's part in the voices of its room. */
 export const voice = v.strictObject({ session, muted: v.boolean() });
 export type Voice = v.InferOutput<typeof voice>;
 
-/** Wire form of `Voice` in a packed seat: [session, muted as 0 or 1]; 0 alone: not taking part. */
+/** Wire form of `Voice` in a seat: [session, muted as 0 or 1]; 0: takes no part. */
 export const packedVoice = v.union([v.literal(0), v.tuple([session, v.picklist([0, 1])])]);
 type PackedVoice = v.InferOutput<typeof packedVoice>;
 
@@ -18,21 +18,21 @@ export const packVoice = (of: Voice | null): PackedVoice => (of ? [of.session, o
 export const unpackVoice = (packed: PackedVoice): Voice | null =>
   packed === 0 ? null : { session: packed[0], muted: packed[1] === 1 };
 
-/** Longest description of a connection [characters], and most addresses in one message, so that it fits into a control message. */
+/** The longest description [characters], and the most candidates in one message, so that it fits into a control message. */
 export const longestDescription = 3200;
 export const mostCandidates = 8;
 
-/** Text as browsers write it into a signal: one line, or with ends of lines. */
+/** Text of a signal: one line, or several. */
 const line = /^[\x20-\x7e]*$/;
 const lines = /^[\x20-\x7e\t\r\n]*$/;
 
-/** Whether a description is of a voice and of nothing else: no video, no channel of data, no second voice. */
+/** Returns whether a description has one audio section at most, and no other media. */
 const isOneVoice = (sdp: string): boolean => {
   const [first, ...more] = sdp.split(/[\r\n]+/).filter((text) => text.startsWith('m='));
   return more.length === 0 && (first === undefined || first.startsWith('m=audio '));
 };
 
-/** One address at which a page may be reached; as RTCIceCandidateInit has it, which belongs to a part of the description. */
+/** An ICE candidate, as in RTCIceCandidateInit, with its media section. */
 const candidate = v.pipe(
   v.strictObject({
     candidate: v.pipe(v.string(), v.maxLength(300), v.regex(line)),
@@ -44,8 +44,8 @@ const candidate = v.pipe(
 );
 
 /**
- * What two pages tell each other to set up the connection between them: what it is to carry, or where they may be reached. A browser takes more
- * than a voice, and fails with a fault of the page at what belongs to no part: the room passes neither on, and no page reads it.
+ * A signal between two pages that connect: a description, or ICE candidates. Browsers would also accept other media, and throw at a candidate without
+ * a media section; rooms and pages reject both.
  */
 const signalBody = v.union([
   v.strictObject({
@@ -58,6 +58,6 @@ const signalBody = v.union([
 ]);
 export type SignalBody = v.InferOutput<typeof signalBody>;
 
-/** From a page to another one's session, which the room passes on; whose it is, the room says itself. */
+/** A signal to another page's session. The room forwards it with the sender's session. */
 export const signalTo = v.strictObject({ type: v.literal('signal'), to: session, body: signalBody });
 export const signalFrom = v.strictObject({ type: v.literal('signal'), from: session, body: signalBody });

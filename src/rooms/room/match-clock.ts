@@ -1,36 +1,36 @@
 import type { HostedGame, HostedMatch, MatchAction, MatchPolicy } from './match-policy';
 
-/** What a match's clock tells its Room. */
+/** Receives what happens to a match and its clock. */
 export interface MatchClockListener<Game extends HostedGame> {
-  /** What happened in the match, oldest first; perhaps nothing. */
-  happened(events: readonly Game['event'][]): void;
-  /** The clock stands, or runs again. */
-  paused(): void;
-  /** The clock's start is elsewhere in the Room's time. */
-  shifted(): void;
-  /** Another match has begun. */
-  restarted(): void;
-  stepped(actions: readonly MatchAction<Game>[]): void;
+  /** Called with the events of a step, oldest first; the list may be empty. */
+  onEvents(events: readonly Game['event'][]): void;
+  /** Called when the clock is paused or resumed. */
+  onPauseChange(): void;
+  /** Called when the match start has moved in room time. */
+  onStartShift(): void;
+  /** Called when another match has begun. */
+  onRestart(): void;
+  onStep(actions: readonly MatchAction<Game>[]): void;
 }
 
-/** A shift of the match's start by less than this [s] is rounding. */
+/** Shifts of the match start below this [s] are rounding. */
 const leastShift = 1e-3;
 
-/** One match after another, each with its clock within the Room's time [s]: started, paused, stepped. */
+/** Starts, pauses and steps one match after another, and keeps the match clock in room time [s]. */
 export class MatchClock<Game extends HostedGame> {
   readonly #policy: MatchPolicy<Game>;
   readonly #listener: MatchClockListener<Game>;
   #match: HostedMatch<Game>;
-  /** Actions that wait for the next step. */
-  #waiting: MatchAction<Game>[] = [];
-  #begun = false;
+  /** Actions for the next step. */
+  #queued: MatchAction<Game>[] = [];
+  #hasBegun = false;
   #matchStart = 0;
-  /** For how long the clock has stood in all [s]. */
+  /** How long the match clock has stood in all [s]. */
   #pausedSeconds = 0;
-  /** Room time at which the clock was stopped; null: it runs. */
+  /** Room time at which the clock was paused; null: it runs. */
   #stoppedAt: number | null = null;
   #rotation = 0;
-  /** Roles move on with every match. */
+  /** Whether roles move on with every match. */
   rotate = false;
 
   constructor(policy: MatchPolicy<Game>, listener: MatchClockListener<Game>) {
@@ -43,7 +43,7 @@ export class MatchClock<Game extends HostedGame> {
     return this.#match.state;
   }
 
-  /** Room time [s] at which the match's clock was at 0; it moves on with every second that the clock stands. */
+  /** Room time [s] at which the match clock is 0; it moves on during a pause. */
   get matchStart(): number {
     return this.#matchStart;
   }
@@ -52,68 +52,68 @@ export class MatchClock<Game extends HostedGame> {
     return this.#stoppedAt !== null;
   }
 
-  /** A match runs, and its clock with it. */
+  /** Whether a match runs and is not paused. */
   get isRunning(): boolean {
     return this.state.phase === 'running' && !this.isPaused;
   }
 
-  /** Time alone changes nothing: no match runs, and no action waits. */
-  get isStill(): boolean {
-    return this.#waiting.length === 0 && !this.isRunning;
+  /** Whether time alone changes nothing: no match runs, and no action waits. */
+  get isIdle(): boolean {
+    return this.#queued.length === 0 && !this.isRunning;
   }
 
-  /** The second of the match at which its clock stands; null: it runs. */
+  /** The second of the match at which its clock is paused; null: it runs. */
   get pausedAt(): number | null {
     return this.#stoppedAt === null ? null : this.#stoppedAt - this.#matchStart;
   }
 
-  /** The first time that the Room is told is the beginning of its first match; later ones change nothing. */
+  /** Starts the first match at this room time [s]; later calls change nothing. */
   begin(time: number): void {
-    if (this.#begun) return;
-    this.#begun = true;
+    if (this.#hasBegun) return;
+    this.#hasBegun = true;
     this.#matchStart = time;
     this.#match.advance(this.#runningTime(time), []);
   }
 
-  /** Keeps an action for the next step. */
+  /** Queues an action for the next step. */
   add(action: MatchAction<Game>): void {
-    this.#waiting.push(action);
+    this.#queued.push(action);
   }
 
-  /** Steps the match as far as this time, unless its clock stands or, because the players want so, is stopped now. */
+  /** Steps the match up to this time [s]. `wantPause`: whether a player requests a pause; the clock is then paused, or stays so. */
   step(time: number, wantPause: boolean): void {
     if (this.#stoppedAt !== null) {
       if (wantPause) return;
       this.#resume(time, this.#stoppedAt);
     }
     const stopping = wantPause && this.state.phase === 'running';
-    const due = this.#takeWaiting();
+    const due = this.#takeQueued();
     if (stopping) due.push({ type: 'pause' });
     const tick = this.state.tick;
-    this.#listener.happened(this.#match.advance(this.#runningTime(time), due));
-    // Between two ticks of the match nothing is stepped: then it stops with the next one. A match that these ticks ended stands by itself.
+    this.#listener.onEvents(this.#match.advance(this.#runningTime(time), due));
+    // The match pauses only after a tick; one that has just ended needs no pause.
     if (stopping && this.state.tick !== tick && this.state.phase === 'running') {
       this.#stoppedAt = time;
-      this.#listener.paused();
+      this.#listener.onPauseChange();
       return;
     }
-    this.#followHost(time);
-    // What came since the last tick is for this match to take in: another one begins with what its last tick knew.
+    this.#adjustStart(time);
+    // A new match begins only after a tick, so that this one has handled all actions.
     if (this.state.tick !== tick) this.#restartIfWanted(time);
   }
 
   #newMatch(): HostedMatch<Game> {
-    return this.#policy.start(this.#rotation, (actions) => this.#listener.stepped(actions));
+    return this.#policy.start(this.#rotation, (actions) => this.#listener.onStep(actions));
   }
 
-  /** The Room's time less the time that the match's clock has stood [s]. */
+  /** Returns room time without pauses [s]. */
   #runningTime(time: number): number {
     return time - this.#pausedSeconds;
   }
 
-  #takeWaiting(): MatchAction<Game>[] {
-    const waiting = this.#waiting;
-    this.#waiting = [];
+  #takeQueued(): MatchAction<Game>[] {
+    const waiting = this.#queued;
+    this.#queued = [];
     return waiting;
   }
 
@@ -121,18 +121,18 @@ export class MatchClock<Game extends HostedGame> {
     this.#pausedSeconds += time - stoppedAt;
     this.#matchStart += time - stoppedAt;
     this.#stoppedAt = null;
-    this.#listener.paused();
+    this.#listener.onPauseChange();
   }
 
-  /** A match cuts pauses of its host, which stepped nothing meanwhile, out of its time: then its start is later. */
-  #followHost(time: number): void {
+  /** Moves the match start if the match has skipped a time in which its host was suspended. */
+  #adjustStart(time: number): void {
     const start = time - this.#match.lead - this.state.tick * this.#policy.tickSeconds;
     if (Math.abs(start - this.#matchStart) <= leastShift) return;
     this.#matchStart = start;
-    this.#listener.shifted();
+    this.#listener.onStartShift();
   }
 
-  /** Begins another match once all who are there want one and can play it. */
+  /** Starts another match once all present players are ready and their roles permit it. */
   #restartIfWanted(time: number): void {
     const before = this.state;
     if (before.phase !== 'over') return;
@@ -148,8 +148,8 @@ export class MatchClock<Game extends HostedGame> {
       this.add({ type: 'join', player });
       this.add({ type: 'ready', player, ready: true });
     });
-    const events = this.#match.advance(this.#runningTime(time), this.#takeWaiting());
-    this.#listener.restarted();
-    this.#listener.happened(events);
+    const events = this.#match.advance(this.#runningTime(time), this.#takeQueued());
+    this.#listener.onRestart();
+    this.#listener.onEvents(events);
   }
 }

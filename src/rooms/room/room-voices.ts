@@ -1,67 +1,60 @@
 import type { ClientMessage } from '../protocol/messages';
 import { mostVoices, type Voice } from '../protocol/voice-messages';
 import type { HostedGame } from './match-policy';
-import type { RoomOutlet, RoomReason } from './room-outlet';
-import type { Client, Seats } from './seats';
+import type { RefusalReason, RoomHost } from './room-host';
+import type { Member, Seats } from './seats';
 
 type Received<Type extends ClientMessage['type']> = Extract<ClientMessage, { type: Type }>;
 
 /**
- * Who takes part in the voices of a room, and what their pages tell each other to connect. No sound comes by here: pages send it to each other. Who
- * watches has no seat, and so neither speaks nor hears.
+ * The voice sessions of a room, and the signals by which their pages connect. Sound never passes through the room: pages send it to each
+ * other. A spectator has no seat, and therefore no voice.
  */
 export class RoomVoices {
   readonly #seats: Seats;
-  readonly #on: boolean;
-  readonly #outlet: Pick<RoomOutlet<HostedGame>, 'send'>;
+  readonly #enabled: boolean;
+  readonly #host: Pick<RoomHost<HostedGame>, 'send'>;
 
-  /** `wanted`: by the room's host; a room with too many seats for it has no voices all the same. */
-  constructor(seats: Seats, wanted: boolean, outlet: Pick<RoomOutlet<HostedGame>, 'send'>) {
+  /** `wanted`: the room's host allows voices; a room with more than `mostVoices` seats has none even then. */
+  constructor(seats: Seats, wanted: boolean, host: Pick<RoomHost<HostedGame>, 'send'>) {
     this.#seats = seats;
-    this.#on = wanted && seats.count <= mostVoices;
-    this.#outlet = outlet;
+    this.#enabled = wanted && seats.count <= mostVoices;
+    this.#host = host;
   }
 
-  /** How a person who joins takes part, where the room lets them as they ask; else null. */
+  /** Returns the voice with which a joining person takes part; null where the room has no voices or the session is taken. */
   admitted(identity: string, voice: Voice | null): Voice | null {
-    if (!voice || !this.#on) return null;
+    if (!voice || !this.#enabled) return null;
     const taken = this.#seats.withVoice(voice.session);
-    // A page that returns finds its own session on the seat that was held for it.
+    // A page that reconnects finds its own session on the held seat.
     return taken !== null && this.#seats.at(taken)?.identity !== identity ? null : voice;
   }
 
-  /** Hears a client on this seat (null: none); `refuse` is told why the room does not do as they say. */
-  hear(
-    index: number | null,
-    known: Client,
-    message: Received<'voice' | 'signal'>,
-    refuse: (reason: RoomReason) => void,
-  ): void {
-    const passes = message.type === 'signal';
-    const refusal = passes ? this.#pass(index, message) : this.#change(index, known, message.voice);
-    if (refusal) refuse(refusal);
+  /** Applies a message of a member on this seat (null: a spectator). Returns why it is refused, or null. */
+  onMessage(index: number | null, member: Member, message: Received<'voice' | 'signal'>): RefusalReason | null {
+    return message.type === 'signal' ? this.#pass(index, message) : this.#change(index, member, message.voice);
   }
 
-  /** Takes the client in among the voices, or out. */
-  #change(index: number | null, known: Client, voice: Voice | null): RoomReason | null {
-    if (!this.#on) return 'no-voices';
+  /** Adds the member to the voices, or removes it (null). */
+  #change(index: number | null, member: Member, voice: Voice | null): RefusalReason | null {
+    if (!this.#enabled) return 'no-voices';
     if (index === null && voice) return 'no-seat';
     const taken = voice && this.#seats.withVoice(voice.session);
     if (taken !== null && taken !== index) return 'session-taken';
-    known.voice = voice;
-    if (index !== null) this.#seats.tell(index, { voice });
+    member.voice = voice;
+    if (index !== null) this.#seats.update(index, { voice });
     return null;
   }
 
-  /** Passes a signal on to the page that it is for, with the session that the room knows its sender by. */
-  #pass(index: number | null, { to, body }: Received<'signal'>): RoomReason | null {
-    if (!this.#on) return 'no-voices';
+  /** Forwards a signal to the page that it names, with the sender's own session. */
+  #pass(index: number | null, { to, body }: Received<'signal'>): RefusalReason | null {
+    if (!this.#enabled) return 'no-voices';
     const sender = index === null ? null : this.#seats.at(index);
     if (!sender) return 'no-seat';
     const receiver = this.#seats.withVoice(to);
     const client = receiver === null || receiver === index ? null : (this.#seats.at(receiver)?.client ?? null);
-    if (!sender.voice || client === null) return 'not-heard';
-    this.#outlet.send(client, { type: 'signal', from: sender.voice.session, body });
+    if (!sender.voice || client === null) return 'no-receiver';
+    this.#host.send(client, { type: 'signal', from: sender.voice.session, body });
     return null;
   }
 }

@@ -1,236 +1,231 @@
-import { type AvatarRef, plainAvatar } from 'threepoint/core/body/avatar-ref';
-import { transformPoint, transformTracked } from 'threepoint/core/math/pose';
-import { type ClientMessage, type Joining, packSeatInfo, protocolVersion } from '../protocol/messages';
+import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
+import { type ClientMessage, type JoinRequest, packSeatInfo, protocolVersion } from '../protocol/messages';
 import { decodePoints, makePoints } from '../protocol/pose-codec';
-import type { PointsPacket } from '../protocol/pose-packet';
-import { MatchClock } from './match-clock';
 import type { HostedGame, MatchPolicy } from './match-policy';
-import { sendEvents } from './room-events';
-import type { ClientId, RoomOutlet, RoomReason, RoomRefusal } from './room-outlet';
-import { RoomVoices } from './room-voices';
-import { SeatNews } from './seat-news';
-import { allowedMoves, type Client, type SeatCensus, Seats } from './seats';
+import { MemberProfiles } from './member-profiles';
+import type { ClientId, RefusalReason, RoomHost, RoomRefusal } from './room-host';
+import { RoomMatch } from './room-match';
+import { SeatUpdates } from './seat-updates';
+import { type Member, type SeatCensus, Seats } from './seats';
 
 export interface RoomOptions {
   readonly id: string;
-  /** Another one whenever a room of this id is made anew. */
+  /** Differs between two rooms that have the same id one after the other. */
   readonly epoch: string;
-  /** Players may stop the match's clock: in a study, where all pages do as the experimenter says. Default: they may not. */
+  /** Players may pause the match clock, as in a study, where all pages follow the experimenter. Default: false. */
   readonly pausable?: boolean;
-  /** Every seat is one person's own: each who joins names theirs, and no one moves to another. */
+  /** Every seat belongs to one person: a client joins with its own seat and cannot change it. Default: false. */
   readonly assigned?: boolean;
-  /** The pages on its seats may let their people talk. Default: they may not. */
+  /** Players on seats may talk to each other. Default: false. */
   readonly voices?: boolean;
 }
 
-/** Who is in a Room. */
+/** How many people and bots are in a Room. */
 export interface RoomCensus extends SeatCensus {
   readonly spectators: number;
-  /** No one is connected and no seat is held. */
+  /** No client is connected, and no seat is held. */
   readonly empty: boolean;
 }
 
 type Received<Type extends ClientMessage['type']> = Extract<ClientMessage, { type: Type }>;
 
-/** Where no match runs, time is followed in steps of this [s]: who has fallen silent, whose pose is forgotten. */
-const watchSeconds = 0.1;
+/** Tick interval [s] while no match runs: often enough to notice silent players and to forget poses. */
+const idleTickSeconds = 0.1;
 
-/** Of the packet that is being taken. */
+/** The buffer into which `onPose` decodes a packet. */
 const points = makePoints();
 
 /**
- * The authority over one room and the matches played in it: seats, presence, the match's clock, rematches, newest poses. It knows no
- * game, which its policy brings, no socket and no clock: times are the room clock's [s], they never go back, and its host says when
- * to tick and when poses leave.
+ * The authority over one room: its members, their seats, and the match that they play. A Room knows no game (its policy supplies it), no socket
+ * and no clock. Times are the room clock's [s] and never decrease; the host decides when to tick and when to send poses.
  */
 export class Room<Game extends HostedGame> {
   readonly options: RoomOptions;
   readonly #policy: MatchPolicy<Game>;
-  readonly #outlet: RoomOutlet<Game>;
-  readonly #clients = new Map<ClientId, Client>();
+  readonly #host: RoomHost<Game>;
+  readonly #members = new Map<ClientId, Member>();
   readonly #seats: Seats;
-  readonly #voices: RoomVoices;
-  readonly #match: MatchClock<Game>;
-  readonly #news: SeatNews;
-  /** The newest time that the host has given [s]. */
+  readonly #seatUpdates: SeatUpdates;
+  readonly #profiles: MemberProfiles;
+  readonly #match: RoomMatch<Game>;
+  /** The newest time that the host has passed [s]. */
   #time = 0;
 
-  constructor(policy: MatchPolicy<Game>, options: RoomOptions, outlet: RoomOutlet<Game>) {
+  constructor(policy: MatchPolicy<Game>, options: RoomOptions, host: RoomHost<Game>) {
     this.options = options;
     this.#policy = policy;
-    this.#outlet = outlet;
-    this.#match = new MatchClock(policy, {
-      happened: this.#happened,
-      paused: () => this.#broadcastClock('paused'),
-      shifted: () => this.#broadcastClock('match-start'),
-      restarted: () => outlet.broadcast({ type: 'match', match: this.#snapshot(), matchStart: this.#match.matchStart }),
-      stepped: (actions) => outlet.stepped?.(actions),
-    });
+    this.#host = host;
     this.#seats = new Seats(policy.seats, {
-      changed: (seat) => this.#news.changed(seat, this.#time),
+      changed: (seat) => this.#seatUpdates.changed(seat, this.#time),
       act: (action) => this.#match.add(action),
     });
-    this.#news = new SeatNews(policy.seats, (seat) => this.#broadcastSeat(seat));
-    this.#voices = new RoomVoices(this.#seats, options.voices === true, outlet);
+    this.#seatUpdates = new SeatUpdates(policy.seats, (seat) => this.#broadcastSeat(seat));
+    const { assigned = false, voices = false } = options;
+    this.#profiles = new MemberProfiles(this.#seats, host, { assigned, voices });
+    this.#match = new RoomMatch(policy, this.#seats, host);
   }
 
-  /** The game that is played here. */
+  /** The name of the game. */
   get kind(): string {
     return this.#policy.kind;
   }
 
   get census(): RoomCensus {
-    const empty = this.#clients.size === 0 && this.#seats.areEmpty;
+    const empty = this.#members.size === 0 && this.#seats.areEmpty;
     return { ...this.#seats.census, spectators: this.#countSpectators(), empty };
   }
 
-  /** The match as the rules have it. */
+  /** The state of the match, as the rules have it. */
   get match(): Game['state'] {
     return this.#match.state;
   }
 
-  /** The match's clock stands because a player wants it to. */
+  /** Whether a player has paused the match clock. */
   get paused(): boolean {
     return this.#match.isPaused;
   }
 
-  /** What this person has on, on a seat that is theirs or held for them; null: they have none. */
-  wornBy(identity: string): AvatarRef | null {
-    const index = this.#seats.heldBy(identity);
+  /** Returns the avatar of a person with a seat, held seats included; null for anyone else. */
+  avatarOf(identity: string): AvatarRef | null {
+    const index = this.#seats.indexOfIdentity(identity);
     return index === null ? null : (this.#seats.at(index)?.avatar ?? null);
   }
 
-  /** A new connection of a person whose identity the host has made sure of. Replaces an older one of theirs and takes their held seat. */
-  join(client: ClientId, identity: string, joining: Joining, time: number): void {
+  /**
+   * Adds a connection of a person whose identity the host has verified. It replaces an older connection of the same person, and takes the seat that
+   * is held for them.
+   */
+  join(client: ClientId, identity: string, request: JoinRequest, time: number): void {
     this.#time = time;
     this.#match.begin(time);
-    if (this.#clients.has(client)) {
+    if (this.#members.has(client)) {
       this.#refuse(client, 'message', 'joined-already');
       return;
     }
     this.#replaceOlder(identity, time);
-    const { name, calibration, bot, spectate } = joining;
-    const avatar = this.options.assigned ? plainAvatar : joining.avatar;
-    const voice = spectate ? null : this.#voices.admitted(identity, joining.voice);
-    const known: Client = { identity, name, bot, calibration, avatar, voice, moves: allowedMoves() };
-    this.#clients.set(client, known);
-    const held = this.#seats.heldBy(identity);
-    if (held !== null && !spectate) this.#seats.retake(held, client, known, time);
+    const member = this.#profiles.admit(identity, request);
+    this.#members.set(client, member);
+    const held = this.#seats.indexOfIdentity(identity);
+    if (held !== null && !request.spectate) this.#seats.retake(held, client, member, time);
     else {
       if (held !== null) this.#vacate(held);
-      const index = spectate ? null : this.#freeSeatFor(joining.seat, bot);
-      if (index !== null) this.#takeSeat(index, client, known, time);
+      const index = request.spectate ? null : this.#freeSeatFor(request.seat, request.bot);
+      if (index !== null) this.#takeSeat(index, client, member, time);
     }
     this.#welcome(client, time);
     this.#broadcastAbout();
   }
 
-  /** The connection is lost; the seat is held for 30 s. */
+  /** Removes a client whose connection is lost. A person's seat is held for `seatHoldSeconds`, a bot's becomes free. */
   disconnect(client: ClientId, time: number): void {
     this.#time = time;
     const index = this.#seats.indexOf(client);
-    if (!this.#clients.delete(client)) return;
+    if (!this.#members.delete(client)) return;
     if (index !== null) {
       if (this.#seats.at(index)?.bot) this.#vacate(index);
       else {
-        this.#seats.hold(index, time);
+        this.#seats.markDisconnected(index, time);
         this.#seats.setPresence(index, time);
       }
     }
     this.#broadcastAbout();
   }
 
-  /** bad: an action that is none of this game's. A message that asks for more than the client may have is taken, and refused. */
+  /** Handles a message. Returns 'bad' for an action that is not one of this game; a message that is refused is 'taken'. */
   onMessage(client: ClientId, message: Exclude<ClientMessage, { type: 'join' }>, time: number): 'taken' | 'bad' {
     this.#time = time;
-    const known = this.#clients.get(client);
-    if (!known) {
+    const member = this.#members.get(client);
+    if (!member) {
       this.#refuse(client, 'message', 'not-joined');
       return 'taken';
     }
-    if (message.type === 'action') return this.#onAction(client, message);
-    this.#onControl(client, known, message, time);
+    const index = this.#seats.indexOf(client);
+    if (message.type === 'action') {
+      const result = this.#match.act(index, message.action);
+      if (result === 'no-seat') this.#refuse(client, 'action', 'no-seat');
+      return result === 'bad' ? 'bad' : 'taken';
+    }
+    this.#onControl(client, member, index, message);
     return 'taken';
   }
 
-  /** bad: not a pose packet. ignored: a good one that changes nothing, because it is old, unbelievable or from a spectator. */
+  /**
+   * Handles a pose packet. Returns 'bad' for bytes that are not a packet, and 'ignored' for a packet that changes nothing: it is old, moves too
+   * fast, or comes from a spectator.
+   */
   onPose(client: ClientId, bytes: Uint8Array, time: number): 'taken' | 'ignored' | 'bad' {
     const packet = decodePoints(bytes, points);
     if (!packet) return 'bad';
     const index = this.#seats.indexOf(client);
     const seat = index === null ? null : this.#seats.at(index);
     if (!seat || index === null) return 'ignored';
-    const judged = seat.poses.take(packet, bytes, time);
-    if (judged === 'too-fast') this.#refuse(client, 'pose', 'too-fast');
-    if (judged !== 'believed') return 'ignored';
-    if (!this.#match.isPaused) this.#actPose(index, packet, seat.poses.packetTime);
+    const result = seat.poses.accept(packet, bytes, time);
+    if (result === 'too-fast') this.#refuse(client, 'pose', 'too-fast');
+    if (result !== 'accepted') return 'ignored';
+    this.#match.addPose(index, packet, seat.poses.packetTime);
     return 'taken';
   }
 
-  /** Time alone changes nothing here: no match runs and no one is waited for. Until something comes, ticks are in vain. */
-  get isStill(): boolean {
-    return this.#match.isStill && this.#seats.areStill && this.#news.isComplete;
+  /** Whether ticks change nothing until the next message: no match runs, no player is awaited, and no update is queued. */
+  get isIdle(): boolean {
+    return this.#match.isIdle && this.#seats.areIdle && this.#seatUpdates.isComplete;
   }
 
-  /** So long after a tick the next is of use, unless a message comes [s]. */
+  /** Seconds from one tick to the next, where no message arrives between them. */
   get tickPeriod(): number {
-    return this.#match.isRunning ? this.#policy.tickSeconds : watchSeconds;
+    return this.#match.isRunning ? this.#policy.tickSeconds : idleTickSeconds;
   }
 
-  /** Steps the match as far as `time`, and says what happened. */
+  /** Steps the match up to this time [s], and reports what happened. */
   tick(time: number): void {
     this.#match.begin(time);
     this.#time = time;
     this.#seats.watch(time);
-    this.#news.tick(time);
-    this.#match.step(time, this.#seats.wantPause);
+    this.#seatUpdates.tick(time);
+    this.#match.step(time);
   }
 
-  /** Sends the pose packets that have come since the last call. */
+  /** Sends the pose packets that have arrived since the last call. */
   sendPoses(): void {
     const poses = this.#seats.takeFresh();
-    if (poses.length > 0) this.#outlet.poses(poses);
+    if (poses.length > 0) this.#host.sendPoses(poses);
   }
 
   #onControl(
     client: ClientId,
-    known: Client,
+    member: Member,
+    index: number | null,
     message: Exclude<ClientMessage, { type: 'join' | 'action' }>,
-    time: number,
   ): void {
-    const index = this.#seats.indexOf(client);
     switch (message.type) {
       case 'ping':
-        this.#outlet.send(client, { type: 'pong', sent: message.sent, time });
+        this.#host.send(client, { type: 'pong', sent: message.sent, time: this.#time });
         return;
       case 'leave':
         if (index !== null) this.#vacate(index);
-        this.#dismiss(client, 'left');
+        this.#disconnect(client, 'left');
         this.#broadcastAbout();
         return;
-      case 'calibration':
-        this.#calibrate(index, known, message);
-        return;
-      case 'wear':
-        this.#wear(client, known, message);
-        return;
-      case 'voice':
-      case 'signal':
-        this.#voices.hear(index, known, message, (reason) => this.#refuse(client, 'message', reason));
-        return;
       case 'away':
-        if (index !== null) this.#declareAway(index, message, time);
+        if (index !== null) this.#setAway(index, message);
         return;
       case 'sit':
-        this.#sit(client, known, message.seat, time);
+        this.#changeSeat(client, member, index, message.seat);
         return;
-      default:
-        this.#onWish(client, index, message);
+      case 'ready':
+      case 'rotate':
+      case 'pause':
+        this.#onPlayerRequest(client, index, message);
+        return;
+      default: {
+        const refusal = this.#profiles.onMessage(index, member, message);
+        if (refusal) this.#refuse(client, 'message', refusal);
+      }
     }
   }
 
-  /** What only a player may ask of the match. */
-  #onWish(client: ClientId, index: number | null, message: Received<'ready' | 'rotate' | 'pause'>): void {
+  /** Handles what only a player may request of the match. */
+  #onPlayerRequest(client: ClientId, index: number | null, message: Received<'ready' | 'rotate' | 'pause'>): void {
     const seat = index === null ? null : this.#seats.at(index);
     if (!seat || index === null) {
       this.#refuse(client, 'message', 'no-seat');
@@ -238,160 +233,108 @@ export class Room<Game extends HostedGame> {
     }
     switch (message.type) {
       case 'ready':
-        // While the clock stands no step takes what waits, and nothing may pile up.
-        if (!this.paused) this.#match.add({ type: 'ready', player: index, ready: message.ready });
+        this.#match.setReady(index, message.ready);
         return;
       case 'rotate':
         this.#match.rotate = message.rotate;
         this.#broadcastAbout();
         return;
       case 'pause':
-        if (this.options.pausable) seat.wantsPause = message.pause;
+        if (this.options.pausable) seat.requestsPause = message.pause;
         else this.#refuse(client, 'message', 'not-pausable');
     }
   }
 
-  #onAction(client: ClientId, message: Received<'action'>): 'taken' | 'bad' {
-    const action = this.#policy.readAction(message.action);
-    if (!action) return 'bad';
-    const player = this.#seats.indexOf(client);
-    if (player === null) this.#refuse(client, 'action', 'no-seat');
-    else if (this.paused) this.#happened([this.#policy.refusalInPause(player, action)]);
-    else this.#match.add({ ...action, player });
-    return 'taken';
-  }
-
-  #actPose(player: number, { pose: { head, leftHand, rightHand } }: PointsPacket, packetTime: number): void {
-    const arenaFromFloor = this.#policy.arenaFromFloor(player, this.#match.state);
-    this.#match.add({
-      type: 'pose',
-      player,
-      at: packetTime - this.#match.matchStart,
-      head: transformPoint(arenaFromFloor, head.position),
-      left: transformTracked(arenaFromFloor, leftHand),
-      right: transformTracked(arenaFromFloor, rightHand),
-    });
-  }
-
-  #calibrate(index: number | null, known: Client, { calibration }: Received<'calibration'>): void {
-    known.calibration = calibration;
-    if (index !== null) this.#seats.tell(index, { calibration });
-  }
-
-  /** Where places are assigned all look alike: bodies that people bring along would tell who they are. */
-  #wear(client: ClientId, known: Client, { avatar }: Received<'wear'>): void {
-    if (this.options.assigned) {
-      this.#refuse(client, 'message', 'assigned');
-      return;
-    }
-    known.avatar = avatar;
-    const index = this.#seats.indexOf(client);
-    if (index !== null && this.#seats.at(index)?.avatar !== avatar) this.#seats.tell(index, { avatar });
-  }
-
-  #declareAway(index: number, { away }: Received<'away'>, time: number): void {
+  #setAway(index: number, { away }: Received<'away'>): void {
     const seat = this.#seats.at(index);
     if (!seat) return;
     seat.declaredAway = away;
-    if (!away) seat.poses.heard(time);
-    this.#seats.setPresence(index, time);
+    if (!away) seat.poses.markSeen(this.#time);
+    this.#seats.setPresence(index, this.#time);
   }
 
-  /** Moves a client to another seat, or among those who watch (null). */
-  #sit(client: ClientId, known: Client, wish: number | null, time: number): void {
-    const index = this.#seats.indexOf(client);
-    if (wish === index) return;
-    const refusal = this.options.assigned ? 'assigned' : this.#seats.refusalOf(wish, known, time);
+  /** Moves a client from one seat to another; null: it becomes a spectator, or is one. */
+  #changeSeat(client: ClientId, member: Member, from: number | null, to: number | null): void {
+    if (to === from) return;
+    const refusal = this.options.assigned ? 'assigned' : this.#seats.refusalOf(to, member, this.#time);
     if (refusal) {
       this.#refuse(client, 'sit', refusal);
       return;
     }
-    if (index !== null) this.#vacate(index);
-    known.voice = null;
-    if (wish !== null) this.#takeSeat(wish, client, known, time);
-    this.#outlet.send(client, { type: 'seated', seat: wish });
+    if (from !== null) this.#vacate(from);
+    member.voice = null;
+    if (to !== null) this.#takeSeat(to, client, member, this.#time);
+    this.#host.send(client, { type: 'seated', seat: to });
     this.#broadcastAbout();
   }
 
-  /** Ends other connections of this person; their seat is held for the newest one. */
+  /** Ends other connections of this person; the seat is held for the newest one. */
   #replaceOlder(identity: string, time: number): void {
-    for (const [older, { identity: theirs }] of this.#clients) {
-      if (theirs !== identity) continue;
+    for (const [older, { identity: owner }] of this.#members) {
+      if (owner !== identity) continue;
       const index = this.#seats.indexOf(older);
-      if (index !== null) this.#seats.hold(index, time);
-      this.#dismiss(older, 'replaced');
+      if (index !== null) this.#seats.markDisconnected(index, time);
+      this.#disconnect(older, 'replaced');
     }
   }
 
-  #freeSeatFor(wish: number | null, bot: boolean): number | null {
-    if (!this.options.assigned) return this.#seats.freeFor(wish, bot);
-    return wish !== null && this.#seats.isFreeFor(wish, true) ? wish : null;
+  #freeSeatFor(requested: number | null, bot: boolean): number | null {
+    if (!this.options.assigned) return this.#seats.freeFor(requested, bot);
+    return requested !== null && this.#seats.isFreeFor(requested, true) ? requested : null;
   }
 
-  /** Sits a client down; a bot that sits there goes. */
-  #takeSeat(index: number, client: ClientId, known: Client, time: number): void {
-    const sitting = this.#seats.at(index)?.client ?? null;
+  /** Gives a client this seat; a bot on it is disconnected. */
+  #takeSeat(index: number, client: ClientId, member: Member, time: number): void {
+    const bot = this.#seats.at(index)?.client ?? null;
     this.#seats.vacate(index);
-    if (sitting !== null) this.#dismiss(sitting, 'yielded');
-    this.#seats.take(index, client, known, time);
+    if (bot !== null) this.#disconnect(bot, 'yielded');
+    this.#seats.take(index, client, member, time);
   }
 
   #vacate(index: number): void {
     this.#seats.vacate(index);
-    this.#news.changed(index, this.#time);
+    this.#seatUpdates.changed(index, this.#time);
   }
 
-  #dismiss(client: ClientId, reason: 'left' | 'replaced' | 'yielded'): void {
-    this.#clients.delete(client);
-    this.#outlet.drop(client, reason);
+  #disconnect(client: ClientId, reason: 'left' | 'replaced' | 'yielded'): void {
+    this.#members.delete(client);
+    this.#host.disconnect(client, reason);
   }
 
-  #welcome(to: ClientId, time: number): void {
+  #welcome(client: ClientId, time: number): void {
     const { id, epoch } = this.options;
-    this.#outlet.send(to, {
+    this.#host.send(client, {
       type: 'welcome',
       version: protocolVersion,
       room: id,
       epoch,
       kind: this.#policy.kind,
-      seat: this.#seats.indexOf(to),
+      seat: this.#seats.indexOf(client),
       seats: Array.from({ length: this.#seats.count }, (_, seat) => packSeatInfo(this.#seats.infoOf(seat))),
       spectators: this.#countSpectators(),
       rotate: this.#match.rotate,
       matchStart: this.#match.matchStart,
-      match: this.#snapshot(),
+      match: this.#match.snapshot(),
       paused: this.#match.pausedAt,
       time,
     });
   }
 
-  #snapshot(): Game['snapshot'] {
-    return this.#policy.snapshot(this.#match.state);
-  }
-
   #countSpectators(): number {
     let spectators = 0;
-    for (const client of this.#clients.keys()) if (this.#seats.indexOf(client) === null) spectators += 1;
+    for (const client of this.#members.keys()) if (this.#seats.indexOf(client) === null) spectators += 1;
     return spectators;
   }
 
   #broadcastAbout(): void {
-    this.#outlet.broadcast({ type: 'about', spectators: this.#countSpectators(), rotate: this.#match.rotate });
+    this.#host.broadcast({ type: 'about', spectators: this.#countSpectators(), rotate: this.#match.rotate });
   }
 
   #broadcastSeat(seat: number): void {
-    this.#outlet.broadcast({ type: 'seat', seat, info: packSeatInfo(this.#seats.infoOf(seat)) });
+    this.#host.broadcast({ type: 'seat', seat, info: packSeatInfo(this.#seats.infoOf(seat)) });
   }
 
-  #broadcastClock(type: 'paused' | 'match-start'): void {
-    const { matchStart, pausedAt } = this.#match;
-    this.#outlet.broadcast(type === 'paused' ? { type, at: pausedAt, matchStart } : { type, matchStart });
-  }
-
-  readonly #happened = (events: readonly Game['event'][]): void =>
-    sendEvents(events, { policy: this.#policy, seats: this.#seats, outlet: this.#outlet });
-
-  #refuse(client: ClientId, what: RoomRefusal['what'], reason: RoomReason): void {
-    this.#outlet.refused({ client, seat: this.#seats.indexOf(client), what, reason });
+  #refuse(client: ClientId, what: RoomRefusal['what'], reason: RefusalReason): void {
+    this.#host.refused({ client, seat: this.#seats.indexOf(client), what, reason });
   }
 }

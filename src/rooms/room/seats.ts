@@ -3,65 +3,65 @@ import type { Calibration } from 'threepoint/core/body/calibration';
 import type { SeatAction } from 'threepoint/core/tracking/seat-action';
 import type { SeatInfo } from '../protocol/messages';
 import type { Voice } from '../protocol/voice-messages';
-import { PoseClaims } from './pose-claims';
-import type { ClientId, FreshPose } from './room-outlet';
+import { PoseValidator } from './pose-validator';
+import type { ClientId, FreshPose } from './room-host';
 import { TokenBucket } from './token-bucket';
 
-/** Seats are held this long after a connection is lost [s]. */
+/** A seat is held this long after its connection is lost [s]. */
 export const seatHoldSeconds = 30;
-/** A player who is silent or without connection for this long [s] is away; without connection they leave the match as well. */
+/** A player who is silent or disconnected for this long [s] is away; a disconnected one also leaves the match. */
 export const awayAfter = 2.5;
 
-/** Moves to other seats, on average a second and at once: each takes a player out of the match and brings another in. */
+/** The most changes of seat by a client, per second on average and at once: each removes a player from the match and adds one. */
 const movesPerSecond = 0.5;
 const movesAtOnce = 4;
 
-/** The moves that a client may make who has joined just now. */
+/** Returns the limit of a new member's changes of seat. */
 export const allowedMoves = (): TokenBucket => new TokenBucket(movesPerSecond, movesAtOnce);
 
-/** A client who has joined. */
-export interface Client {
-  /** The person: the same on each of their connections. */
+/** A client that has joined. */
+export interface Member {
+  /** The person, the same on each connection. */
   readonly identity: string;
   readonly name: string;
   readonly bot: boolean;
   calibration: Calibration;
   avatar: AvatarRef;
   voice: Voice | null;
-  /** Limits how often the client changes seats. */
+  /** Limits the changes of seat. */
   readonly moves: TokenBucket;
 }
 
-/** One seat that is taken, with what its player told of themselves. */
+/** A taken seat and its player. */
 export interface Seat {
   readonly identity: string;
-  /** null: the connection is lost. */
+  /** The client; null: the connection is lost. */
   client: ClientId | null;
   name: string;
   calibration: Calibration;
   avatar: AvatarRef;
   voice: Voice | null;
   readonly bot: boolean;
-  /** Room time [s] of losing the connection. */
-  lostAt: number | null;
-  /** Present in the match, as the rules see it. */
+  /** Room time at which the connection was lost [s]; null: connected. */
+  disconnectedAt: number | null;
+  /** Whether the player is present in the match. */
   playing: boolean;
   declaredAway: boolean;
   presence: SeatInfo['presence'];
-  /** The player wants the match's clock to stand. */
-  wantsPause: boolean;
-  readonly poses: PoseClaims;
+  /** Whether the player requests a pause of the match clock. */
+  requestsPause: boolean;
+  readonly poses: PoseValidator;
 }
 
-/** What seats cause outside of them. */
+/** Receives the changes of seats. */
 export interface SeatListener {
-  /** Others need to know how this seat is now. */
+  /** Called when the state of a seat has changed for the others. */
   changed(seat: number): void;
-  /** The rules need to know. */
+  /** Called with an action for the rules. */
   act(action: SeatAction): void;
 }
 
-/** How many sit where. */
+/** Numbers of players, bots and free seats. */
 export interface SeatCensus {
   readonly players: number;
   readonly bots: number;
@@ -69,7 +69,7 @@ export interface SeatCensus {
   readonly free: number;
 }
 
-/** The seats of one room, who has them, and whether their players are there. */
+/** The seats of one room, with their players and presence. */
 export class Seats {
   readonly #seats: (Seat | null)[];
   readonly #listener: SeatListener;
@@ -93,20 +93,20 @@ export class Seats {
     return this.#seats.every((seat) => seat === null);
   }
 
-  /** Whether one of the players wants the match's clock to stand. */
-  get wantPause(): boolean {
-    return this.#seats.some((seat) => seat?.wantsPause);
+  /** Whether a player requests a pause of the match clock. */
+  get pauseRequested(): boolean {
+    return this.#seats.some((seat) => seat?.requestsPause);
   }
 
-  /** Time alone changes nothing of them: none is held, all who are silent are known to be, and no pose is remembered. */
-  get areStill(): boolean {
+  /** Whether time alone changes nothing: no seat is held, no player can fall silent, and no pose is stored. */
+  get areIdle(): boolean {
     return this.#seats.every((seat) => {
       if (!seat) return true;
-      return seat.lostAt === null && seat.presence !== 'here' && !seat.poses.remembered;
+      return seat.disconnectedAt === null && seat.presence !== 'here' && !seat.poses.hasPose;
     });
   }
 
-  /** As others know it; null: the seat is empty. */
+  /** Returns what others see of a seat; null: it is empty. */
   infoOf(index: number): SeatInfo | null {
     const seat = this.at(index);
     if (!seat) return null;
@@ -118,48 +118,48 @@ export class Seats {
     return this.#seats[index] ?? null;
   }
 
-  /** The number of this client's seat; null: they watch. */
+  /** Returns the number of a client's seat; null: a spectator. */
   indexOf(client: ClientId): number | null {
     for (let index = 0; index < this.#seats.length; index++) if (this.#seats[index]?.client === client) return index;
     return null;
   }
 
-  /** The number of the seat whose page has this session among the voices; null: none has. */
+  /** Returns the number of the seat with this voice session; null: none. */
   withVoice(session: string): number | null {
     const index = this.#seats.findIndex((seat) => seat?.voice?.session === session);
     return index < 0 ? null : index;
   }
 
-  /** The number of the seat that is held for this person or taken by them; null: none is. */
-  heldBy(identity: string): number | null {
+  /** Returns the number of the seat that a person has, or that is held for them; null: none. */
+  indexOfIdentity(identity: string): number | null {
     const index = this.#seats.findIndex((seat) => seat?.identity === identity);
     return index < 0 ? null : index;
   }
 
-  /** Whether a client may sit here: the seat is empty, or has a bot that gives way to a person. */
+  /** Returns whether a client may take a seat: it is empty, or a person may take it from a bot. */
   isFreeFor(index: number, bot: boolean): boolean {
     if (index >= this.count) return false;
     const seat = this.#seats[index];
     return !seat || (seat.bot && !bot);
   }
 
-  /** Why a client may not move to this seat, or among those who watch (null) at this time [s]; null: they may, and one move is spent. */
-  refusalOf(wish: number | null, { bot, moves }: Client, time: number): 'occupied' | 'too-often' | null {
-    if (wish !== null && !this.isFreeFor(wish, bot)) return 'occupied';
+  /** Returns why a member may not move to a seat, or become a spectator (null), at this time [s]. null: it may, and the move is counted. */
+  refusalOf(requested: number | null, { bot, moves }: Member, time: number): 'occupied' | 'too-often' | null {
+    if (requested !== null && !this.isFreeFor(requested, bot)) return 'occupied';
     return moves.take(time) ? null : 'too-often';
   }
 
-  /** A seat for a client who asks for this one or for any; null: none. People take a bot's seat where no other is free. */
-  freeFor(wish: number | null, bot: boolean): number | null {
-    if (wish !== null && this.isFreeFor(wish, bot)) return wish;
+  /** Returns the requested seat, or any free one (null); null: none. A person takes a bot's seat if no other is free. */
+  freeFor(requested: number | null, bot: boolean): number | null {
+    if (requested !== null && this.isFreeFor(requested, bot)) return requested;
     const free = this.#seats.indexOf(null);
     const index = free >= 0 || bot ? free : this.#seats.findIndex((seat) => seat?.bot);
     return index < 0 ? null : index;
   }
 
-  /** Sits a client down on a seat that is empty. */
-  take(index: number, client: ClientId, known: Client, time: number): void {
-    const { identity, name, calibration, avatar, voice, bot } = known;
+  /** Gives an empty seat to a client. */
+  take(index: number, client: ClientId, member: Member, time: number): void {
+    const { identity, name, calibration, avatar, voice, bot } = member;
     this.#seats[index] = {
       identity,
       client,
@@ -168,51 +168,52 @@ export class Seats {
       avatar,
       voice,
       bot,
-      lostAt: null,
+      disconnectedAt: null,
       playing: true,
       declaredAway: false,
       presence: 'here',
-      wantsPause: false,
-      poses: new PoseClaims(time),
+      requestsPause: false,
+      poses: new PoseValidator(time),
     };
     this.#listener.act({ type: 'join', player: index });
     this.#listener.changed(index);
   }
 
-  /** Gives the seat that was held for a person back to them, on their new connection. */
-  retake(index: number, client: ClientId, { name, calibration, avatar, voice }: Client, time: number): void {
+  /** Gives a held seat back to its person, on another connection. */
+  retake(index: number, client: ClientId, { name, calibration, avatar, voice }: Member, time: number): void {
     const seat = this.at(index);
     if (!seat) return;
-    // To the rules a player who was away for long comes anew; within the grace all that was theirs still is.
+    // To the rules a player who has left joins again; within `awayAfter` the player keeps everything.
     this.#listener.act({ type: seat.playing ? 'reconnect' : 'join', player: index });
-    Object.assign(seat, {
+    const changes: Partial<Seat> = {
       client,
-      lostAt: null,
+      disconnectedAt: null,
       playing: true,
       declaredAway: false,
       presence: 'here',
       calibration,
       avatar,
       voice,
-    });
+    };
+    Object.assign(seat, changes);
     if (name) seat.name = name;
     seat.poses.reconnected(time);
     this.#listener.changed(index);
   }
 
-  /** Holds the seat of a client whose connection is lost. Others are told with the presence that follows from it. */
-  hold(index: number, time: number): void {
+  /** Holds the seat of a client whose connection is lost. `setPresence` then reports it to the others. */
+  markDisconnected(index: number, time: number): void {
     const seat = this.at(index);
     if (!seat) return;
     seat.client = null;
-    seat.lostAt = time;
+    seat.disconnectedAt = time;
   }
 
-  /** What a player has told of themselves since they sat down. */
-  tell(index: number, told: Partial<Pick<Seat, 'calibration' | 'avatar' | 'voice'>>): void {
+  /** Changes what others see of a player. */
+  update(index: number, changes: Partial<Pick<Seat, 'calibration' | 'avatar' | 'voice'>>): void {
     const seat = this.at(index);
     if (!seat) return;
-    Object.assign(seat, told);
+    Object.assign(seat, changes);
     this.#listener.changed(index);
   }
 
@@ -224,18 +225,18 @@ export class Seats {
     this.#seats[index] = null;
   }
 
-  /** Whether the player is there, at this time [s]. */
+  /** Updates the presence of a player at this time [s], and reports a change. */
   setPresence(index: number, time: number): void {
     const seat = this.at(index);
     if (!seat) return;
-    const silent = time - seat.poses.heardAt > awayAfter;
+    const silent = time - seat.poses.lastSeenAt > awayAfter;
     const presence = seat.client === null ? 'gone' : seat.declaredAway || silent ? 'away' : 'here';
     if (presence === seat.presence) return;
     seat.presence = presence;
     this.#listener.changed(index);
   }
 
-  /** Follows the time [s]: who has fallen silent, whose seat is held no longer. */
+  /** Updates all seats at this time [s]: silent players, expired poses, and seats that are held no longer. */
   watch(time: number): void {
     for (let index = 0; index < this.#seats.length; index++) {
       const seat = this.#seats[index];
@@ -245,19 +246,19 @@ export class Seats {
 
   #watchSeat(index: number, seat: Seat, time: number): void {
     this.setPresence(index, time);
-    if (seat.poses.forgetOld(time)) this.#listener.act({ type: 'silent', player: index });
-    if (seat.lostAt === null) return;
-    if (seat.playing && time - seat.lostAt > awayAfter) {
+    if (seat.poses.forgetExpired(time)) this.#listener.act({ type: 'silent', player: index });
+    if (seat.disconnectedAt === null) return;
+    if (seat.playing && time - seat.disconnectedAt > awayAfter) {
       seat.playing = false;
       this.#listener.act({ type: 'leave', player: index });
     }
-    if (time - seat.lostAt > seatHoldSeconds) {
+    if (time - seat.disconnectedAt > seatHoldSeconds) {
       this.vacate(index);
       this.#listener.changed(index);
     }
   }
 
-  /** The packets that have not been passed on yet, seat by seat, once. */
+  /** Removes and returns the packets to forward, by seat. */
   takeFresh(): FreshPose[] {
     const poses: FreshPose[] = [];
     for (let index = 0; index < this.#seats.length; index++) {

@@ -1,4 +1,4 @@
-/** A limit on how often something happens: `burst` times at once, and `perSecond` on average. Times are in seconds; one that goes back adds nothing. */
+/** Limits a rate: `burst` at once, and `perSecond` on average. Times are in seconds; a time that goes back adds no tokens. */
 export class TokenBucket {
   readonly #perSecond: number;
   readonly #burst: number;
@@ -12,12 +12,12 @@ export class TokenBucket {
     this.#tokens = burst;
   }
 
-  /** How many calls of `take` have failed since the last one that succeeded. */
+  /** The number of failed calls of `take` since the last success. */
   get refusedInARow(): number {
     return this.#refusedInARow;
   }
 
-  /** Takes a token at this time; false where none is left. */
+  /** Takes a token at this time; returns false if none is left. */
   take(time: number): boolean {
     const passed = Math.max(0, time - (this.#filledAt ?? time));
     this.#tokens = Math.min(this.#burst, this.#tokens + this.#perSecond * passed);

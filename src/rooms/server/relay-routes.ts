@@ -9,29 +9,29 @@ import { clientAddressOf } from 'threepoint-http/client-address';
 import { type Call, jsonOf, type Route, type Service } from 'threepoint-http/router';
 import * as v from 'valibot';
 import { roomTerms } from '../protocol/messages';
-import type { AvatarRoutes } from './avatar-routes';
-import type { RoomListing } from './hosted-rooms';
-import { JoinLimits } from './join-limits';
-import type { Lobby } from './lobby';
-import type { RelayConfiguration } from './relay-configuration';
-import type { RelayCensus, RelayMetrics } from './relay-metrics';
-import { relayPath } from './relay-transport';
-import type { RoomKinds } from './room-kinds';
-import { assignedRoomName, type RoomTokens, roomName } from './room-tokens';
-import type { VoiceRoutes } from './voice-routes';
+import { JoinLimits } from './access/join-limits';
+import { assignedRoomName, type RoomTokens, roomName } from './access/room-tokens';
+import type { AvatarRoutes } from './avatars/avatar-routes';
+import type { RoomKinds } from './hosting/room-kinds';
+import type { RoomListing } from './hosting/room-registry';
+import type { Lobby } from './lobby/lobby';
+import type { RelayConfiguration } from './settings/relay-configuration';
+import type { RelayCensus, RelayMetrics } from './settings/relay-metrics';
+import { relayPath } from './sockets/relay-transport';
+import type { VoiceRoutes } from './voices/voice-routes';
 
 export interface RelayRoutesOptions {
   readonly configuration: RelayConfiguration;
-  /** The games that rooms may be for. */
+  /** The games of the server. */
   readonly kinds: RoomKinds;
   readonly tokens: RoomTokens;
   readonly lobby: Lobby;
   readonly census: () => RelayCensus;
   readonly metrics: RelayMetrics;
   readonly log: Logger;
-  /** Ends a room, in this process or in another. */
+  /** Ends a room in whichever process has it. */
   readonly endRoom: (room: string) => void;
-  /** Where a fleet counts who joins from where; null: this process is alone. */
+  /** Stores the join counts of all processes; null: a single process. */
   readonly redis: Redis | null;
   readonly avatars: Pick<AvatarRoutes, 'routes'>;
   readonly voices: Pick<VoiceRoutes, 'routes'>;
@@ -41,13 +41,13 @@ const longestBody = 4096;
 
 const room = v.pipe(
   v.string('expected the name of a room'),
-  v.regex(roomName, 'expected small letters, digits and hyphens, at most 32, a letter or digit first'),
+  v.regex(roomName, 'expected lower-case letters, digits and hyphens, at most 32, beginning with a letter or digit'),
 );
 const endRequest = v.strictObject({
   room: v.union([room, v.pipe(v.string(), v.regex(assignedRoomName))], 'expected the name of a room'),
 });
 
-/** What may be asked of rooms for these games. */
+/** Returns the schemas of requests for these games. */
 function roomRequests(kinds: RoomKinds) {
   const names = [...kinds.keys()];
   const kind = v.picklist(names, `expected one of ${names.join(', ')}`);
@@ -56,32 +56,32 @@ function roomRequests(kinds: RoomKinds) {
     token: v.strictObject({
       room,
       kind,
-      /** A token from before, by which the same person goes on. */
+      /** An earlier token of the same person, to be renewed. */
       token: v.optional(v.pipe(v.string('expected text'), v.maxLength(1024, 'expected at most 1024 characters'))),
-      /** For a room that this person will be the first in. */
+      /** The terms, if this person is the first in the room. */
       terms: v.optional(roomTerms),
     }),
   };
 }
 
-/** A name that is not guessed: to know it is to be let in. */
+/** Returns a name that cannot be guessed: it is the key to the room. */
 const newRoomName = (): string => randomBytes(6).toString('hex');
 
 const waitingOrder = { ready: 0, over: 1, running: 2 } as const;
 
-/** Waiting rather than playing, and fuller rather than emptier. */
-const byWelcome = (a: RoomListing, b: RoomListing): number =>
+/** Sorts rooms for matchmaking: waiting before playing, then fuller before emptier. */
+const byPreference = (a: RoomListing, b: RoomListing): number =>
   waitingOrder[a.phase] - waitingOrder[b.phase] || b.players - a.players || a.room.localeCompare(b.room);
 
-/** Whether a program on this machine sent the request, and no proxy. */
+/** Returns whether a program on this machine sent the request, not through a proxy. */
 const isOnThisMachine = (request: IncomingMessage): boolean =>
   clientAddressOf(request, false).isLoopback && request.headers['x-forwarded-for'] === undefined;
 
 /**
- * Who may call a route of the relay: all pages of our origins, the holder of the admin's token, programs on this machine; guest: the holder of a
- * pass to the room that the address names, which the route itself looks at.
+ * Who may call a route of the relay: all pages of the server's origins, the holder of the admin token, programs on this machine, or the holder of a
+ * pass to the room in the address, which the route itself verifies.
  */
-export type RelayAccess = 'anyone' | 'admin' | 'this-machine' | 'guest';
+export type RelayAccess = 'anyone' | 'admin' | 'this-machine' | 'client';
 
 type RelayRoute = Route<RelayAccess>;
 
@@ -101,7 +101,7 @@ const post = (path: string, access: RelayAccess, handle: RelayRoute['handle']): 
   handle,
 });
 
-/** The relay's part of the server's HTTP: tokens, rooms, health and metrics. */
+/** The HTTP service of the relay: tokens, rooms, health and metrics. */
 export class RelayRoutes implements Service<RelayAccess> {
   readonly routes: readonly RelayRoute[];
   readonly #options: RelayRoutesOptions;
@@ -116,9 +116,9 @@ export class RelayRoutes implements Service<RelayAccess> {
     this.#admin = new AdminGuard(options.configuration, options.log);
     this.routes = [
       get('/healthz', 'anyone', () => json({ status: 'ok', ...options.census() })),
-      get('/metrics', 'this-machine', () => this.#tellMetrics()),
+      get('/metrics', 'this-machine', () => this.#metrics()),
       get(relayPath, 'anyone', () => {
-        throw new HttpError(426, 'only WebSockets are served at this address', { headers: { upgrade: 'websocket' } });
+        throw new HttpError(426, 'this address serves WebSockets only', { headers: { upgrade: 'websocket' } });
       }),
       get('/api/rooms', 'anyone', async () => json(await options.lobby.list())),
       post('/api/rooms/match', 'anyone', (call) => this.#match(call)),
@@ -139,10 +139,10 @@ export class RelayRoutes implements Service<RelayAccess> {
 
   async admit({ access }: RelayRoute, { request }: { readonly request: IncomingMessage }): Promise<void> {
     if (access === 'admin' && !(await this.#admin.admits(request))) {
-      throw new HttpError(403, 'this needs the token of THREEPOINT_ADMIN_TOKEN');
+      throw new HttpError(403, 'this needs the admin token (THREEPOINT_ADMIN_TOKEN)');
     }
     if (access === 'this-machine' && !isOnThisMachine(request)) {
-      throw new HttpError(403, 'this is for programs on this machine alone');
+      throw new HttpError(403, 'only programs on this machine may use this address');
     }
   }
 
@@ -154,29 +154,29 @@ export class RelayRoutes implements Service<RelayAccess> {
     this.#options.log.error({ error: String(error) }, 'request failed');
   }
 
-  async #tellMetrics(): Promise<Answer> {
+  async #metrics(): Promise<Answer> {
     const { registry } = this.#options.metrics;
     return { status: 200, headers: { 'content-type': registry.contentType }, body: await registry.metrics() };
   }
 
   async #token(call: Call): Promise<Answer> {
     const { tokens } = this.#options;
-    const asked = checked(this.#requests.token, jsonOf(call));
-    const before = asked.token === undefined ? null : await tokens.verifyRenewable(asked.token);
-    if (before && before.room === asked.room && before.kind === asked.kind) {
-      return json({ token: await tokens.sign({ ...before, terms: asked.terms ?? before.terms }) });
+    const request = checked(this.#requests.token, jsonOf(call));
+    const before = request.token === undefined ? null : await tokens.verifyRenewable(request.token);
+    if (before && before.room === request.room && before.kind === request.kind) {
+      return json({ token: await tokens.sign({ ...before, terms: request.terms ?? before.terms }) });
     }
     await this.#joins.spend(call.request);
-    return json({ token: await tokens.issue(asked.room, asked.kind, asked.terms) });
+    return json({ token: await tokens.issue(request.room, request.kind, request.terms) });
   }
 
-  /** A room with a seat for one more, the most welcoming first; else a new one. */
+  /** Answers with the best room that has people and a free seat; otherwise with the name of a new one. */
   async #match(call: Call): Promise<Answer> {
     const { kind } = checked(this.#requests.kind, jsonOf(call));
     const { rooms } = await this.#options.lobby.list();
     const [best] = rooms
       .filter((listed) => listed.kind === kind && listed.free > 0 && listed.players > 0)
-      .sort(byWelcome);
+      .sort(byPreference);
     return json({ room: best?.room ?? newRoomName(), found: best !== undefined });
   }
 }

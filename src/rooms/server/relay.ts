@@ -5,37 +5,37 @@ import { type Logger, pino } from 'pino';
 import type { ConnectionLimiter } from 'threepoint-http/connection-limiter';
 import type { Service } from 'threepoint-http/router';
 import type { UpgradeListener } from 'threepoint-http/web-server';
-import { AvatarRoutes } from './avatar-routes';
-import { AvatarStore } from './avatar-store';
-import { connectRedis, connectRedisPatiently, createOwnLobby, createRedisLobby } from './lobby';
-import { LobbyHall } from './lobby-hall';
-import type { RelayConfiguration } from './relay-configuration';
-import { createRelayMetrics, type RelayCensus } from './relay-metrics';
+import { createRoomTokens } from './access/room-tokens';
+import { AvatarRoutes } from './avatars/avatar-routes';
+import { AvatarStore } from './avatars/avatar-store';
+import type { RoomKinds } from './hosting/room-kinds';
+import { createSocketHost, type SocketHost } from './hosting/socket-host';
+import { connectRedis, connectRedisPatiently, createOwnLobby, createRedisLobby } from './lobby/lobby';
+import { LobbyPublisher } from './lobby/lobby-publisher';
 import { RelayRoutes } from './relay-routes';
-import { createRelayTransport } from './relay-transport';
-import type { RoomKinds } from './room-kinds';
-import { createRoomTokens } from './room-tokens';
-import { createSocketHost, type SocketHost } from './socket-host';
-import { VoiceRoutes } from './voice-routes';
+import type { RelayConfiguration } from './settings/relay-configuration';
+import { createRelayMetrics, type RelayCensus } from './settings/relay-metrics';
+import { createRelayTransport } from './sockets/relay-transport';
+import { VoiceRoutes } from './voices/voice-routes';
 
-/** A relay for a server: its sockets and its part of the HTTP. */
+/** The relay of a server: its sockets and its HTTP service. */
 export interface Relay {
   readonly host: SocketHost;
   readonly avatars: AvatarStore;
   readonly census: RelayCensus;
   readonly service: Service;
   readonly upgrade: UpgradeListener;
-  /** Says farewell and closes; the server itself is its owner's. */
+  /** Disconnects all clients and stops the relay; the HTTP server stays open. */
   close(): Promise<void>;
 }
 
-/** Seconds since 1970. */
+/** Returns the time in seconds since 1970. */
 const unixTime = (): number => Date.now() / 1000;
-/** How often avatars that no one has on any more are forgotten [ms]. */
+/** Interval at which avatars that nobody wears are deleted [ms]. */
 const sweepMs = 1000;
 
-/** A secret kept in a file, so that tokens outlive a restart. */
-export function secretIn(path: string): string {
+/** Returns the secret in a file, and creates it if needed, so that tokens stay valid after a restart. */
+export function loadOrCreateSecret(path: string): string {
   if (existsSync(path)) {
     const kept = readFileSync(path, 'utf8').trim();
     if (kept.length >= 32) return kept;
@@ -46,17 +46,17 @@ export function secretIn(path: string): string {
   return secret;
 }
 
-/** Connections to the Redis of a fleet; null: this process is alone. */
+/** Connects to the Redis that several processes share; null: a single process. */
 function connectFleet({ redisUrl }: RelayConfiguration, log: Logger) {
   if (!redisUrl) return null;
   return {
     own: connectRedis(redisUrl, log),
-    told: connectRedisPatiently(redisUrl, log),
-    heard: connectRedisPatiently(redisUrl, log),
+    publisher: connectRedisPatiently(redisUrl, log),
+    subscriber: connectRedisPatiently(redisUrl, log),
   };
 }
 
-/** Starts a relay; `secret` signs the tokens, `connectionLimiter` counts the connections of its server, `kinds` are the games of its rooms. */
+/** Starts a relay. `secret` signs the tokens; `connectionLimiter` is that of the HTTP server; `kinds` are the games. */
 export function createRelay(
   configuration: RelayConfiguration,
   secret: string,
@@ -78,12 +78,12 @@ export function createRelay(
   const metrics = createRelayMetrics(census);
   const transport = createRelayTransport(configuration, { log, metrics, now });
   const host = createSocketHost(transport, { configuration, kinds, tokens, log, metrics, now });
-  const wornBy = (room: string, identity: string) => host.room(room)?.wornBy(identity) ?? null;
-  const avatars = new AvatarStore({ mostBytes: configuration.avatarMegabytes * 2 ** 20, wornBy, now });
+  const avatarOf = (room: string, identity: string) => host.room(room)?.avatarOf(identity) ?? null;
+  const avatars = new AvatarStore({ mostBytes: configuration.avatarMegabytes * 2 ** 20, avatarOf, now });
   const sweeping = setInterval(() => avatars.sweep(), sweepMs).unref();
   const fleet = connectFleet(configuration, log);
   const lobby = fleet ? createRedisLobby(fleet.own, node, log) : createOwnLobby();
-  const hall = new LobbyHall({
+  const lobbyPublisher = new LobbyPublisher({
     io: host.io,
     lobby,
     node,
@@ -99,11 +99,11 @@ export function createRelay(
     census,
     metrics,
     log,
-    endRoom: (room) => hall.endRoom(room),
+    endRoom: (room) => lobbyPublisher.endRoom(room),
     redis: fleet?.own ?? null,
     avatars: new AvatarRoutes({
       ...{ configuration, store: avatars, tokens, metrics },
-      isSeated: (room, identity) => wornBy(room, identity) !== null,
+      isSeated: (room, identity) => avatarOf(room, identity) !== null,
     }),
     voices: new VoiceRoutes({ voices: configuration.voices, tokens, now: unixTime }),
   });
@@ -118,11 +118,11 @@ export function createRelay(
     async close() {
       clearInterval(sweeping);
       avatars.clear();
-      hall.close();
+      lobbyPublisher.close();
       await host.close();
       await lobby.close();
-      fleet?.told.disconnect();
-      fleet?.heard.disconnect();
+      fleet?.publisher.disconnect();
+      fleet?.subscriber.disconnect();
       metrics.close();
     },
   };

@@ -1,80 +1,77 @@
-/** What a person may read who cannot be heard. */
+/** The messages to a user whose microphone does not work, by the name of the error. */
 const refusals: Readonly<Record<string, string>> = {
-  NotAllowedError:
-    'The browser does not let this page use the microphone: allow it beside the address, then join again.',
+  NotAllowedError: 'The browser blocks the microphone. Allow it next to the address, then join again.',
   NotFoundError: 'No microphone was found.',
   OverconstrainedError: 'No microphone was found.',
-  NotReadableError: 'The microphone is in use by another program, or does not answer.',
-  AbortError: 'The microphone is in use by another program, or does not answer.',
+  NotReadableError: 'The microphone does not answer. Close other programs that use it, then join again.',
+  AbortError: 'The microphone does not answer. Close other programs that use it, then join again.',
 };
 
-/** Why there is no microphone, in a sentence. */
-export function refusalOf(error: unknown): string {
+/** Returns the message for an error of getUserMedia. */
+export function microphoneErrorOf(error: unknown): string {
   const name = error instanceof DOMException ? error.name : '';
   return (
     refusals[name] ?? `The microphone could not be used (${error instanceof Error ? error.message : String(error)}).`
   );
 }
 
-/**
- * The echo of the others in one's own microphone is cancelled by the browser or the device. Babble and level are theirs to smooth too.
- */
+/** The browser or the device cancels echo, suppresses noise and controls the gain. */
 const constraints: MediaStreamConstraints = {
   audio: { echoCancellation: true, noiseSuppression: true, autoGainControl: true },
 };
 
-/** How often a microphone that was lost is asked for again while the page is seen [ms]. */
-const againMs = 2000;
+/** Interval at which a lost microphone is requested again while the page is visible [ms]. */
+const retryMs = 2000;
 
-/** The own microphone: opened once, and taken again where the device has ended it, as headsets do when they sleep. */
+/** The user's microphone. It is requested again when the device ends it, as headsets do when they sleep. */
 export class Microphone {
   readonly #changed: () => void;
   #stream: MediaStream | null = null;
   #wanted = false;
-  #asking: Promise<void> | null = null;
-  #complaint: string | null = null;
-  #again: ReturnType<typeof setInterval> | null = null;
+  #request: Promise<void> | null = null;
+  #errorMessage: string | null = null;
+  #retryTimer: ReturnType<typeof setInterval> | null = null;
 
-  /** `changed`: another track, or none any more. */
+  /** `changed` is called when the track or the error message changes. */
   constructor(changed: () => void) {
     this.#changed = changed;
   }
 
-  /** Null: there is none now. */
+  /** The audio track; null: there is none now. */
   get track(): MediaStreamTrack | null {
     return this.#stream?.getAudioTracks()[0] ?? null;
   }
 
-  /** Why there is none, in a sentence; null: there is, or none is wanted. */
-  get complaint(): string | null {
-    return this.#complaint;
+  /** Why there is no track, in a sentence; null: there is one, or none is wanted. */
+  get errorMessage(): string | null {
+    return this.#errorMessage;
   }
 
-  /** Never rejects: what goes wrong is the complaint. */
+  /** Requests the microphone. Never rejects: a failure becomes `errorMessage`. */
   async open(): Promise<void> {
     this.#wanted = true;
-    document.addEventListener('visibilitychange', this.#look);
+    document.addEventListener('visibilitychange', this.#retry);
     await this.#take();
   }
 
   close(): void {
     this.#wanted = false;
-    this.#complaint = null;
-    document.removeEventListener('visibilitychange', this.#look);
-    this.#stopAsking();
+    this.#errorMessage = null;
+    document.removeEventListener('visibilitychange', this.#retry);
+    this.#stopRetrying();
     this.#release();
   }
 
   #take(): Promise<void> {
-    this.#asking ??= this.#ask().finally(() => {
-      this.#asking = null;
+    this.#request ??= this.#ask().finally(() => {
+      this.#request = null;
     });
-    return this.#asking;
+    return this.#request;
   }
 
   async #ask(): Promise<void> {
     try {
-      // Pages without a secure context have no devices at all.
+      // Pages without a secure context have no mediaDevices.
       if (!navigator.mediaDevices) throw new Error('this page is not served over https');
       const stream = await navigator.mediaDevices.getUserMedia(constraints);
       if (!this.#wanted) {
@@ -83,35 +80,35 @@ export class Microphone {
       }
       this.#release();
       this.#stream = stream;
-      this.#complaint = null;
-      this.#stopAsking();
+      this.#errorMessage = null;
+      this.#stopRetrying();
       stream.getAudioTracks()[0]?.addEventListener('ended', this.#lose, { once: true });
     } catch (error) {
       if (!this.#wanted) return;
-      this.#complaint = refusalOf(error);
-      // Who refuses is not asked again every two seconds: the page's own button does that.
-      if (error instanceof DOMException && error.name === 'NotAllowedError') this.#stopAsking();
+      this.#errorMessage = microphoneErrorOf(error);
+      // A refused permission is not requested again; the user presses the page's button.
+      if (error instanceof DOMException && error.name === 'NotAllowedError') this.#stopRetrying();
     }
     this.#changed();
   }
 
-  /** The device has ended it: it sleeps, or was pulled out. */
+  /** Handles the end of the track: the device sleeps or was unplugged. */
   readonly #lose = (): void => {
     this.#stream = null;
-    this.#complaint = 'The microphone was lost: it is being looked for.';
+    this.#errorMessage = 'The microphone was disconnected. Connect it again; the page is looking for it.';
     this.#changed();
-    this.#again ??= setInterval(this.#look, againMs);
-    this.#look();
+    this.#retryTimer ??= setInterval(this.#retry, retryMs);
+    this.#retry();
   };
 
-  readonly #look = (): void => {
-    if (this.#wanted && this.track === null && document.visibilityState === 'visible' && this.#again !== null)
+  readonly #retry = (): void => {
+    if (this.#wanted && this.track === null && document.visibilityState === 'visible' && this.#retryTimer !== null)
       void this.#take();
   };
 
-  #stopAsking(): void {
-    if (this.#again !== null) clearInterval(this.#again);
-    this.#again = null;
+  #stopRetrying(): void {
+    if (this.#retryTimer !== null) clearInterval(this.#retryTimer);
+    this.#retryTimer = null;
   }
 
   #release(): void {

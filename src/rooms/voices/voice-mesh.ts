@@ -4,11 +4,11 @@ import { VoicePeer } from './voice-peer';
 export interface VoiceMeshOptions {
   readonly configuration: RTCConfiguration;
   signal(to: string, body: SignalBody): void;
-  /** The voice of the page with this session; null: it is there no longer. */
-  heard(session: string, stream: MediaStream | null): void;
+  /** Called with the voice of the page with this session; null: it has ended. */
+  onStream(session: string, stream: MediaStream | null): void;
 }
 
-/** Connections to all others who take part in the voices of a room, each by the session that its page has among them. */
+/** The peer connections to all other voices of a room, by voice session. */
 export class VoiceMesh {
   readonly #options: VoiceMeshOptions;
   readonly #peers = new Map<string, VoicePeer>();
@@ -20,13 +20,13 @@ export class VoiceMesh {
     this.#configuration = options.configuration;
   }
 
-  /** Other servers, or another pass to the same, for all connections: each is taken to them while it goes on. */
+  /** Applies other ICE servers or credentials to all connections, which continue meanwhile. */
   configure(configuration: RTCConfiguration): void {
     this.#configuration = configuration;
     for (const peer of this.#peers.values()) peer.configure(configuration);
   }
 
-  /** Connects the page of session `own` to these others and to no one else; null: it is not among them itself. */
+  /** Connects the page of session `own` to exactly these others; null: closes all connections. */
   follow(own: string | null, others: readonly string[]): void {
     for (const session of this.#peers.keys()) {
       if (own === null || !others.includes(session)) this.#drop(session);
@@ -37,23 +37,23 @@ export class VoiceMesh {
     }
   }
 
-  /** Takes in a signal; from a page that is not among the voices, nothing. */
-  take(from: string, body: SignalBody): void {
-    void this.#peers.get(from)?.take(body);
+  /** Handles a signal; ignores one from an unknown session. */
+  receive(from: string, body: SignalBody): void {
+    void this.#peers.get(from)?.receive(body);
   }
 
-  /** The own voice, to all; null: nothing is sent. */
+  /** Sends the own voice to all; null: sends nothing. */
   setTrack(track: MediaStreamTrack | null): void {
     this.#track = track;
     for (const peer of this.#peers.values()) peer.setTrack(track);
   }
 
-  /** Looks after all connections, at this time [s]; `reachable`: signals arrive at the room. */
+  /** Restarts lost connections at this time [s]. `reachable`: whether the room receives signals. */
   watch(now: number, reachable: boolean): void {
     for (const peer of this.#peers.values()) peer.watch(now, reachable);
   }
 
-  /** How it stands with a page; null: there is no connection to it. */
+  /** Returns the state of the connection to a session; null: there is none. */
   stateOf(session: string): RTCPeerConnectionState | null {
     return this.#peers.get(session)?.state ?? null;
   }
@@ -63,13 +63,13 @@ export class VoiceMesh {
   }
 
   #connect(own: string, session: string): VoicePeer {
-    const { signal, heard } = this.#options;
+    const { signal, onStream } = this.#options;
     return new VoicePeer(
       {
         polite: own < session,
         configuration: this.#configuration,
         signal: (body) => signal(session, body),
-        heard: (stream) => heard(session, stream),
+        onStream: (stream) => onStream(session, stream),
       },
       this.#track,
     );
@@ -78,6 +78,6 @@ export class VoiceMesh {
   #drop(session: string): void {
     this.#peers.get(session)?.close();
     this.#peers.delete(session);
-    this.#options.heard(session, null);
+    this.#options.onStream(session, null);
   }
 }

@@ -1,49 +1,49 @@
 import { longestDescription, mostCandidates, type SignalBody } from '../protocol/voice-messages';
 
 export interface VoicePeerOptions {
-  /** Gives way where both pages want to change their connection at once; the other one makes the first offer. */
+  /** Whether this side yields when both make an offer; the other side makes the first offer. */
   readonly polite: boolean;
   readonly configuration: RTCConfiguration;
   signal(body: SignalBody): void;
-  /** The voice of the other, for as long as the connection lasts. */
-  heard(stream: MediaStream): void;
+  /** Called with the other voice, which lasts as long as the connection. */
+  onStream(stream: MediaStream): void;
 }
 
 type Candidate = Extract<SignalBody, { candidates: unknown }>['candidates'][number];
 
-/** Addresses are found within moments of each other: those of such a moment [ms] go together. */
+/** ICE candidates that are found within this time [ms] are sent together. */
 const gatherMs = 60;
-/** An offer that no one has answered is made again after so long [s]. */
+/** An unanswered offer is sent again after this time [s]. */
 const answerSeconds = 2;
-/** A connection that is lost is looked for again this often [s], where the room can be reached. */
+/** Interval of ICE restarts of a lost connection [s], while the room is reachable. */
 const restartSeconds = 2.5;
 const longestCandidate = 300;
 /**
- * A connection is closed this long after it is over [ms]. Chromium keeps one for good that is closed in the moment after an answer: of 100
- * that came and went at random 9 to 14, and one at most with this wait (tried with Chromium 156).
+ * A connection is closed after this delay [ms]. Chromium leaks a connection that is closed right after an answer: 9 to 14 of 100 random ones, and at
+ * most one with this delay (Chromium 156).
  */
 const closingMs = 250;
 
-/** Without the addresses in it, where it is too long for a message with them: they are sent by themselves too. */
+/** Returns a description that fits into a message: without candidates if it is too long, because they are also sent separately. */
 const shortened = (sdp: string): string =>
   sdp.length <= longestDescription ? sdp : sdp.replace(/^a=(candidate|end-of-candidates).*\r\n/gm, '');
 
-/** The one codec that all browsers have for voices: an offer with the others is three times as long. */
+/** Restricts a transceiver to Opus, which all browsers support: an offer with all codecs is three times as long. */
 function opusAlone(transceiver: RTCRtpTransceiver): void {
   const codecs = RTCRtpReceiver.getCapabilities('audio')?.codecs ?? [];
   const opus = codecs.filter(({ mimeType }) => mimeType.toLowerCase() === 'audio/opus');
-  // Older browsers have no choice of codecs.
+  // Older browsers cannot choose codecs.
   if (opus.length > 0) transceiver.setCodecPreferences?.(opus);
 }
 
 /**
- * A connection to the page of one other person, which carries both voices. Set up and changed by perfect negotiation (WebRTC 1.0, section
- * 10.7): either page may begin, and where both do, the polite one takes its own beginning back.
+ * A peer connection to one other page, which carries both voices. It uses perfect negotiation (WebRTC 1.0, section 10.7): either page may make an
+ * offer, and if both do, the polite one rolls its own back.
  */
 export class VoicePeer {
   readonly #options: VoicePeerOptions;
   readonly #pc: RTCPeerConnection;
-  #over = false;
+  #closed = false;
   #offering = false;
   #ignoring = false;
   #answering = false;
@@ -53,7 +53,7 @@ export class VoicePeer {
   #offeredAt = 0;
   #restartedAt = Number.NEGATIVE_INFINITY;
 
-  /** `track`: the own voice; null: nothing is sent. */
+  /** `track`: the own voice; null: sends nothing. */
   constructor(options: VoicePeerOptions, track: MediaStreamTrack | null) {
     this.#options = options;
     this.#track = track;
@@ -61,7 +61,7 @@ export class VoicePeer {
     this.#pc.addEventListener('negotiationneeded', () => void this.#offer());
     this.#pc.addEventListener('icecandidate', ({ candidate }) => candidate && this.#gather(candidate));
     this.#pc.addEventListener('track', ({ track: theirs }) => {
-      if (!this.#over) options.heard(new MediaStream([theirs]));
+      if (!this.#closed) options.onStream(new MediaStream([theirs]));
     });
     if (options.polite) return;
     const transceiver = this.#pc.addTransceiver('audio', { direction: 'sendrecv' });
@@ -73,31 +73,31 @@ export class VoicePeer {
     return this.#pc.connectionState;
   }
 
-  /** The own voice from now on; null: nothing is sent. */
+  /** Replaces the own voice; null: sends nothing. */
   setTrack(track: MediaStreamTrack | null): void {
     this.#track = track;
     for (const { sender } of this.#pc.getTransceivers()) void sender.replaceTrack(track);
   }
 
-  /** Takes in what the other page has signalled. */
-  async take(body: SignalBody): Promise<void> {
+  /** Handles a signal of the other page. */
+  async receive(body: SignalBody): Promise<void> {
     try {
       if ('description' in body) await this.#takeDescription(body.description);
       else for (const candidate of body.candidates) await this.#takeCandidate(candidate);
     } catch (error) {
-      // A page that answers what was not asked, or a connection that was closed meanwhile: the next restart begins anew.
+      // An unexpected answer, or a connection that was closed meanwhile: the next ICE restart recovers.
       if (!(error instanceof DOMException)) throw error;
     }
   }
 
-  /** Looks after the connection, at this time [s]; `reachable`: signals arrive at the room. */
+  /** Restarts a lost connection at this time [s]. `reachable`: whether the room receives signals. */
   watch(now: number, reachable: boolean): void {
     if (!reachable) return;
     const { signalingState, connectionState } = this.#pc;
     if (signalingState === 'have-local-offer') {
       if (now - this.#offeredAt < answerSeconds) return;
       this.#offeredAt = now;
-      this.#tell();
+      this.#sendDescription();
       return;
     }
     const lost = connectionState === 'disconnected' || connectionState === 'failed';
@@ -106,16 +106,16 @@ export class VoicePeer {
     this.#pc.restartIce();
   }
 
-  /** By these servers from now on: addresses are found anew, and the voices go by the old ones until then. */
+  /** Applies other ICE servers. New candidates are gathered, and the voices continue meanwhile. */
   configure(configuration: RTCConfiguration): void {
     this.#pc.setConfiguration(configuration);
     this.#pc.restartIce();
   }
 
-  /** Nothing is sent, signalled or heard from now on. */
+  /** Closes the connection; nothing more is sent or received. */
   close(): void {
-    if (this.#over) return;
-    this.#over = true;
+    if (this.#closed) return;
+    this.#closed = true;
     if (this.#gathering !== null) clearTimeout(this.#gathering);
     this.setTrack(null);
     setTimeout(() => this.#pc.close(), closingMs);
@@ -126,18 +126,18 @@ export class VoicePeer {
       this.#offering = true;
       await this.#pc.setLocalDescription();
       this.#offeredAt = performance.now() / 1000;
-      this.#tell();
+      this.#sendDescription();
     } catch (error) {
-      // Closed while it was being described.
+      // The connection was closed meanwhile.
       if (!(error instanceof DOMException)) throw error;
     } finally {
       this.#offering = false;
     }
   }
 
-  #tell(): void {
+  #sendDescription(): void {
     const description = this.#pc.localDescription;
-    if (this.#over || !description || (description.type !== 'offer' && description.type !== 'answer')) return;
+    if (this.#closed || !description || (description.type !== 'offer' && description.type !== 'answer')) return;
     this.#options.signal({ description: { type: description.type, sdp: shortened(description.sdp) } });
   }
 
@@ -146,7 +146,7 @@ export class VoicePeer {
     const free = !this.#offering && (pc.signalingState === 'stable' || this.#answering);
     const collides = description.type === 'offer' && !free;
     this.#ignoring = collides && !this.#options.polite;
-    // An offer made twice is answered twice.
+    // A repeated offer has two answers; the second is late.
     const late = description.type === 'answer' && pc.signalingState !== 'have-local-offer';
     if (this.#ignoring || late) return;
     this.#answering = description.type === 'answer';
@@ -159,20 +159,20 @@ export class VoicePeer {
       void transceiver.sender.replaceTrack(this.#track);
     }
     await pc.setLocalDescription();
-    this.#tell();
+    this.#sendDescription();
   }
 
   async #takeCandidate(candidate: Candidate): Promise<void> {
     try {
       await this.#pc.addIceCandidate(candidate);
     } catch (error) {
-      // Addresses of an offer that was ignored, or of one from before a restart, belong to nothing.
+      // Candidates of an ignored offer, or from before a restart, have no description.
       if (!(error instanceof DOMException)) throw error;
     }
   }
 
   #gather({ candidate, sdpMid, sdpMLineIndex, usernameFragment }: RTCIceCandidate): void {
-    if (this.#over || candidate.length > longestCandidate) return;
+    if (this.#closed || candidate.length > longestCandidate) return;
     this.#candidates.push({ candidate, sdpMid, sdpMLineIndex, usernameFragment });
     this.#gathering ??= setTimeout(() => {
       this.#gathering = null;

@@ -3,7 +3,7 @@ import { createIk } from 'threepoint/core/estimation/estimators';
 import { rotate } from 'threepoint/core/math/quat';
 import { distance, length, subtract, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { BallAction, BallEvent, BallState } from 'threepoint-games/ball/ball-state';
+import type { BallEvent, BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import { type BallGestures, createBallGestures } from 'threepoint-games/ball/gestures';
 import { createHolder } from 'threepoint-games/ball/holder-motion';
 import { ballRules } from 'threepoint-games/ball/rules';
@@ -35,7 +35,7 @@ function play({
   );
   const events: BallEvent[] = [];
   const frames: TrackingFrame[][] = [];
-  let waiting: BallAction[] = [0, 1, 2].flatMap((player): BallAction[] => [
+  let waiting: BallInput[] = [0, 1, 2].flatMap((player): BallInput[] => [
     { type: 'join', player },
     { type: 'ready', player, ready: true },
   ]);
@@ -53,7 +53,7 @@ function play({
       waiting = [];
       state = done.state;
       events.push(...done.events);
-      for (const gesture of gestures) gesture.hear(done.events);
+      for (const gesture of gestures) gesture.onEvents(done.events);
     }
   }
   return { state, events, frames };

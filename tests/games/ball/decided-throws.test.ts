@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import { nextRandom } from 'threepoint/core/math/random';
 import { add, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { BallAction } from 'threepoint-games/ball/ball-state';
+import type { BallInput } from 'threepoint-games/ball/ball-state';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { ballMatchTime } from 'threepoint-games/ball/state-readings';
 import { rackPosition } from 'threepoint-games/ball/stations';
@@ -30,8 +30,8 @@ test('1,000 throws end the same at round trips of 0 to 200 ms as at none', { tag
     const velocity = velocityTo(from, target, flight);
     const verdict = (thrower: number, holding: number): boolean => {
       let state = ballRules.start(['a', 'b', 'c'], 1);
-      const late: { readonly due: number; readonly action: BallAction }[] = [
-        ...[0, 1, 2].flatMap((player): { due: number; action: BallAction }[] => [
+      const late: { readonly due: number; readonly action: BallInput }[] = [
+        ...[0, 1, 2].flatMap((player): { due: number; action: BallInput }[] => [
           { due: 0, action: { type: 'join', player } },
           { due: 0, action: { type: 'ready', player, ready: true } },
         ]),

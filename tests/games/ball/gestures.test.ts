@@ -4,7 +4,7 @@ import { invertTransform, type TrackedPose, transformPoint, transformPose } from
 import { fromAxisAngle, identity } from 'threepoint/core/math/quat';
 import { add, addScaled, distance, scale, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { BallAction, BallState } from 'threepoint-games/ball/ball-state';
+import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import { ballRadius } from 'threepoint-games/ball/flight';
 import { createBallGestures, holdSeconds } from 'threepoint-games/ball/gestures';
 import { createHandSpeed, throwWindow } from 'threepoint-games/ball/hand-speed';
@@ -47,12 +47,12 @@ function throwing(options: { side?: Side; button?: Button; state?: BallState; pl
     const done = gestures.follow({ time, head, ...hands }, { left: allReleased, right: allReleased, ...buttons });
     const { state, events } = ballRules.step(settings.state, done.actions);
     settings.state = state;
-    gestures.hear(events);
+    gestures.onEvents(events);
     return done;
   };
-  const deeds = (done: { readonly actions: readonly BallAction[] }) =>
+  const actions = (done: { readonly actions: readonly BallInput[] }) =>
     done.actions.filter(({ type }) => type !== 'pose');
-  return { frame, aside, deeds, gestures, settings, ball: rackPosition(0, 20), now: () => time - 100 };
+  return { frame, aside, actions, gestures, settings, ball: rackPosition(0, 20), now: () => time - 100 };
 }
 
 const ahead = transformPoint(arenaFromFloor, vec3(0.2, 1.5, -0.3));
@@ -72,15 +72,15 @@ describe('a hand', () => {
     ['right', 'grip'],
     ['left', 'pinch'],
   ] as const)('takes and throws: the %s one with its %s', (side, button) => {
-    const { frame, deeds, taken, settings, now } = carrying({ side, button });
-    expect(deeds(taken)).toEqual([{ type: 'grab', player: leftThrower, sequence: 1, side, ball: 0 }]);
+    const { frame, actions, taken, settings, now } = carrying({ side, button });
+    expect(actions(taken)).toEqual([{ type: 'grab', player: leftThrower, sequence: 1, side, ball: 0 }]);
     expect(settings.state.balls[0]).toEqual({ on: 'hand', player: leftThrower, side });
     const velocity = vec3(0.5, 3, -4);
     const fist = (i: number) => addScaled(ahead, velocity, i / 90);
     for (let i = 1; i < 12; i++) frame(fist(i), 1);
     let done = frame(fist(12), 0);
     if (button === 'pinch') done = frame(fist(13), 0);
-    const [thrown] = deeds(done);
+    const [thrown] = actions(done);
     if (thrown?.type !== 'throw') throw new Error('nothing thrown');
     expect(distance(thrown.velocity, velocity)).toBeLessThan(1e-9);
     // From where it is drawn.
@@ -92,37 +92,37 @@ describe('a hand', () => {
   });
 
   test('feels the ball that a press would take, and takes nothing from far away', () => {
-    const { frame, deeds, ball } = throwing();
+    const { frame, actions, ball } = throwing();
     expect(frame(add(ball, vec3(0, 0.5, 0)), 0).near.right).toBeNull();
     const near = frame(add(ball, vec3(0, 0.1, 0)), 0);
     expect(near.near.right).toBe(0);
     expect(near.haptics.length).toBe(1);
     expect(frame(add(ball, vec3(0, 0.1, 0)), 0).haptics.length).toBe(0);
     frame(add(ball, vec3(0, 0.5, 0)), 0);
-    expect(deeds(frame(add(ball, vec3(0, 0.5, 0)), 1))).toEqual([]);
+    expect(actions(frame(add(ball, vec3(0, 0.5, 0)), 1))).toEqual([]);
     // Coming near with the button down is no press.
-    expect(deeds(frame(ball, 1))).toEqual([]);
+    expect(actions(frame(ball, 1))).toEqual([]);
   });
 
   test('that lets go at rest puts the ball back', () => {
-    const { frame, deeds, settings } = carrying();
+    const { frame, actions, settings } = carrying();
     for (let i = 0; i < 10; i++) frame(ahead, 1);
-    expect(deeds(frame(ahead, 0))).toEqual([{ type: 'drop', player: leftThrower, sequence: 2, side: 'right' }]);
+    expect(actions(frame(ahead, 0))).toEqual([{ type: 'drop', player: leftThrower, sequence: 2, side: 'right' }]);
     expect(settings.state.balls[0]).toEqual({ on: 'rack' });
   });
 
   test('that is lost for a moment keeps its ball, for longer puts it back, and never throws', () => {
-    const { frame, deeds } = carrying();
-    for (let i = 0; i < 20; i++) expect(deeds(frame(null, 0))).toEqual([]);
-    expect(deeds(frame(ahead, 1))).toEqual([]);
-    const dropped = Array.from({ length: Math.ceil(90 * holdSeconds) + 3 }, () => deeds(frame(null, 0))).flat();
+    const { frame, actions } = carrying();
+    for (let i = 0; i < 20; i++) expect(actions(frame(null, 0))).toEqual([]);
+    expect(actions(frame(ahead, 1))).toEqual([]);
+    const dropped = Array.from({ length: Math.ceil(90 * holdSeconds) + 3 }, () => actions(frame(null, 0))).flat();
     expect(dropped).toEqual([{ type: 'drop', player: leftThrower, sequence: 2, side: 'right' }]);
   });
 
   test('that returns with its button released has not thrown', () => {
-    const { frame, deeds } = carrying();
+    const { frame, actions } = carrying();
     frame(null, 1);
-    expect(deeds(frame(addScaled(ahead, vec3(0, 1, -1), 0.3), 0)).map(({ type }) => type)).toEqual(['drop']);
+    expect(actions(frame(addScaled(ahead, vec3(0, 1, -1), 0.3), 0)).map(({ type }) => type)).toEqual(['drop']);
   });
 
   test('whose device changes lets go', () => {
@@ -130,33 +130,33 @@ describe('a hand', () => {
     player.frame(player.ball, 0, 'controller');
     player.frame(player.ball, 1, 'controller');
     player.frame(ahead, 1, 'controller');
-    expect(player.deeds(player.frame(ahead, 1, 'hand')).map(({ type }) => type)).toEqual(['drop']);
+    expect(player.actions(player.frame(ahead, 1, 'hand')).map(({ type }) => type)).toEqual(['drop']);
   });
 
   test('lets go in a pause: no ball is thrown across a menu', () => {
-    const { frame, deeds } = carrying();
-    expect(deeds(frame(addScaled(ahead, vec3(0, 0, -1), 0.5), 0, undefined, 2)).map(({ type }) => type)).toEqual([
+    const { frame, actions } = carrying();
+    expect(actions(frame(addScaled(ahead, vec3(0, 0, -1), 0.5), 0, undefined, 2)).map(({ type }) => type)).toEqual([
       'drop',
     ]);
   });
 
   test('whose grab was refused is empty, and says so', () => {
     const { frame, gestures } = carrying();
-    gestures.hear([{ type: 'refused', player: leftThrower, sequence: 1, reason: 'taken' }]);
+    gestures.onEvents([{ type: 'refused', player: leftThrower, sequence: 1, reason: 'taken' }]);
     const done = frame(ahead, 1);
     expect(done.held.right).toBeNull();
     expect(done.cues.map(({ type }) => type)).toEqual(['slipped']);
   });
 
   test('whose throw was refused lets go of the ball all the same, and can take another', () => {
-    const { frame, aside, deeds, settings, ball } = carrying();
+    const { frame, aside, actions, settings, ball } = carrying();
     // Behind the line no ball is thrown.
     aside.back = 1.4;
     for (let i = 1; i < 12; i++) frame(addScaled(ahead, vec3(0, 3, -4), i / 90), 1);
-    expect(deeds(frame(addScaled(ahead, vec3(0, 3, -4), 12 / 90), 0)).map(({ type }) => type)).toEqual(['throw']);
+    expect(actions(frame(addScaled(ahead, vec3(0, 3, -4), 12 / 90), 0)).map(({ type }) => type)).toEqual(['throw']);
     expect(settings.state.balls[0]?.on).toBe('hand');
     const after = frame(ahead, 0);
-    expect(deeds(after)).toEqual([{ type: 'drop', player: leftThrower, sequence: 3, side: 'right' }]);
+    expect(actions(after)).toEqual([{ type: 'drop', player: leftThrower, sequence: 3, side: 'right' }]);
     expect(after.cues.map(({ type }) => type)).toEqual(['slipped']);
     expect(settings.state.balls[0]).toEqual({ on: 'rack' });
     aside.back = 0;
@@ -166,10 +166,10 @@ describe('a hand', () => {
   });
 
   test('of the basket holder takes no balls but tells where it is', () => {
-    const { frame, ball, deeds, settings } = throwing({ player: holder });
+    const { frame, ball, actions, settings } = throwing({ player: holder });
     frame(ball, 0);
     const done = frame(ball, 1);
-    expect(deeds(done)).toEqual([]);
+    expect(actions(done)).toEqual([]);
     const pose = done.actions[0];
     if (pose?.type !== 'pose') throw new Error('no pose');
     expect(pose.at).toBeCloseTo(2 / 90, 9);
@@ -250,13 +250,13 @@ describe('the speed of a hand', () => {
   });
 
   test('is none of a floor that turns at once, as by the stick', () => {
-    const { frame, deeds, gestures } = carrying();
+    const { frame, actions, gestures } = carrying();
     for (let i = 0; i < 12; i++) frame(ahead, 1);
     gestures.jumped();
     const aside = add(ahead, vec3(0.3, 0, 0));
     frame(aside, 1);
     frame(aside, 1);
-    expect(deeds(frame(aside, 0)).map(({ type }) => type)).toEqual(['drop']);
+    expect(actions(frame(aside, 0)).map(({ type }) => type)).toEqual(['drop']);
   });
 
   test('turns with the person', () => {

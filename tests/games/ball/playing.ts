@@ -1,6 +1,6 @@
 import type { Pose } from 'threepoint/core/math/pose';
 import { add, addScaled, normalise, scale, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { BallAction, BallDeed, BallEvent, BallOptions, BallState } from 'threepoint-games/ball/ball-state';
+import type { BallAction, BallEvent, BallInput, BallOptions, BallState } from 'threepoint-games/ball/ball-state';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { rackPosition, stations } from 'threepoint-games/ball/stations';
 import { gravity } from 'threepoint-games/ballistics';
@@ -14,7 +14,7 @@ export const [leftThrower, rightThrower, holder] = [0, 1, 2] as const;
 export const headOf = (player: number): Vec3 => add(stations[player]!.position, vec3(0, 1.6, 0));
 
 /** A thrower who stands at the station with both fists there. */
-export const stand = (player: number, at: number, left: Vec3, right = left): BallAction => ({
+export const stand = (player: number, at: number, left: Vec3, right = left): BallInput => ({
   type: 'pose',
   player,
   at,
@@ -24,7 +24,7 @@ export const stand = (player: number, at: number, left: Vec3, right = left): Bal
 });
 
 /** The holder's hands round a basket whose opening is there and looks that way. */
-export function hold(at: number, opening: Vec3, normal = vec3(0, 1, 0)): BallAction {
+export function hold(at: number, opening: Vec3, normal = vec3(0, 1, 0)): BallInput {
   const across = normalise(subtract(vec3(-1, 0, 0), scale(normal, -normal.x)));
   const hand = (side: 'left' | 'right'): Pose<'arena'> =>
     wristAround(side, addScaled(opening, across, side === 'left' ? -0.22 : 0.22), vec3(0, 0, 1), normal);
@@ -41,10 +41,10 @@ export const velocityTo = (from: Vec3, to: Vec3, seconds: number): Vec3 =>
 /** A match told tick by tick, all players there and ready unless told. */
 export function told(options: Partial<BallOptions> = {}, ready = true) {
   const events: BallEvent[] = [];
-  const log: (readonly BallAction[])[] = [];
+  const log: (readonly BallInput[])[] = [];
   let state: BallState = ballRules.start(['ann', 'ben', 'cal'], 1, options);
   const sequence = [0, 0, 0];
-  const step = (...actions: BallAction[]) => {
+  const step = (...actions: BallInput[]) => {
     log.push(actions);
     const done = ballRules.step(state, actions);
     state = done.state;
@@ -55,29 +55,29 @@ export function told(options: Partial<BallOptions> = {}, ready = true) {
   const pass = (seconds: number) => {
     for (let i = 0; i < Math.round(seconds / tickSeconds); i++) step(hold(now(), inFront));
   };
-  type Unnumbered = BallDeed extends infer D ? (D extends BallDeed ? Omit<D, 'sequence'> : never) : never;
-  const deed = (player: number, what: Unnumbered): BallAction => {
+  type Unnumbered = BallAction extends infer D ? (D extends BallAction ? Omit<D, 'sequence'> : never) : never;
+  const action = (player: number, what: Unnumbered): BallInput => {
     sequence[player]! += 1;
-    return { ...what, player, sequence: sequence[player]! } as BallAction;
+    return { ...what, player, sequence: sequence[player]! } as BallInput;
   };
   const release = (player: number): Vec3 => addScaled(headOf(player), vec3(0, 0, -1), 0.5);
   const take = (player: number, ball: number, side: 'left' | 'right' = 'right') =>
     step(
       hold(now(), inFront),
       stand(player, now(), rackPosition(ball, state.options.balls)),
-      deed(player, { type: 'grab', side, ball }),
+      action(player, { type: 'grab', side, ball }),
     );
   const toss = (player: number, ball: number, to: Vec3, seconds = 1, side: 'left' | 'right' = 'right') => {
     const from = release(player);
     return step(
       hold(now(), inFront),
       stand(player, now(), from),
-      deed(player, { type: 'throw', side, ball, at: now(), position: from, velocity: velocityTo(from, to, seconds) }),
+      action(player, { type: 'throw', side, ball, at: now(), position: from, velocity: velocityTo(from, to, seconds) }),
     );
   };
   if (ready) {
-    step(...[0, 1, 2].map((player): BallAction => ({ type: 'join', player })));
-    step(hold(0, inFront), ...[0, 1, 2].map((player): BallAction => ({ type: 'ready', player, ready: true })));
+    step(...[0, 1, 2].map((player): BallInput => ({ type: 'join', player })));
+    step(hold(0, inFront), ...[0, 1, 2].map((player): BallInput => ({ type: 'ready', player, ready: true })));
   }
   return {
     get state() {
@@ -88,7 +88,7 @@ export function told(options: Partial<BallOptions> = {}, ready = true) {
     log,
     step,
     pass,
-    deed,
+    action,
     release,
     take,
     toss,

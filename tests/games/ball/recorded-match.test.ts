@@ -1,6 +1,6 @@
 import { nextRandom } from 'threepoint/core/math/random';
 import { add, vec3 } from 'threepoint/core/math/vec3';
-import type { BallAction, BallEvent, BallState } from 'threepoint-games/ball/ball-state';
+import type { BallEvent, BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { rackPosition } from 'threepoint-games/ball/stations';
 import { describe, expect, test } from 'vitest';
@@ -8,8 +8,8 @@ import { seed } from '../../threepoint/core/arbitraries';
 import { numbersIn } from '../../threepoint/core/numbers-in';
 import { headOf, hold, inFront, stand, tickSeconds, velocityTo } from './playing';
 
-/** A whole game of random deeds, some of them impossible, told as ticks. */
-function randomGame(matchSeed: number, ticks: number): BallAction[][] {
+/** A whole game of random actions, some of them impossible, by tick. */
+function randomGame(matchSeed: number, ticks: number): BallInput[][] {
   let random = { seed: matchSeed };
   const chance = (): number => {
     const next = nextRandom(random);
@@ -17,12 +17,12 @@ function randomGame(matchSeed: number, ticks: number): BallAction[][] {
     return next.value;
   };
   const below = (end: number) => Math.floor(chance() * end);
-  const log: BallAction[][] = [[0, 1, 2].map((player): BallAction => ({ type: 'join', player }))];
-  log.push([0, 1, 2].map((player): BallAction => ({ type: 'ready', player, ready: true })));
+  const log: BallInput[][] = [[0, 1, 2].map((player): BallInput => ({ type: 'join', player }))];
+  log.push([0, 1, 2].map((player): BallInput => ({ type: 'ready', player, ready: true })));
   const sequence = [0, 0, 0];
   for (let tick = 2; tick < ticks; tick++) {
     const at = tick * tickSeconds;
-    const actions: BallAction[] = [];
+    const actions: BallInput[] = [];
     if (chance() < 0.5) actions.push(hold(at, add(inFront, vec3(chance() - 0.5, chance() - 0.5, 0.3 * chance()))));
     for (const player of [0, 1]) {
       if (chance() > 0.3) continue;
@@ -56,7 +56,7 @@ function randomGame(matchSeed: number, ticks: number): BallAction[][] {
   return log;
 }
 
-const play = (log: readonly (readonly BallAction[])[], from?: BallState) => {
+const play = (log: readonly (readonly BallInput[])[], from?: BallState) => {
   let state = from ?? ballRules.start(['a', 'b', 'c'], 5);
   const events: BallEvent[] = [];
   for (const actions of log) {
@@ -84,7 +84,7 @@ describe('a record of a match', () => {
     expect(points).toBeGreaterThan(5);
   });
 
-  test('counts no point twice in 100,000 deeds repeated and out of order', () => {
+  test('counts no point twice in 100,000 actions repeated and out of order', () => {
     let repeated = 0;
     let points = 0;
     let random = { seed };
@@ -95,15 +95,15 @@ describe('a record of a match', () => {
     };
     for (let matchSeed = 1; repeated < 100_000; matchSeed++) {
       const log = randomGame(matchSeed, 700);
-      const past: BallAction[] = [];
-      const noisy = log.map((actions) => {
-        const deeds = actions.filter(({ type }) => type === 'grab' || type === 'throw' || type === 'drop');
-        past.push(...deeds);
+      const past: BallInput[] = [];
+      const noisy = log.map((tick) => {
+        const actions = tick.filter(({ type }) => type === 'grab' || type === 'throw' || type === 'drop');
+        past.push(...actions);
         const again = Array.from({ length: 20 }, () => past[Math.floor(chance() * past.length)]).filter(
-          (deed) => deed !== undefined,
+          (action) => action !== undefined,
         );
         repeated += again.length;
-        return [...actions, ...deeds, ...again];
+        return [...tick, ...actions, ...again];
       });
       const { state, events } = play(noisy);
       const caught = events.flatMap((event) => (event.type === 'caught' ? [event.ball] : []));
@@ -113,7 +113,7 @@ describe('a record of a match', () => {
       const inBasket = state.balls.filter(({ on }) => on === 'basket').length;
       expect(state.score).toBe(inBasket);
     }
-    console.log(`ball game: ${repeated} deeds repeated or out of order, ${points} points, none twice`);
+    console.log(`ball game: ${repeated} actions repeated or out of order, ${points} points, none twice`);
     expect(points).toBeGreaterThan(20);
   });
 });

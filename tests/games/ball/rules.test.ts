@@ -1,8 +1,8 @@
 import fc from 'fast-check';
 import { add, distance, length, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { BallAction } from 'threepoint-games/ball/ball-state';
+import { armReach, fastestThrow, longestDelay } from 'threepoint-games/ball/actions';
+import type { BallInput } from 'threepoint-games/ball/ball-state';
 import { basketInHands, gripRadius } from 'threepoint-games/ball/basket';
-import { armReach, fastestThrow, longestDelay } from 'threepoint-games/ball/deeds';
 import { ballRadius } from 'threepoint-games/ball/flight';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { ballPosition, ballSecondsLeft, ballsLeft } from 'threepoint-games/ball/state-readings';
@@ -157,7 +157,11 @@ describe('a match', () => {
     const position = match.release(leftThrower);
     const velocity = velocityTo(position, inFront, 1);
     const thrown = { type: 'throw', side: 'right', ball: 1, at: 4.9, position, velocity } as const;
-    match.step(hold(match.now(), inFront), stand(leftThrower, match.now(), position), match.deed(leftThrower, thrown));
+    match.step(
+      hold(match.now(), inFront),
+      stand(leftThrower, match.now(), position),
+      match.action(leftThrower, thrown),
+    );
     expect(match.refusals()).toEqual([]);
     match.pass(1);
     expect(match.happened('ended')).toEqual([{ type: 'ended', end: 'time', score: 1 }]);
@@ -177,7 +181,7 @@ describe('a match', () => {
     match.step({ type: 'leave', player: leftThrower });
     expect(match.state.balls[2]).toEqual({ on: 'rack' });
     expect(match.state.players[leftThrower]?.present).toBe(false);
-    match.step(match.deed(leftThrower, { type: 'grab', side: 'right', ball: 2 }));
+    match.step(match.action(leftThrower, { type: 'grab', side: 'right', ball: 2 }));
     expect(match.refusals()).toEqual(['absent']);
     match.step({ type: 'join', player: leftThrower });
     expect(match.state.phase).toBe('running');
@@ -193,15 +197,15 @@ describe('a ball', () => {
         const match = told();
         const place = rackPosition(ball, 20);
         const between = { ...place, y: 1.6, z: 0 };
-        const near = (player: number): BallAction => ({
-          ...(stand(player, match.now(), place) as Extract<BallAction, { type: 'pose' }>),
+        const near = (player: number): BallInput => ({
+          ...(stand(player, match.now(), place) as Extract<BallInput, { type: 'pose' }>),
           head: vec3((between.x + stations[player]!.position.x) / 2, 1.4, -0.2),
         });
         const [first, second] = leftFirst ? [leftThrower, rightThrower] : [rightThrower, leftThrower];
         match.step(near(first), near(second));
         match.step(
-          match.deed(first, { type: 'grab', side: 'right', ball }),
-          match.deed(second, { type: 'grab', side: 'left', ball }),
+          match.action(first, { type: 'grab', side: 'right', ball }),
+          match.action(second, { type: 'grab', side: 'left', ball }),
         );
         expect(match.state.balls[ball]).toEqual({ on: 'hand', player: first, side: 'right' });
         expect(match.happened('refused')).toEqual([{ type: 'refused', player: second, sequence: 1, reason: 'taken' }]);
@@ -225,7 +229,7 @@ describe('a ball', () => {
     const from = match.release(leftThrower);
     match.step(
       stand(leftThrower, match.now(), from),
-      match.deed(leftThrower, {
+      match.action(leftThrower, {
         type: 'throw',
         side: 'right',
         ball: 4,
@@ -252,7 +256,7 @@ describe('what no body can do is refused', () => {
     const from = match.release(leftThrower);
     match.step(
       stand(leftThrower, match.now(), from),
-      match.deed(leftThrower, {
+      match.action(leftThrower, {
         type: 'throw',
         side: 'right',
         ball: 0,
@@ -304,10 +308,10 @@ describe('what no body can do is refused', () => {
   test('a grab from out of reach, of a ball that is not there, or by the holder', () => {
     const match = told();
     match.step(stand(leftThrower, match.now(), headOf(leftThrower)));
-    match.step(match.deed(leftThrower, { type: 'grab', side: 'left', ball: 19 }));
-    match.step(match.deed(leftThrower, { type: 'grab', side: 'left', ball: 20 }));
-    match.step(match.deed(leftThrower, { type: 'grab', side: 'left', ball: -1 }));
-    match.step(match.deed(holder, { type: 'grab', side: 'left', ball: 1 }));
+    match.step(match.action(leftThrower, { type: 'grab', side: 'left', ball: 19 }));
+    match.step(match.action(leftThrower, { type: 'grab', side: 'left', ball: 20 }));
+    match.step(match.action(leftThrower, { type: 'grab', side: 'left', ball: -1 }));
+    match.step(match.action(holder, { type: 'grab', side: 'left', ball: 1 }));
     expect(match.refusals()).toEqual(['reach', 'no-such-ball', 'no-such-ball', 'role']);
   });
 
@@ -316,7 +320,7 @@ describe('what no body can do is refused', () => {
     const there = add(stations[holder]!.position, vec3(0, 1.6, 1));
     match.step({ type: 'pose', player: leftThrower, at: match.now(), head: there, left: null, right: null });
     match.step(
-      match.deed(leftThrower, {
+      match.action(leftThrower, {
         type: 'throw',
         side: 'right',
         ball: 0,
@@ -343,7 +347,7 @@ describe('what no body can do is refused', () => {
     walker.take(leftThrower, 0);
     walker.toss(leftThrower, 0, vec3(0, 1, -2), 0.5);
     for (let i = 0; i < 60; i++) {
-      const pose = hold(walker.now(), vec3(0, 1, -2)) as Extract<BallAction, { type: 'pose' }>;
+      const pose = hold(walker.now(), vec3(0, 1, -2)) as Extract<BallInput, { type: 'pose' }>;
       walker.step({ ...pose, head: vec3(0, 1.6, -2.4) });
     }
     expect(walker.state.score).toBe(0);

@@ -77,7 +77,7 @@ function playing(seat: number, steer: (seen: Seen) => BallSteering, others: 'idl
         });
         const done = ballRules.step(state, actions);
         state = done.state;
-        for (const { gestures } of playingSeats) gestures.hear(done.events);
+        for (const { gestures } of playingSeats) gestures.onEvents(done.events);
         for (const event of done.events) {
           if (event.type === 'refused') refused.push(event.reason);
           if (event.type === 'thrown') launches.push(event.launch);

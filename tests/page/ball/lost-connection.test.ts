@@ -12,9 +12,9 @@ import { RoomSession } from 'threepoint-rooms/client/room-session';
 import type { ClientMessage } from 'threepoint-rooms/protocol/messages';
 import { describe, expect, test } from 'vitest';
 import { atRack, fists, holding, opening, shownAt, visitor } from '../../rooms/client/people';
-import { toldRoom } from '../../rooms/room/told-room';
+import { createTestRoom } from '../../rooms/room/test-room';
 
-type Told = ReturnType<typeof toldRoom>;
+type Told = ReturnType<typeof createTestRoom>;
 
 /** Ann's wire to a room that a test tells everything: it can be lost, and come back. */
 class LossyWire extends RoomSession<BallGame> {
@@ -33,9 +33,9 @@ class LossyWire extends RoomSession<BallGame> {
 
   connect(): void {
     this.#connections += 1;
-    this.#heard = this.#told.said.length;
+    this.#heard = this.#told.sent.length;
     this.#whole = true;
-    this.#told.room.join(this.#name, 'ann', this.joining(), this.#told.time);
+    this.#told.room.join(this.#name, 'ann', this.joinRequest(), this.#told.time);
   }
 
   lose(): void {
@@ -48,8 +48,8 @@ class LossyWire extends RoomSession<BallGame> {
   }
 
   override update(time: number): BallConnectionUpdate {
-    const fresh = this.#whole ? this.#told.said.slice(this.#heard) : [];
-    this.#heard = this.#told.said.length;
+    const fresh = this.#whole ? this.#told.sent.slice(this.#heard) : [];
+    this.#heard = this.#told.sent.length;
     for (const { to, message } of fresh) {
       if (to === 'all' || to === this.#name) this.onMessage(message as BallRoomMessage, time);
     }
@@ -77,7 +77,7 @@ const trigger = (pressure: number): Buttons => ({ left: allReleased, right: { ..
 
 /** Ann throws by hand, Cal holds the basket; the round runs. */
 function court() {
-  const told = toldRoom();
+  const told = createTestRoom();
   let wire = new LossyWire(told);
   const open = (line: LossyWire) =>
     createBallPlay({

@@ -36,7 +36,7 @@ test('a file that never ends is given up with a sentence, and the next place is 
     unused,
     {
       terms: unused,
-      liesElsewhere: unused,
+      isStoredElsewhere: unused,
       store: unused,
       addressesOf: async () =>
         [first, second].map((url) => ({
@@ -60,7 +60,7 @@ test('a file that never ends is given up with a sentence, and the next place is 
 const from = (urls: readonly string[]) =>
   new SeenAvatars(new ArrayBuffer(0), unused, {
     terms: unused,
-    liesElsewhere: unused,
+    isStoredElsewhere: unused,
     store: unused,
     addressesOf: async () => urls.map((url) => ({ url, headers: {} })),
   });

@@ -1,11 +1,11 @@
 import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import { BlockList } from 'threepoint-page/ball/block-list';
 import { Voices } from 'threepoint-page/ball/voices';
-import type { VoiceTerms } from 'threepoint-rooms/voices/voice-terms';
+import type { VoiceSettings } from 'threepoint-rooms/voices/voice-settings';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
 import { visitor } from '../../rooms/client/people';
 
-const told: VoiceTerms = { voices: true, iceServers: [], goodFor: null };
+const told: VoiceSettings = { voices: true, iceServers: [], ttlSeconds: null };
 
 /** What the browser has of a microphone: each question waits for its answer. */
 const device = { questions: [] as (() => void)[], live: 0 };

@@ -118,7 +118,7 @@ describe('captions', () => {
     expect(cueCaption({ type: 'thrown', side: 'right', ball: 2 })).toBe('You throw');
   });
 
-  it('say why a deed was refused, only to the player who did it', () => {
+  it('say why an action was refused, only to the player who did it', () => {
     const refused = (player: number): BallEvent => ({ type: 'refused', player, sequence: 1, reason: 'taken' });
     expect(eventCaption(refused(0), null, hearing)).toBe('Another player holds that ball');
     expect(eventCaption(refused(1), null, hearing)).toBe(null);

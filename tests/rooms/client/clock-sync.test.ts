@@ -21,9 +21,9 @@ function follow(
       underway.push({ sent: now, told: reached + skew, heard: reached + back() });
     }
     for (const answer of underway.filter(({ heard }) => heard <= now && heard > now - 1 / 60)) {
-      sync.hear(answer.sent, answer.told, answer.heard);
+      sync.receive(answer.sent, answer.told, answer.heard);
     }
-    error = Math.abs(sync.ahead - skew);
+    error = Math.abs(sync.offset - skew);
     if (error > 0.01) settled = now;
   }
   return { error, settled: settled - start };
@@ -60,11 +60,11 @@ describe('clock sync', () => {
         const skew = 1234.5;
         trips.forEach(([there, back], i) => {
           const sent = i;
-          sync.hear(sent, sent + there + skew, sent + there + back);
+          sync.receive(sent, sent + there + skew, sent + there + back);
         });
         const shortest = Math.min(...trips.map(([there, back]) => there + back));
         expect(sync.roundTrip).toBeLessThanOrEqual(shortest + 1e-9);
-        expect(Math.abs(sync.ahead - skew)).toBeLessThanOrEqual(shortest / 2 + 1e-9);
+        expect(Math.abs(sync.offset - skew)).toBeLessThanOrEqual(shortest / 2 + 1e-9);
       }),
     );
   });
@@ -83,20 +83,20 @@ describe('clock sync', () => {
     expect(error).toBeLessThan(0.01);
     // Asked at 14.99, answered by theirs at 17.991; ours stood at 15 for 20 s.
     sync.paused(20, 15);
-    expect(sync.ahead).toBeCloseTo(23, 2);
-    sync.hear(14.99, 17.991, 15.01);
-    expect(sync.ahead).toBeCloseTo(23, 2);
+    expect(sync.offset).toBeCloseTo(23, 2);
+    sync.receive(14.99, 17.991, 15.01);
+    expect(sync.offset).toBeCloseTo(23, 2);
     expect(sync.due(15.01)).toBe(true);
-    sync.hear(15.01, 38.012, 15.014);
-    expect(sync.ahead).toBeCloseTo(23, 2);
+    sync.receive(15.01, 38.012, 15.014);
+    expect(sync.offset).toBeCloseTo(23, 2);
   });
 
   test('a clock that was set ahead looks like a pause until the first answer', () => {
     const sync = createClockSync();
     follow(sync, 5, 10, 3, lan(), lan());
     sync.paused(20, 15);
-    sync.hear(15, 18.002, 15.004);
-    expect(sync.ahead).toBeCloseTo(3, 2);
+    sync.receive(15, 18.002, 15.004);
+    expect(sync.offset).toBeCloseTo(3, 2);
   });
 
   test('tells how long answers take: the median of the last five, and the wait for one that does not come', () => {
@@ -106,7 +106,7 @@ describe('clock sync', () => {
     for (const trip of [0.02, 0.03, 0.4, 0.025, 0.021]) {
       now += 2.5;
       expect(sync.due(now)).toBe(true);
-      sync.hear(now, now + trip / 2, now + trip);
+      sync.receive(now, now + trip / 2, now + trip);
     }
     expect(sync.delayAt(now + 0.5)).toBeCloseTo(0.025, 9);
     expect(sync.due(now + 2.5)).toBe(true);

@@ -1,5 +1,5 @@
 import { type BallLoopbackOptions, createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
-import type { BallAction } from 'threepoint-games/ball/ball-state';
+import type { BallInput } from 'threepoint-games/ball/ball-state';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { describe, expect, test } from 'vitest';
 import { atRack, createPerson, fists, holding, opening, releaseOf, visitor } from './people';
@@ -129,7 +129,7 @@ describe('a room in the page', () => {
   });
 
   test('what a match was told plays it again to the same end', () => {
-    const log: (readonly BallAction[])[] = [];
+    const log: (readonly BallInput[])[] = [];
     const three = threeTogether({ stepped: (actions) => log.push(actions), seed: 7 });
     three.begin();
     for (const ball of [0, 1, 2]) three.throwBall(ball);

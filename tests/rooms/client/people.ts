@@ -5,7 +5,7 @@ import { identity } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { add, addScaled, scale, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { BallConnection, BallConnectionUpdate } from 'threepoint-games/ball/ball-client';
-import type { BallDeed, BallEvent } from 'threepoint-games/ball/ball-state';
+import type { BallAction, BallEvent } from 'threepoint-games/ball/ball-state';
 import { rackPosition, stations } from 'threepoint-games/ball/stations';
 import { gravity } from 'threepoint-games/ballistics';
 import { wristAround } from 'threepoint-games/fist';
@@ -64,7 +64,7 @@ export const holding = (middle: Vec3): Record<Side, Pose<'arena'>> => ({
 /** Where a thrower of this seat lets go. */
 export const releaseOf = (seat: number): Vec3 => add(stations[seat]!.position, vec3(0, 1.6, -0.5));
 
-type Unnumbered = BallDeed extends infer D ? (D extends BallDeed ? Omit<D, 'sequence'> : never) : never;
+type Unnumbered = BallAction extends infer D ? (D extends BallAction ? Omit<D, 'sequence'> : never) : never;
 
 /** A person at a connection: does what a page would do every frame, and remembers what it heard. */
 export function createPerson(connection: BallConnection) {
@@ -73,9 +73,9 @@ export function createPerson(connection: BallConnection) {
   const poses: BallConnectionUpdate['poses'][number][] = [];
   let sequence = 0;
   let wrists: Record<Side, Pose<'arena'> | null> = { left: null, right: null };
-  const act = (deed: Unnumbered): BallDeed => {
+  const act = (action: Unnumbered): BallAction => {
     sequence += 1;
-    const numbered = { ...deed, sequence } as BallDeed;
+    const numbered = { ...action, sequence } as BallAction;
     connection.act(numbered);
     return numbered;
   };

@@ -25,7 +25,7 @@ class SlowClient extends RoomSession<BallGame> {
       {
         send: (_to, message) => this.#waiting.push(message),
         broadcast: (message) => this.#waiting.push(message),
-        ...{ poses: () => undefined, drop: () => undefined, refused: () => undefined },
+        ...{ sendPoses: () => undefined, disconnect: () => undefined, refused: () => undefined },
       },
     );
   }
@@ -39,7 +39,7 @@ class SlowClient extends RoomSession<BallGame> {
   /** The connection is there: the first message is on its way. */
   connect(): void {
     this.#joins += 1;
-    this.#room.join(`connection ${this.#joins}`, 'ann', this.joining(), this.#time);
+    this.#room.join(`connection ${this.#joins}`, 'ann', this.joinRequest(), this.#time);
   }
 
   lose(): void {
@@ -88,7 +88,7 @@ class SlowClient extends RoomSession<BallGame> {
 const taller = { ...defaultCalibration, eyeHeight: 1.75 };
 
 function change(client: SlowClient): void {
-  client.voices.say({ session: 'annas-page', muted: true });
+  client.voices.setVoice({ session: 'annas-page', muted: true });
   client.calibrate(taller);
   client.wear('man-dark');
 }
@@ -102,11 +102,11 @@ test('what is changed while the welcome is on its way reaches the room, on joini
   client.deliver();
   expect(client.known).toEqual(changed);
 
-  client.voices.say({ session: 'annas-page', muted: false });
+  client.voices.setVoice({ session: 'annas-page', muted: false });
   client.deliver();
   client.lose();
   client.connect();
-  client.voices.say({ session: 'annas-page', muted: true });
+  client.voices.setVoice({ session: 'annas-page', muted: true });
   client.deliver();
   expect(client.known).toEqual(changed);
 });

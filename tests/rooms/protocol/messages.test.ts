@@ -14,7 +14,7 @@ import {
 import { cleanName } from 'threepoint-rooms/protocol/names';
 import { encodeFrame } from 'threepoint-rooms/protocol/pose-frame';
 import { poseVersion } from 'threepoint-rooms/protocol/pose-packet';
-import { pageParser, relayParser, type SocketPacket } from 'threepoint-rooms/protocol/small-frames';
+import { pageParser, relayParser, type SocketPacket } from 'threepoint-rooms/protocol/socket-parsers';
 import { longestDescription, mostCandidates } from 'threepoint-rooms/protocol/voice-messages';
 import { describe, expect, test } from 'vitest';
 import { measured } from '../../reliability/measured';

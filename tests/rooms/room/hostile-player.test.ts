@@ -3,11 +3,11 @@ import type { ClientMessage } from 'threepoint-rooms/protocol/messages';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import { decodePoints } from 'threepoint-rooms/protocol/pose-codec';
 import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
-import { fastestHead } from 'threepoint-rooms/room/pose-claims';
+import { fastestHead } from 'threepoint-rooms/room/pose-validator';
 import { describe, expect, test } from 'vitest';
 import { measured } from '../../reliability/measured';
 import { poseOf } from './posed-head';
-import { toldRoom } from './told-room';
+import { createTestRoom } from './test-room';
 
 type SeatMessage = Exclude<ClientMessage, { type: 'join' }>;
 
@@ -16,20 +16,24 @@ type Claim = (i: number, time: number) => { readonly timeMs: number; readonly ju
 
 /** Speed [m/s] of a head as others see it, whose player sends forty packets a second from alternating ends of the room. */
 function seenSpeed(claim: Claim): number {
-  const told = toldRoom();
-  told.join('ann');
+  const testRoom = createTestRoom();
+  testRoom.join('ann');
   const seconds = 60;
   for (let i = 0; i < 40 * seconds; i++) {
-    told.tick(1 / 40);
-    const claimed = claim(i, told.time);
+    testRoom.tick(1 / 40);
+    const claimed = claim(i, testRoom.time);
     if (!claimed) continue;
     const { timeMs, jump } = claimed;
-    told.room.onPose('ann', poseOf({ head: vec3(i % 2 ? 7 : -7, 1.6, 0), timeMs: packetMs(timeMs), jump }), told.time);
-    told.room.sendPoses();
+    testRoom.room.onPose(
+      'ann',
+      poseOf({ head: vec3(i % 2 ? 7 : -7, 1.6, 0), timeMs: packetMs(timeMs), jump }),
+      testRoom.time,
+    );
+    testRoom.room.sendPoses();
   }
   let way = 0;
   let last: Vec3 | null = null;
-  for (const frame of told.frames) {
+  for (const frame of testRoom.frames) {
     for (const { bytes } of decodeFrame(frame) ?? []) {
       const { x, y, z } = decodePoints(bytes)!.pose.head.position;
       const at = vec3(x, y, z);
@@ -58,8 +62,8 @@ describe('a seated player who is everywhere at once', () => {
 });
 
 /** What others are sent of a seat. */
-const seatMessages = (told: ReturnType<typeof toldRoom>, seat: number) =>
-  told.said.flatMap(({ message }) => (message.type === 'seat' && message.seat === seat ? [message] : []));
+const seatMessages = (testRoom: ReturnType<typeof createTestRoom>, seat: number) =>
+  testRoom.sent.flatMap(({ message }) => (message.type === 'seat' && message.seat === seat ? [message] : []));
 
 describe('a seated player who changes with every message', () => {
   const hash = (i: number) => String(i).padStart(43, '0');
@@ -74,49 +78,49 @@ describe('a seated player who changes with every message', () => {
   const perSecond = 1000;
 
   test.each(changes)('is seen in a few of a thousand %s a second, and at the end as they are', (what, change) => {
-    const told = toldRoom({ voices: true });
-    told.join('ann');
-    told.join('ben');
-    told.said.length = 0;
+    const testRoom = createTestRoom({ voices: true });
+    testRoom.join('ann');
+    testRoom.join('ben');
+    testRoom.sent.length = 0;
     for (let i = 0; i < attackSeconds * perSecond; i++) {
-      told.room.onMessage('ann', change(i), told.time);
-      told.tick(1 / perSecond);
+      testRoom.room.onMessage('ann', change(i), testRoom.time);
+      testRoom.tick(1 / perSecond);
     }
-    const sent = seatMessages(told, 0).length;
+    const sent = seatMessages(testRoom, 0).length;
     measured('hostile-player', { [`${what} sent on, of ${attackSeconds * perSecond} in ${attackSeconds} s`]: sent });
     expect(sent).toBeLessThanOrEqual(8 + attackSeconds / 2 + 1);
-    expect(told.room.isStill).toBe(false);
-    told.pass(2.1);
-    const { seats } = told.join('cal');
-    expect(seatMessages(told, 0).at(-1)?.info).toEqual(seats[0]);
+    expect(testRoom.room.isIdle).toBe(false);
+    testRoom.pass(2.1);
+    const { seats } = testRoom.join('cal');
+    expect(seatMessages(testRoom, 0).at(-1)?.info).toEqual(seats[0]);
   });
 
   test('is seated elsewhere a few times, and each attempt beyond is refused', () => {
-    const told = toldRoom();
-    told.join('ann');
-    told.join('ben', { seat: 2 });
-    told.said.length = 0;
+    const testRoom = createTestRoom();
+    testRoom.join('ann');
+    testRoom.join('ben', { seat: 2 });
+    testRoom.sent.length = 0;
     const attempts = attackSeconds * perSecond;
     for (let i = 0; i < attempts; i++) {
-      told.room.onMessage('ann', { type: 'sit', seat: i % 2 === 0 ? 1 : 0 }, told.time);
-      told.tick(1 / perSecond);
+      testRoom.room.onMessage('ann', { type: 'sit', seat: i % 2 === 0 ? 1 : 0 }, testRoom.time);
+      testRoom.tick(1 / perSecond);
     }
-    const moves = told.said.filter(({ message }) => message.type === 'seated').length;
+    const moves = testRoom.sent.filter(({ message }) => message.type === 'seated').length;
     measured('hostile-player', { [`moves of ${attempts} in ${attackSeconds} s`]: moves });
     expect(moves).toBeLessThanOrEqual(4 + attackSeconds / 2 + 1);
-    expect(told.refusals.filter(({ reason }) => reason === 'too-often').length).toBeGreaterThan(attempts / 3);
-    expect(told.room.census).toMatchObject({ players: 2, free: 1 });
-    expect(told.said.length).toBeLessThan(150);
+    expect(testRoom.refusals.filter(({ reason }) => reason === 'too-often').length).toBeGreaterThan(attempts / 3);
+    expect(testRoom.room.census).toMatchObject({ players: 2, free: 1 });
+    expect(testRoom.sent.length).toBeLessThan(150);
   });
 
   test('takes nothing from the changes of another seat', () => {
-    const told = toldRoom();
-    told.join('ann');
-    told.join('ben');
-    for (let i = 0; i < 100; i++) told.room.onMessage('ann', { type: 'wear', avatar: hash(i) }, told.time);
-    told.said.length = 0;
-    told.room.onMessage('ben', { type: 'wear', avatar: 'woman' }, told.time);
-    expect(seatMessages(told, 1)).toHaveLength(1);
-    expect(seatMessages(told, 0)).toHaveLength(0);
+    const testRoom = createTestRoom();
+    testRoom.join('ann');
+    testRoom.join('ben');
+    for (let i = 0; i < 100; i++) testRoom.room.onMessage('ann', { type: 'wear', avatar: hash(i) }, testRoom.time);
+    testRoom.sent.length = 0;
+    testRoom.room.onMessage('ben', { type: 'wear', avatar: 'woman' }, testRoom.time);
+    expect(seatMessages(testRoom, 1)).toHaveLength(1);
+    expect(seatMessages(testRoom, 0)).toHaveLength(0);
   });
 });

@@ -13,7 +13,7 @@ import { measured } from '../../reliability/measured';
 import { seed } from '../../threepoint/core/arbitraries';
 import { numbersIn } from '../../threepoint/core/numbers-in';
 import { packetOf, senders } from '../protocol/sent-bodies';
-import { toldRoom } from './told-room';
+import { createTestRoom } from './test-room';
 
 /** Bodies of the least and greatest measures that a message may carry. */
 const extremes: readonly Calibration[] = [
@@ -82,14 +82,14 @@ test('valid pose packets, changed, reach others whole or not at all, as bodies o
   const packets = isNightly ? 1_000_000 : 50_000;
   const chance = randomNumbers(20261126);
   const { next, below } = await mutations(chance);
-  const told = toldRoom();
-  told.begin();
-  told.frames.length = 0;
+  const testRoom = createTestRoom();
+  testRoom.begin();
+  testRoom.frames.length = 0;
   const counts = { taken: 0, ignored: 0, bad: 0 };
   let seen = 0;
   let furthest = 0;
   const readFrames = () => {
-    for (const frame of told.frames.splice(0)) {
+    for (const frame of testRoom.frames.splice(0)) {
       const poses = decodeFrame(frame);
       if (!poses) throw new Error(`no page can read the frame ${frame}`);
       seen += poses.length;
@@ -101,20 +101,20 @@ test('valid pose packets, changed, reach others whole or not at all, as bodies o
   };
   for (let i = 0; i < packets; i++) {
     const bytes = next();
-    setTime(bytes, packetMs(told.time * 1000));
-    counts[told.room.onPose(clients[below(3)]!, bytes, told.time)] += 1;
+    setTime(bytes, packetMs(testRoom.time * 1000));
+    counts[testRoom.room.onPose(clients[below(3)]!, bytes, testRoom.time)] += 1;
     // Nothing is compared with a pose from more than a second ago: most packets would be leaps otherwise.
-    if (i % 3 === 2) told.tick(1.05);
-    if (i % 300 < 3) told.pass(1 / 60);
+    if (i % 3 === 2) testRoom.tick(1.05);
+    if (i % 300 < 3) testRoom.pass(1 / 60);
     readFrames();
-    told.said.length = 0;
-    told.refusals.length = 0;
-    told.log.length = 0;
+    testRoom.sent.length = 0;
+    testRoom.refusals.length = 0;
+    testRoom.log.length = 0;
   }
-  told.tick();
+  testRoom.tick();
   readFrames();
   expect(seen).toBe(counts.taken);
-  expect(numbersIn(told.room.match).every(Number.isFinite)).toBe(true);
+  expect(numbersIn(testRoom.room.match).every(Number.isFinite)).toBe(true);
   measured('mutated-poses', {
     packets,
     'read as poses': counts.taken + counts.ignored,

@@ -3,17 +3,17 @@ import { randomNumbers } from 'threepoint/core/math/random';
 import { addScaled, isFiniteVec3, vec3 } from 'threepoint/core/math/vec3';
 import { ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
 import { packBall, unpackBall } from 'threepoint-games/ball/ball-snapshot';
-import type { BallDeed, BallState } from 'threepoint-games/ball/ball-state';
+import type { BallAction, BallState } from 'threepoint-games/ball/ball-state';
 import { clientMessageFrom, mostSeats } from 'threepoint-rooms/protocol/messages';
 import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
-import { relayParser } from 'threepoint-rooms/protocol/small-frames';
+import { relayParser } from 'threepoint-rooms/protocol/socket-parsers';
 import { Room } from 'threepoint-rooms/room/room';
 import { describe, expect, test } from 'vitest';
 import { isNightly } from '../../nightly';
 import { tell } from '../../tell';
 import { atRack, fists, holding, opening, releaseOf, velocityTo } from '../client/people';
 import { countingPolicy } from './counting-game';
-import { joining, packetAt, toldRoom } from './told-room';
+import { createTestRoom, joinRequest, packetAt } from './test-room';
 
 const allFinite = (value: unknown): boolean => {
   if (typeof value === 'number') return Number.isFinite(value);
@@ -24,9 +24,10 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
   const packets = isNightly ? 1_000_000 : 100_000;
   const chance = randomNumbers(20261121);
   const pick = (count: number) => Math.floor(chance() * count);
-  const told = toldRoom();
-  told.begin();
-  const good = () => packetAt(told.room.match, 0, fists(vec3(chance() - 0.5, 0.5 + chance(), -chance())), told.time);
+  const testRoom = createTestRoom();
+  testRoom.begin();
+  const good = () =>
+    packetAt(testRoom.room.match, 0, fists(vec3(chance() - 0.5, 0.5 + chance(), -chance())), testRoom.time);
   const words = [
     'type',
     'action',
@@ -59,7 +60,7 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
     if (kind <= 1) {
       const mutated = good();
       for (let flips = pick(3); flips >= 0; flips--) mutated[pick(mutated.length)]! ^= 1 << pick(8);
-      if (told.room.onPose('ann', chance() < 0.5 ? mutated : bytes, told.time) === 'taken') taken += 1;
+      if (testRoom.room.onPose('ann', chance() < 0.5 ? mutated : bytes, testRoom.time) === 'taken') taken += 1;
     } else if (kind === 2) {
       const value = { type: words[pick(words.length)], ...(jsonLike(0) as object | null) };
       const near: Record<string, unknown> = {
@@ -69,12 +70,16 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
         ball: pick(21),
       };
       if (near.type === 'throw') {
-        Object.assign(near, { at: told.time - 1000, position: releaseOf(0), velocity: vec3(0, 0, -4 - 40 * chance()) });
+        Object.assign(near, {
+          at: testRoom.time - 1000,
+          position: releaseOf(0),
+          velocity: vec3(0, 0, -4 - 40 * chance()),
+        });
       }
       if (chance() < 0.3) near[Object.keys(near)[pick(4)]!] = jsonLike(2);
       const message = clientMessageFrom(chance() < 0.5 ? value : { type: 'action', action: near });
       const isHeard = message && message.type !== 'join' && message.type !== 'leave';
-      const isBad = isHeard && told.room.onMessage('ann', message, told.time) === 'bad';
+      const isBad = isHeard && testRoom.room.onMessage('ann', message, testRoom.time) === 'bad';
       if (message && !isBad) understood += 1;
       ballRoomMessageFrom(value);
     } else if (kind === 3) {
@@ -88,10 +93,10 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
         expect(error).toBeInstanceOf(Error);
       }
     }
-    if (i % 20 === 0) told.tick();
+    if (i % 20 === 0) testRoom.tick();
   }
-  expect(allFinite(told.room.match)).toBe(true);
-  for (const { head, left, right } of told.room.match.players) {
+  expect(allFinite(testRoom.room.match)).toBe(true);
+  for (const { head, left, right } of testRoom.room.match.players) {
     for (const place of [head, left, right]) expect(place === null || isFiniteVec3(place)).toBe(true);
   }
   tell('fuzz', {
@@ -105,34 +110,34 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
   expect(understood).toBeGreaterThan(packets / 50);
 });
 
-test('deeds told twice, out of order and again later score once', { tags: ['full'] }, () => {
-  const deeds = 100_000;
+test('actions sent twice, out of order and again later score once', { tags: ['full'] }, () => {
+  const actions = 100_000;
   const chance = randomNumbers(5);
   const balls = 20;
   let [sent, doubles, caught, rounds] = [0, 0, 0, 0];
-  while (sent < deeds) {
+  while (sent < actions) {
     rounds += 1;
-    const told = toldRoom({ ball: { balls } });
-    told.begin();
-    const said: BallDeed[] = [];
+    const testRoom = createTestRoom({ ball: { balls } });
+    testRoom.begin();
+    const history: BallAction[] = [];
     let sequence = 0;
     for (let ball = 0; ball < balls / 2; ball++) {
-      const grab: BallDeed = { type: 'grab', sequence: ++sequence, side: 'right', ball };
-      const at = () => told.time - told.welcomeOf('ann').matchStart;
-      told.pose('ann', 0, atRack(ball, balls), told.time + 0.01);
-      told.tick();
-      const burst = (fresh: BallDeed) => {
-        said.push(fresh);
-        const again = Array.from({ length: 500 }, () => said[Math.floor(chance() * said.length)]!);
-        for (const deed of [fresh, ...again]) {
-          told.act('ann', deed);
+      const grab: BallAction = { type: 'grab', sequence: ++sequence, side: 'right', ball };
+      const at = () => testRoom.time - testRoom.welcomeOf('ann').matchStart;
+      testRoom.pose('ann', 0, atRack(ball, balls), testRoom.time + 0.01);
+      testRoom.tick();
+      const burst = (fresh: BallAction) => {
+        history.push(fresh);
+        const again = Array.from({ length: 500 }, () => history[Math.floor(chance() * history.length)]!);
+        for (const action of [fresh, ...again]) {
+          testRoom.act('ann', action);
           sent += 1;
-          if (chance() < 0.02) told.tick();
+          if (chance() < 0.02) testRoom.tick();
         }
       };
       burst(grab);
-      told.stand();
-      told.tick();
+      testRoom.stand();
+      testRoom.tick();
       burst({
         type: 'throw',
         sequence: ++sequence,
@@ -142,15 +147,15 @@ test('deeds told twice, out of order and again later score once', { tags: ['full
         position: releaseOf(0),
         velocity: velocityTo(releaseOf(0), opening, 1),
       });
-      told.pass(0.3, () => told.pose('cal', 2, holding(opening)));
+      testRoom.pass(0.3, () => testRoom.pose('cal', 2, holding(opening)));
     }
-    told.pass(1.5, () => told.pose('cal', 2, holding(opening)));
-    const catches = told.happened('caught');
+    testRoom.pass(1.5, () => testRoom.pose('cal', 2, holding(opening)));
+    const catches = testRoom.happened('caught');
     caught += catches.length;
     doubles += catches.length - new Set(catches.map(({ ball }) => ball)).size;
-    expect(told.room.match.score).toBe(new Set(catches.map(({ ball }) => ball)).size);
+    expect(testRoom.room.match.score).toBe(new Set(catches.map(({ ball }) => ball)).size);
   }
-  tell('replayed deeds', { deeds: sent, rounds, catches: caught, 'double scores': doubles });
+  tell('replayed actions', { actions: sent, rounds, catches: caught, 'double scores': doubles });
   expect(doubles).toBe(0);
   expect(caught).toBeGreaterThan(0);
 });
@@ -167,15 +172,15 @@ describe('latency', () => {
       addScaled(opening, vec3(1, 0, 0), sway.x * Math.sin(sway.speed * time + sway.phase));
     // How late each message is must not change what the throw was.
     const late = randomNumbers(seed + 1_000_003);
-    const told = toldRoom();
-    told.begin();
-    told.pose('ann', 0, atRack(0), told.time + 0.01);
-    told.tick();
-    told.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
-    told.tick();
-    told.pose('ann', 0, fists(releaseOf(0)), told.time);
-    const start = told.time;
-    const { matchStart } = told.welcomeOf('ann');
+    const testRoom = createTestRoom();
+    testRoom.begin();
+    testRoom.pose('ann', 0, atRack(0), testRoom.time + 0.01);
+    testRoom.tick();
+    testRoom.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    testRoom.tick();
+    testRoom.pose('ann', 0, fists(releaseOf(0)), testRoom.time);
+    const start = testRoom.time;
+    const { matchStart } = testRoom.welcomeOf('ann');
     const underway: { readonly at: number; readonly send: () => void }[] = [];
     let lastCal = 0;
     const throwAt = start + 0.25;
@@ -184,13 +189,13 @@ describe('latency', () => {
       if (i % 2 === 0) {
         // TCP: nothing overtakes.
         lastCal = Math.max(lastCal, time + delay + jitter * late());
-        const bytes = packetAt(told.room.match, 2, holding(basketAt(time - start)), time);
-        underway.push({ at: lastCal, send: () => void told.room.onPose('cal', bytes, told.time) });
-        const anns = packetAt(told.room.match, 0, fists(releaseOf(0)), time);
-        underway.push({ at: time + delay, send: () => void told.room.onPose('ann', anns, told.time) });
+        const bytes = packetAt(testRoom.room.match, 2, holding(basketAt(time - start)), time);
+        underway.push({ at: lastCal, send: () => void testRoom.room.onPose('cal', bytes, testRoom.time) });
+        const anns = packetAt(testRoom.room.match, 0, fists(releaseOf(0)), time);
+        underway.push({ at: time + delay, send: () => void testRoom.room.onPose('ann', anns, testRoom.time) });
       }
       if (time <= throwAt && time + 1 / 60 > throwAt) {
-        const deed: BallDeed = {
+        const action: BallAction = {
           type: 'throw',
           sequence: 2,
           side: 'right',
@@ -199,15 +204,15 @@ describe('latency', () => {
           position: releaseOf(0),
           velocity: velocityTo(releaseOf(0), aim, flight),
         };
-        underway.push({ at: throwAt + delay + jitter * late(), send: () => told.act('ann', deed) });
+        underway.push({ at: throwAt + delay + jitter * late(), send: () => testRoom.act('ann', action) });
       }
       for (const message of underway.filter(({ at }) => at <= time && at > time - 1 / 60)) message.send();
-      told.tick();
+      testRoom.tick();
     }
-    const place = told.room.match.balls[0]!.on;
+    const place = testRoom.room.match.balls[0]!.on;
     return place === 'basket'
       ? 'caught'
-      : told.happened('bounced').some(({ off }) => off === 'basket')
+      : testRoom.happened('bounced').some(({ off }) => off === 'basket')
         ? 'rim'
         : 'missed';
   }
@@ -230,37 +235,38 @@ describe('latency', () => {
 
 describe('a page that comes at t = 60 s', () => {
   test('knows everything from one snapshot of at most 2 kB', () => {
-    const told = toldRoom({ ball: { balls: 20 } });
+    const testRoom = createTestRoom({ ball: { balls: 20 } });
     // The longest names there are.
-    for (const client of ['ann', 'ben', 'cal']) told.join(client, { name: '\u{1f600}'.repeat(10) });
-    for (const client of ['ann', 'ben', 'cal']) told.room.onMessage(client, { type: 'ready', ready: true }, told.time);
-    told.stand();
-    told.tick();
+    for (const client of ['ann', 'ben', 'cal']) testRoom.join(client, { name: '\u{1f600}'.repeat(10) });
+    for (const client of ['ann', 'ben', 'cal'])
+      testRoom.room.onMessage(client, { type: 'ready', ready: true }, testRoom.time);
+    testRoom.stand();
+    testRoom.tick();
     let sequence = 0;
-    told.pass(20, told.stand);
+    testRoom.pass(20, testRoom.stand);
     for (let ball = 0; ball < 10; ball++) {
-      told.pose('ann', 0, atRack(ball), told.time + 0.01);
-      told.tick();
-      told.act('ann', { type: 'grab', sequence: ++sequence, side: 'right', ball });
-      told.tick();
-      told.stand();
-      told.tick();
-      told.act('ann', {
+      testRoom.pose('ann', 0, atRack(ball), testRoom.time + 0.01);
+      testRoom.tick();
+      testRoom.act('ann', { type: 'grab', sequence: ++sequence, side: 'right', ball });
+      testRoom.tick();
+      testRoom.stand();
+      testRoom.tick();
+      testRoom.act('ann', {
         type: 'throw',
         sequence: ++sequence,
         side: 'right',
         ball,
-        at: told.time - told.welcomeOf('ann').matchStart,
+        at: testRoom.time - testRoom.welcomeOf('ann').matchStart,
         position: releaseOf(0),
         velocity: vec3(1.2345678 - ball, 4.1234567, -3.1234567),
       });
-      told.pass(4, told.stand);
+      testRoom.pass(4, testRoom.stand);
     }
-    told.join('dot', { spectate: true });
-    const welcome = told.welcomeOf('dot');
+    testRoom.join('dot', { spectate: true });
+    const welcome = testRoom.welcomeOf('dot');
     const bytes = Buffer.byteLength(JSON.stringify(welcome));
     const known = unpackBall(welcome.match!)!;
-    const truth = told.room.match;
+    const truth = testRoom.room.match;
     expect(known.balls).toEqual(truth.balls);
     // JSON knows no −0.
     expect(known.basket).toEqual(JSON.parse(JSON.stringify(truth.basket)));
@@ -275,19 +281,19 @@ describe('a page that comes at t = 60 s', () => {
     const number = (limit: number) =>
       fc.double({ min: -limit, max: limit, noNaN: true }).map((x) => Math.round(x * 1e4) / 1e4 + 0);
     const vector = (limit: number) => fc.record({ x: number(limit), y: number(limit), z: number(limit) });
-    const told = toldRoom();
-    told.begin();
+    const testRoom = createTestRoom();
+    testRoom.begin();
     const launch = fc.record({ time: number(3600).map(Math.abs), position: vector(40), velocity: vector(20) });
     fc.assert(
       fc.property(fc.array(launch, { minLength: 20, maxLength: 20 }), (launches) => {
         const state: BallState = {
-          ...told.room.match,
+          ...testRoom.room.match,
           tick: 3600 * 60,
           balls: launches.map((flight) => ({ on: 'air', launch: flight, thrower: 1, missed: true })),
         };
         const packed = packBall(state);
         expect(unpackBall(JSON.parse(JSON.stringify(packed)))?.balls).toEqual(state.balls);
-        const welcome = { ...told.welcomeOf('ann'), match: packed };
+        const welcome = { ...testRoom.welcomeOf('ann'), match: packed };
         expect(Buffer.byteLength(JSON.stringify(welcome))).toBeLessThanOrEqual(2048);
       }),
     );
@@ -301,13 +307,13 @@ describe('a page that comes at t = 60 s', () => {
       {
         send: (_, message) => sent.push(Buffer.byteLength(JSON.stringify(message))),
         broadcast: () => undefined,
-        poses: () => undefined,
-        drop: () => undefined,
+        sendPoses: () => undefined,
+        disconnect: () => undefined,
         refused: () => undefined,
       },
     );
     for (let i = 0; i < mostSeats; i++)
-      room.join(`c${i}`, `c${i}`, joining({ name: '\u{1f600}'.repeat(10), avatar: 'x'.repeat(43) }), 1000);
+      room.join(`c${i}`, `c${i}`, joinRequest({ name: '\u{1f600}'.repeat(10), avatar: 'x'.repeat(43) }), 1000);
     expect(room.census.free).toBe(0);
     expect(sent).toHaveLength(mostSeats);
     expect(Math.max(...sent)).toBeLessThanOrEqual(2048);
@@ -317,14 +323,14 @@ describe('a page that comes at t = 60 s', () => {
 test('5 s and 29 s of silence cost nothing: same seat, same score, one snapshot', () => {
   const figures: Record<string, number> = {};
   for (const silence of [5, 29]) {
-    const told = toldRoom();
-    told.begin();
-    told.pose('ann', 0, atRack(0), told.time + 0.01);
-    told.tick();
-    told.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
-    told.pass(0.1, told.stand);
-    const at = told.time - told.welcomeOf('ann').matchStart;
-    told.act('ann', {
+    const testRoom = createTestRoom();
+    testRoom.begin();
+    testRoom.pose('ann', 0, atRack(0), testRoom.time + 0.01);
+    testRoom.tick();
+    testRoom.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    testRoom.pass(0.1, testRoom.stand);
+    const at = testRoom.time - testRoom.welcomeOf('ann').matchStart;
+    testRoom.act('ann', {
       type: 'throw',
       sequence: 2,
       side: 'right',
@@ -333,13 +339,13 @@ test('5 s and 29 s of silence cost nothing: same seat, same score, one snapshot'
       position: releaseOf(0),
       velocity: velocityTo(releaseOf(0), opening, 1),
     });
-    told.pass(1.5, told.stand);
-    expect(told.room.match.score).toBe(1);
-    told.room.disconnect('ann', told.time);
-    told.pass(silence, told.stand);
-    const before = told.said.length;
-    const back = told.join('ann again', {}, 'ann');
-    const welcomes = told.said.slice(before).filter(({ message }) => message.type === 'welcome');
+    testRoom.pass(1.5, testRoom.stand);
+    expect(testRoom.room.match.score).toBe(1);
+    testRoom.room.disconnect('ann', testRoom.time);
+    testRoom.pass(silence, testRoom.stand);
+    const before = testRoom.sent.length;
+    const back = testRoom.join('ann again', {}, 'ann');
+    const welcomes = testRoom.sent.slice(before).filter(({ message }) => message.type === 'welcome');
     expect(back.seat).toBe(0);
     expect(back.match?.score).toBe(1);
     expect(welcomes).toHaveLength(1);
@@ -351,22 +357,23 @@ test('5 s and 29 s of silence cost nothing: same seat, same score, one snapshot'
 
 test('rooms that live for hours keep nothing: the same answer, no growth', { tags: ['full'] }, () => {
   const hours = isNightly ? 4 : 0.1;
-  const told = toldRoom({ ball: { seconds: 5, balls: 2 } });
-  told.begin();
+  const testRoom = createTestRoom({ ball: { seconds: 5, balls: 2 } });
+  testRoom.begin();
   const sizes: number[] = [];
   let rounds = 0;
   for (let second = 0; second < hours * 3600; second++) {
-    told.pass(1, told.stand);
-    for (const client of ['ann', 'ben', 'cal']) told.room.onMessage(client, { type: 'ready', ready: true }, told.time);
+    testRoom.pass(1, testRoom.stand);
+    for (const client of ['ann', 'ben', 'cal'])
+      testRoom.room.onMessage(client, { type: 'ready', ready: true }, testRoom.time);
     if (second % 30 === 0) {
-      told.room.disconnect('ben', told.time);
-      told.join('ben', {}, 'ben');
-      sizes.push(JSON.stringify(told.room.match).length);
+      testRoom.room.disconnect('ben', testRoom.time);
+      testRoom.join('ben', {}, 'ben');
+      sizes.push(JSON.stringify(testRoom.room.match).length);
     }
-    rounds += told.said.filter(({ message }) => message.type === 'match').length;
-    told.said.splice(3);
-    told.frames.length = 0;
-    told.log.length = 0;
+    rounds += testRoom.sent.filter(({ message }) => message.type === 'match').length;
+    testRoom.sent.splice(3);
+    testRoom.frames.length = 0;
+    testRoom.log.length = 0;
   }
   tell('soak of a Room', { hours, rounds, 'state at most [B]': Math.max(...sizes) });
   expect(rounds).toBeGreaterThan(hours * 300);

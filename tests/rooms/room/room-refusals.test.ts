@@ -1,21 +1,21 @@
 import { vec3 } from 'threepoint/core/math/vec3';
-import type { BallDeed } from 'threepoint-games/ball/ball-state';
+import type { BallAction } from 'threepoint-games/ball/ball-state';
 import { clientMessageFrom } from 'threepoint-rooms/protocol/messages';
 import { describe, expect, test } from 'vitest';
 import { atRack, fists, opening, releaseOf, velocityTo } from '../client/people';
-import { toldRoom } from './told-room';
+import { createTestRoom } from './test-room';
 
 describe('what the Room refuses', () => {
   /** Ann has ball 0 in her right hand, held up where she throws. */
   function holdingBall() {
-    const told = toldRoom();
-    told.begin();
-    told.pose('ann', 0, atRack(0), told.time + 0.01);
-    told.tick();
-    told.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
-    told.pass(0.1, told.stand);
-    expect(told.room.match.balls[0]?.on).toBe('hand');
-    return told;
+    const testRoom = createTestRoom();
+    testRoom.begin();
+    testRoom.pose('ann', 0, atRack(0), testRoom.time + 0.01);
+    testRoom.tick();
+    testRoom.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    testRoom.pass(0.1, testRoom.stand);
+    expect(testRoom.room.match.balls[0]?.on).toBe('hand');
+    return testRoom;
   }
   const release = releaseOf(0);
   const thrown = { type: 'throw', side: 'right', ball: 0, position: release } as const;
@@ -26,35 +26,35 @@ describe('what the Room refuses', () => {
     ['a release at the far end of no arm', { position: vec3(release.x, release.y + 1, release.z) }, 'reach'],
     ['a ball that is in no hand', { ball: 5 }, 'not-held'],
   ])('%s', (_what, change, reason) => {
-    const told = holdingBall();
+    const testRoom = holdingBall();
     const velocity = velocityTo(release, opening, 1);
-    told.act('ann', { ...thrown, sequence: 2, at: 0, velocity, ...change });
-    told.tick();
-    expect(told.refusals).toMatchObject([{ client: 'ann', seat: 0, what: 'action', reason }]);
-    expect(told.room.match.balls[0]?.on).toBe('hand');
-    expect(told.happened('thrown')).toEqual([]);
+    testRoom.act('ann', { ...thrown, sequence: 2, at: 0, velocity, ...change });
+    testRoom.tick();
+    expect(testRoom.refusals).toMatchObject([{ client: 'ann', seat: 0, what: 'action', reason }]);
+    expect(testRoom.room.match.balls[0]?.on).toBe('hand');
+    expect(testRoom.happened('thrown')).toEqual([]);
   });
 
   test("another player's ball, and a message that names another seat", () => {
-    const told = holdingBall();
-    told.act('ben', { ...thrown, sequence: 1, at: 0, velocity: velocityTo(release, opening, 1) });
-    told.tick();
-    expect(told.refusals).toMatchObject([{ client: 'ben', seat: 1, reason: 'not-held' }]);
-    const drop: BallDeed = { type: 'drop', sequence: 2, side: 'right' };
-    const named: BallDeed & { player: number } = { ...drop, player: 0 };
-    expect(told.act('ben', named)).toBe('bad');
+    const testRoom = holdingBall();
+    testRoom.act('ben', { ...thrown, sequence: 1, at: 0, velocity: velocityTo(release, opening, 1) });
+    testRoom.tick();
+    expect(testRoom.refusals).toMatchObject([{ client: 'ben', seat: 1, reason: 'not-held' }]);
+    const drop: BallAction = { type: 'drop', sequence: 2, side: 'right' };
+    const named: BallAction & { player: number } = { ...drop, player: 0 };
+    expect(testRoom.act('ben', named)).toBe('bad');
     expect(clientMessageFrom({ type: 'action', action: drop, seat: 0 })).toBeNull();
-    told.tick();
-    expect(told.room.match.balls[0]).toEqual({ on: 'hand', player: 0, side: 'right' });
+    testRoom.tick();
+    expect(testRoom.room.match.balls[0]).toEqual({ on: 'hand', player: 0, side: 'right' });
   });
 
   test('spectators who play, and clients that never joined', () => {
-    const told = holdingBall();
-    told.join('dot', { spectate: true });
-    told.act('dot', { type: 'drop', sequence: 1, side: 'right' });
-    told.act('stranger', { type: 'drop', sequence: 1, side: 'right' });
-    told.room.onMessage('dot', { type: 'ready', ready: true }, told.time);
-    expect(told.refusals.map(({ reason }) => reason)).toEqual(['no-seat', 'not-joined', 'no-seat']);
-    expect(told.pose('dot', 0, fists(release))).toBe('ignored');
+    const testRoom = holdingBall();
+    testRoom.join('dot', { spectate: true });
+    testRoom.act('dot', { type: 'drop', sequence: 1, side: 'right' });
+    testRoom.act('stranger', { type: 'drop', sequence: 1, side: 'right' });
+    testRoom.room.onMessage('dot', { type: 'ready', ready: true }, testRoom.time);
+    expect(testRoom.refusals.map(({ reason }) => reason)).toEqual(['no-seat', 'not-joined', 'no-seat']);
+    expect(testRoom.pose('dot', 0, fists(release))).toBe('ignored');
   });
 });

@@ -4,7 +4,7 @@ import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { ballKind } from 'threepoint-games/ball/ball-messages';
 import { protocolVersion } from 'threepoint-rooms/protocol/messages';
-import { createRoomTokens } from 'threepoint-rooms/server/room-tokens';
+import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { expect, onTestFinished, test } from 'vitest';
 import { WebSocket } from 'ws';
 import { isNightly } from '../../nightly';

@@ -121,13 +121,13 @@ describe('an avatar in the store', () => {
 
 /** What no store takes, and what is said of it. */
 const refused: readonly (readonly [string, Uint8Array, string | null, number, RegExp])[] = [
-  ['a file that is another than its name says', file(), hashOf(file()), 422, /not the one that its name says/],
+  ['a file that is another than its name says', file(), hashOf(file()), 422, /differs from its name/],
   ['a picture with a script in it', Buffer.from('<svg onload="alert(1)"/>'.repeat(3)), null, 422, /not a VRM or GLB/],
   ['a web page', Buffer.from('<!doctype html><script>alert(1)</script>'), null, 422, /not a VRM or GLB/],
   ['half a body', file().subarray(0, 9000), null, 422, /not a VRM or GLB/],
   ['nothing', new Uint8Array(), null, 422, /not a VRM or GLB/],
-  ['more than 20 MB', new Uint8Array(mostAvatarBytes + 1), null, 413, /at most 20971520 bytes/],
-  ['more than there is place for', new Uint8Array(9 * megabyte), null, 507, /no place/],
+  ['more than 20 MB', new Uint8Array(mostAvatarBytes + 1), null, 413, /larger than 20971520 bytes/],
+  ['more than there is place for', new Uint8Array(9 * megabyte), null, 507, /no space/],
 ];
 
 describe('the store takes no', () => {
@@ -205,7 +205,7 @@ test('seats in many rooms fill no more than the share of their address: the othe
   const large = file(8 * megabyte);
   const eves = [];
   for (const room of ['one', 'two', 'three', 'four']) eves.push(await upload(room, eve, large));
-  const crowded = '507: the people of your network have no place for another avatar here now';
+  const crowded = '507: the avatars from your network use all their space on this server; try again later';
   expect(eves).toEqual([204, 204, crowded, crowded]);
   const anns = await upload('one', ann, large);
   expect(anns).toBe(204);
@@ -252,6 +252,6 @@ test('a page finds what it needs to know by its pass: once more with a new one w
   expect(await exchange.terms()).toEqual({ mostBytes: 8 * megabyte, elsewhere: null, yours: hashOf(bytes) });
   const stranger = createAvatarExchange(relay.url, 'exchange', createRoomPass(relay.url, 'exchange', 'ball'));
   await expect(stranger.store(hashOf(bytes), new Blob([bytes as Uint8Array<ArrayBuffer>]))).rejects.toThrow(
-    'this is for people on a seat of the room',
+    'only people on a seat of the room may upload avatars',
   );
 });

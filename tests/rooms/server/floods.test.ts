@@ -1,7 +1,7 @@
 import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { protocolVersion } from 'threepoint-rooms/protocol/messages';
-import { lobbyNamespace } from 'threepoint-rooms/server/lobby-hall';
+import { lobbyNamespace } from 'threepoint-rooms/server/lobby/lobby-publisher';
 import { expect, onTestFinished, test } from 'vitest';
 import { WebSocket } from 'ws';
 import { rawGuest, startRelay, until } from './running-relay';

@@ -1,5 +1,5 @@
-import { PoseSchedule } from 'threepoint-rooms/server/pose-schedule';
-import { createTicker } from 'threepoint-rooms/server/tick';
+import { PoseSchedule } from 'threepoint-rooms/server/hosting/pose-schedule';
+import { createTicker } from 'threepoint-rooms/server/hosting/ticker';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
 
 beforeEach(() => {
@@ -12,7 +12,7 @@ afterEach(() => {
 const now = (): number => performance.now() / 1000;
 const pass = (milliseconds: number): void => void vi.advanceTimersByTime(milliseconds);
 
-/** A room with so many guests, and when it has sent [ms since the first fact]. */
+/** A room with so many clients, and when it has sent [ms since the first fact]. */
 function roomOf(people: number) {
   const begin = performance.now();
   const sent: number[] = [];
@@ -20,7 +20,7 @@ function roomOf(people: number) {
     sent,
     sender: {
       room: { sendPoses: () => void sent.push(performance.now() - begin) },
-      guests: { size: people },
+      clients: { size: people },
       sentAt: 0,
     },
   };

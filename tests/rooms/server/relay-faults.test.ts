@@ -8,7 +8,7 @@ import { createRemotePlayers } from 'threepoint-rooms/client/remote-players';
 import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
 import { protocolVersion } from 'threepoint-rooms/protocol/messages';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
-import { createRoomTokens } from 'threepoint-rooms/server/room-tokens';
+import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { afterEach, describe, expect, test } from 'vitest';
 import { WebSocket } from 'ws';
 import { collectGarbage } from '../../collect-garbage';

@@ -1,7 +1,7 @@
 import { SignJWT } from 'jose';
 import { clientAddressOf } from 'threepoint-http/client-address';
-import { relayConfigurationFrom } from 'threepoint-rooms/server/relay-configuration';
-import { createRoomTokens } from 'threepoint-rooms/server/room-tokens';
+import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
+import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { type RunningRelay, rawGuest, rawSocket, startRelay, testSecret, tokenFor, until } from './running-relay';
 
@@ -189,14 +189,14 @@ describe('configuration of the relay', () => {
     [{ THREEPOINT_SECRET: 'short' }, 'at least 32 characters, has 5'],
     [{ THREEPOINT_SECRET: 'x'.repeat(44) }, 'THREEPOINT_SECRET has some'],
     [{ THREEPOINT_ADMIN_TOKEN: 'let me end the rooms'.replaceAll(' ', '-') }, 'THREEPOINT_ADMIN_TOKEN has some'],
-    [{ THREEPOINT_ORIGINS: 'https://a.example/path' }, 'must hold origins as https://example.org'],
-    [{ THREEPOINT_ORIGINS: 'a.example' }, 'must hold origins'],
-    [{ THREEPOINT_FILES_FROM: 'http://a.example' }, 'THREEPOINT_FILES_FROM must hold origins'],
-    [{ THREEPOINT_FILES_FROM: 'https://a.example/avatars/' }, 'THREEPOINT_FILES_FROM must hold origins'],
-    [{ THREEPOINT_FILES_FROM: 'https:' }, 'THREEPOINT_FILES_FROM must hold origins'],
-    [{ THREEPOINT_HOSTS: 'a.example:8080' }, 'must hold names as study.example.org'],
+    [{ THREEPOINT_ORIGINS: 'https://a.example/path' }, 'must list origins such as https://example.org'],
+    [{ THREEPOINT_ORIGINS: 'a.example' }, 'must list origins'],
+    [{ THREEPOINT_FILES_FROM: 'http://a.example' }, 'THREEPOINT_FILES_FROM must list origins'],
+    [{ THREEPOINT_FILES_FROM: 'https://a.example/avatars/' }, 'THREEPOINT_FILES_FROM must list origins'],
+    [{ THREEPOINT_FILES_FROM: 'https:' }, 'THREEPOINT_FILES_FROM must list origins'],
+    [{ THREEPOINT_HOSTS: 'a.example:8080' }, 'must list names such as study.example.org'],
     [{ THREEPOINT_REDIS_URL: 'localhost:6379' }, 'must be like redis://localhost:6379'],
-    [{ THREEPOINT_REDIS_URL: 'redis://localhost:6379' }, 'need a common THREEPOINT_SECRET'],
+    [{ THREEPOINT_REDIS_URL: 'redis://localhost:6379' }, 'need the same THREEPOINT_SECRET'],
     [{ THREEPOINT_LOG_LEVEL: 'loud' }, 'must be one of trace'],
   ])('%o is refused with a sentence', (environment, words) => {
     expect(() => relayConfigurationFrom(environment)).toThrow(words);

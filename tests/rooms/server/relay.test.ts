@@ -2,7 +2,7 @@ import { defaultCalibration } from 'threepoint/core/body/calibration';
 import type { BallState } from 'threepoint-games/ball/ball-state';
 import { bannerText } from 'threepoint-rooms/client/banner';
 import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
-import { messageEvent } from 'threepoint-rooms/protocol/small-frames';
+import { messageEvent } from 'threepoint-rooms/protocol/socket-parsers';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { atRack, fists, holding, opening, releaseOf } from '../client/people';
 import { arrive, type RunningRelay, rawSocket, startRelay, tokenFor, until } from './running-relay';
@@ -28,7 +28,7 @@ describe('a relay', () => {
       await until('the farewell', () => heard.length > 0 && older.disconnected);
       expect(heard).toEqual([{ type: 'farewell', reason: 'old-page' }]);
       const status: ConnectionStatus = { phase: 'ended', attempt: 0, retryIn: null, reason: 'old-page' };
-      expect(bannerText(status)).toBe('This page and the server are of different versions. Reload the page.');
+      expect(bannerText(status)).toBe('This page and the server have different versions. Reload the page.');
       expect(ann.connection.status.phase).toBe('joined');
       expect(ann.connection.room?.seats.filter(Boolean)).toHaveLength(1);
     } finally {

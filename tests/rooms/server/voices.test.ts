@@ -1,6 +1,6 @@
 import { createHmac } from 'node:crypto';
 import type { SignalBody } from 'threepoint-rooms/protocol/voice-messages';
-import { relayConfigurationFrom } from 'threepoint-rooms/server/relay-configuration';
+import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { afterAll, beforeAll, describe, expect, onTestFinished, test } from 'vitest';
 import { paperPlan } from '../../study/model/studies';
 import { studySeats } from '../../study/server/running-studies';
@@ -14,8 +14,8 @@ function talker(url: string, room: string, name: string) {
   const person = arrive(url, room, name);
   const heard: { readonly from: string; readonly body: SignalBody }[] = [];
   person.connection.voices.listen({
-    seatsChanged: () => undefined,
-    signalled: (from, body) => heard.push({ from, body }),
+    onSeatsChanged: () => undefined,
+    onSignal: (from, body) => heard.push({ from, body }),
   });
   onTestFinished(() => person.stop());
   const voiceOf = (seat: number) => person.connection.room?.seats[seat]?.voice;
@@ -40,8 +40,8 @@ async function twoTalkers(room: string) {
   await until('ann in', () => ann.connection.room !== null);
   const ben = talker(server.url, room, 'Ben');
   await until('ben in', () => ben.connection.room !== null);
-  ann.connection.voices.say({ session: 'annas-page', muted: true });
-  ben.connection.voices.say({ session: 'bens-page', muted: true });
+  ann.connection.voices.setVoice({ session: 'annas-page', muted: true });
+  ben.connection.voices.setVoice({ session: 'bens-page', muted: true });
   await until('both known', () => Boolean(ann.voiceOf(1) && ben.voiceOf(0)));
   return { ann, ben };
 }
@@ -49,7 +49,7 @@ async function twoTalkers(room: string) {
 describe('the voices of a room', () => {
   test('are known seat by seat, to a person who joins later too, and end with the seat', async () => {
     const { ann, ben } = await twoTalkers('known');
-    ann.connection.voices.say({ session: 'annas-page', muted: false });
+    ann.connection.voices.setVoice({ session: 'annas-page', muted: false });
     await until('ben to know', () => ben.voiceOf(0)?.muted === false);
     const cal = talker(server.url, 'known', 'Cal');
     await until('cal in', () => cal.connection.room !== null);
@@ -60,7 +60,7 @@ describe('the voices of a room', () => {
     ]);
     ann.connection.leave();
     await until('ann gone', () => cal.connection.room?.seats[0] === null);
-    ben.connection.voices.say(null);
+    ben.connection.voices.setVoice(null);
     await until('ben silent', () => cal.voiceOf(1) === null);
   });
 
@@ -68,7 +68,7 @@ describe('the voices of a room', () => {
     const { ann, ben } = await twoTalkers('signals');
     const cal = talker(server.url, 'signals', 'Cal');
     await until('cal in', () => cal.connection.room !== null);
-    cal.connection.voices.say({ session: 'cals-page', muted: true });
+    cal.connection.voices.setVoice({ session: 'cals-page', muted: true });
     await until('cal known', () => Boolean(ann.voiceOf(2)));
     ann.connection.voices.signal('bens-page', offer);
     await until('ben to hear', () => ben.heard.length > 0);
@@ -100,20 +100,20 @@ describe('the voices of a room', () => {
     const { ann: other } = await twoTalkers('other');
     const dot = talker(server.url, 'one', 'Dot');
     await until('dot in', () => dot.connection.room !== null);
-    const before = await refusals(server.url, 'not-heard');
+    const before = await refusals(server.url, 'no-receiver');
     // Ben is called so in both rooms.
     other.connection.voices.signal('bens-page', offer);
     ann.connection.voices.signal('annas-page', offer);
     ann.connection.voices.signal('dots-page', offer);
     dot.connection.voices.signal('bens-page', offer);
-    await expect.poll(() => refusals(server.url, 'not-heard')).toBe(before + 3);
+    await expect.poll(() => refusals(server.url, 'no-receiver')).toBe(before + 3);
     expect([...dot.heard, ...ann.heard]).toEqual([]);
   });
 
   test('have no place for the session of another seat', async () => {
     const { ann, ben } = await twoTalkers('forged');
     const before = await refusals(server.url, 'session-taken');
-    ben.connection.voices.say({ session: 'annas-page', muted: false });
+    ben.connection.voices.setVoice({ session: 'annas-page', muted: false });
     await expect.poll(() => refusals(server.url, 'session-taken')).toBe(before + 1);
     expect(ann.voiceOf(1)).toEqual({ session: 'bens-page', muted: true });
     // A newcomer who asks for it while joining sits there without a voice.
@@ -157,12 +157,12 @@ describe('a server without voices', () => {
     onTestFinished(() => silent.close());
     const ann = talker(silent.url, 'silent', 'Ann');
     await until('ann in', () => ann.connection.room !== null);
-    ann.connection.voices.say({ session: 'annas-page', muted: false });
+    ann.connection.voices.setVoice({ session: 'annas-page', muted: false });
     await expect.poll(() => refusals(silent.url, 'no-voices')).toBe(1);
     expect(ann.voiceOf(0)).toBeNull();
     const headers = { authorization: `Bearer ${await ann.pass.token(false)}` };
     const answer = await fetch(`${silent.url}/api/voices?room=silent`, { headers });
-    expect(await answer.json()).toEqual({ voices: false, iceServers: [], goodFor: null });
+    expect(await answer.json()).toEqual({ voices: false, iceServers: [], ttlSeconds: null });
   });
 
   test('a room with more seats than a page can have connections has none either', async () => {
@@ -178,7 +178,7 @@ describe('a server without voices', () => {
     const answer = await fetch(`${server.url}/api/voices?room=${seat.room}`, {
       headers: { authorization: `Bearer ${seat.token}` },
     });
-    expect(await answer.json()).toEqual({ voices: false, iceServers: [], goodFor: null });
+    expect(await answer.json()).toEqual({ voices: false, iceServers: [], ttlSeconds: null });
   });
 });
 
@@ -204,9 +204,9 @@ describe('how pages find each other', () => {
 
   test.each([
     [{ THREEPOINT_VOICES: 'maybe' }, /THREEPOINT_VOICES must be on or off, not "maybe"/],
-    [{ THREEPOINT_STUN: 'https://stun.example.org' }, /THREEPOINT_STUN must hold addresses as stun:.*not "https:/],
-    [{ THREEPOINT_TURN: 'turn:here:3478?transport=smoke' }, /THREEPOINT_TURN must hold addresses as turn:.*smoke/],
-    [{ THREEPOINT_TURN: 'turn:here:3478' }, /THREEPOINT_TURN needs THREEPOINT_TURN_SECRET beside it, .* it has 0/],
+    [{ THREEPOINT_STUN: 'https://stun.example.org' }, /THREEPOINT_STUN must list addresses such as stun:.*not "https:/],
+    [{ THREEPOINT_TURN: 'turn:here:3478?transport=smoke' }, /THREEPOINT_TURN must list addresses such as turn:.*smoke/],
+    [{ THREEPOINT_TURN: 'turn:here:3478' }, /THREEPOINT_TURN needs THREEPOINT_TURN_SECRET with .* it has 0/],
   ])('%j is refused in a sentence', (environment, sentence) => {
     expect(() => relayConfigurationFrom(environment)).toThrow(sentence);
   });

@@ -54,10 +54,12 @@ describe('a microphone that a headset ends when it sleeps', () => {
     const { microphone, tracks } = await opened();
     device.tracks[0]?.end();
     expect(microphone.track).toBeNull();
-    expect(microphone.complaint).toBe('The microphone was lost: it is being looked for.');
+    expect(microphone.errorMessage).toBe(
+      'The microphone was disconnected. Connect it again; the page is looking for it.',
+    );
     await vi.advanceTimersByTimeAsync(0);
     expect(microphone.track).toBe(device.tracks[1]);
-    expect(microphone.complaint).toBeNull();
+    expect(microphone.errorMessage).toBeNull();
     expect(tracks).toEqual([device.tracks[0], null, device.tracks[1]]);
   });
 
@@ -72,7 +74,7 @@ describe('a microphone that a headset ends when it sleeps', () => {
     seen.dispatchEvent(new Event('visibilitychange'));
     await vi.advanceTimersByTimeAsync(1);
     expect(device.asked).toBe(2);
-    expect(microphone.complaint).toMatch(/in use by another program/);
+    expect(microphone.errorMessage).toMatch(/does not answer/);
     device.refuses = null;
     await vi.advanceTimersByTimeAsync(2000);
     expect(microphone.track).toBe(device.tracks[1]);
@@ -85,12 +87,12 @@ describe('a microphone that a headset ends when it sleeps', () => {
     device.refuses = 'NotAllowedError';
     device.tracks[0]?.end();
     await vi.advanceTimersByTimeAsync(60_000);
-    expect(microphone.complaint).toMatch(/does not let this page use the microphone: allow it beside the address/);
+    expect(microphone.errorMessage).toMatch(/blocks the microphone. Allow it next to the address/);
     expect(device.asked).toBe(2);
     device.refuses = null;
     await microphone.open();
     expect(microphone.track).toBe(device.tracks[1]);
-    expect(microphone.complaint).toBeNull();
+    expect(microphone.errorMessage).toBeNull();
   });
 
   test('stays ended where its owner has left the voices meanwhile', async () => {

@@ -48,7 +48,7 @@ function peer() {
     {
       ...{ polite: false, configuration: {} },
       signal: (body) => void told.push(Object.keys(body).join()),
-      heard: () => void told.push('heard'),
+      onStream: () => void told.push('heard'),
     },
     microphone,
   );

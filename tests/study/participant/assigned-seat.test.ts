@@ -1,6 +1,6 @@
 import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { assignedSeat } from 'threepoint-page/ball/ball-connections';
-import { relayConfigurationFrom } from 'threepoint-rooms/server/relay-configuration';
+import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { createExperimenterClient, createParticipantClient } from 'threepoint-study/client/study-client';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import type { ParticipantState } from 'threepoint-study/model/progress/study-api';

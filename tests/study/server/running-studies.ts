@@ -3,7 +3,7 @@ import type { WrongGuess } from 'threepoint-http/auth-throttle';
 import { GroupCommit } from 'threepoint-http/group-commit';
 import { createRouter, noPage } from 'threepoint-http/router';
 import { serve } from 'threepoint-http/web-server';
-import { createRoomTokens } from 'threepoint-rooms/server/room-tokens';
+import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import type { StudyPlan } from 'threepoint-study/model/plan/plan';
 import { createExporter } from 'threepoint-study/server/export/exporter';
 import { StudyDispatcher } from 'threepoint-study/server/routes/dispatcher';

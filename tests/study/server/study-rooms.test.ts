@@ -1,7 +1,7 @@
 import { io } from 'socket.io-client';
 import { createRoomPass } from 'threepoint-rooms/client/room-pass';
-import { pageParser } from 'threepoint-rooms/protocol/small-frames';
-import { createRoomTokens } from 'threepoint-rooms/server/room-tokens';
+import { pageParser } from 'threepoint-rooms/protocol/socket-parsers';
+import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { createStudySeats } from 'threepoint-study/server/routes/seats';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';

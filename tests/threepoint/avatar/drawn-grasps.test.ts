@@ -13,7 +13,7 @@ import { bowInHand } from 'threepoint-games/archery/bow-hand';
 import { basketInHands, gripRadius } from 'threepoint-games/ball/basket';
 import { ballRadius, basketRadius, rimTube } from 'threepoint-games/ball/flight';
 import { createHolder } from 'threepoint-games/ball/holder-motion';
-import { createPlayerPostures, makePosture, type Performed } from 'threepoint-games/ball/player-postures';
+import { createPlayerPostures, makePosture, type PlayerInput } from 'threepoint-games/ball/player-postures';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { stations } from 'threepoint-games/ball/stations';
 import { ballInPalm, wristAround } from 'threepoint-games/fist';
@@ -87,7 +87,7 @@ function tooNear(by: number, inward: number): Thing['wrists'] {
 }
 
 /** A thrower whose arms hang. */
-function hanging(time: number): Performed {
+function hanging(time: number): PlayerInput {
   const postures = createPlayerPostures({ eyeHeight: wearer.eyeHeight, arenaFromFloor: makeTransform() });
   const posture = makePosture();
   copyVec3(postures.eyes, posture.eyes);

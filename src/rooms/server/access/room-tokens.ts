@@ -1,0 +1,98 @@
+import { randomBytes } from 'node:crypto';
+import { errors, jwtVerify, SignJWT } from 'jose';
+import * as v from 'valibot';
+import { mostSeats, type RoomTerms, roomTerms } from '../../protocol/messages';
+
+/** The seat and name that a study assigns to a participant; seat null: a spectator. */
+export interface AssignedPlace {
+  readonly seat: number | null;
+  readonly name: string;
+}
+
+/** The claims of a token: the person and the room. Only the server reads them; other players see a seat and a name. */
+export interface RoomPass {
+  readonly identity: string;
+  readonly room: string;
+  /** The name of the game. */
+  readonly kind: string;
+  /** The terms of the room, if this person is the first in it. */
+  readonly terms: RoomTerms;
+  /** The assigned place; null: a room with free choice of seats. */
+  readonly assigned: AssignedPlace | null;
+}
+
+/** Signs and verifies room passes as JSON Web Tokens that expire. */
+export interface RoomTokens {
+  /** Returns a token for a new person. */
+  issue(room: string, kind: string, terms?: RoomTerms): Promise<string>;
+  /** Returns a new token for the same person. */
+  sign(pass: RoomPass): Promise<string>;
+  /** Verifies a token that may have expired within the last 12 hours; it permits renewal, not entry. */
+  verifyRenewable(token: string): Promise<RoomPass | null>;
+  /** Returns the claims of a token; null: not signed by this server, modified, or expired. */
+  verify(token: string): Promise<RoomPass | null>;
+}
+
+/** Names of rooms: short, valid in an address and easy to spell out. */
+export const roomName = /^[a-z0-9][a-z0-9-]{0,31}$/;
+/** Names of rooms with assigned places; other rooms cannot have such a name. Proxies route by 32 characters at most. */
+export const assignedRoomName = /^study\.[0-9a-f]{24}$/;
+
+const lifeSeconds = 15 * 60;
+/** A token may be renewed this long after it has expired [s]. */
+const renewalSeconds = 12 * 3600;
+const issuer = 'threepoint';
+const algorithm = 'HS256';
+const longestToken = 1024;
+
+const assignedPlace = v.nullable(
+  v.strictObject({
+    seat: v.nullable(v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(mostSeats - 1))),
+    name: v.string(),
+  }),
+);
+
+/** `now`: seconds since 1970. */
+export function createRoomTokens(secret: string, now: () => number): RoomTokens {
+  const key = new TextEncoder().encode(secret);
+
+  const sign = ({ identity, room, kind, terms, assigned }: RoomPass): Promise<string> =>
+    new SignJWT({ room, kind, terms, ...(assigned && { assigned: { ...assigned } }) })
+      .setProtectedHeader({ alg: algorithm })
+      .setIssuer(issuer)
+      .setSubject(identity)
+      .setIssuedAt(Math.floor(now()))
+      .setExpirationTime(Math.floor(now()) + lifeSeconds)
+      .sign(key);
+
+  async function read(token: string, tolerance: number): Promise<RoomPass | null> {
+    if (token.length > longestToken) return null;
+    try {
+      const { payload } = await jwtVerify(token, key, {
+        issuer,
+        algorithms: [algorithm],
+        currentDate: new Date(now() * 1000),
+        clockTolerance: tolerance,
+      });
+      const { sub: identity, room, kind } = payload;
+      const terms = v.safeParse(roomTerms, payload.terms ?? {});
+      const assigned = v.safeParse(assignedPlace, payload.assigned ?? null);
+      if (!identity || typeof room !== 'string' || typeof kind !== 'string' || !terms.success || !assigned.success)
+        return null;
+      // The name shows whether a room has assigned places.
+      const named = assigned.output ? assignedRoomName : roomName;
+      return named.test(room) ? { identity, room, kind, terms: terms.output, assigned: assigned.output } : null;
+    } catch (error) {
+      if (error instanceof errors.JOSEError) return null;
+      throw error;
+    }
+  }
+
+  return {
+    issue: (room, kind, terms = {}) =>
+      sign({ identity: randomBytes(12).toString('base64url'), room, kind, terms, assigned: null }),
+    sign,
+    verifyRenewable: (token) => read(token, renewalSeconds),
+    verify: (token) => read(token, 5),
+  };
+}

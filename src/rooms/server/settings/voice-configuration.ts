@@ -1,0 +1,53 @@
+import { ConfigurationError } from 'threepoint-http/configuration-error';
+
+/** The servers by which pages connect their voices. */
+export interface VoiceConfiguration {
+  /** STUN servers, from which a page learns its public address. Without one, only pages of the same network connect. */
+  readonly stun: readonly string[];
+  /** TURN servers, which relay voices between networks and hide addresses; null: none. */
+  readonly turn: { readonly urls: readonly string[]; readonly secret: string } | null;
+}
+
+type Environment = Readonly<Record<string, string | undefined>>;
+
+export const voiceEnvironment = `  THREEPOINT_VOICES             off: players cannot talk to each other, and no page may use the microphone; default on
+  THREEPOINT_STUN               STUN servers as stun:HOST:PORT, separated by commas; default none
+  THREEPOINT_TURN               TURN servers as turn:HOST:PORT, separated by commas; default none
+  THREEPOINT_TURN_SECRET        secret of the TURN servers (coturn: static-auth-secret), 32 characters or more`;
+
+function urlsFrom(environment: Environment, name: string, form: RegExp, like: string): readonly string[] {
+  const urls = (environment[name] ?? '')
+    .split(',')
+    .map((part) => part.trim())
+    .filter(Boolean);
+  for (const url of urls) {
+    if (!form.test(url))
+      throw new ConfigurationError(
+        `The environment variable ${name} must list addresses such as ${like}, not "${url}".`,
+      );
+  }
+  return urls;
+}
+
+/** Reads the voice settings; null: voices are off. Throws a ConfigurationError that names the variable and its valid values. */
+export function voiceConfigurationFrom(environment: Environment): VoiceConfiguration | null {
+  const wanted = environment.THREEPOINT_VOICES || 'on';
+  if (wanted !== 'on' && wanted !== 'off') {
+    throw new ConfigurationError(`The environment variable THREEPOINT_VOICES must be on or off, not "${wanted}".`);
+  }
+  const stun = urlsFrom(environment, 'THREEPOINT_STUN', /^stuns?:[\w.[\]:-]+$/, 'stun:stun.example.org:3478');
+  const urls = urlsFrom(
+    environment,
+    'THREEPOINT_TURN',
+    /^turns?:[\w.[\]:-]+(\?transport=(udp|tcp))?$/,
+    'turn:turn.example.org:3478?transport=udp',
+  );
+  const secret = environment.THREEPOINT_TURN_SECRET ?? '';
+  if (urls.length > 0 && secret.length < 32) {
+    throw new ConfigurationError(
+      `The environment variable THREEPOINT_TURN needs THREEPOINT_TURN_SECRET with at least 32 characters; it has ${secret.length}.`,
+    );
+  }
+  if (wanted === 'off') return null;
+  return { stun, turn: urls.length > 0 ? { urls, secret } : null };
+}

@@ -1,0 +1,145 @@
+import type { EventEmitter } from 'node:events';
+import type { IncomingMessage } from 'node:http';
+import type { Socket as NetSocket } from 'node:net';
+import type { Duplex } from 'node:stream';
+import { Server as Engine } from 'engine.io';
+import type { Logger } from 'pino';
+import { Server, type Socket } from 'socket.io';
+import { HttpError, refusal, sendRawAnswer } from 'threepoint-http/answer';
+import { targetOf } from 'threepoint-http/target';
+import { handshakeMs } from 'threepoint-http/web-server';
+import { longestMessage } from '../../protocol/messages';
+import { relayParser } from '../../protocol/socket-parsers';
+import type { RelayConfiguration } from '../settings/relay-configuration';
+import type { RelayMetrics } from '../settings/relay-metrics';
+import { createFloodLimiter } from './flood-limiter';
+import { SlowReaders } from './slow-readers';
+import { createUpgradeAdmission } from './upgrade-admission';
+
+/** The path of the relay's WebSockets. */
+export const relayPath = '/relay';
+
+/** Why the transport ends a connection: it sends too many frames, or reads too slowly. */
+export type WireFault = 'flood' | 'slow';
+
+/** Receives what a connection sends below socket.io. */
+export interface WireListener {
+  onPose(bytes: Uint8Array): void;
+  /** Called once before the transport ends the connection; further messages are dropped. */
+  onFault(fault: WireFault): void;
+}
+
+/** The WebSockets of a relay: opens them, passes on what they receive, and ends those that harm others. */
+export interface RelayTransport {
+  readonly io: Server;
+  /** The number of open WebSockets, silent ones included. */
+  readonly sockets: number;
+  /**
+   * Registers the listener for a connection's poses. Binary messages are poses and bypass Engine.IO and socket.io, which cost more for a message
+   * than a room does for its pose. A binary message on a connection without a listener closes it.
+   */
+  listen(socket: Socket, listener: WireListener): void;
+  /** Opens a WebSocket, or answers why it is refused. Returns false where the path is not the relay's. */
+  upgrade(request: IncomingMessage, socket: Duplex, head: Buffer): boolean;
+  close(): void;
+}
+
+/** A connection is destroyed this long after it was closed [ms], whether or not the client has read the last message. */
+const closingMs = 1000;
+
+/** Destroys a socket that its client does not close in time. */
+const destroySoon = (raw: NetSocket | undefined): void => {
+  if (raw && !raw.destroyed) setTimeout(() => raw.destroy(), closingMs).unref();
+};
+
+/** Closes a connection, even where the client reads nothing. */
+export function closeConnection(socket: Socket): void {
+  const raw: NetSocket | undefined = socket.conn.request?.socket;
+  socket.disconnect(true);
+  destroySoon(raw);
+}
+
+/** Passes a connection's binary messages to `listener`, and all others to Engine.IO. `take` counts a frame and returns whether to handle it. */
+function divert(conn: Socket['conn'], take: () => boolean, listener: (bytes: Uint8Array) => void): void {
+  // reason: Engine.IO leaves the WebSocket there for its own transport, and does not say so in its types.
+  const { websocket } = conn.request as unknown as { readonly websocket: EventEmitter };
+  for (const engines of websocket.listeners('message')) {
+    websocket.off('message', engines as () => void);
+    websocket.on('message', (received: Buffer, isBinary: boolean) => {
+      if (!take()) return;
+      if (isBinary) listener(received);
+      else engines.call(websocket, received, isBinary);
+    });
+  }
+  websocket.on('ping', take);
+  websocket.on('pong', take);
+}
+
+/** Creates the transport of a relay. `now`: seconds, monotonic. */
+export function createRelayTransport(
+  configuration: RelayConfiguration,
+  { log, metrics, now }: { readonly log: Logger; readonly metrics: RelayMetrics; readonly now: () => number },
+): RelayTransport {
+  const admission = createUpgradeAdmission(configuration, { log, metrics });
+  const engine = new Engine({
+    transports: ['websocket'],
+    allowUpgrades: false,
+    perMessageDeflate: false,
+    maxHttpBufferSize: longestMessage,
+    // A page that hangs, or reads nothing, is detected within seven seconds.
+    pingInterval: 3000,
+    pingTimeout: 4000,
+  });
+  const io = new Server({ serveClient: false, connectTimeout: handshakeMs, parser: relayParser });
+  io.bind(engine);
+  const listeners = new WeakMap<Socket['conn'], WireListener>();
+  function end(conn: Socket['conn'], fault: WireFault): void {
+    const listener = listeners.get(conn);
+    if (listener) listener.onFault(fault);
+    else {
+      metrics.kicked(fault);
+      log.warn({ because: fault }, 'ended a connection that had not joined');
+    }
+    // A client that has left its room may still be connected.
+    conn.close();
+    destroySoon(conn.request.socket);
+  }
+  const slowReaders = new SlowReaders(now, (conn) => end(conn, 'slow'));
+  engine.on('connection', (conn: Socket['conn']) => {
+    const raw = conn.request.socket;
+    slowReaders.watch(conn);
+    const take = createFloodLimiter(now, () => end(conn, 'flood'));
+    divert(conn, take, (bytes) => {
+      const listener = listeners.get(conn);
+      if (listener) listener.onPose(bytes);
+      else conn.close();
+    });
+    conn.once('close', () => destroySoon(raw));
+  });
+
+  return {
+    io,
+    get sockets() {
+      return engine.clientsCount;
+    },
+    listen: (socket, listener) => void listeners.set(socket.conn, listener),
+    upgrade(request, socket, head) {
+      const target = targetOf(request.url);
+      if (!target || target.path.replace(/\/$/, '') !== relayPath) return false;
+      try {
+        socket.once('close', admission.admit(request, target.query));
+      } catch (error) {
+        if (!(error instanceof HttpError)) throw error;
+        sendRawAnswer(socket, refusal(error));
+        return true;
+      }
+      engine.handleUpgrade(request as never, socket, head);
+      return true;
+    },
+    close() {
+      slowReaders.stop();
+      io.disconnectSockets(true);
+      engine.close();
+    },
+  };
+}

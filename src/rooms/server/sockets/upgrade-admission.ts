@@ -1,0 +1,64 @@
+import type { IncomingMessage } from 'node:http';
+import type { Logger } from 'pino';
+import { HttpError } from 'threepoint-http/answer';
+import { clientAddressOf } from 'threepoint-http/client-address';
+import { createSlotCounter } from 'threepoint-http/connection-limiter';
+import { createSitePolicy } from 'threepoint-http/site-policy';
+import type { RelayConfiguration } from '../settings/relay-configuration';
+import type { RelayMetrics } from '../settings/relay-metrics';
+
+/** Decides which requests may open a WebSocket. */
+export interface UpgradeAdmission {
+  /** Takes a slot of the client's address and returns the function that releases it. Throws an HttpError that states why the request is refused. */
+  admit(request: IncomingMessage, query: URLSearchParams): () => void;
+}
+
+/** Returns why a request is not one for a WebSocket of the relay's protocol; null: it is one. */
+function protocolErrorOf({ method, headers }: IncomingMessage, query: URLSearchParams): HttpError | null {
+  if (
+    method !== 'GET' ||
+    headers.upgrade?.toLowerCase() !== 'websocket' ||
+    !/^[+/0-9A-Za-z]{22}==$/.test(headers['sec-websocket-key'] ?? '')
+  ) {
+    return new HttpError(400, 'this is no request for a WebSocket');
+  }
+  if (headers['sec-websocket-version'] !== '13') {
+    return new HttpError(426, 'this server supports version 13 of WebSocket alone', {
+      headers: { 'sec-websocket-version': '13' },
+    });
+  }
+  if (query.get('EIO') !== '4' || query.get('transport') !== 'websocket' || query.has('sid')) {
+    return new HttpError(400, 'this server supports Engine.IO 4 over WebSockets alone');
+  }
+  return null;
+}
+
+/** Creates the admission of a relay: it checks protocol, host and origin, and limits the WebSockets of each address. */
+export function createUpgradeAdmission(
+  configuration: RelayConfiguration,
+  { log, metrics }: { readonly log: Logger; readonly metrics: RelayMetrics },
+): UpgradeAdmission {
+  const addresses = createSlotCounter(configuration.connectionsPerAddress);
+  const site = createSitePolicy(configuration);
+  return {
+    admit(request, query) {
+      const error = protocolErrorOf(request, query);
+      if (error) throw error;
+      const refusal = site.refusalOfHost(request) ?? site.refusalOfOrigin(request);
+      if (refusal) {
+        metrics.kicked('origin');
+        log.warn({ origin: request.headers.origin, host: request.headers.host }, 'origin refused');
+        throw new HttpError(refusal.status, refusal.message);
+      }
+      const { network } = clientAddressOf(request, configuration.trustProxy);
+      if (!addresses.acquire(network)) {
+        metrics.kicked('connections');
+        throw new HttpError(
+          429,
+          `this address has the most connections allowed, ${configuration.connectionsPerAddress}`,
+        );
+      }
+      return () => addresses.release(network);
+    },
+  };
+}

@@ -1,0 +1,124 @@
+import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { type BallRoomMessage, ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
+import { type BallGame, BallPolicy } from 'threepoint-games/ball/ball-policy';
+import type { BallAction, BallEvent, BallInput, BallOptions, BallState } from 'threepoint-games/ball/ball-state';
+import { arenaFromSeatFloor } from 'threepoint-games/ball/stations';
+import type { JoinRequest } from 'threepoint-rooms/protocol/messages';
+import { packetMs } from 'threepoint-rooms/protocol/packet-time';
+import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
+import { encodeFrame } from 'threepoint-rooms/protocol/pose-frame';
+import { Room, type RoomOptions } from 'threepoint-rooms/room/room';
+import type { RoomRefusal } from 'threepoint-rooms/room/room-host';
+import { fists, holding, opening, releaseOf, shownAt } from '../client/people';
+
+const skeleton = skeletonFromCalibration(defaultCalibration);
+
+export const joinRequest = (more: Partial<JoinRequest> = {}): JoinRequest => ({
+  name: 'Ann',
+  calibration: defaultCalibration,
+  spectate: false,
+  bot: false,
+  seat: null,
+  avatar: plainAvatar,
+  voice: null,
+  ...more,
+});
+
+type Wrists = ReturnType<typeof fists>;
+
+/** The packet of a player on a seat with these wrists (arena frame of the ball game), taken at this time of the room clock [s]. */
+export function packetAt(match: BallState | null, seat: number, wrists: Wrists, time: number): Uint8Array {
+  const shown = shownAt({ arenaFromFloor: (index) => arenaFromSeatFloor(index, match) }, seat, wrists);
+  const bytes = encodePose({ ...shown, timeMs: packetMs(time * 1000) }, skeleton);
+  if (!bytes) throw new Error('the pose packet of the tests is not finite');
+  return bytes;
+}
+
+interface TestRoomOptions extends Partial<RoomOptions> {
+  readonly ball?: Partial<BallOptions>;
+}
+
+/** A room of the ball game that a test tells everything, with all that it says. Every message is one that a page can read. */
+export function createTestRoom({ ball, ...options }: TestRoomOptions = {}) {
+  const sent: { readonly to: string; readonly message: BallRoomMessage }[] = [];
+  const frames: Uint8Array[] = [];
+  const dropped: { readonly client: string; readonly reason: string }[] = [];
+  const refusals: RoomRefusal[] = [];
+  const log: (readonly BallInput[])[] = [];
+  let time = 1000;
+  const hear = (to: string, message: BallRoomMessage) => {
+    const read = ballRoomMessageFrom(JSON.parse(JSON.stringify(message)));
+    if (!read) throw new Error(`no page can read this: ${JSON.stringify(message)}`);
+    sent.push({ to, message: read });
+  };
+  const room = new Room<BallGame>(
+    new BallPolicy(ball),
+    { id: 'room', epoch: 'one', ...options },
+    {
+      send: hear,
+      broadcast: (message) => hear('all', message),
+      sendPoses: (poses) => frames.push(encodeFrame(poses)),
+      disconnect: (client, reason) => dropped.push({ client, reason }),
+      refused: (refusal) => refusals.push(refusal),
+      stepped: (actions) => log.push(actions),
+    },
+  );
+  const testRoom = {
+    room,
+    sent,
+    frames,
+    dropped,
+    refusals,
+    log,
+    get time() {
+      return time;
+    },
+    join(client: string, more: Partial<JoinRequest> = {}, identity = client) {
+      room.join(client, identity, joinRequest(more), time);
+      return testRoom.welcomeOf(client);
+    },
+    welcomeOf(client: string) {
+      const welcome = sent.findLast(({ to, message }) => to === client && message.type === 'welcome')?.message;
+      if (welcome?.type !== 'welcome') throw new Error(`${client} was not welcomed`);
+      return welcome;
+    },
+    tick(seconds = 1 / 60) {
+      time += seconds;
+      room.tick(time);
+      room.sendPoses();
+    },
+    pass(seconds: number, everyTick: () => void = () => undefined) {
+      for (let i = 0; i < Math.round(seconds * 60); i++) {
+        everyTick();
+        testRoom.tick();
+      }
+    },
+    pose(client: string, seat: number, wrists: Wrists, at = time) {
+      return room.onPose(client, packetAt(room.match, seat, wrists, at), time);
+    },
+    act(client: string, action: BallAction) {
+      return room.onMessage(client, { type: 'action', action }, time);
+    },
+    /** Ann and Ben throw, Cal holds the basket; all ready. */
+    begin() {
+      for (const client of ['ann', 'ben', 'cal']) testRoom.join(client, { name: client });
+      for (const client of ['ann', 'ben', 'cal']) room.onMessage(client, { type: 'ready', ready: true }, time);
+      testRoom.stand();
+      testRoom.tick();
+      testRoom.tick();
+    },
+    /** All three are seen where they begin. */
+    stand() {
+      if (room.match.players[0]?.present) testRoom.pose('ann', 0, fists(releaseOf(0)));
+      if (room.match.players[1]?.present) testRoom.pose('ben', 1, fists(releaseOf(1)));
+      testRoom.pose('cal', 2, holding(opening));
+    },
+    events: () =>
+      sent.flatMap(({ message }): readonly BallEvent[] => (message.type === 'events' ? message.events : [])),
+    happened: <T extends BallEvent['type']>(type: T) =>
+      testRoom.events().filter((event): event is Extract<BallEvent, { type: T }> => event.type === type),
+  };
+  return testRoom;
+}
