@@ -31,7 +31,14 @@ def robustness(clean):
     step = {"stepCm": 8.0, "joint": "leftHand", "excessCm": 4.0, "excessJoint": "leftHand", "over5Cm": 0}
 
     def lost(milliseconds):
-        return {"milliseconds": milliseconds, "losses": 7, "during": errors, "after": errors, "atLoss": step, "atReturn": step}
+        return {
+            "milliseconds": milliseconds,
+            "losses": 7,
+            "during": errors,
+            "after": errors,
+            "atLoss": step,
+            "atReturn": step,
+        }
 
     return {
         "mpjpeCm": clean,
@@ -39,7 +46,8 @@ def robustness(clean):
         "losses": [lost(ms) for ms in (100, 500, 2000)],
         "handTracking": lost(300),
         "noises": [
-            {"mpjpeCm": clean + more, "jerkRatio": 1.05, "elbowTrembleMm": 0.2 + more, "hipsTrembleMm": 0.1 + more} for more in (0, 0.5)
+            {"mpjpeCm": clean + more, "jerkRatio": 1.05, "elbowTrembleMm": 0.2 + more, "hipsTrembleMm": 0.1 + more}
+            for more in (0, 0.5)
         ],
         "offsets": [
             {"tracker": tracker, "axis": axis, "offsetCm": cm, "mpjpeCm": clean + abs(cm) / 10}
@@ -78,7 +86,8 @@ def held_out_people(names, learned):
 
 
 LABORATORIES = tuple(
-    tuple(held_out_people(names, learned) for learned in both) for names, both in ((("135", "005"), (0.9, 0.8)), (("901", "902"), (0.7, 0.6)))
+    tuple(held_out_people(names, learned) for learned in both)
+    for names, both in ((("135", "005"), (0.9, 0.8)), (("901", "902"), (0.7, 0.6)))
 )
 
 CONTRACTS = {

@@ -8,7 +8,14 @@ from threepoint_training import hand_tilt, mirror, quaternion
 from threepoint_training.features import frame_features
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.kinematic_limits import HAND_TILTS, LIMB
-from threepoint_training.notice_hand_tilts import NOTHING_TOLD, ToldTilts, noticed, travel, untold_forearms, with_noticed_hands
+from threepoint_training.notice_hand_tilts import (
+    NOTHING_TOLD,
+    ToldTilts,
+    noticed,
+    travel,
+    untold_forearms,
+    with_noticed_hands,
+)
 from threepoint_training.prepare import EYES_FROM_HEAD_JOINT
 from threepoint_training.simulate_trackers import TrackerConfig, Wearer, simulate
 from threepoint_training.skeleton import body_from_calibration
@@ -25,7 +32,13 @@ TOLD = np.array([[0.3, -0.2], [-0.1, 0.4]])
 def tracked(corpus):
     """Its positions and rotations as exact trackers see them."""
     wearer = Wearer(EYES_FROM_HEAD_JOINT, STILL, np.zeros((2, 3)), np.stack([STILL, STILL]))
-    return simulate(corpus.positions, corpus.rotations, wearer, TrackerConfig(*[0.0] * 4, (0.0,) * 3, (0.0,) * 3, 0.0), np.random.default_rng(0))
+    return simulate(
+        corpus.positions,
+        corpus.rotations,
+        wearer,
+        TrackerConfig(*[0.0] * 4, (0.0,) * 3, (0.0,) * 3, 0.0),
+        np.random.default_rng(0),
+    )
 
 
 def worn_off(corpus, right):
@@ -94,7 +107,10 @@ def test_what_was_told_is_outweighed_by_a_minute_of_motion():
 def test_what_was_told_is_kept_longer_than_the_usual_tilt():
     moved = [
         angles(tilts[60], tilts[0])
-        for tilts in (noticed(FOREARMS[:61], METRES[:61], ToldTilts(hand_tilt.usual(), np.array([known] * 2))) for known in (True, False))
+        for tilts in (
+            noticed(FOREARMS[:61], METRES[:61], ToldTilts(hand_tilt.usual(), np.array([known] * 2)))
+            for known in (True, False)
+        )
     ]
     assert (moved[0] < 0.6 * moved[1]).all()
 
@@ -114,7 +130,9 @@ def test_what_was_noticed_is_forgotten_by_and_by_and_what_was_told_is_not():
     minutes = np.broadcast_to(before, (3000, 2, 3))
     memory = np.broadcast_to(after, (round(10 * HAND_TILTS["memoryMetres"]), 2, 3))
     tilts = noticed(np.concatenate([minutes, memory]), np.full((3000 + len(memory), 2), 0.1), ToldTilts(TOLD, BOTH))
-    balance = hand_tilt.tilt_of(HAND_TILTS["calibratedMetres"] * hand_tilt.direction_of(TOLD) + HAND_TILTS["memoryMetres"] * before)
+    balance = hand_tilt.tilt_of(
+        HAND_TILTS["calibratedMetres"] * hand_tilt.direction_of(TOLD) + HAND_TILTS["memoryMetres"] * before
+    )
     np.testing.assert_allclose(tilts[2999], balance, atol=1e-3)
     assert (angles(tilts[-1], hand_tilt.tilt_of(after)) < angles(tilts[-1], hand_tilt.tilt_of(before))).all()
 
@@ -149,7 +167,9 @@ def test_a_frame_s_tilts_come_of_the_frames_before_it():
     frame = 200
     positions, rotations = (part[:300].copy() for part in (POSITIONS, ROTATIONS))
     positions[frame:, 1:] += [0.0, 0.2, -0.1]
-    rotations[frame:, 1:] = quaternion.multiply(rotations[frame:, 1:], quaternion.from_rotation_vector(np.array([0.4, 0.3, 0.0])))
+    rotations[frame:, 1:] = quaternion.multiply(
+        rotations[frame:, 1:], quaternion.from_rotation_vector(np.array([0.4, 0.3, 0.0]))
+    )
     before = with_noticed_hands(BODY, POSITIONS[:300], ROTATIONS[:300], METRES[:300]).hand_tilts
     after = with_noticed_hands(BODY, positions, rotations, METRES[:300]).hand_tilts
     np.testing.assert_array_equal(after[: frame + 1], before[: frame + 1])
@@ -161,7 +181,9 @@ def test_hands_are_turned_no_further_than_the_steepest_tilt():
     steepest = LIMB["steepestHandTilt"]
     steep = np.array([[0.9, -1.6], [-1.8, 0.3]])
     ahead = hand_tilt.direction_of(np.array([[0.2, 0.0], [0.0, -0.1]]))
-    forearms = np.concatenate([np.broadcast_to(hand_tilt.direction_of(steep), (1200, 2, 3)), np.broadcast_to(ahead, (2400, 2, 3))])
+    forearms = np.concatenate(
+        [np.broadcast_to(hand_tilt.direction_of(steep), (1200, 2, 3)), np.broadcast_to(ahead, (2400, 2, 3))]
+    )
     metres = np.full((len(forearms), 2), 1 / 60)
     tilts = noticed(forearms, metres)
     size = np.linalg.norm(tilts, axis=-1)
@@ -185,7 +207,9 @@ def test_twice_the_frame_rate_gives_nearly_the_same_tilts():
 def test_the_mirror_image_has_the_mirrored_tilts():
     positions, rotations = mirror.trackers(POSITIONS, ROTATIONS)
     seen = np.random.default_rng(2).uniform(size=(len(POSITIONS), 2)) > 0.3
-    tilts = with_noticed_hands(BODY, POSITIONS, ROTATIONS, METRES, told=ToldTilts(TOLD, np.array([True, False])), seen=seen).hand_tilts
+    tilts = with_noticed_hands(
+        BODY, POSITIONS, ROTATIONS, METRES, told=ToldTilts(TOLD, np.array([True, False])), seen=seen
+    ).hand_tilts
     told = ToldTilts(mirror.tilts(TOLD), np.array([False, True]))
     mirrored = with_noticed_hands(BODY, positions, rotations, METRES[:, ::-1], told=told, seen=seen[:, ::-1]).hand_tilts
     np.testing.assert_allclose(mirrored, mirror.tilts(tilts), atol=1e-9)

@@ -33,7 +33,9 @@ def sections(
     """The page's tables by their marks; measured: what `laboratories` gives, None: that table stays as it is."""
     corpus, robustness = evaluation["corpus"], evaluation["robustness"]
     motions = f"{corpus['clips']} clips of {corpus['people']} people, {corpus['seconds'] / 60:.0f} minutes"
-    disturbed = f"{', '.join(robustness['people'])}: {robustness['clips']} clips, {robustness['frames'] / 3600:.1f} minutes."
+    disturbed = (
+        f"{', '.join(robustness['people'])}: {robustness['clips']} clips, {robustness['frames'] / 3600:.1f} minutes."
+    )
     return {
         "corpus": f"Evaluated: {motions}; held out: {', '.join(tables.people_held_out(evaluation))}.",
         "aims": tables.aims(evaluation, contracts),

@@ -54,11 +54,17 @@ def summary(evaluation: Json) -> str:
             row("MPJPE, six joints: mean [cm]", lambda f: f"{f['mpjpeCm']['mean']:.2f}"),
             row("median / p95 [cm]", lambda f: f"{f['mpjpeCm']['median']:.2f} / {f['mpjpeCm']['p95']:.2f}"),
             row("relative to IK", lambda f: f"{f['mpjpeCm']['mean'] / ik:.3f}"),
-            row("network alone, before kinematics [cm]", lambda f: f"{f['rawMpjpeCm']:.2f}" if "rawMpjpeCm" in f else "–"),
+            row(
+                "network alone, before kinematics [cm]",
+                lambda f: f"{f['rawMpjpeCm']:.2f}" if "rawMpjpeCm" in f else "–",
+            ),
             row("elbow swivel error", lambda f: f"{f['swivelDeg']:.1f}°"),
             row("jerk relative to the true motion", lambda f: f"{f['jerkRatio']:.2f}"),
             row("bone-length variation [mm]", lambda f: f"{f['boneVariationMm']:.3f}"),
-            row("wrist from its tracker: mean / largest [mm]", lambda f: f"{f['handErrorMm']:.3f} / {f['handErrorMaxMm']:.1f}"),
+            row(
+                "wrist from its tracker: mean / largest [mm]",
+                lambda f: f"{f['handErrorMm']:.3f} / {f['handErrorMaxMm']:.1f}",
+            ),
         ],
     )
 
@@ -82,7 +88,10 @@ def joints(evaluation: Json) -> str:
     cell = "{median:.1f} / {p95:.1f}"
     return table(
         ["median / p95 [cm]", *METHODS.values()],
-        [[label, *(cell.format(**figures[method]["joints"][joint]) for method in METHODS)] for joint, label in JOINTS.items()],
+        [
+            [label, *(cell.format(**figures[method]["joints"][joint]) for method in METHODS)]
+            for joint, label in JOINTS.items()
+        ],
     )
 
 
@@ -111,7 +120,10 @@ def against_ik(evaluation: Json) -> str:
     mse, mae = _by_joint(groups, "jointMseCm2", "mseCm2", 1), _by_joint(groups, "jointMaeCm", "maeCm", 2)
     mpjpe = [[f"{figures[method]['joints'][joint]['mean']:.2f}" for method in METHODS] for joint in JOINTS]
     mpjpe.append([f"{figures[method]['mpjpeCm']['mean']:.2f}" for method in METHODS])
-    head = ["", *(f"{measure}: {name}" for measure in ("MSE [cm²]", "MAE [cm]", "MPJPE [cm]") for name in METHODS.values())]
+    head = [
+        "",
+        *(f"{measure}: {name}" for measure in ("MSE [cm²]", "MAE [cm]", "MPJPE [cm]") for name in METHODS.values()),
+    ]
     return table(head, [[*a, *b[1:], *c] for a, b, c in zip(mse, mae, mpjpe, strict=True)])
 
 
@@ -150,8 +162,14 @@ def loss(evaluation: Json) -> str:
             ("its elbow", lambda f: ratio(f["during"]["elbowCm"], f["during"]["elbowSeenCm"])),
             ("all joints, 0.5 s after", lambda f: ratio(f["after"]["allCm"], f["after"]["allSeenCm"])),
             ("its elbow, 0.5 s after", lambda f: ratio(f["after"]["elbowCm"], f["after"]["elbowSeenCm"])),
-            ("longest step at the loss", lambda f: f"{f['atLoss']['stepCm']:.1f} ({signed(f['atLoss']['excessCm'], 1)})"),
-            ("longest step at the return", lambda f: f"{f['atReturn']['stepCm']:.1f} ({signed(f['atReturn']['excessCm'], 1)})"),
+            (
+                "longest step at the loss",
+                lambda f: f"{f['atLoss']['stepCm']:.1f} ({signed(f['atLoss']['excessCm'], 1)})",
+            ),
+            (
+                "longest step at the return",
+                lambda f: f"{f['atReturn']['stepCm']:.1f} ({signed(f['atReturn']['excessCm'], 1)})",
+            ),
         ]
         for number, (label, cell) in enumerate(lines):
             count = by_method["ik"]["losses"]
@@ -169,7 +187,9 @@ def offsets(evaluation: Json) -> str:
                 cells = []
                 for method in METHODS:
                     values = [
-                        o["mpjpeCm"] for o in estimators[method]["offsets"] if o["tracker"] == tracker and abs(o["offsetCm"]) == size
+                        o["mpjpeCm"]
+                        for o in estimators[method]["offsets"]
+                        if o["tracker"] == tracker and abs(o["offsetCm"]) == size
                     ]
                     cells.append(signed(of(values) - estimators[method]["mpjpeCm"]))
                 rows.append([f"{tracker} ±{size} cm, {label}", *cells])
@@ -255,15 +275,22 @@ def aims(evaluation: Json, contracts: dict[str, Json]) -> str:
     """What was aimed at, what was measured, and whether that is enough."""
     figures, robust = held_out(evaluation), evaluation["robustness"]["estimators"]["learned"]
     ours = figures["learned"]
-    judged = [person for person in evaluation["people"].values() if not person["seen"]] or list(evaluation["people"].values())
+    judged = [person for person in evaluation["people"].values() if not person["seen"]] or list(
+        evaluation["people"].values()
+    )
     ratio, elbow = (
-        round(_mean_over_people(judged, "learned", error) / _mean_over_people(judged, "ik", error), 3) for error in (_mpjpe_cm, _elbows_cm)
+        round(_mean_over_people(judged, "learned", error) / _mean_over_people(judged, "ik", error), 3)
+        for error in (_mpjpe_cm, _elbows_cm)
     )
     worst = round(max(_mpjpe_cm(person["learned"]) / _mpjpe_cm(person["ik"]) for person in judged), 3)
     offset = round(max(o["mpjpeCm"] for o in robust["offsets"]) - robust["mpjpeCm"], 2)
     height = round(max(h["mpjpeCm"] for h in robust["heights"]) - robust["mpjpeCm"], 2)
     long = robust["losses"][-1]["during"]
-    jump = max(loss[when]["excessCm"] for loss in (*robust["losses"], robust["handTracking"]) for when in ("atLoss", "atReturn"))
+    jump = max(
+        loss[when]["excessCm"]
+        for loss in (*robust["losses"], robust["handTracking"])
+        for when in ("atLoss", "atReturn")
+    )
     lost_all, lost_elbow = round(long["allCm"] / long["allSeenCm"], 2), round(long["elbowCm"] / long["elbowSeenCm"], 2)
     held = ", ".join(people_held_out(evaluation))
     rows = [
@@ -274,7 +301,14 @@ def aims(evaluation: Json, contracts: dict[str, Json]) -> str:
     for name, what in (("learned", "our network"), ("paper", "the paper's network")):
         random = contracts[name]["errors"].get(f"{name}, frame-random 80/20")
         measured = f"{random['mean']:.2f} cm" if random else "–"
-        rows.append(_row(f"{what}, the paper's protocol (frame-random)", "≤ 0.9 cm", measured, round(random["mean"], 2) <= 0.9 if random else None))
+        rows.append(
+            _row(
+                f"{what}, the paper's protocol (frame-random)",
+                "≤ 0.9 cm",
+                measured,
+                round(random["mean"], 2) <= 0.9 if random else None,
+            )
+        )
     rows += [
         _row("jerk relative to the true motion", "≤ 1.1", f"{ours['jerkRatio']:.2f}", ours["jerkRatio"] <= 1.1),
     ]

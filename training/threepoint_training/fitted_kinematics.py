@@ -18,7 +18,9 @@ class Kinematics:
     parameters: dict[str, Any]
 
 
-def fit(corpus: PreparedCorpus, people: tuple[str, ...], config: FitIkConfig, report: Callable[[int], None] = lambda _: None) -> Kinematics:
+def fit(
+    corpus: PreparedCorpus, people: tuple[str, ...], config: FitIkConfig, report: Callable[[int], None] = lambda _: None
+) -> Kinematics:
     """Fitted on these people; report(iterations done)."""
     proportions = fit_proportions.fit(corpus, people)
     sample = fit_ik.sample(corpus, people, proportions, config.frames_per_person, config.seed)

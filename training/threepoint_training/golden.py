@@ -40,7 +40,10 @@ class GoldenBody:
     def told(self) -> ToldTilts:
         """What its calibration tells of its hands."""
         sides = ("left", "right")
-        return ToldTilts(np.array([self.tilts.get(side, (0.0, 0.0)) for side in sides]), np.array([side in self.tilts for side in sides]))
+        return ToldTilts(
+            np.array([self.tilts.get(side, (0.0, 0.0)) for side in sides]),
+            np.array([side in self.tilts for side in sides]),
+        )
 
     def body(self) -> Body:
         """Hands as they come."""
@@ -49,7 +52,9 @@ class GoldenBody:
 
     def measures(self) -> dict[str, Any]:
         """As the page has them, without tilts."""
-        return {"eyeHeight": self.eye_height, "armSpan": self.arm_span} | ({} if self.forearm is None else {"forearm": self.forearm})
+        return {"eyeHeight": self.eye_height, "armSpan": self.arm_span} | (
+            {} if self.forearm is None else {"forearm": self.forearm}
+        )
 
     def calibration(self) -> dict[str, Any]:
         """As the page has it."""
@@ -91,7 +96,9 @@ def feature_vectors() -> list[dict[str, Any]]:
         seen = random.uniform(size=(FRAMES, 2)) > 0.15
         times = np.arange(FRAMES) * STRIDE / 60 + random.uniform(0, 0.01, FRAMES)
         metres = notice_hand_tilts.travel(positions)
-        body = notice_hand_tilts.with_noticed_hands(person.body(), positions, rotations, metres, told=person.told(), seen=seen)
+        body = notice_hand_tilts.with_noticed_hands(
+            person.body(), positions, rotations, metres, told=person.told(), seen=seen
+        )
         vector, ik_joints = frame_features(positions, rotations, body, seen)
         floor_joints = _in_floor_frame(ik_joints, positions, rotations)
         cases.append(
@@ -122,7 +129,9 @@ def headset_rise_vectors() -> dict[str, Any]:
     """Arms that hang, swing and are not seen now and then, and what is noticed of the headset by them."""
     random = np.random.default_rng(31)
     arm, count = 0.61, 60
-    reach = np.array([0.0, -1.0, 0.0]) * random.normal(1.02, 0.03, size=(count, 2, 1)) + random.normal(scale=0.15, size=(count, 2, 3)) * [1, 0, 1]
+    reach = np.array([0.0, -1.0, 0.0]) * random.normal(1.02, 0.03, size=(count, 2, 1)) + random.normal(
+        scale=0.15, size=(count, 2, 3)
+    ) * [1, 0, 1]
     seconds, seen = random.uniform(0.5, 1.5, count), random.uniform(size=(count, 2)) > 0.15
     followed = notice_headset_rise.hanging_reach(reach, seconds, seen=seen)
     rises = notice_headset_rise.rise(followed, np.array(arm))
@@ -134,7 +143,9 @@ def headset_rise_vectors() -> dict[str, Any]:
 def _hands_before_the_trunk(positions: Array, ik_joints: Array, body: Body, random: np.random.Generator) -> Array:
     """Wrists close to the chest joint, so that elbows estimated beside IK's lie in the trunk now and then; heading frame."""
     moved = positions.copy()
-    place = np.array([[-0.1, -0.05, -0.16], [0.1, -0.05, -0.16]]) + random.normal(scale=0.05, size=(len(positions), 2, 3))
+    place = np.array([[-0.1, -0.05, -0.16], [0.1, -0.05, -0.16]]) + random.normal(
+        scale=0.05, size=(len(positions), 2, 3)
+    )
     moved[:, 1:] = ik_joints[:, 4:5] + place * body.eye_height
     return moved
 
@@ -144,7 +155,9 @@ def _hands_out_of_reach(positions: Array, ik_joints: Array, body: Body, random: 
     the passes end with then amplifies the last digits of its input."""
     moved = positions.copy()
     reach = moved[:, 1:] - ik_joints[:, 2:4]
-    reach *= random.uniform(0.99, 1.25, (len(positions), 2, 1)) * body.arm / np.linalg.norm(reach, axis=-1, keepdims=True)
+    reach *= (
+        random.uniform(0.99, 1.25, (len(positions), 2, 1)) * body.arm / np.linalg.norm(reach, axis=-1, keepdims=True)
+    )
     moved[:, 1:] = ik_joints[:, 2:4] + reach
     return moved
 
@@ -175,14 +188,17 @@ def fitted_vectors() -> list[dict[str, Any]]:
             random = np.random.default_rng([13, number, kind])
             positions, rotations = _tracked(person.eye_height, person.arm_span, random)
             local, turns, _, _ = solve_ik.to_heading(positions, rotations)
-            positions = _in_floor_frame(move(local, solve_ik.solve(local, turns, body), body, random), positions, rotations)
+            positions = _in_floor_frame(
+                move(local, solve_ik.solve(local, turns, body), body, random), positions, rotations
+            )
             vector, ik_joints = frame_features(positions, rotations, body)
             inputs = torch.from_numpy(network_input(vector, np.arange(FRAMES) / 60, WINDOW))
             corrections = random.normal(size=ik_joints.shape) * np.array([elbows] * 2 + [others] * 4)[:, None]
             fitted, limited = fitting.fit(torch.from_numpy(corrections), inputs, as_the_page_fits(person.eye_height))
             axes = chest_axes(vector)
             estimated, placed = (
-                _in_floor_frame(ik_joints + person.eye_height * shift @ axes, positions, rotations) for shift in (corrections, fitted.numpy())
+                _in_floor_frame(ik_joints + person.eye_height * shift @ axes, positions, rotations)
+                for shift in (corrections, fitted.numpy())
             )
             frames += [
                 {

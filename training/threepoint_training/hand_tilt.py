@@ -51,7 +51,9 @@ def normalised(rotations: Array, tilts: Array | None) -> Array:
     if tilts is None:
         return rotations
     hands = rotations[:, 1:]
-    return np.concatenate([rotations[:, :1], quaternion.multiply(hands, np.broadcast_to(turn_of(tilts), hands.shape))], axis=1)
+    return np.concatenate(
+        [rotations[:, :1], quaternion.multiply(hands, np.broadcast_to(turn_of(tilts), hands.shape))], axis=1
+    )
 
 
 def believed(tilts: Array) -> NDArray[np.bool_]:

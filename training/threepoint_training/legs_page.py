@@ -25,8 +25,17 @@ def _mean(people: Iterable[Json], driver: str, figure: str) -> float:
 
 
 def _cells(people: list[Json], driver: str) -> list[str]:
-    digits = {"agreed": "{:.0%}", "pelvisCm": "{:.1f}", "kneeCm": "{:.1f}", "footCm": "{:.1f}", "skateCmS": "{:.0f}", "slideCmS": "{:.0f}"}
-    return [digits.get(figure, "{:.2f}").format(_mean(people, driver, figure)).replace("%", " %") for figure in _FIGURES]
+    digits = {
+        "agreed": "{:.0%}",
+        "pelvisCm": "{:.1f}",
+        "kneeCm": "{:.1f}",
+        "footCm": "{:.1f}",
+        "skateCmS": "{:.0f}",
+        "slideCmS": "{:.0f}",
+    }
+    return [
+        digits.get(figure, "{:.2f}").format(_mean(people, driver, figure)).replace("%", " %") for figure in _FIGURES
+    ]
 
 
 def drivers(legs: Json) -> str:

@@ -41,7 +41,9 @@ def travel(positions: Array) -> Array:
     return np.linalg.norm(np.diff(from_head, axis=0, prepend=from_head[:1]), axis=-1)
 
 
-def noticed(forearms: Array, metres: Array, told: ToldTilts = NOTHING_TOLD, seen: NDArray[np.bool_] | None = None) -> Array:
+def noticed(
+    forearms: Array, metres: Array, told: ToldTilts = NOTHING_TOLD, seen: NDArray[np.bool_] | None = None
+) -> Array:
     """The tilts [F, 2, 2] by which hands are turned in each frame, by what was noticed before it.
 
     forearms [F, 2, 3] in the frames of the hands; metres [F, 2] that each hand travelled since the frame before (`travel`); seen [F, 2]: which hands are, all when None.
@@ -55,7 +57,9 @@ def noticed(forearms: Array, metres: Array, told: ToldTilts = NOTHING_TOLD, seen
         sums[frame] = _prior_metres(prior, told.known, total)[:, None] * prior + total
         total = total * kept[frame] + forearm * weight[frame]
     tilts = hand_tilt.tilt_of(sums)
-    return tilts * np.minimum(1.0, LIMB["steepestHandTilt"] / np.maximum(np.linalg.norm(tilts, axis=-1, keepdims=True), 1e-12))
+    return tilts * np.minimum(
+        1.0, LIMB["steepestHandTilt"] / np.maximum(np.linalg.norm(tilts, axis=-1, keepdims=True), 1e-12)
+    )
 
 
 def _prior_metres(prior: Array, told: NDArray[np.bool_], total: Array) -> Array:
@@ -67,7 +71,13 @@ def _prior_metres(prior: Array, told: NDArray[np.bool_], total: Array) -> Array:
 
 
 def with_noticed_hands(
-    body: Body, positions: Array, rotations: Array, metres: Array, *, told: ToldTilts = NOTHING_TOLD, seen: NDArray[np.bool_] | None = None
+    body: Body,
+    positions: Array,
+    rotations: Array,
+    metres: Array,
+    *,
+    told: ToldTilts = NOTHING_TOLD,
+    seen: NDArray[np.bool_] | None = None,
 ) -> Body:
     """The body with the hands of each frame turned as the page turns them, for one clip from its beginning.
 

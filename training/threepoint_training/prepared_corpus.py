@@ -31,7 +31,9 @@ def joints_of(positions: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
     return {name: positions[:, index] for index, name in enumerate(JOINTS)}
 
 
-def chest_axes_of(joints: dict[str, NDArray[np.float64]]) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def chest_axes_of(
+    joints: dict[str, NDArray[np.float64]],
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """The axes [F, 3] of the chest by true joints, unit, in the joints' frame: x from the left to the right shoulder, y up the thorax, z backward."""
     x = joints["rightUpperArm"] - joints["leftUpperArm"]
     x = x / np.linalg.norm(x, axis=-1, keepdims=True)
@@ -100,7 +102,10 @@ class PreparedCorpus:
     def forearm(self, person: str) -> float:
         """Mean length of a person's forearms, elbow to wrist, over both arms and all frames [m]."""
         positions = self.positions[self.frames_of({person})]
-        forearms = [positions[:, JOINTS.index(f"{side}Hand")] - positions[:, JOINTS.index(f"{side}LowerArm")] for side in ("left", "right")]
+        forearms = [
+            positions[:, JOINTS.index(f"{side}Hand")] - positions[:, JOINTS.index(f"{side}LowerArm")]
+            for side in ("left", "right")
+        ]
         return float(np.linalg.norm(forearms, axis=-1).mean())
 
     def save(self, path: Path) -> None:
@@ -115,7 +120,14 @@ class PreparedCorpus:
             "problems": self.problems,
         }
         legs = {} if self.legs is None else {"legs": self.legs}
-        np.savez(path, positions=self.positions, rotations=self.rotations, clip_starts=self.clip_starts, meta=json.dumps(meta), **legs)
+        np.savez(
+            path,
+            positions=self.positions,
+            rotations=self.rotations,
+            clip_starts=self.clip_starts,
+            meta=json.dumps(meta),
+            **legs,
+        )
 
     @staticmethod
     def load(path: Path) -> "PreparedCorpus":

@@ -23,7 +23,9 @@ _HOW = (
 def take_as_rest(motion: Motion, positions: NDArray[np.float64], rotations: NDArray[np.float64]) -> Motion:
     """The same motion counted from a pose: joints [joints, 3] and global rotations [joints, 4] of it in the file's axes."""
     back = np.broadcast_to(quaternion.conjugate(rotations), motion.rotations.shape)
-    return replace(motion, rest_positions=positions - positions[0], rotations=quaternion.multiply(motion.rotations, back))
+    return replace(
+        motion, rest_positions=positions - positions[0], rotations=quaternion.multiply(motion.rotations, back)
+    )
 
 
 def rest_from_frame(motion: Motion, frame: int, source: Motion, where: str) -> Motion:
@@ -44,7 +46,8 @@ def face_forward(motion: Motion, joints: Mapping[str, str], floor_from_file: NDA
     yaw = np.arctan2(-across[2], across[0])
     ours = quaternion.from_axis_angle(_UP, np.array(-yaw))
     turn = quaternion.multiply(
-        quaternion.conjugate(quaternion.from_matrix(floor_from_file)), quaternion.multiply(ours, quaternion.from_matrix(floor_from_file))
+        quaternion.conjugate(quaternion.from_matrix(floor_from_file)),
+        quaternion.multiply(ours, quaternion.from_matrix(floor_from_file)),
     )
     rest = quaternion.rotate(np.broadcast_to(turn, (*motion.rest_positions.shape[:-1], 4)), motion.rest_positions)
     back = np.broadcast_to(quaternion.conjugate(turn), motion.rotations.shape)
@@ -82,7 +85,9 @@ def check_rest(rest: Points, joints: Mapping[str, str], where: str) -> None:
     across = rest["rightUpperArm"] - rest["leftUpperArm"]
     if _direction(across) @ _RIGHT < 0.7 or np.linalg.norm(across) < 0.1:
         is_so = "lie on each other" if np.linalg.norm(across) < 0.02 else f"lie {_told(across)} of each other"
-        raise refuse(f"the shoulders, {joints['leftUpperArm']} and {joints['rightUpperArm']}, {is_so}", "left and right")
+        raise refuse(
+            f"the shoulders, {joints['leftUpperArm']} and {joints['rightUpperArm']}, {is_so}", "left and right"
+        )
     for side, outward in (("left", -_RIGHT), ("right", _RIGHT)):
         shoulder, elbow, hand = (rest[f"{side}{part}"] for part in ("UpperArm", "LowerArm", "Hand"))
         for near, far in (("UpperArm", "LowerArm"), ("LowerArm", "Hand")):
@@ -93,10 +98,16 @@ def check_rest(rest: Points, joints: Mapping[str, str], where: str) -> None:
                 )
         arm = _direction(hand - shoulder)
         if arm @ _UP > 0.5 or arm @ outward < -0.3:
-            raise refuse(f"the {side} arm, {joints[f'{side}UpperArm']} to {joints[f'{side}Hand']}, points {_told(arm)}", "sideways")
+            raise refuse(
+                f"the {side} arm, {joints[f'{side}UpperArm']} to {joints[f'{side}Hand']}, points {_told(arm)}",
+                "sideways",
+            )
         if _direction(elbow - shoulder) @ _direction(hand - elbow) < 0:
             raise refuse(f"the {side} arm is folded at {joints[f'{side}LowerArm']}", "straight")
         if f"{side}UpperLeg" in rest and f"{side}Foot" in rest:
             leg = _direction(rest[f"{side}Foot"] - rest[f"{side}UpperLeg"])
             if leg @ _UP > -0.7:
-                raise refuse(f"the {side} leg, {joints[f'{side}UpperLeg']} to {joints[f'{side}Foot']}, points {_told(leg)}", "down")
+                raise refuse(
+                    f"the {side} leg, {joints[f'{side}UpperLeg']} to {joints[f'{side}Foot']}, points {_told(leg)}",
+                    "down",
+                )

@@ -36,7 +36,9 @@ class TrackerConfig:
     hand_turn: float = np.radians(_TRACKERS["handTurnDegrees"])  # [rad] about a random axis
     # Of head, left hand and right hand, drawn anew in each frame: [m] per axis; [rad] about a random axis.
     position_noise: tuple[float, float, float] = _by_tracker(_TRACKERS["positionNoise"])
-    rotation_noise: tuple[float, float, float] = tuple(np.radians(_by_tracker(_TRACKERS["rotationNoiseDegrees"])).tolist())
+    rotation_noise: tuple[float, float, float] = tuple(
+        np.radians(_by_tracker(_TRACKERS["rotationNoiseDegrees"])).tolist()
+    )
     hand_tilt_error: float = np.radians(5.0)  # [rad], of the calibration that measures the hands
 
 

@@ -70,7 +70,9 @@ def _inside(circles: ElbowCircles, zero: Tensor, quarter: Tensor, trunk: Trunk) 
     height = spine.norm(dim=-1)[:, None] / (TRUNK_CAPSULE["cap"] * unit)
 
     def is_inside(angle: Tensor) -> Tensor:
-        x, y, z = (centre + torch.cos(angle)[..., None] * towards_zero + torch.sin(angle)[..., None] * towards_quarter).unbind(-1)
+        x, y, z = (
+            centre + torch.cos(angle)[..., None] * towards_zero + torch.sin(angle)[..., None] * towards_quarter
+        ).unbind(-1)
         beyond = y - y.clamp_min(0).minimum(height)
         return x * x + beyond * beyond + z * z < 1
 
