@@ -32,7 +32,7 @@ def _parser() -> argparse.ArgumentParser:
     source = parser.add_mutually_exclusive_group(required=True)
     source.add_argument("--mocap", type=Path, help="folder with .asf/.amc or .bvh files")
     source.add_argument("--generated", action="store_true", help="generated motion instead, to try the pipeline")
-    parser.add_argument("--skeleton", type=Path, help="a skeleton map (docs/evaluation.md)")
+    parser.add_argument("--skeleton", type=Path, help="a skeleton map (docs/accuracy.md)")
     parser.add_argument("--out", type=Path, default=TrainConfig.out)
     parser.add_argument("--fp32", type=Path, help="also writes the networks with 32-bit weights there, to compare with")
     parser.add_argument("--seed", type=int, default=TrainConfig.seed)

@@ -42,8 +42,6 @@ def sections(
         "summary": tables.summary(evaluation),
         "people": tables.people(evaluation),
         "joints": tables.joints(evaluation),
-        "train-test": tables.train_test(evaluation),
-        "against-ik": tables.against_ik(evaluation),
         "disturbed": f"Clips, a seeded choice of the people held out, {disturbed}",
         "loss": tables.loss(evaluation),
         "noise": tables.noise(evaluation),

@@ -15,7 +15,7 @@ Json = dict[str, Any]
 DRIVERS = {"truth": "the true pelvis", "ik": "IK", "learned": "learned"}
 _FIGURES = ("pelvisCm", "kneeCm", "footCm", "skateCmS", "slideCmS", "floatCm", "sinkCm", "agreed")
 _HEAD = (
-    "pelvis [cm]", "knee [cm]", "foot [cm]", "skate [cm/s]", "drawn skate [cm/s]", "floating [cm]", "sinking [cm]", "contact told",
+    "pelvis [cm]", "knee [cm]", "foot [cm]", "skate [cm/s]", "drawn skate [cm/s]", "floating [cm]", "sinking [cm]", "contact agreed",
 )  # fmt: skip
 
 

@@ -50,7 +50,7 @@ FAULTS = {
     "arm span −5 %": Fault(arm_span=-0.05),
     "arm span +5 %": Fault(arm_span=0.05),
 }
-COLUMNS = ("IK", "corrected", "ours", "corrected", "ours, another laboratory", "corrected")
+COLUMNS = ("IK", "corrected", "learned", "corrected", "learned, another laboratory", "corrected")
 
 
 @dataclass(frozen=True)
@@ -137,7 +137,7 @@ def _judged(
     config: NoticedWearConfig,
 ) -> Array:
     """Errors [P, faults, 2, 2] in cm for each person of `group` with enough recording time, with IK and network trained on everyone else; last
-    axes: (IK, ours), (as worn, corrected)."""
+    axes: (IK, learned), (as worn, corrected)."""
     others = tuple(name for name in splits.trainable(tuple(corpus.people)) if name not in group)
     with fitted_kinematics.used(fitted_kinematics.fit(corpus, others, ik)):
         made = _Network(train_learned.train(corpus, others, recipe), recipe.window_seconds)
@@ -233,4 +233,4 @@ def _errors(corpus: PreparedCorpus, worn: _Worn, made: _Network, config: Noticed
 
 def write(rows: list[list[str]], page: Path = PAGE) -> None:
     """Renews the page's table."""
-    page.write_text(renew(page.read_text(), {"noticed": table(["wrong, and not told [cm]", *COLUMNS], rows)}))
+    page.write_text(renew(page.read_text(), {"noticed": table(["unknown error [cm]", *COLUMNS], rows)}))

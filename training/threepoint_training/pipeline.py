@@ -19,7 +19,6 @@ from . import (
     selection,
     train_learned,
     train_paper,
-    training_page,
 )
 from .export import git_commit
 from .fit_networks import Destination, TrainingRun
@@ -44,7 +43,7 @@ def main(config: TrainConfig, console: Console | None = None) -> Rows:
 
 
 def _train(run: TrainingRun) -> Rows:
-    """Networks without the people of each fold, then those of the page; with the page's, golden vectors and docs/training.md are renewed."""
+    """Trains the networks of each fold, then those of the page, and renews the golden vectors with the latter."""
     config = run.config
     folds = cross_validate.usable_folds(run)
     if "cross-validation" in config.stages and folds:
@@ -53,7 +52,6 @@ def _train(run: TrainingRun) -> Rows:
         _train_on_all_subjects(run)
         if config.out.resolve() == (REPOSITORY / "public/models").resolve():
             golden.main(golden.GoldenConfig(config.out))
-            training_page.write(config.out)
     run.report.table(TITLE, ("mean", *LABELS), run.report.rows)
     return run.report.rows
 

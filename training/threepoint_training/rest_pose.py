@@ -16,7 +16,7 @@ _UP = np.array([0.0, 1.0, 0.0])
 _RIGHT = np.array([1.0, 0.0, 0.0])
 _HOW = (
     "Where only the axes differ, give “up” and “forward” in a skeleton map; where the bones lie otherwise, “restFrame” (a frame in T-pose) or "
-    "“restPose” (its angles): docs/evaluation.md"
+    "“restPose” (its angles): docs/accuracy.md"
 )
 
 
@@ -73,7 +73,7 @@ def check_rest(rest: Points, joints: Mapping[str, str], where: str) -> None:
         if np.linalg.norm(rest[far] - rest[near]) < RULES["shortestBone"]:
             raise MocapError(
                 f"{where}: {joints[far]} ({far}) lies on {joints[near]} ({near}) in the rest pose: the file lost a bone of the trunk, and head and "
-                "shoulders would be too low. Take the original (ASF/AMC), or name other joints in a skeleton map: docs/evaluation.md"
+                "shoulders would be too low. Take the original (ASF/AMC), or name other joints in a skeleton map: docs/accuracy.md"
             )
 
     def refuse(what: str, should: str) -> MocapError:
@@ -94,7 +94,7 @@ def check_rest(rest: Points, joints: Mapping[str, str], where: str) -> None:
             if np.linalg.norm(rest[f"{side}{far}"] - rest[f"{side}{near}"]) < RULES["shortestBone"]:
                 raise MocapError(
                     f"{where}: {joints[side + far]} ({side}{far}) lies on {joints[side + near]} ({side}{near}) in the rest pose: the file lost a "
-                    f"bone of the {side} arm. Take the original, or name other joints in a skeleton map: docs/evaluation.md"
+                    f"bone of the {side} arm. Take the original, or name other joints in a skeleton map: docs/accuracy.md"
                 )
         arm = _direction(hand - shoulder)
         if arm @ _UP > 0.5 or arm @ outward < -0.3:

@@ -71,7 +71,7 @@ def read_skeleton_map(path: Path) -> SkeletonMap:
         "restPose",
     }
     if unknown:
-        raise MocapError(f"{path.name}: “{sorted(unknown)[0]}” is not known; see docs/evaluation.md")
+        raise MocapError(f"{path.name}: “{sorted(unknown)[0]}” is not known; see docs/accuracy.md")
     joints = content["joints"]
     for joint in REQUIRED_JOINTS:
         if not isinstance(joints.get(joint), str):
