@@ -80,7 +80,7 @@ def evaluation():
 
 
 def held_out_people(names, learned):
-    """An evaluation of people whom no network has seen, and of no one else."""
+    """Returns an evaluation in which every person is held out."""
     methods = {"ik": report(1.0), "paper": report(1.2), "learned": report(learned)}
     return {"estimators": methods, "people": {name: {"seen": False} | methods for name in names}}
 
@@ -126,7 +126,7 @@ def test_aims_are_met_or_missed_by_the_figures():
 
 def test_laboratories_stand_beside_each_other_with_hands_as_recorded_and_measured():
     home, elsewhere = LABORATORIES
-    # Elbows of their own, so that they are told from the mean of all joints.
+    # The elbows differ from the mean of all joints, so that the test distinguishes their columns.
     home[0]["estimators"]["learned"]["joints"] |= {"leftElbow": {"mean": 3.0}, "rightElbow": {"mean": 2.0}}
     text = accuracy_tables.laboratories(home, elsewhere)
     assert text.splitlines()[0] == "| cm | IK | learned | learned / IK | elbows | jerk: IK | learned |"

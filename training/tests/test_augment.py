@@ -84,7 +84,7 @@ def test_without_any_variation_a_window_is_the_corpus_s_own_or_its_mirror_image(
 def test_hands_of_tilts_that_no_hand_has_are_turned_by_the_usual_one():
     turned = hand_turned_corpus(1.3)
     parts = BodyParts(turned, tuple(turned.people))
-    assert not hand_tilt.believed(parts.tilts).any()
+    assert not hand_tilt.plausible(parts.tilts).any()
     assert_rows_of(
         draw_batch(parts, 60, PLAIN, np.random.default_rng(1)), corpus_rows(turned, lambda _: hand_tilt.usual())
     )
@@ -106,7 +106,7 @@ def test_people_count_alike_at_an_exponent_of_one_however_much_there_is_of_them(
 def test_arms_of_others_move_the_hands_but_not_the_torso():
     plain = draw_batch(PARTS, 200, PLAIN, np.random.default_rng(2))
     mixed = draw_batch(PARTS, 200, replace(PLAIN, recombined=1.0), np.random.default_rng(2))
-    # The same frames are drawn first; mirroring is drawn later, so compare what mirroring leaves alone: the height of the hips.
+    # Both draws select the same frames but mirror differently: compare the height of the hips, which mirroring keeps.
     np.testing.assert_allclose(joints_of(mixed)[:, 5, 1], joints_of(plain)[:, 5, 1], atol=1e-5)
     assert np.abs(hand_positions(mixed.inputs) - hand_positions(plain.inputs)).max() > 0.3
 
@@ -129,7 +129,7 @@ def test_arms_have_the_length_that_the_calibration_knows(recombined):
 
 def test_typed_forearms_are_those_of_the_arms_that_were_drawn():
     """On either side, in a mirror or not: IK's arms have more of the drawn ones' own bones."""
-    untold, told = (
+    without, typed = (
         draw_batch(
             PARTS,
             300,
@@ -143,10 +143,10 @@ def test_typed_forearms_are_those_of_the_arms_that_were_drawn():
         return np.linalg.norm(joints[:, :2] - joints[:, 2:4], axis=-1)
 
     # The frames drawn are the same ones, and so is the truth.
-    own = upper_arms(joints_of(told))
-    np.testing.assert_allclose(own, upper_arms(joints_of(untold)), atol=1e-4)
-    average, believed = (upper_arms(batch.inputs[:, IK_JOINTS].reshape(-1, 6, 3)) for batch in (untold, told))
-    assert np.corrcoef((own - average).ravel(), (believed - average).ravel())[0, 1] > 0.99
+    own = upper_arms(joints_of(typed))
+    np.testing.assert_allclose(own, upper_arms(joints_of(without)), atol=1e-4)
+    average, with_typed = (upper_arms(batch.inputs[:, IK_JOINTS].reshape(-1, 6, 3)) for batch in (without, typed))
+    assert np.corrcoef((own - average).ravel(), (with_typed - average).ravel())[0, 1] > 0.99
 
 
 def test_a_lost_hand_says_so_and_comes_to_rest_beside_the_hips_in_time():
@@ -246,7 +246,7 @@ def test_seated_people_are_lower_and_shaped_the_same():
 
 
 def test_hands_continue_their_forearms_on_average():
-    """Whose arm it is, on which side and in a mirror or not: the hand's −Z then lies along the forearm, but for how far this wrist is bent."""
+    """The hand's −Z lies along the forearm, except for the bend of the wrist, for every person, side and mirror image."""
 
     def bends(corpus):
         batch = draw_batch(

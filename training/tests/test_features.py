@@ -117,7 +117,7 @@ def test_the_ik_joints_within_are_those_of_the_solver(motion):
 
 @pytest.mark.parametrize("rate", [60, 72, 90, 120])
 def test_the_window_means_the_same_at_every_frame_rate(rate):
-    """Of features that change linearly, at a moment that every rate samples."""
+    """The features change linearly, and every rate samples the compared moment."""
     slope = np.random.default_rng(4).normal(size=FEATURES)
     times = np.arange(rate + 1) / rate
     window = windowed(times[:, None] * slope, times, (0.0, 0.1, 0.25))

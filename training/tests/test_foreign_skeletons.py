@@ -141,10 +141,10 @@ def test_bones_folded_along_an_axis_are_no_t_pose(tmp_path: Path, axis: np.ndarr
     (tmp_path / "walk.bvh").write_text(game_bvh(along(axis), *moving())[0])
     with pytest.raises(MocapError) as error:
         prepared(tmp_path)
-    told = str(error.value)
-    assert f"walk.bvh: the rest pose is no T-pose: {sentence}" in told
-    assert "restFrame" in told
-    assert "restPose" in told
+    message = str(error.value)
+    assert f"walk.bvh: the rest pose is no T-pose: {sentence}" in message
+    assert "restFrame" in message
+    assert "restPose" in message
 
 
 @pytest.mark.parametrize("axis", [X, -Y, Z])

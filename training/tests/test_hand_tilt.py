@@ -18,7 +18,7 @@ TILTS = RANDOM.normal(size=(50, 2)) * 0.4
 
 
 def worn_off(corpus, left, right):
-    """The same people with hands turned against their forearms."""
+    """Returns the corpus with its hands rotated against their forearms."""
     turns = quaternion.from_rotation_vector(np.array([[0.0, 0.0, 0.0], left, right]))
     return replace(corpus, rotations=quaternion.multiply(corpus.rotations.astype(np.float64), turns).astype(np.float32))
 
@@ -57,7 +57,7 @@ def test_what_is_measured_of_a_clip_comes_from_the_others():
 
 
 def test_with_exact_tilts_it_does_not_matter_how_hands_are_worn():
-    """But for turns about the forearm, which no calibration of this kind tells."""
+    """Rotations about the forearm are excluded, because this calibration does not measure them."""
     positions, rotations = (
         part[:90].astype(np.float64) for part in (CORPUS.positions[:, [4, 7, 10]], CORPUS.rotations)
     )

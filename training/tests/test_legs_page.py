@@ -31,7 +31,7 @@ def test_people_count_alike_and_another_laboratory_by_itself() -> None:
     assert lines[0][head.index("contact agreed")] == "80 %"
 
 
-def test_the_page_without_a_place_for_them_is_told(tmp_path: Path) -> None:
+def test_a_page_without_marks_is_refused(tmp_path: Path) -> None:
     (tmp_path / "legs.json").write_text('{"people": {}}')
     page = tmp_path / "page.md"
     page.write_text("# Legs\n")

@@ -17,7 +17,7 @@ SEED = 5
 
 @pytest.fixture(scope="module", autouse=True)
 def one_thread():
-    """As the pipeline does; several that wait for each other on a busy machine take minutes for seconds of work."""
+    """Limits torch to one thread, as the pipeline does: on a busy machine several threads take minutes for seconds of work."""
     import torch
 
     before = torch.get_num_threads()

@@ -16,7 +16,7 @@ _TASKS: dict[str, tuple[Task, str]] = {
     "--select": ("selection", "the recipe judged by the selection metric, and compared with earlier ones"),
     "--noticed": (
         "noticed wear",
-        "what minutes of wearing tell of a wrong calibration, of people held out in four groups, for docs/accuracy.md",
+        "the estimation of calibration errors from minutes of motion, on people held out in four groups, for docs/accuracy.md",
     ),
     "--lockbox": (
         "lockbox",
@@ -69,7 +69,7 @@ def _parser() -> argparse.ArgumentParser:
         help="leave the paper's own protocol out; what an earlier run found stays",
     )
     parser.add_argument(
-        "--refit-kinematics", action="store_true", help="also fit the page's body proportions and IK anew"
+        "--refit-kinematics", action="store_true", help="also fit the page's body proportions and IK parameters"
     )
     for option, (_, what) in _TASKS.items():
         parser.add_argument(

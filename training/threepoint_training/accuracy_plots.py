@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from .accuracy_tables import JOINTS, held_out
 
 Json = dict[str, Any]
-# Colours of Okabe and Ito, told apart with any kind of colour vision; marks differ as well.
+# The palette of Okabe and Ito, which is safe for colour-blind readers; marks differ as well.
 COLOURS = {"ik": "#D55E00", "paper": "#009E73", "learned": "#0072B2"}
 MARKS = {"ik": "s", "paper": "^", "learned": "o"}
 NAMES = {"ik": "IK", "paper": "paper", "learned": "learned"}

@@ -1,4 +1,4 @@
-"""The tables of docs/accuracy.md from what `npm run evaluate` measured; each is Markdown between two marks of the page."""
+"""Formats the results of `npm run evaluate` as the Markdown tables of docs/accuracy.md, each between two marks."""
 
 import re
 from collections.abc import Callable, Iterable
@@ -14,30 +14,30 @@ JOINTS = {
     "pelvis": "pelvis",
 }
 Json = dict[str, Any]
-# Evaluations of the same people with nothing told of their hands, and with hands as the guided calibration measures them.
+# Evaluations of the same people without calibrated hands, and with hands as the guided calibration measures them.
 ByHands = tuple[Json, Json]
 
 
 def held_out(evaluation: Json) -> Json:
-    """The figures of people on whom no network was trained; of all people where there are none such."""
+    """Returns the figures of unseen people, or those of all people if every person was trained on."""
     return evaluation.get("unseen", evaluation["estimators"])
 
 
 def people_held_out(evaluation: Json) -> list[str]:
-    """Names of the people on whom no network was trained; all names where there are none such."""
+    """Returns the names of unseen people, or all names if every person was trained on."""
     names = [name for name, person in evaluation["people"].items() if not person["seen"]]
     return sorted(names or evaluation["people"])
 
 
 def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    """Markdown, the first column to the left, the others to the right."""
+    """Returns a Markdown table with its first column aligned left and the others aligned right."""
     head = list(head)
     lines = [head, ["---", *["---:"] * (len(head) - 1)], *(list(row) for row in rows)]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
 
 def signed(value: float, digits: int = 2) -> str:
-    """+0.12, −0.05."""
+    """Formats a number with its sign: +0.12, −0.05."""
     return f"{'−' if round(value, digits) < 0 else '+'}{abs(value):.{digits}f}"
 
 
@@ -70,7 +70,7 @@ def summary(evaluation: Json) -> str:
 
 
 def people(evaluation: Json) -> str:
-    """The errors of each person held out."""
+    """Returns the table of errors by person held out."""
 
     def row(name: str) -> list[str]:
         errors = {method: _mpjpe_cm(evaluation["people"][name][method]) for method in METHODS}
@@ -92,7 +92,7 @@ def joints(evaluation: Json) -> str:
 
 
 def _losses(evaluation: Json) -> list[tuple[str, dict[str, Json]]]:
-    """By length of the loss, the last as those of a headset's hand tracking: what to call it, and each method's figures."""
+    """Returns a label and each method's figures for every length of loss; hand tracking's lengths come last."""
     estimators = evaluation["robustness"]["estimators"]
     fixed = [
         (f"{loss['milliseconds']} ms", {method: estimators[method]["losses"][i] for method in METHODS})
@@ -103,7 +103,7 @@ def _losses(evaluation: Json) -> list[tuple[str, dict[str, Json]]]:
 
 
 def noise(evaluation: Json) -> str:
-    """Error, jerk and trembling under the simulated noise, then under the strong one."""
+    """Returns the table of error, jerk and trembling under the simulated noise and under white noise."""
     names = ("as measured: headset 0.05 mm and 0.03°, hands 0.15 mm and 0.05°", "white: 0.3 mm and 0.1°")
 
     def cell(method: str, number: int) -> str:
@@ -160,7 +160,7 @@ def offsets(evaluation: Json) -> str:
 
 
 def measures(evaluation: Json) -> str:
-    """Wrong calibrations: eye height and arm span."""
+    """Returns the table of errors added by a wrong eye height or arm span."""
     estimators = evaluation["robustness"]["estimators"]
     rows = []
     for key, label in (("heights", "eye height"), ("spans", "arm span")):
@@ -180,7 +180,7 @@ def rates(evaluation: Json) -> str:
 
 
 def precision(evaluation: Json) -> str | None:
-    """8-bit weights against 32-bit ones; None where those were not measured."""
+    """Returns the table of 8-bit against 32-bit weights, or None if the latter were not measured."""
     if "fp32" not in evaluation:
         return None
     int8 = held_out(evaluation)
@@ -198,7 +198,7 @@ def precision(evaluation: Json) -> str | None:
 
 
 def laboratories(home: ByHands, elsewhere: ByHands) -> str:
-    """People held out beside another laboratory's, by what is known of their hands."""
+    """Returns the table of people held out and of another laboratory, with and without calibrated hands."""
     names, others = (", ".join(people_held_out(measured[0])) for measured in (home, elsewhere))
     labelled = {
         f"{names}, hands not calibrated": home[0],
@@ -220,22 +220,22 @@ def _mpjpe_cm(report: Json) -> float:
 
 
 def _elbows_cm(figures: Json) -> float:
-    """The mean error of both."""
+    """Returns the mean error of both elbows [cm]."""
     return (figures["joints"]["leftElbow"]["mean"] + figures["joints"]["rightElbow"]["mean"]) / 2
 
 
 def _row(what: str, aim: str, measured: str, met: bool | None) -> list[str]:
-    """A row of `aims`. What is printed is what is judged: callers round first."""
+    """Returns a row of `aims`; callers round first, so that the verdict agrees with the printed value."""
     return [what, aim, measured, {True: "met", False: "missed", None: "not measured"}[met]]
 
 
 def _mean_over_people(people: list[Json], method: str, error: Callable[[Json], float]) -> float:
-    """The mean [cm] of an error, each person weighing the same."""
+    """Returns the mean of an error [cm] with equal weight for each person."""
     return sum(error(person[method]) for person in people) / len(people)
 
 
 def aims(evaluation: Json, contracts: dict[str, Json]) -> str:
-    """What was aimed at, what was measured, and whether that is enough."""
+    """Returns the table of aims, measured values and verdicts."""
     figures, robust = held_out(evaluation), evaluation["robustness"]["estimators"]["learned"]
     ours = figures["learned"]
     judged = [person for person in evaluation["people"].values() if not person["seen"]] or list(
@@ -295,7 +295,7 @@ def aims(evaluation: Json, contracts: dict[str, Json]) -> str:
 
 
 def renew(page: str, sections: dict[str, str | None]) -> str:
-    """The page with what stands between `<!-- NAME -->` and `<!-- /NAME -->` replaced; None leaves a section as it is."""
+    """Replaces the text between `<!-- NAME -->` and `<!-- /NAME -->` in the page; None keeps a section."""
     for name, content in sections.items():
         pattern = re.compile(rf"(<!-- {re.escape(name)} -->\n).*?(<!-- /{re.escape(name)} -->)", re.DOTALL)
         if len(pattern.findall(page)) != 1:

@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 TORSO = ("hips", "chest", "neck", "head")
 ARM = ("UpperArm", "LowerArm", "Hand")
-# Of the corpus [Hz].
+# The frame rate of the corpus [Hz].
 FRAME_RATE = 60
 
 
@@ -109,13 +109,13 @@ class BodyParts:
             self.wrist_turns.append(wrist * mirror.ROTATION if side == "left" else wrist)
         forearms = hand_tilt.ForearmMeans(corpus, people)
         own = np.stack([forearms.of(name) for name in people_by_index])
-        # Of each person's left and right hand [P, 2, 2], as a right hand's.
+        # Tilts of each person's left and right hand [P, 2, 2], both as of a right hand.
         self.tilts = np.stack([own[:, 0] * mirror.TILT, own[:, 1]], axis=1)
         self.arm_length = [
             np.linalg.norm(arm[:, 1] - arm[:, 0], axis=-1) + np.linalg.norm(arm[:, 2] - arm[:, 1], axis=-1)
             for arm in self.arms
         ]
-        # Of the left and the right forearm [F, 2], of their arms.
+        # Shares of the left and the right forearm in their arm length [F, 2].
         self.forearm_shares = np.stack(
             [
                 np.linalg.norm(arm[:, 2] - arm[:, 1], axis=-1) / length
@@ -162,7 +162,7 @@ class _Bodies:
 
     parts: BodyParts
     newest: NDArray[np.int64]
-    # Of the left and of the right arm: from which frames, and from which side of the person there.
+    # The source frames of the left and the right arm, and the side of the person there.
     arm_frames: tuple[NDArray[np.int64], NDArray[np.int64]]
     arm_sides: tuple[NDArray[np.int64], NDArray[np.int64]]
     # Eye height and span [N, 2], length of both arms [N], and by how much a chair lowers them [N]; all [m].
@@ -201,7 +201,7 @@ class _Bodies:
         return np.stack([left[:, 1], right[:, 1], left[:, 0], right[:, 0], torso[:, 1], torso[:, 0]], axis=1)
 
     def tilts(self) -> Array:
-        """Of the left and the right hand [N, 2, 2]: those of the people whose arms they are."""
+        """The tilts of the left and the right hand [N, 2, 2], from the people that the arms are taken from."""
         left, right = (
             self.parts.tilts[self.parts.person[frames], sides]
             for frames, sides in zip(self.arm_frames, self.arm_sides, strict=True)
@@ -315,7 +315,7 @@ def _calibrated(bodies: _Bodies, tracking: _Tracking, config: AugmentConfig, ran
     )
     tilts = tracking.images(bodies.tilts(), mirror.tilts(bodies.tilts()))
     tilts = measured_tilts(tilts, tracking.worn[:, 1:], config.trackers, random)
-    body = body.with_hands(np.where(hand_tilt.believed(tilts)[..., None], tilts, hand_tilt.usual()))
+    body = body.with_hands(np.where(hand_tilt.plausible(tilts)[..., None], tilts, hand_tilt.usual()))
     forearms = (
         tracking.images(bodies.forearms(), bodies.forearms()[:, ::-1])
         + random.normal(size=(count, 1)) * config.forearm_error

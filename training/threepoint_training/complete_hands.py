@@ -1,4 +1,4 @@
-"""Where unseen hands are taken to be: held where they were seen last, then on their way to rest beside the hip.
+"""Estimates positions of unseen hands: held at their last tracked position, then moved to rest at the hip.
 
 The twin of src/threepoint/core/estimation/complete-hands.ts for hands that stay lost.
 """

@@ -1,4 +1,4 @@
-"""Cross-validation: networks trained without the people of each fold, on whom the reported errors are measured, and the paper's own protocol."""
+"""Cross-validation: trains networks without the people of each fold, reports errors on these, and runs the paper's protocol."""
 
 import json
 import re

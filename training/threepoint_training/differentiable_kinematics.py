@@ -81,7 +81,7 @@ class DifferentiableKinematics:
         self.x = torch.tensor([1.0, 0.0, 0.0], dtype=dtype)
         self.thorax = self.rest["upperChest"] + self.rest["neck"]
         self.lower_back_length = (self.rest["spine"] + self.rest["chest"]).norm()
-        # Of shoulders at rest, their middle from the neck's base.
+        # The midpoint of the shoulders at rest, relative to the neck's base.
         left, right = (self.rest[f"{side}Shoulder"] + self.rest[f"{side}UpperArm"] for side in ("left", "right"))
         self.shoulders_from_neck = (left + right) / 2 - self.rest["neck"]
         self.shoulder_width = (right - left)[0]
@@ -91,7 +91,7 @@ class DifferentiableKinematics:
         return self.fit(corrections, inputs, config)[0]
 
     def fit(self, corrections: Tensor, inputs: Tensor, config: FittingConfig) -> tuple[Tensor, Tensor]:
-        """As a call; and which elbows the swivel limiter keeps out of the trunk [N, 2]."""
+        """Returns the fitted joints, and which elbows the swivel limiter keeps out of the trunk [N, 2]."""
         axes, ik_joints = _in_chest_frame(inputs)
         chest_features, arm = inputs[:, -CHEST_FEATURES:], inputs[:, ARM_LENGTH, None, None]
         given = _FittingInput(
@@ -212,7 +212,7 @@ class DifferentiableKinematics:
 
 
 def _leaned(direction: Tensor, length: Tensor, offset: Tensor) -> Tensor:
-    """Where the end of a bone in this direction [N, 3], unit, points when it is moved by an offset [N, 3], without what of it leads back along it."""
+    """Returns the direction [N, 3] of a bone after its end moves by an offset, without the offset's part against the bone."""
     return _unit(offset + direction * (length - _dot(offset, direction).clamp_max(0.0)))
 
 

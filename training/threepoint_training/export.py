@@ -28,7 +28,7 @@ JOINTS_IN_WORDS = "left elbow, right elbow, left shoulder, right shoulder, chest
 
 @dataclass(frozen=True)
 class Provenance:
-    """Where a model comes from."""
+    """The origin of a model."""
 
     corpus: str
     corpus_hash: str

@@ -15,7 +15,7 @@ from .skeleton import Body, body_from_calibration
 
 Array = NDArray[np.float64]
 
-# Where the search starts and what ridge pulls towards: an upright trunk, elbows down, back and a little outward.
+# The initial parameters, which are the target of the ridge penalty: an upright trunk, elbows down, back and a little outward.
 PRIOR: dict[str, Any] = {
     "yaw": [0.3, 0.2],
     "upper": {"forward": [0, 0.25, 0.3, 0.1, 0, 0], "sideways": [0.2, 0.1, 0]},

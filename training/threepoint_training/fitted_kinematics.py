@@ -1,4 +1,4 @@
-"""Body proportions and constants of IK fitted without the people held out, so that errors on these are of people whom nothing was fitted on."""
+"""Fits body proportions and IK parameters without the people held out, so that errors are those of new people."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

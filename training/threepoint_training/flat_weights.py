@@ -62,7 +62,7 @@ def flat_tensors(model: onnx.ModelProto) -> dict[str, NDArray[Any]]:
 
 
 def _narrowed(values: NDArray[Any], type_name: str) -> NDArray[Any]:
-    """The same numbers in fewer bytes; raises where they do not fit."""
+    """Converts values to a smaller type; raises if a value does not fit."""
     narrow = values.astype(type_name)
     np.testing.assert_array_equal(narrow, values)
     return narrow

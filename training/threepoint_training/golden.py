@@ -16,7 +16,7 @@ from .features import frame_features
 from .generated_motion import generate_clip
 from .golden_bvh import bvh_vectors
 from .golden_mocap import mocap_vectors
-from .notice_hand_tilts import ToldTilts
+from .notice_hand_tilts import CalibratedTilts
 from .paper_features import paper_features
 from .prepared_corpus import Person
 from .residual import network_input
@@ -30,17 +30,17 @@ GOLDEN = Path(__file__).parents[2] / "tests/golden"
 
 @dataclass(frozen=True)
 class GoldenBody:
-    """Measures [m], and the tilts of the hands that are measured; a forearm that is not told is None."""
+    """The measurements of a body [m], and the measured hand tilts; an unknown forearm is None."""
 
     eye_height: float
     arm_span: float
     forearm: float | None = None
     tilts: dict[str, tuple[float, float]] = field(default_factory=dict)
 
-    def told(self) -> ToldTilts:
-        """What its calibration tells of its hands."""
+    def calibrated(self) -> CalibratedTilts:
+        """The hand tilts of the calibration."""
         sides = ("left", "right")
-        return ToldTilts(
+        return CalibratedTilts(
             np.array([self.tilts.get(side, (0.0, 0.0)) for side in sides]),
             np.array([side in self.tilts for side in sides]),
         )
@@ -51,13 +51,13 @@ class GoldenBody:
         return body if self.forearm is None else body.with_forearms(np.full(2, self.forearm))
 
     def measures(self) -> dict[str, Any]:
-        """As the page has them, without tilts."""
+        """The body measurements in the page's format, without tilts."""
         return {"eyeHeight": self.eye_height, "armSpan": self.arm_span} | (
             {} if self.forearm is None else {"forearm": self.forearm}
         )
 
     def calibration(self) -> dict[str, Any]:
-        """As the page has it."""
+        """The calibration in the page's format."""
         hands = {side: {"pitch": pitch, "yaw": yaw} for side, (pitch, yaw) in self.tilts.items()}
         return self.measures() | ({"handTilts": hands} if hands else {})
 
@@ -97,7 +97,7 @@ def feature_vectors() -> list[dict[str, Any]]:
         times = np.arange(FRAMES) * STRIDE / 60 + random.uniform(0, 0.01, FRAMES)
         metres = notice_hand_tilts.travel(positions)
         body = notice_hand_tilts.with_noticed_hands(
-            person.body(), positions, rotations, metres, told=person.told(), seen=seen
+            person.body(), positions, rotations, metres, calibrated=person.calibrated(), seen=seen
         )
         vector, ik_joints = frame_features(positions, rotations, body, seen)
         floor_joints = _in_floor_frame(ik_joints, positions, rotations)
@@ -162,7 +162,7 @@ def _hands_out_of_reach(positions: Array, ik_joints: Array, body: Body, random: 
     return moved
 
 
-# Where hands are, and the standard deviation of elbows' and of other joints' corrections [eye heights].
+# Positions of the hands, and standard deviations of the corrections of elbows and of other joints [eye heights].
 SITUATIONS: dict[str, tuple[Callable[[Array, Array, Body, np.random.Generator], Array], float, float]] = {
     "hands as tracked": (lambda positions, *_: positions, 0.015, 0.015),
     "hands before the trunk": (_hands_before_the_trunk, 0.2, 0.015),

@@ -10,7 +10,7 @@ import numpy as np
 from . import prepare, quaternion, recordings
 from .synthetic_skeletons import GAME, IDENTITY, along, angles_of, game_bvh, write_asf_amc, write_cmuconvert_bvh
 
-# Of every clip; the page is held against every nth frame.
+# Frames per clip, and the stride at which the page is compared.
 FRAMES, STRIDE = 76, 6
 
 

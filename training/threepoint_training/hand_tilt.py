@@ -56,7 +56,7 @@ def normalised(rotations: Array, tilts: Array | None) -> Array:
     )
 
 
-def believed(tilts: Array) -> NDArray[np.bool_]:
+def plausible(tilts: Array) -> NDArray[np.bool_]:
     """Which measured tilts [..., 2] are plausible [...]: no steeper than hands are held; beyond that the wrist was bent."""
     return np.linalg.norm(tilts, axis=-1) <= LIMB["steepestHandTilt"]
 

@@ -39,7 +39,7 @@ def _cells(people: list[Json], driver: str) -> list[str]:
 
 
 def drivers(legs: Json) -> str:
-    """The table by the pelvis that legs hang from: means over people, each weighing the same; evaluation-only subjects in rows of their own."""
+    """Returns the table by source of the pelvis: means over people, equally weighted; evaluation-only subjects have separate rows."""
     people = legs["people"]
     groups = {"": trainable(list(people)), ", another laboratory": evaluation_only(list(people))}
     rows = [

@@ -1,4 +1,4 @@
-"""The lockbox: the error of the page's learned network on people by whom nothing was chosen, measured for a release.
+"""Evaluates the page's learned network for a release, on the lockbox people, who were not used in any choice.
 
 `npm run train -- --mocap DIR --lockbox` calls this. Each evaluation is logged, so that nobody can choose by repeating it.
 """

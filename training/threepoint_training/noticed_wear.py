@@ -57,7 +57,7 @@ COLUMNS = ("IK", "corrected", "learned", "corrected", "learned, another laborato
 class NoticedWearConfig:
     """Groups that are held out, who has enough recording time, and which frames and simulated wearers are used."""
 
-    # So many groups are held out in turn.
+    # The number of groups that are held out in turn.
     groups: int = 4
     # People with less recording time are left out: it takes minutes to notice anything.
     fewest_minutes: float = 1.3

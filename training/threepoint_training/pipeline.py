@@ -106,7 +106,7 @@ def _select(run: TrainingRun) -> Rows:
 
 
 def _notice(run: TrainingRun) -> Rows:
-    """Judges what minutes of wearing tell of a wrong calibration; renews that table of docs/accuracy.md."""
+    """Evaluates the estimation of calibration errors from minutes of motion; renews its table in docs/accuracy.md."""
     noticed_wear.write(
         noticed_wear.main(run.corpus, run.config.learned, run.config.ik, report=run.report.console.print)
     )

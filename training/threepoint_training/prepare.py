@@ -24,7 +24,7 @@ RATE_HZ: int = RULES["rateHz"]
 TELEPORT_SPEED: float = RULES["teleportSpeed"]
 SHORTEST_SEGMENT_SECONDS: float = RULES["shortestPieceSeconds"]
 
-# Where a headset's origin (between the eyes) sits from the head joint, in the head's frame: up and forward [m].
+# The headset's origin (between the eyes) relative to the head joint, in the head's frame: up and forward [m].
 EYES_FROM_HEAD_JOINT = np.array(RULES["eyesFromHeadJoint"])
 
 # The wrist's −Z points to the knuckles, +Y out of the back of the hand; in T-pose the knuckles point sideways, palms down.
@@ -288,8 +288,8 @@ class _Reader:
             self.rests[file] = _motion(replace(source, path=file), self.skeletons, None)
         return rest_from_frame(motion, frame, self.rests[file], f"{source.path.name}, {file.name}")
 
-    def told(self) -> list[str]:
-        """What was put right, a sentence for all files that it is true of."""
+    def messages(self) -> list[str]:
+        """Returns a message for each correction, with the files that it was applied to."""
         return [
             f"{files[0]}{f' and {len(files) - 1} more' if len(files) > 1 else ''}: {note}"
             for note, files in self.notes.items()
@@ -348,7 +348,7 @@ def main(config: PrepareConfig, progress: Callable[[str], None] = lambda _: None
         people=people,
         rate_hz=RATE_HZ,
         corpus_hash=digest,
-        problems=(*reader.told(), *problems),
+        problems=(*reader.messages(), *problems),
         legs=np.concatenate(legs),
     )
     if cached:

@@ -19,7 +19,7 @@ LEG_JOINTS = (
     "rightUpperLeg", "rightLowerLeg", "rightFoot", "rightToes",
 )  # fmt: skip
 ROTATIONS = ("head", "leftHand", "rightHand")
-# Of the same three among JOINTS.
+# The indices of the tracked joints in JOINTS.
 TRACKED_COLUMNS = [JOINTS.index(joint) for joint in ROTATIONS]
 
 # The six joints that no tracker sees, in the order of every tensor (src/threepoint/core/body/joints.ts).
@@ -39,7 +39,7 @@ def chest_axes_of(
     x = x / np.linalg.norm(x, axis=-1, keepdims=True)
     up = joints["neck"] - joints["chest"]
     up = up - np.sum(up * x, axis=-1, keepdims=True) * x
-    # A thorax along the line of the shoulders tells no direction.
+    # A thorax along the line of the shoulders has no direction.
     up = up / np.maximum(np.linalg.norm(up, axis=-1, keepdims=True), 1e-9)
     return x, up, np.cross(x, up)
 

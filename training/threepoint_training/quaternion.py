@@ -125,7 +125,7 @@ def rotation_between(a: Array, b: Array) -> Array:
 
 
 def continuous(q: Array) -> Array:
-    """The same rotations with signs chosen so that neighbours along the first axis lie in the same hemisphere."""
+    """Flips signs so that neighbours along the first axis lie in the same hemisphere."""
     flips = np.sign(np.sum(q[1:] * q[:-1], axis=-1))
     flips = np.where(flips == 0, 1.0, flips)
     return q * np.concatenate([np.ones_like(flips[:1]), np.cumprod(flips, axis=0)])[..., None]

@@ -25,7 +25,7 @@ COLUMNS = tuple(
 
 @dataclass(frozen=True)
 class RecordingsConfig:
-    """Where the motion is, where the recordings go, and how the trackers err."""
+    """The source of the motion, the folder of the recordings, and the tracker errors."""
 
     prepare: prepare.PrepareConfig
     out: Path
@@ -79,16 +79,16 @@ def write(corpus: PreparedCorpus, config: RecordingsConfig) -> Path:
 
 
 def _measures(corpus: PreparedCorpus, name: str, seed: int) -> dict[str, float]:
-    """Of a person [m]; the forearm as its owner would type it."""
+    """Returns a person's measurements [m]; the forearm has the error of a typed value."""
     person = corpus.people[name]
     error = np.random.default_rng([seed, 3, zlib.crc32(name.encode())]).normal() * FOREARM_ERROR
     return {"eyeHeight": person.eye_height, "armSpan": person.arm_span, "forearm": corpus.forearm(name) + error}
 
 
 def _as_calibrated(tilts: NDArray[np.float64]) -> dict[str, dict[str, float]]:
-    """Tilts [2, 2] as the page's calibration has them, without those that it does not believe."""
-    sides = zip(("left", "right"), tilts.tolist(), hand_tilt.believed(tilts), strict=True)
-    return {side: {"pitch": pitch, "yaw": yaw} for side, (pitch, yaw), believed in sides if believed}
+    """Converts tilts [2, 2] to the page's calibration, without implausible ones."""
+    sides = zip(("left", "right"), tilts.tolist(), hand_tilt.plausible(tilts), strict=True)
+    return {side: {"pitch": pitch, "yaw": yaw} for side, (pitch, yaw), known in sides if known}
 
 
 def main(config: RecordingsConfig) -> Path:

@@ -25,7 +25,7 @@ FRAMES = ("all", "active")
 
 @dataclass(frozen=True)
 class PersonErrors:
-    """Mean errors of one person in cm by joint [6], of IK and of ours, over some frames."""
+    """Mean errors by joint [6] of IK and of the learned network, for one person over some frames [cm]."""
 
     frames: int
     of_ik: Array

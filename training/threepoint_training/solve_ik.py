@@ -117,7 +117,7 @@ def _lean_trunk(points: _Points, turn: Array, body: Body, k: dict[str, Any]) -> 
     """2. Lean: the frames of thorax and lower back [F, 3, 3], axes as columns."""
     middle, left, right = points.middle, points.left, points.right
     crouch = _within(1 - points.headset[:, 1] / body.eye_height[..., 0], LIMITS["crouch"])
-    # Of the gaze, the head's −Z, and of its right axis the vertical parts.
+    # The vertical components of the gaze (the head's −Z) and of the head's right axis.
     looking_down, right_up = points.head[..., 1, 2], points.head[..., 1, 0]
     sagittal = np.stack(
         [np.ones_like(crouch), looking_down, crouch, -middle[:, 2], -middle[:, 1], looking_down * crouch], -1

@@ -104,7 +104,7 @@ def write_asf_amc(folder: Path, angles: dict[str, Array]) -> None:
 
 
 def write_cmuconvert_bvh(path: Path, angles: dict[str, Array], lost: bool = True) -> None:
-    """The same motion as cmuconvert has it; `lost`: with the bones lost that it loses."""
+    """Writes the motion in cmuconvert's format; `lost`: without the bone lengths that it loses."""
     ways = {name: way for name, _, way in BONES}
     joints = []
     for name, bone, parent, way in _CMUCONVERT:

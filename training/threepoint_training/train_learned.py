@@ -15,7 +15,7 @@ from .chest_features import CHEST_FEATURES
 from .differentiable_kinematics import DifferentiableKinematics
 from .features import FEATURES, frame_features
 from .model import CorrectionNetwork
-from .notice_hand_tilts import NOTHING_TOLD, ToldTilts
+from .notice_hand_tilts import NO_CALIBRATED_TILTS, CalibratedTilts
 from .prepared_corpus import PreparedCorpus
 from .residual import OUTPUTS, network_input, residual
 from .simulate_trackers import TrackerConfig, Wearer, draw_wearer, measured_tilts, simulate
@@ -91,9 +91,9 @@ def held_out(
             positions, rotations = simulate(
                 corpus.positions[frames], corpus.rotations[frames], wearer, _TRACKERS, random
             )
-            told = _measured(forearms.elsewhere(clip), wearer, name) if hands_measured else NOTHING_TOLD
+            calibrated = _measured(forearms.elsewhere(clip), wearer, name) if hands_measured else NO_CALIBRATED_TILTS
             turned = notice_hand_tilts.with_noticed_hands(
-                body, positions, rotations, notice_hand_tilts.travel(positions), told=told
+                body, positions, rotations, notice_hand_tilts.travel(positions), calibrated=calibrated
             )
             vector, _ = frame_features(positions, rotations, turned)
             inputs = network_input(vector, np.arange(len(positions)) / corpus.rate_hz, window_seconds)
@@ -109,10 +109,10 @@ def _random_of(name: str, *stream: int) -> np.random.Generator:
     return np.random.default_rng([_HELD_OUT_SEED, *stream, zlib.crc32(name.encode())])
 
 
-def _measured(tilts: Array, wearer: Wearer, name: str) -> ToldTilts:
+def _measured(tilts: Array, wearer: Wearer, name: str) -> CalibratedTilts:
     """The calibration's measurement of hands with these tilts [2, 2], where it is plausible; one error for all clips of a person."""
     measured = measured_tilts(tilts, wearer.hand_turns, _TRACKERS, _random_of(name, 2))
-    return ToldTilts(measured, hand_tilt.believed(measured))
+    return CalibratedTilts(measured, hand_tilt.plausible(measured))
 
 
 def fitted_errors_cm(output: NDArray[np.float32], people: HeldOut) -> NDArray[np.float64]:
