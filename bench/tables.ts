@@ -24,7 +24,7 @@ export function tellAllocations({ bytes: { update, threeAlone, ...frames } }: Al
   for (const [name, bytes] of measured) row(name, [kilobytes(bytes), kilobytes(ofThree[name])]);
 }
 
-/** Where it comes from, down to where the rest is small change. */
+/** Prints the call sites with the most allocated bytes. */
 export function tellSites({ sites }: Allocations): void {
   for (const [name, places] of Object.entries(sites)) {
     console.log(`\n${name}: the functions that leave most [bytes a frame]`);

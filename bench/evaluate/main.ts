@@ -28,7 +28,7 @@ const { values: options } = parseArgs({
   },
 });
 
-/** What estimators are told of a clip's person: height and span, and on request what else a calibration can know. */
+/** Returns the calibration of a clip: eye height and span, and on request hand tilts and forearm. */
 const toldOf = (index: RecordingIndex, clip: RecordingIndex['clips'][number]) =>
   calibrationOf(index, clip, { hands: options['hands-measured'], forearm: options['forearm-typed'] });
 
@@ -40,12 +40,12 @@ function progress(share: number, what = 'robustness'): void {
   process.stderr.write(share < 1 ? `\r  ${what} ${Math.round(100 * share)} %   ` : '\r\x1b[K');
 }
 
-/** What the evaluation is asked to read, and whom it is about. */
+/** The recordings, networks and people of an evaluation. */
 interface Corpus {
   readonly recordings: string;
   readonly index: ReturnType<typeof readIndex>;
   readonly regressors: Awaited<ReturnType<typeof loadRegressors>>;
-  /** The same networks before they were made int8; null: not asked for. */
+  /** The networks before quantisation; null: not requested. */
   readonly exactRegressors: Awaited<ReturnType<typeof loadRegressors>> | null;
   readonly people: readonly string[];
   /** People that a network was trained on. */

@@ -48,7 +48,7 @@ export const reachReport = ({ wrists, beyond, furthest }: Reach) => ({
   furthestCm: rounded(furthest * 100, 2),
 });
 
-/** A sentence about all, and about the people of whom it is true of more than one wrist in twenty. */
+/** Returns a sentence on all people, and on those with more than 5 % of wrists out of reach. */
 export function reachText(byPerson: ReadonlyMap<string, Reach>): string {
   const told = (reach: Reach) => {
     const { beyondShare, furthestCm } = reachReport(reach);

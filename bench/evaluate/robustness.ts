@@ -151,7 +151,7 @@ interface RobustnessOptions<Method, Listed> {
   load(clip: Listed): RobustnessClip;
   readonly regressors: ReadonlyMap<MeasuredMethod, PoseRegressor>;
   readonly rateHz: number;
-  /** Hears the share of the work that is done. */
+  /** Receives the share of the work that is done. */
   told?(share: number): void;
 }
 

@@ -29,7 +29,7 @@ function packet(): Uint8Array {
   return bytes;
 }
 
-/** Of the time in a pose packet: its first bit, and how many it has (src/rooms/README.md). */
+/** The first bit of the time in a pose packet, and its number of bits (src/rooms/README.md). */
 const timeAt = 13;
 const timeBits = 14;
 
@@ -136,14 +136,14 @@ class Client {
   readonly #token: string;
   readonly #socket: WebSocket;
   readonly #bytes: Uint8Array;
-  /** When each packet left, by the time it tells [ms]. */
+  /** The time at which each packet was sent, by its packet time [ms]. */
   readonly #sent = new Float64Array(2 ** timeBits);
   readonly #joined: Promise<void>;
   #join: () => void = () => undefined;
   #seat: number;
-  /** What the relay's clock is ahead of ours [ms]. */
+  /** The offset of the relay's clock to the local clock [ms]. */
   #ahead = 0;
-  /** Of the plain relay: whose pose comes with the next binary message, and how long the text was that said so [bytes]. */
+  /** For the plain relay: the sender of the next binary message, and the length of the text that announced it [bytes]. */
   #from = 0;
   #announced = 0;
 
@@ -312,7 +312,7 @@ class Crowd {
   }
 }
 
-/** Rooms of three play the ball game; others a small game of the tests, as no game of ours has as many seats. */
+/** Rooms of three play the ball game; others play a small test game, because no shipped game has as many seats. */
 const kindFor = (people: number): string => (people === 3 ? ballKind : countingKind);
 
 let crowd: Crowd | null = null;

@@ -1,8 +1,8 @@
-/** What the processes of the relay bench tell each other. */
+/** Messages between the processes of the relay bench. */
 
 export type RelaySort = 'ours' | 'plain';
 
-/** To the clients, first: whom they are to speak to. */
+/** The first message to the clients: the relay to connect to. */
 export interface Meeting {
   readonly relay: RelaySort;
   readonly port: number;
@@ -23,7 +23,7 @@ export interface Load {
   readonly seconds: number;
 }
 
-/** Of the poses that left in the measured seconds alone. */
+/** Figures of the poses that were sent in the measured seconds. */
 export interface Heard {
   /** From a pose's sending to its arrival at one of the others [ms]: the median over the parts of the measurement. */
   readonly p50Ms: number;

@@ -39,9 +39,9 @@ const few = 24;
 
 /** How a search is done. */
 export interface SearchOptions {
-  /** Of each load. */
+  /** The duration of each load. */
   readonly seconds: number;
-  /** So many and no search; null: the most. */
+  /** A fixed number of rooms without a search; null: the maximum is searched. */
   readonly rooms: number | null;
   /** The search ends where the next count would be nearer than this share of it. */
   readonly nearness: number;
