@@ -29,7 +29,7 @@ const { values: options } = parseArgs({
 });
 
 /** Returns the calibration of a clip: eye height and span, and on request hand tilts and forearm. */
-const toldOf = (index: RecordingIndex, clip: RecordingIndex['clips'][number]) =>
+const clipCalibration = (index: RecordingIndex, clip: RecordingIndex['clips'][number]) =>
   calibrationOf(index, clip, { hands: options['hands-measured'], forearm: options['forearm-typed'] });
 
 type Exact = Partial<Record<MeasuredMethod, Report>>;
@@ -85,7 +85,7 @@ async function measureClips(corpus: Corpus): Promise<Measured> {
   const total = index.clips.reduce((sum, clip) => sum + clip.frames, 0);
   let done = 0;
   for (const clip of index.clips) {
-    const calibration = toldOf(index, clip);
+    const calibration = clipCalibration(index, clip);
     const person = byPerson.get(clip.person) ?? {
       ik: emptyMeasures(),
       paper: emptyMeasures(),
@@ -185,12 +185,12 @@ function measureDisturbed(corpus: Corpus) {
     clips: chooseClips(clips, robustnessFrames),
     load: (clip) => ({
       name: clip.name,
-      calibration: toldOf(index, clip),
+      calibration: clipCalibration(index, clip),
       frames: readClip(recordings, index, clip),
     }),
     regressors,
     rateHz: index.rateHz,
-    told: progress,
+    onProgress: progress,
   });
 }
 
@@ -200,7 +200,7 @@ async function measureSpeeds(corpus: Corpus) {
   const judged = judgedOf(corpus);
   const tallies: Partial<Record<MeasuredMethod, SpeedTally>> = {};
   for (const clip of index.clips.filter(({ person }) => judged.has(person))) {
-    const calibration = toldOf(index, clip);
+    const calibration = clipCalibration(index, clip);
     const frames = readClip(recordings, index, clip);
     for (const name of ['ik', 'learned'] as const) {
       tallies[name] ??= emptySpeedTally();

@@ -217,13 +217,13 @@ class FrameBench {
   }
 
   get costs(): Record<Condition, Costs> {
-    const told = (values: Record<Method, number[]>) =>
+    const summary = (values: Record<Method, number[]>) =>
       Object.fromEntries(methods.map((name) => [name, quantiles(values[name])])) as Record<Method, Quantiles>;
     const costsOf = ({ inFrame, withLater, whole, thread }: Measured): Costs => ({
-      inFrameMs: told(inFrame),
-      withLaterMs: told(withLater),
-      frameMs: told(whole),
-      threadMs: told(thread),
+      inFrameMs: summary(inFrame),
+      withLaterMs: summary(withLater),
+      frameMs: summary(whole),
+      threadMs: summary(thread),
     });
     return Object.fromEntries(conditions.map((condition) => [condition, costsOf(this.#measured[condition])])) as Record<
       Condition,

@@ -14,7 +14,7 @@ import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
 import { createRoomTokens } from 'threepoint-rooms/server/room-tokens';
 import { WebSocket } from 'ws';
 import { countingKind } from '../../tests/rooms/room/counting-game';
-import type { ClientAnswer, Heard, Load, Meeting } from './conversation';
+import type { ClientAnswer, Load, Meeting, PoseLatencies } from './conversation';
 
 /** A pose packet as players send it most: two controllers and a body. */
 function packet(): Uint8Array {
@@ -89,7 +89,7 @@ class Measurement {
     this.#parts[Math.floor((left - this.#start) / (1000 * partSeconds))]?.push(performance.now() - left);
   }
 
-  result(): Heard {
+  result(): PoseLatencies {
     const used = process.cpuUsage(this.#cpu);
     const seconds = (this.#end - this.#start) / 1000;
     for (const part of this.#parts) part.sort((x, y) => x - y);
@@ -259,7 +259,7 @@ class Crowd {
   }
 
   /** Plays in so many rooms; more people come where there are not as many yet. */
-  async play({ rooms, warmUpSeconds, seconds }: Load): Promise<Heard> {
+  async play({ rooms, warmUpSeconds, seconds }: Load): Promise<PoseLatencies> {
     while (this.#rooms.length < rooms) await this.#open();
     const clients = this.#rooms.slice(0, rooms).flat();
     const start = performance.now() + warmUpSeconds * 1000;
@@ -268,9 +268,9 @@ class Crowd {
     measurement = new Measurement(performance.now(), seconds);
     process.send?.('measuring' satisfies ClientAnswer);
     await this.#sendUntil(end, clients);
-    const heard = measurement.result();
+    const latencies = measurement.result();
     measurement = null;
-    return heard;
+    return latencies;
   }
 
   /** Another room, with people who come one after the other: its seats are given in that order. */

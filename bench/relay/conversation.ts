@@ -24,7 +24,7 @@ export interface Load {
 }
 
 /** Figures of the poses that were sent in the measured seconds. */
-export interface Heard {
+export interface PoseLatencies {
   /** From a pose's sending to its arrival at one of the others [ms]: the median over the parts of the measurement. */
   readonly p50Ms: number;
   readonly p99Ms: number;
@@ -40,7 +40,7 @@ export interface Heard {
 }
 
 /** From the clients: all are there, and the seconds that are measured begin; how it went. */
-export type ClientAnswer = 'measuring' | Heard;
+export type ClientAnswer = 'measuring' | PoseLatencies;
 
 /** To a relay: `cpu` asks for its CPU time so far. */
 export type RelayAnswer = { readonly port: number } | { readonly cpuMicroseconds: number; readonly rssBytes: number };
