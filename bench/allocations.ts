@@ -107,7 +107,7 @@ const keyOf = ({ functionName, url, lineNumber, columnNumber }: CallFrame) =>
 /** A function of a page and what was allocated in it. */
 interface SampledFunction {
   readonly frame: CallFrame;
-  /** Where it was called from, of a function of the engine's own. */
+  /** The caller of a function of the engine. */
   readonly caller: CallFrame | null;
   bytes: number;
 }
@@ -115,7 +115,7 @@ interface SampledFunction {
 interface Sample {
   readonly frames: number;
   readonly bytes: number;
-  /** Of them, below a call of three.js's renderer. */
+  /** The bytes allocated below a call of three.js's renderer. */
   readonly threeBytes: number;
   readonly functions: readonly SampledFunction[];
 }

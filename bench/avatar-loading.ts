@@ -10,7 +10,7 @@ export interface AvatarLoading {
   readonly shownAfter: number;
   /** Processor time of the longest tasks of the page's thread meanwhile [ms], the longest first. Time of the device and of other threads is not in it. */
   readonly longestTasks: readonly number[];
-  /** The same while ten pictures are drawn without it. */
+  /** The longest tasks while ten frames are drawn without loading. */
   readonly longestWithout: readonly number[];
 }
 

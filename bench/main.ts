@@ -11,18 +11,18 @@ import { measureAvatarLoading } from './avatar-loading';
 import { type MeasuredNetwork, measureNetworks } from './networks';
 import type { PageResult } from './page/main';
 import {
+  printAllocations,
+  printArchery,
+  printCosts,
+  printCourt,
+  printCrowd,
+  printNetworks,
+  printOpening,
+  printRatios,
+  printSites,
+  printStages,
+  printVisit,
   ratiosOf,
-  tellAllocations,
-  tellArchery,
-  tellCosts,
-  tellCourt,
-  tellCrowd,
-  tellNetworks,
-  tellOpening,
-  tellRatios,
-  tellSites,
-  tellStages,
-  tellVisit,
   type Visit,
 } from './tables';
 
@@ -141,8 +141,8 @@ async function measureWhereAllocated(browser: Browser): Promise<void> {
     { page: builtIn('.cache/bench-of-page'), bench: builtIn('.cache/bench') },
     positionals.length > 0 ? positionals : undefined,
   );
-  tellSites(allocations);
-  tellAllocations(allocations);
+  printSites(allocations);
+  printAllocations(allocations);
   if (options.json) writeFileSync(options.json, `${JSON.stringify(allocations, null, 2)}\n`);
 }
 
@@ -151,7 +151,7 @@ async function measureLearned(browser: Browser): Promise<Readonly<Record<string,
   const server = await serveIsolated(builtIn('.cache/bench'));
   try {
     const costs = await measureNetworks(browser, `http://127.0.0.1:${server.port}`);
-    tellNetworks(costs);
+    printNetworks(costs);
     return costs;
   } finally {
     await server.close();
@@ -162,37 +162,37 @@ async function measureLearned(browser: Browser): Promise<Readonly<Record<string,
 const measurePart: Readonly<Record<Part, (browser: Browser) => Promise<object>>> = {
   async visit(browser) {
     const visit = await measureVisit(browser);
-    tellVisit(visit);
+    printVisit(visit);
     return visit;
   },
   async frames(browser) {
     const result = await measureOnPage(browser, 'frames');
     const ratios = ratiosOf(result);
-    tellCosts(result);
-    tellRatios(ratios);
-    tellStages(result);
-    tellOpening(result);
+    printCosts(result);
+    printRatios(ratios);
+    printStages(result);
+    printOpening(result);
     const { archery: _archery, ball: _ball, crowd: _crowd, ...frames } = result;
     return { ...frames, ratios };
   },
   async archery(browser) {
     const result = await measureOnPage(browser, 'archery');
-    tellArchery(result);
+    printArchery(result);
     return { archery: result.archery };
   },
   async ball(browser) {
     const result = await measureOnPage(browser, 'ball');
-    tellCourt(result);
+    printCourt(result);
     return { ball: result.ball };
   },
   async crowd(browser) {
     const { crowd } = await measureOnPage(browser, 'crowd');
-    if (crowd) tellCrowd(crowd);
+    if (crowd) printCrowd(crowd);
     return { crowd };
   },
   async allocations(browser) {
     const allocations = await measureAllocations(browser, { page: builtIn('dist'), bench: builtIn('.cache/bench') });
-    tellAllocations(allocations);
+    printAllocations(allocations);
     return { allocationBytes: allocations.bytes };
   },
   async networks(browser) {

@@ -6,9 +6,9 @@ export type NetworkWay = (typeof networkWays)[number];
 
 /** What one way costs a page that does nothing else. */
 export interface NetworkCost {
-  /** Where it ran in the end: WebGPU gives way where there is none; with the name of its device, which may be software. */
+  /** The execution provider, with the name of its device, which may be software; WebGPU falls back if unavailable. */
   readonly provider: string;
-  /** Of the estimate within the animation frame. */
+  /** The time of the estimate within the animation frame. */
   readonly inFrameMs: { readonly p50: number; readonly p95: number };
   /** With what is asked after the frame, on the page's thread. */
   readonly threadMs: { readonly p50: number; readonly p95: number };

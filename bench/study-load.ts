@@ -17,7 +17,7 @@ import { paperFile } from '../tests/study/model/studies';
 import { playedRound } from '../tests/study/participant/played-round';
 
 const experimenter = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
-/** As often as the page asks for commands, and sends what is new [s]. */
+/** The interval at which the page polls for commands and sends new records [s]. */
 const exchangeSeconds = 2;
 /** Something is recorded about so often: an answer handed in, a pause, a trial [s]. */
 const recordSeconds = 10;

@@ -15,7 +15,7 @@ export interface Visit {
 const row = (label: string, cells: readonly (string | number)[]) =>
   console.log(`  ${label.padEnd(14)}${cells.map((cell) => String(cell).padStart(12)).join('')}`);
 
-export function tellAllocations({ bytes: { update, threeAlone, ...frames } }: Allocations): void {
+export function printAllocations({ bytes: { update, threeAlone, ...frames } }: Allocations): void {
   console.log('\nWhat a frame leaves to the collector [kB]');
   row('', ['all', 'three.js']);
   const kilobytes = (bytes: number | undefined) => (bytes === undefined ? '' : (bytes / 1000).toFixed(1));
@@ -24,8 +24,8 @@ export function tellAllocations({ bytes: { update, threeAlone, ...frames } }: Al
   for (const [name, bytes] of measured) row(name, [kilobytes(bytes), kilobytes(ofThree[name])]);
 }
 
-/** Where it comes from, down to where the rest is small change. */
-export function tellSites({ sites }: Allocations): void {
+/** Prints the call sites with the most allocated bytes. */
+export function printSites({ sites }: Allocations): void {
   for (const [name, places] of Object.entries(sites)) {
     console.log(`\n${name}: the functions that leave most [bytes a frame]`);
     for (const { name: site, at, bytes } of places.slice(0, 40))
@@ -33,7 +33,7 @@ export function tellSites({ sites }: Allocations): void {
   }
 }
 
-export function tellNetworks(costs: Readonly<Record<string, MeasuredNetwork>>): void {
+export function printNetworks(costs: Readonly<Record<string, MeasuredNetwork>>): void {
   console.log('\nThe learned network, by the way to run it');
   row('', ['in frame p50', 'p95 [ms]', 'thread p50', 'p95 [ms]', 'first [ms]', 'kB', 'ran on']);
   for (const [way, { inFrameMs, threadMs, firstBodyMs, bytes, provider }] of Object.entries(costs)) {
@@ -45,7 +45,7 @@ export function tellNetworks(costs: Readonly<Record<string, MeasuredNetwork>>): 
 const share = (value: number) => `${(100 * value).toFixed(1)} %`;
 
 /** By method: within the frame, with what it leaves for later, and the whole. */
-export function tellCosts(frames: PageResult): void {
+export function printCosts(frames: PageResult): void {
   const { first, settled, shown } = frames.costs;
   for (const [title, table] of [
     ['In the animation frame, after ten seconds of it [ms]', settled.inFrameMs],
@@ -77,7 +77,7 @@ export function ratiosOf({ blocks: { inFrameMs, threadMs } }: PageResult) {
   return { inFrameToCcdIk: to(inFrameMs, 'ccdik'), threadToIk: to(threadMs, 'ik') };
 }
 
-export function tellRatios({ inFrameToCcdIk, threadToIk }: ReturnType<typeof ratiosOf>): void {
+export function printRatios({ inFrameToCcdIk, threadToIk }: ReturnType<typeof ratiosOf>): void {
   const { pairs } = inFrameToCcdIk.ik;
   console.log(`\nRatios of the blocks' medians after ten seconds, with 95 % confidence; ${pairs} pairs`);
   row('', ['to CCD-IK', 'from', 'to', 'thread to IK', 'from', 'to']);
@@ -86,7 +86,7 @@ export function tellRatios({ inFrameToCcdIk, threadToIk }: ReturnType<typeof rat
   for (const name of compared) row(name, [...cells(inFrameToCcdIk[name], 2), ...cells(threadToIk[name], 3)]);
 }
 
-export function tellStages(frames: PageResult): void {
+export function printStages(frames: PageResult): void {
   console.log('\nStages, median, after ten seconds [ms]');
   row('', stageNames);
   for (const [name, stages] of Object.entries(frames.stagesMs))
@@ -96,7 +96,7 @@ export function tellStages(frames: PageResult): void {
     );
 }
 
-export function tellArchery(frames: PageResult): void {
+export function printArchery(frames: PageResult): void {
   console.log("\nA round of archery, frame on the page's own thread [ms]; missed: share later than that rate allows");
   row('', ['min', 'mean', 'p50', 'p95', 'max', '72 Hz', '90 Hz', 'drawn p50', 'drawn p95', 'points']);
   for (const [name, times] of Object.entries(frames.archery)) {
@@ -112,7 +112,7 @@ export function tellArchery(frames: PageResult): void {
   }
 }
 
-export function tellCourt(frames: PageResult): void {
+export function printCourt(frames: PageResult): void {
   console.log("\nThe ball court, frame on the page's own thread [ms]; each other avatar's part of it");
   row('', [
     'avatars',
@@ -145,14 +145,14 @@ export function tellCourt(frames: PageResult): void {
   }
 }
 
-export function tellCrowd({ others, aloneMs, beyondMs, receivedMs, bentMs, drawnMs }: CrowdTimes): void {
+export function printCrowd({ others, aloneMs, beyondMs, receivedMs, bentMs, drawnMs }: CrowdTimes): void {
   console.log(
     `\n${others} others at 72 Hz take ${beyondMs.toFixed(2)} ms of the page's thread (p50) beyond the ${aloneMs.toFixed(2)} ms of a frame without them: ` +
       `packets ${receivedMs.toFixed(2)}, bodies played back and bent ${bentMs.toFixed(2)}, drawn ${drawnMs.toFixed(2)}`,
   );
 }
 
-export function tellOpening({ sessionCreateMs, firstInferenceMs }: PageResult): void {
+export function printOpening({ sessionCreateMs, firstInferenceMs }: PageResult): void {
   const whole = (values: Readonly<Record<string, number>>) =>
     Object.entries(values)
       .map(([name, value]) => `${name} ${value.toFixed(0)}`)
@@ -160,7 +160,7 @@ export function tellOpening({ sessionCreateMs, firstInferenceMs }: PageResult): 
   console.log(`\nSession creation [ms]: ${whole(sessionCreateMs)}; first inference [ms]: ${whole(firstInferenceMs)}`);
 }
 
-export function tellVisit({ firstBodyMs, bytes }: Visit): void {
+export function printVisit({ firstBodyMs, bytes }: Visit): void {
   console.log(`\nFirst body on the screen: ${firstBodyMs} ms after opening the page (median of 3)`);
   const kilobytes = Object.entries(bytes).map(([kind, size]) => `${kind} ${(size / 1000).toFixed(0)} kB`);
   console.log(`First visit, unpacked: ${kilobytes.join(', ')}`);

@@ -14,7 +14,7 @@ const usage =
   'npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--robustness] [--speed] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR]\n' +
   'npm run evaluate -- --legs --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--gaits DIR]\n' +
   'npm run evaluate -- --recording FILE [--recording FILE] [--json FILE] [--models DIR]\n' +
-  'DIR holds .asf and .amc or .bvh files; docs/evaluation.md says the rest.';
+  'DIR holds .asf and .amc or .bvh files; docs/accuracy.md says the rest.';
 const twoHours = 2 * 3600;
 
 function options() {

@@ -10,7 +10,7 @@ import { main, root, run, SetupError } from './run-command.mjs';
 
 const usage =
   'npm run goldens -- --mocap DIR [--compare | --write] [--quick] [--all] [--only ROWS] [--frames DIR] [--models DIR]\n' +
-  'DIR holds the recordings that the goldens were frozen with; docs/evaluation.md says the rest.';
+  'DIR holds the recordings that the goldens were frozen with; docs/accuracy.md says the rest.';
 const halfAnHour = 1800;
 
 function options() {

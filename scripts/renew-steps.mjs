@@ -5,7 +5,7 @@ import { root, SetupError } from './run-command.mjs';
 const fp32 = join(root, '.cache/fp32');
 
 /**
- * What renews every table and figure of docs/training.md and docs/accuracy.md, in the order in which one needs the other: a name, the npm
+ * The steps that renew the networks and the tables and figures of docs/accuracy.md, in the order of their dependencies: a name, the npm
  * script and its options beside --mocap, what is renewed, and about how long it takes on twenty-nine people and one core.
  */
 export const steps = [
@@ -20,7 +20,7 @@ export const steps = [
     name: 'all-subjects',
     script: 'train',
     options: ['--stage', 'all-subjects'],
-    renews: "the page's networks in public/models, golden vectors, and the results in docs/training.md",
+    renews: "the page's networks in public/models, and golden vectors",
     takes: 'a quarter of an hour',
   },
   {

@@ -1,5 +1,5 @@
-// npm run renew -- --mocap DIR [--from STEP] [--only STEP] [--list]: every table and figure of docs/training.md and docs/accuracy.md anew, with
-// the networks that they are of, step by step; renew-steps.mjs says which.
+// npm run renew -- --mocap DIR [--from STEP] [--only STEP] [--list]: renews the networks, and every table and figure of
+// docs/accuracy.md, in the steps of renew-steps.mjs.
 import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { chosenSteps, commandLine, commandLineOf, commandOf } from './renew-steps.mjs';

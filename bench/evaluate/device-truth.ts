@@ -42,7 +42,7 @@ export async function measureRecording(
 ): Promise<MeasuredRecording> {
   const { calibration, rateHz } = recording;
   const pieces = piecesOf(recording);
-  if (pieces.length === 0) throw new Error('it has no body of the device to be compared with (docs/evaluation.md)');
+  if (pieces.length === 0) throw new Error('it has no body of the device to be compared with (docs/accuracy.md)');
   if (!calibration) throw new Error('it does not say the measures of its person');
   const estimators: Partial<Record<MeasuredMethod, Report>> = {};
   for (const name of measuredMethods) {

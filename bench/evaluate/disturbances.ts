@@ -16,7 +16,7 @@ export interface Loss {
   readonly end: number;
 }
 
-/** So much follows a loss [s] before the clip ends or the next one begins. */
+/** The minimum time between the end of a loss and the next loss or the clip's end [s]. */
 export const aftermathSeconds = 0.5;
 const [earliestSeconds, startSpreadSeconds] = [0.5, 1];
 const [restSeconds, restSpreadSeconds] = [1.5, 1.5];
@@ -60,7 +60,7 @@ export function scheduleLosses(frames: number, rateHz: number, lengthOf: LossLen
   return losses;
 }
 
-/** The same frames without the lost hands; the truth stays. */
+/** Returns the frames without the lost hands; the truth stays. */
 export function loseHands(frames: readonly RecordedFrame[], losses: readonly Loss[]): RecordedFrame[] {
   const lossy = [...frames];
   for (const { side, start, end } of losses) {
@@ -76,7 +76,7 @@ export const trackers = ['headset', 'grips'] as const;
 export type Tracker = (typeof trackers)[number];
 
 /**
- * The same frames with the headset or both grips mounted `offset` [m] away, along the device's own axes (+x right, +y up or out of
+ * Returns the frames with the headset or both grips mounted `offset` [m] away, along the device's own axes (+x right, +y up or out of
  * the back of the hand, −z forward); the left hand's x is mirrored, so that +x is one side of the body for neither.
  */
 export function offsetTrackers(frames: readonly RecordedFrame[], tracker: Tracker, offset: Vec3): RecordedFrame[] {

@@ -45,7 +45,7 @@ function fromShoulders({ origin, right, forward }: ShoulderFrame, point: Vec3): 
   return vec3(dot(from, right), from.y, dot(from, forward));
 }
 
-/** Where the wrists are in a motion: right, up, forward of the shoulders' middle, in arm lengths. */
+/** The wrists in each motion: right, up, forward of the shoulders' middle, in arm lengths. */
 const wristsOf: Readonly<Record<Exclude<Motion, 'sway'>, { readonly left: Vec3; readonly right: Vec3 }>> = {
   'left block': { left: vec3(-0.05, 0.25, 0.5), right: vec3(0.3, -0.5, 0.2) },
   'right block': { left: vec3(-0.3, -0.5, 0.2), right: vec3(0.05, 0.25, 0.5) },
@@ -155,7 +155,7 @@ function bodiesAt(driven: Driven, row: number): PictureOfMotion['bodies'] {
 const mean = (values: readonly number[]): number => values.reduce((sum, value) => sum + value, 0) / values.length;
 
 export function figuresOf({ traces, poses }: FigureCollection, rateHz: number): Figures {
-  // Short clips tell little of how an error goes over time.
+  // Short clips contain little information about an error over time.
   const long = traces.filter(({ errors }) => errors.learned.length >= 5 * rateHz);
   const sorted = [...(long.length > 0 ? long : traces)].sort(
     (a, b) => mean(a.errors.learned) - mean(b.errors.learned) || (a.clip < b.clip ? -1 : 1),

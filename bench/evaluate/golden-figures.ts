@@ -9,7 +9,7 @@ import type { StagedFrame } from './situations';
 /** Figures of one estimator in one situation by name; the name says the unit, and `kindOf` how it may differ. */
 export type GoldenFigures = Readonly<Record<string, number>>;
 
-/** Where a largest step was: clip, second and joint. */
+/** The place of a largest step: clip, second and joint. */
 export type StepPlaces = Readonly<Record<'stepCm' | 'excessCm', string>>;
 
 /** What is added up over the pieces of one situation. */
@@ -34,7 +34,7 @@ export const emptyGoldenTally = (): GoldenTally => ({
 /** One driven piece: what was staged, what came of it, and the same frames with nothing done to them where hands were lost. */
 export interface DrivenPiece {
   readonly name: string;
-  /** Of the frames, and of the recording. */
+  /** The rate of the frames, and that of the recording. */
   readonly rateHz: number;
   readonly recordedHz: number;
   readonly staged: readonly StagedFrame[];

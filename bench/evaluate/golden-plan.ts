@@ -44,7 +44,7 @@ export interface ListedPiece {
 export interface GoldenJob {
   readonly row: string;
   readonly method: MeasuredMethod;
-  /** Of `situations`; null: undisturbed. */
+  /** A key of `situations`; null: undisturbed. */
   readonly situation: string | null;
   readonly pieces: readonly ListedPiece[];
 }
@@ -62,7 +62,7 @@ function pieceOf(clip: RecordingIndex['clips'][number], longest: number): Listed
   return { name: clip.name, clip, first, frames };
 }
 
-/** All rows of the goldens; `trainedOn`: whom the networks know. Longest first, so that workers end together. */
+/** Lists all rows of the goldens; `trainedOn`: people that a network was trained on. Longest first, so that workers end together. */
 export function planGoldens(index: RecordingIndex, trainedOn: ReadonlySet<string>, extent: Extent): GoldenJob[] {
   const { groups, disturbed, paperShare, longestSeconds } = extents[extent];
   const groupOf = (person: string): Group => {

@@ -8,7 +8,7 @@ import { loadRegressors } from './networks';
 import { type RecordingIndex, readIndex } from './recordings';
 import { onTruthsFloor, type Staged, undisturbed } from './situations';
 
-/** What a worker is told first; then it asks for rows by name until there are none. */
+/** The first message to a worker, which then requests rows by name until none is left. */
 export interface WorkerTask {
   readonly recordings: string;
   readonly models: string;

@@ -153,7 +153,7 @@ function refuseOthers(frozen: Goldens | null, corpusHash: string, networks: Gold
   }
 }
 
-/** Tells what is worse than frozen, with the place of a largest step; how many figures that is. */
+/** Prints the figures that are worse than the stored ones, with the place of a largest step; returns their number. */
 function printWorse(differences: readonly Difference[], results: readonly RowResult[]): number {
   const worse = differences.filter((difference) => difference.worse);
   for (const { row, figure, frozen, now } of worse) {

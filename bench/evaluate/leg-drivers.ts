@@ -9,7 +9,7 @@ import type { LegClip } from './leg-measures';
 import { type Contact, contactsOf, footHeights, readLegs, type TrueLegs } from './leg-truth';
 import { calibrationOf, type RecordedFrame, type RecordingIndex, readClip } from './recordings';
 
-/** Whose hips the legs hang from: the recorded ones, or those of the bodies that the page draws. */
+/** The source of the hips that the legs follow: the recording, or a body that the page draws. */
 export const legDrivers = ['truth', 'ik', 'learned'] as const;
 export type LegDriver = (typeof legDrivers)[number];
 

@@ -147,11 +147,11 @@ export interface LegReport {
   readonly pelvisCm: number;
   readonly kneeCm: number;
   readonly footCm: number;
-  /** Of drawn and true feet while the true foot stands [cm/s], and of drawn feet while they themselves stand. */
+  /** The speed of drawn and true feet while the true foot stands, and of drawn feet while they stand [cm/s]. */
   readonly skateCmS: number;
   readonly trueSkateCmS: number;
   readonly slideCmS: number;
-  /** Of the drawn sole over the floor while the true foot stands, and below it at any time [cm]. */
+  /** The height of the drawn sole while the true foot stands, and its depth below the floor at any time [cm]. */
   readonly floatCm: number;
   readonly sinkCm: number;
   /** Feet that truly stand, and feet of which drawn and truth agree on that [share]. */

@@ -35,7 +35,7 @@ function gaitsOf(folder: string | undefined): (person: string) => GaitNetwork {
 }
 
 interface PersonLegs extends ByDriver<LegReport> {
-  /** Whom the network of the body, and that of the gait, have been trained on. */
+  /** Whether the body's network, and the gait network, were trained on this person. */
   readonly seen: boolean;
   readonly gaitSeen: boolean;
   readonly minutes: number;

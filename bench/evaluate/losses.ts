@@ -70,7 +70,7 @@ export const emptyLossTally = (): LossTally => ({
   atReturn: noSteps(),
 });
 
-/** The same frames estimated with losses and with both hands seen. */
+/** Estimates of the frames with losses and with both hands seen. */
 interface Estimated {
   readonly lossy: readonly MeasuredFrame[];
   readonly seen: readonly MeasuredFrame[];

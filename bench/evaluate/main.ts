@@ -28,8 +28,8 @@ const { values: options } = parseArgs({
   },
 });
 
-/** What estimators are told of a clip's person: height and span, and on request what else a calibration can know. */
-const toldOf = (index: RecordingIndex, clip: RecordingIndex['clips'][number]) =>
+/** Returns the calibration of a clip: eye height and span, and on request hand tilts and forearm. */
+const clipCalibration = (index: RecordingIndex, clip: RecordingIndex['clips'][number]) =>
   calibrationOf(index, clip, { hands: options['hands-measured'], forearm: options['forearm-typed'] });
 
 type Exact = Partial<Record<MeasuredMethod, Report>>;
@@ -40,12 +40,12 @@ function progress(share: number, what = 'robustness'): void {
   process.stderr.write(share < 1 ? `\r  ${what} ${Math.round(100 * share)} %   ` : '\r\x1b[K');
 }
 
-/** What the evaluation is asked to read, and whom it is about. */
+/** The recordings, networks and people of an evaluation. */
 interface Corpus {
   readonly recordings: string;
   readonly index: ReturnType<typeof readIndex>;
   readonly regressors: Awaited<ReturnType<typeof loadRegressors>>;
-  /** The same networks before they were made int8; null: not asked for. */
+  /** The networks before quantisation; null: not requested. */
   readonly exactRegressors: Awaited<ReturnType<typeof loadRegressors>> | null;
   readonly people: readonly string[];
   /** People that a network was trained on. */
@@ -85,7 +85,7 @@ async function measureClips(corpus: Corpus): Promise<Measured> {
   const total = index.clips.reduce((sum, clip) => sum + clip.frames, 0);
   let done = 0;
   for (const clip of index.clips) {
-    const calibration = toldOf(index, clip);
+    const calibration = clipCalibration(index, clip);
     const person = byPerson.get(clip.person) ?? {
       ik: emptyMeasures(),
       paper: emptyMeasures(),
@@ -185,12 +185,12 @@ function measureDisturbed(corpus: Corpus) {
     clips: chooseClips(clips, robustnessFrames),
     load: (clip) => ({
       name: clip.name,
-      calibration: toldOf(index, clip),
+      calibration: clipCalibration(index, clip),
       frames: readClip(recordings, index, clip),
     }),
     regressors,
     rateHz: index.rateHz,
-    told: progress,
+    onProgress: progress,
   });
 }
 
@@ -200,7 +200,7 @@ async function measureSpeeds(corpus: Corpus) {
   const judged = judgedOf(corpus);
   const tallies: Partial<Record<MeasuredMethod, SpeedTally>> = {};
   for (const clip of index.clips.filter(({ person }) => judged.has(person))) {
-    const calibration = toldOf(index, clip);
+    const calibration = clipCalibration(index, clip);
     const frames = readClip(recordings, index, clip);
     for (const name of ['ik', 'learned'] as const) {
       tallies[name] ??= emptySpeedTally();

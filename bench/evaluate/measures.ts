@@ -72,7 +72,7 @@ export interface MeasuredFrame {
   readonly joints: Readonly<Record<string, Vec3>>;
   readonly raw: JointPositions | null;
   readonly truth: Readonly<Record<TruthJoint, Vec3>>;
-  /** Where the trackers saw the wrists; null: unseen. */
+  /** The tracked wrists; null: unseen. */
   readonly wrists: { readonly left: Vec3 | null; readonly right: Vec3 | null };
 }
 

@@ -48,13 +48,13 @@ export const reachReport = ({ wrists, beyond, furthest }: Reach) => ({
   furthestCm: rounded(furthest * 100, 2),
 });
 
-/** A sentence about all, and about the people of whom it is true of more than one wrist in twenty. */
+/** Returns a sentence on all people, and on those with more than 5 % of wrists out of reach. */
 export function reachText(byPerson: ReadonlyMap<string, Reach>): string {
-  const told = (reach: Reach) => {
+  const textOf = (reach: Reach) => {
     const { beyondShare, furthestCm } = reachReport(reach);
     return `${(beyondShare * 100).toFixed(1)} %, up to ${furthestCm.toFixed(1)} cm`;
   };
   const often = [...byPerson].filter(([, reach]) => reach.beyond > 0.05 * reach.wrists);
-  const who = often.map(([person, reach]) => `${person} ${told(reach)}`).join('; ');
-  return `Wrists further from their true shoulder than the calibrated arm, by over ${tolerance * 100} cm: ${told(mergeReaches([...byPerson.values()]))}${who && ` (${who})`}`;
+  const who = often.map(([person, reach]) => `${person} ${textOf(reach)}`).join('; ');
+  return `Wrists further from their true shoulder than the calibrated arm, by over ${tolerance * 100} cm: ${textOf(mergeReaches([...byPerson.values()]))}${who && ` (${who})`}`;
 }

@@ -54,7 +54,7 @@ export interface RecordedFrame {
 }
 
 /** What a calibration knows beside height and span. */
-export interface Told {
+export interface KnownMeasures {
   /** How the hands stand to their forearms, as the guided calibration measures it: by what the person's other clips show. */
   readonly hands?: boolean | undefined;
   /** How long the forearm is, as its owner types it. */
@@ -65,12 +65,12 @@ export interface Told {
 export function calibrationOf(
   index: RecordingIndex,
   { person, handTilts }: RecordingIndex['clips'][number],
-  told: Told = {},
+  known: KnownMeasures = {},
 ): Calibration {
   const measures = index.people[person];
   if (!measures) throw new Error(`index.json: clips of ${person}, but no such person`);
   const { eyeHeight, armSpan, forearm } = measures;
-  return { eyeHeight, armSpan, ...(told.forearm && { forearm }), ...(told.hands && { handTilts }) };
+  return { eyeHeight, armSpan, ...(known.forearm && { forearm }), ...(known.hands && { handTilts }) };
 }
 
 /** The numbers of one clip: `point(name)` reads the three columns name.x, .y and .z of a row. */

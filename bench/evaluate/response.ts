@@ -21,7 +21,7 @@ export interface Response {
 }
 
 const ways: Readonly<Record<WavedPoint, Vec3>> = { head: vec3(0.08, 0, 0), rightHand: vec3(0, 0.15, -0.05) };
-/** So slow [Hz] that filters do not matter. */
+/** A frequency [Hz] at which filters have no effect. */
 const slowHz = 0.1;
 /** Before anything counts, and at least counted, in whole cycles. */
 const [settleSeconds, countedSeconds] = [3, 4];

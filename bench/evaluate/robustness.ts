@@ -151,8 +151,8 @@ interface RobustnessOptions<Method, Listed> {
   load(clip: Listed): RobustnessClip;
   readonly regressors: ReadonlyMap<MeasuredMethod, PoseRegressor>;
   readonly rateHz: number;
-  /** Hears the share of the work that is done. */
-  told?(share: number): void;
+  /** Receives the share of the work that is done. */
+  onProgress?(share: number): void;
 }
 
 /**
@@ -195,7 +195,7 @@ export async function measureRobustness<
       }
     }
     done += listedClip.frames;
-    options.told?.(done / total);
+    options.onProgress?.(done / total);
   }
   const lossesOf = (number: number) => lossKinds.map((_, which) => reportLosses(tallies[number]![which]!));
   const trembles = await Promise.all(methods.map((name) => measureTrembles(name, regressors.get(name) ?? null)));

@@ -66,7 +66,7 @@ const lost =
     return { calibration: piece.calibration, rateHz, frames: loseHands(piece.frames, losses), losses };
   };
 
-/** As lost hands, but the device goes on guessing where they are: at the place where it saw them last. */
+/** Loses hands, but reports them as guessed at their last tracked position. */
 const guessed =
   (seconds: number): Stage =>
   (piece, rateHz) => {

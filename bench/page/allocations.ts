@@ -25,7 +25,7 @@ declare global {
 }
 
 const rateHz = 60;
-/** Frames that are made before anything is measured; those after them begin anew. */
+/** The number of frames that are prepared before the measurement; later frames repeat them. */
 const preparedFrames = 1200;
 const packetHz = 30;
 const bodies = 8;

@@ -5,7 +5,7 @@ import { up, vec3 } from 'threepoint/core/math/vec3';
 /** Radius of the circle on which many bodies are placed [m]. */
 const radius = 2.5;
 
-/** Where the floor of each of so many bodies lies in the arena: on a circle, all facing its middle. */
+/** Returns the pose of a body's floor in the arena: bodies stand on a circle and face its centre. */
 export function arenaFromCirclePlace(place: number, places: number): Transform<'arena', 'floor'> {
   const angle = (2 * Math.PI * place) / places;
   return {

@@ -84,13 +84,13 @@ export class Court {
   receive(arrived: readonly ArrivedBytes[], time: number): void {
     for (const { seat, bytes } of arrived) {
       const packet = decodePose(bytes, this.#skeleton);
-      // A recording may begin anew; the sender's clock goes on.
+      // A recording may restart; the sender's clock goes on.
       const timeMs = packetMs(time * 1000);
       if (packet) this.#players.receive({ seat, packet: { ...packet, timeMs }, arrivedAt: time });
     }
   }
 
-  /** Bends the others to what was heard of them. */
+  /** Poses the other bodies by their received packets. */
   showOthers(time: number): void {
     this.#people.length = 0;
     for (const { seat, pose, fingers, opacity } of this.#players.follow(time)) {

@@ -12,7 +12,7 @@ export interface CrowdTimes {
   readonly aloneMs: number;
   /** What a frame takes longer with the others: of pairs of blocks. */
   readonly beyondMs: number;
-  /** Of that: packets decoded, 450 a second, by frame; bodies played back and bent; and the rest, which is three.js drawing them. */
+  /** Parts of that time: decoding of packets (450 a second), playback and posing of bodies, and drawing by three.js. */
   readonly receivedMs: number;
   readonly bentMs: number;
   readonly drawnMs: number;

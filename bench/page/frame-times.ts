@@ -11,7 +11,7 @@ export interface FrameTimes {
   /** On the page's own thread, at 72 and 90 Hz: what a headset with graphics of its own would miss. */
   readonly missed72: number;
   readonly missed90: number;
-  /** The same until the picture is drawn, in software. */
+  /** Frame times up to the drawn frame, in software. */
   readonly drawnP50: number;
   readonly drawnP95: number;
   readonly drawnMissed72: number;

@@ -48,7 +48,7 @@ interface Quantiles {
   readonly p99: number;
 }
 
-/** Of one condition, by method. */
+/** The costs under one condition, by method. */
 interface Costs {
   /** Estimate: what the method costs within the animation frame. */
   readonly inFrameMs: Readonly<Record<Method, Quantiles>>;
@@ -68,7 +68,7 @@ export interface PageResult {
   readonly stagesMs: Readonly<Record<EstimatorName, Readonly<Record<StageName, number>>>>;
   readonly sessionCreateMs: Readonly<Record<string, number>>;
   readonly firstInferenceMs: Readonly<Record<string, number>>;
-  /** Of each method in each condition. */
+  /** The number of frames of each method in each condition. */
   readonly frames: number;
   /** A whole round of archery with each estimator. */
   readonly archery: Readonly<Record<string, RoundTimes>>;
@@ -106,7 +106,7 @@ async function openPicture() {
   const renderer = createRenderer(canvas, 'low');
   renderer.setSize(480, 270, false);
   const studio = createStudio(renderer, 'low');
-  // As the page has it where graphics are drawn in software.
+  // The page's settings for software rendering.
   const mirror = createMirror({ distance: 1.5, resolution: 256, samples: 0 });
   const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
   const avatar = createAvatar(await parseAvatar(mannequin, 'mannequin.vrm'));
@@ -154,7 +154,7 @@ async function openBodies(timing: FrameTiming): Promise<Record<EstimatorName, Bo
 const empty = <Key extends string>(keys: readonly Key[]) =>
   Object.fromEntries(keys.map((key) => [key, [] as number[]])) as Record<Key, number[]>;
 
-/** Of each method the median of every block. */
+/** Returns the median of every block for each method. */
 const blockMedians = (values: Record<Method, number[]>): Record<Method, number[]> =>
   Object.fromEntries(
     methods.map((name) => [
@@ -217,13 +217,13 @@ class FrameBench {
   }
 
   get costs(): Record<Condition, Costs> {
-    const told = (values: Record<Method, number[]>) =>
+    const summary = (values: Record<Method, number[]>) =>
       Object.fromEntries(methods.map((name) => [name, quantiles(values[name])])) as Record<Method, Quantiles>;
     const costsOf = ({ inFrame, withLater, whole, thread }: Measured): Costs => ({
-      inFrameMs: told(inFrame),
-      withLaterMs: told(withLater),
-      frameMs: told(whole),
-      threadMs: told(thread),
+      inFrameMs: summary(inFrame),
+      withLaterMs: summary(withLater),
+      frameMs: summary(whole),
+      threadMs: summary(thread),
     });
     return Object.fromEntries(conditions.map((condition) => [condition, costsOf(this.#measured[condition])])) as Record<
       Condition,
@@ -288,7 +288,7 @@ class FrameBench {
     for (const body of Object.values(this.#bodies)) body.discontinuity();
     for (let i = 0; i < settleFrames + blockFrames; i++) {
       await nextFrame();
-      // The same motion for every method of a round: what a picture costs depends on what it shows.
+      // Every method of a round gets the same motion, because the cost of a frame depends on its content.
       const timeMs = ((round * blockFrames + i) * 1000) / 60;
       const started = performance.now();
       if (name === 'ccdik') this.#solveByCcd(timeMs);

@@ -63,12 +63,12 @@ async function measure(way: NetworkWay): Promise<NetworkCost> {
     onThread.push(spent + later);
   }
   close();
-  const told = (values: readonly number[]) => ({ p50: quantile(values, 0.5), p95: quantile(values, 0.95) });
+  const summary = (values: readonly number[]) => ({ p50: quantile(values, 0.5), p95: quantile(values, 0.95) });
   const device = regressor.provider === 'webgpu' ? ` (${await graphicsDevice()})` : '';
   return {
     provider: `${regressor.provider}${device}`,
-    inFrameMs: told(inFrame),
-    threadMs: told(onThread),
+    inFrameMs: summary(inFrame),
+    threadMs: summary(onThread),
     firstBodyMs,
   };
 }

@@ -17,7 +17,7 @@ import type { PosePacket } from 'threepoint-rooms/protocol/pose-packet';
 
 /** A way from one page over the relay to another. */
 export interface Way {
-  /** Of a message and its answer between the two pages [s]. */
+  /** The round-trip time between the two pages [s]. */
   readonly roundTrip: number;
   /** A packet takes up to so much longer or shorter [s]. */
   readonly jitter: number;
@@ -49,14 +49,14 @@ const joints = ['head', 'leftHand', 'rightHand', 'leftLowerArm', 'rightLowerArm'
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 
-/** Where a body's joints are, one after the other [m]. */
+/** Returns the positions of a body's joints [m]. */
 function placesOf(pose: AvatarPose): readonly Vec3[] {
   if (!pose.body) throw new Error('bench/relay: the actor has no body');
   const places = forwardKinematics(skeleton, pose.body);
   return joints.map((name) => places[name].position);
 }
 
-/** Where they were in the other's mirror at a time between two of its pictures [m]. */
+/** Returns interpolated positions in the other user's mirror between two frames [m]. */
 function placesAt(frames: readonly SentFrame[], time: number): readonly Vec3[] {
   const after = clamp(Math.ceil(time * displayHz), 1, frames.length - 1);
   const [a, b] = [frames[after - 1]!.places, frames[after]!.places];
@@ -88,14 +88,14 @@ function arrivals(leaving: readonly number[], { roundTrip, jitter, loss }: Way, 
   const chance = randomNumbers(seed);
   let last = 0;
   return leaving.map((time) => {
-    // Three later packets tell of a loss; then half a round trip to the sender, and half a one back.
+    // Three later packets reveal a loss; then half a round trip to the sender, and half a one back.
     const again = chance() < loss ? roundTrip + 3 / posesPerSecond : 0;
     last = Math.max(last, time + Math.max(0, roundTrip / 2 + jitter * (2 * chance() - 1)) + again);
     return last;
   });
 }
 
-/** As a headset would see it: places with noise of its own. */
+/** Adds tracker noise to the positions of a frame. */
 function trembling(frame: TrackingFrame, tremor: number, noise: () => number): TrackingFrame {
   const moved = (pose: TrackedPose): TrackedPose => {
     const { x, y, z } = pose.position;
@@ -145,7 +145,7 @@ function sentOf(frames: readonly SentFrame[]): readonly SentFrame[] {
   });
 }
 
-/** As it is after the wire. */
+/** Encodes and decodes a pose, as the network does. */
 function packetOf({ time, pose }: SentFrame): PosePacket {
   const timeMs = packetMs(time * 1000);
   const bytes = encodePose({ timeMs, jump: false, pose, fingers: unknownFingers }, skeleton);
@@ -154,7 +154,7 @@ function packetOf({ time, pose }: SentFrame): PosePacket {
   return packet;
 }
 
-/** So many seconds of one person seen by another over this way, through a page's own codec and playback; `seed`: of the network; `tremor`: of `tremors`. */
+/** Simulates one person seen by another through the page's codec and playback; `seed`: of the network; `tremor`: of `tremors`. */
 export function seenOver(way: Way, seconds: number, seed: number, tremor: number = tremors[0]): Seen {
   const frames = performed(seconds, tremor);
   const sent = sentOf(frames);

@@ -14,7 +14,7 @@ import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
 import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { WebSocket } from 'ws';
 import { countingKind } from '../../tests/rooms/room/counting-game';
-import { type ClientAnswer, type Heard, type Load, type Meeting } from './conversation';
+import type { ClientAnswer, Load, Meeting, PoseLatencies } from './conversation';
 
 /** A pose packet as players send it most: two controllers and a body. */
 function packet(): Uint8Array {
@@ -29,7 +29,7 @@ function packet(): Uint8Array {
   return bytes;
 }
 
-/** Of the time in a pose packet: its first bit, and how many it has (src/rooms/README.md). */
+/** The first bit of the time in a pose packet, and its number of bits (src/rooms/README.md). */
 const timeAt = 13;
 const timeBits = 14;
 
@@ -89,7 +89,7 @@ class Measurement {
     this.#parts[Math.floor((left - this.#start) / (1000 * partSeconds))]?.push(performance.now() - left);
   }
 
-  result(): Heard {
+  result(): PoseLatencies {
     const used = process.cpuUsage(this.#cpu);
     const seconds = (this.#end - this.#start) / 1000;
     for (const part of this.#parts) part.sort((x, y) => x - y);
@@ -136,14 +136,14 @@ class Client {
   readonly #token: string;
   readonly #socket: WebSocket;
   readonly #bytes: Uint8Array;
-  /** When each packet left, by the time it tells [ms]. */
+  /** The time at which each packet was sent, by its packet time [ms]. */
   readonly #sent = new Float64Array(2 ** timeBits);
   readonly #joined: Promise<void>;
   #join: () => void = () => undefined;
   #seat: number;
-  /** What the relay's clock is ahead of ours [ms]. */
+  /** The offset of the relay's clock to the local clock [ms]. */
   #ahead = 0;
-  /** Of the plain relay: whose pose comes with the next binary message, and how long the text was that said so [bytes]. */
+  /** For the plain relay: the sender of the next binary message, and the length of the text that announced it [bytes]. */
   #from = 0;
   #announced = 0;
 
@@ -259,7 +259,7 @@ class Crowd {
   }
 
   /** Plays in so many rooms; more people come where there are not as many yet. */
-  async play({ rooms, warmUpSeconds, seconds }: Load): Promise<Heard> {
+  async play({ rooms, warmUpSeconds, seconds }: Load): Promise<PoseLatencies> {
     while (this.#rooms.length < rooms) await this.#open();
     const clients = this.#rooms.slice(0, rooms).flat();
     const start = performance.now() + warmUpSeconds * 1000;
@@ -268,9 +268,9 @@ class Crowd {
     measurement = new Measurement(performance.now(), seconds);
     process.send?.('measuring' satisfies ClientAnswer);
     await this.#sendUntil(end, clients);
-    const heard = measurement.result();
+    const latencies = measurement.result();
     measurement = null;
-    return heard;
+    return latencies;
   }
 
   /** Another room, with people who come one after the other: its seats are given in that order. */
@@ -312,7 +312,7 @@ class Crowd {
   }
 }
 
-/** Rooms of three play the ball game; others a small game of the tests, as no game of ours has as many seats. */
+/** Rooms of three play the ball game; others play a small test game, because no shipped game has as many seats. */
 const kindFor = (people: number): string => (people === 3 ? ballKind : countingKind);
 
 let crowd: Crowd | null = null;

@@ -1,8 +1,8 @@
-/** What the processes of the relay bench tell each other. */
+/** Messages between the processes of the relay bench. */
 
 export type RelaySort = 'ours' | 'plain';
 
-/** To the clients, first: whom they are to speak to. */
+/** The first message to the clients: the relay to connect to. */
 export interface Meeting {
   readonly relay: RelaySort;
   readonly port: number;
@@ -23,8 +23,8 @@ export interface Load {
   readonly seconds: number;
 }
 
-/** Of the poses that left in the measured seconds alone. */
-export interface Heard {
+/** Figures of the poses that were sent in the measured seconds. */
+export interface PoseLatencies {
   /** From a pose's sending to its arrival at one of the others [ms]: the median over the parts of the measurement. */
   readonly p50Ms: number;
   readonly p99Ms: number;
@@ -40,7 +40,7 @@ export interface Heard {
 }
 
 /** From the clients: all are there, and the seconds that are measured begin; how it went. */
-export type ClientAnswer = 'measuring' | Heard;
+export type ClientAnswer = 'measuring' | PoseLatencies;
 
 /** To a relay: `cpu` asks for its CPU time so far. */
 export type RelayAnswer = { readonly port: number } | { readonly cpuMicroseconds: number; readonly rssBytes: number };

@@ -15,7 +15,7 @@ const { values: options } = parseArgs({
     rooms: { type: 'string' },
     hz: { type: 'string', default: '30,72' },
     seconds: { type: 'string' },
-    /** So many rooms and no search: what they cost. */
+    /** A fixed number of rooms, measured without a search. */
     count: { type: 'string' },
   },
 });
@@ -26,7 +26,7 @@ const seconds = Number(options.seconds ?? (options.quick ? '1' : '1.5'));
 const rooms = options.count ? Number(options.count) : null;
 const nearness = options.quick ? 0.2 : 0.1;
 
-/** Of each way, with a network of this seed. */
+/** The duration of each network condition, and the seed of the network. */
 const ageSeconds = options.quick ? 30 : 120;
 const ageSeed = 20261122;
 
@@ -73,7 +73,7 @@ for (const { relay, room, hz, light, most } of rows) {
 }
 const ages = ways.map((way) => {
   const seen = tremors.map((tremor) => seenOver(way, ageSeconds, ageSeed, tremor));
-  // What is drawn and when depends on the noise by less than is printed; jerk is told for each.
+  // What is drawn and when depends on the noise by less than is printed; jerk is printed for each.
   return { ...seen[0]!, jerkRatios: seen.map(({ jerkRatio }) => jerkRatio) };
 });
 console.log('From the frame of the other’s headset to the picture in which it is shown:');

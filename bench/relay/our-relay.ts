@@ -7,7 +7,7 @@ import { createRelay } from 'threepoint-rooms/server/relay';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { shippedRoomKinds } from '../../server/room-kinds';
 import { countingKind, countingPolicy } from '../../tests/rooms/room/counting-game';
-import { type RelayAnswer } from './conversation';
+import type { RelayAnswer } from './conversation';
 
 const tell = (answer: RelayAnswer): void => {
   process.send?.(answer);

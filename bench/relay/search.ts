@@ -1,6 +1,6 @@
 import { type ChildProcess, fork } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
-import type { ClientAnswer, Heard, Load, Meeting, RelayAnswer, RelaySort } from './conversation';
+import type { ClientAnswer, Load, Meeting, PoseLatencies, RelayAnswer, RelaySort } from './conversation';
 
 /** What is searched for: the most clients of one relay, in rooms of one size at one rate. */
 export interface Cell {
@@ -39,9 +39,9 @@ const few = 24;
 
 /** How a search is done. */
 export interface SearchOptions {
-  /** Of each load. */
+  /** The duration of each load. */
   readonly seconds: number;
-  /** So many and no search; null: the most. */
+  /** A fixed number of rooms without a search; null: the maximum is searched. */
   readonly rooms: number | null;
   /** The search ends where the next count would be nearer than this share of it. */
   readonly nearness: number;
@@ -61,7 +61,7 @@ const start = (name: string): ChildProcess =>
       THREEPOINT_CONNECTIONS_PER_ADDRESS: '100000',
     },
   });
-const heard = <Message>(child: ChildProcess): Promise<Message> =>
+const nextMessage = <Message>(child: ChildProcess): Promise<Message> =>
   new Promise((resolve, reject) => {
     const ended = (code: number | null): void => reject(new Error(`bench/relay: a process ended with ${code}`));
     child.once('exit', ended);
@@ -85,8 +85,8 @@ class Drive {
   }
 
   async begin(): Promise<void> {
-    const hello = await heard<RelayAnswer>(this.#relay);
-    if (!('port' in hello)) throw new Error('bench/relay: the relay told no port');
+    const hello = await nextMessage<RelayAnswer>(this.#relay);
+    if (!('port' in hello)) throw new Error('bench/relay: the relay reported no port');
     this.#clients.send({ ...this.#cell, port: hello.port, secret } satisfies Meeting);
   }
 
@@ -98,9 +98,9 @@ class Drive {
   async trial(rooms: number): Promise<Trial> {
     const { room } = this.#cell;
     this.#clients.send({ rooms, warmUpSeconds, seconds: this.#seconds } satisfies Load);
-    await heard<ClientAnswer>(this.#clients);
+    await nextMessage<ClientAnswer>(this.#clients);
     const before = await this.#usage();
-    const result = await heard<Heard>(this.#clients);
+    const result = await nextMessage<PoseLatencies>(this.#clients);
     const after = await this.#usage();
     const used = after.cpuMicroseconds - before.cpuMicroseconds;
     return {
@@ -119,7 +119,7 @@ class Drive {
 
   async #usage(): Promise<Extract<RelayAnswer, { cpuMicroseconds: number }>> {
     this.#relay.send('cpu');
-    const answer = await heard<RelayAnswer>(this.#relay);
+    const answer = await nextMessage<RelayAnswer>(this.#relay);
     if (!('cpuMicroseconds' in answer)) throw new Error('bench/relay: the relay answered something else');
     return answer;
   }

@@ -66,7 +66,7 @@ describe('the command line of each step', () => {
 
   test('has options that the training accepts', () => {
     const parser = text('training/threepoint_training/__main__.py');
-    const known = [...parser.matchAll(/(?:add_argument\(|^ {4})"(--[a-z0-9-]+)"/gm)].map(([, option]) => option);
+    const known = [...parser.matchAll(/(?:add_argument\(\s*|^ {4})"(--[a-z0-9-]+)"/gm)].map(([, option]) => option);
     const asked = steps.filter(({ script }) => script === 'train').flatMap((step) => commandOf(step, 'DIR').slice(1));
     expect(known).toEqual(expect.arrayContaining(asked.filter((word) => word.startsWith('--'))));
     const stages = text('training/threepoint_training/training_config.py').match(/stages: .+ = \((.+)\)/)?.[1];

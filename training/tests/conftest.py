@@ -2,5 +2,13 @@
 
 from importlib.util import find_spec
 
-_NEED_TORCH = ("command_line", "lockbox", "model", "noticed_wear", "differentiable_kinematics", "selection", "swivel_limiter")
+_NEED_TORCH = (
+    "command_line",
+    "lockbox",
+    "model",
+    "noticed_wear",
+    "differentiable_kinematics",
+    "selection",
+    "swivel_limiter",
+)
 collect_ignore = [] if find_spec("torch") else [f"test_{name}.py" for name in _NEED_TORCH]

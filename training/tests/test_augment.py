@@ -40,9 +40,14 @@ def corpus_rows(corpus=CORPUS, tilts_of=None):
     for clip, person in enumerate(corpus.clip_people):
         frames = corpus.clip_slice(clip)
         tracked = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, EXACT, np.random.default_rng(0))
-        body = body_from_calibration(np.array(corpus.people[person].eye_height), np.array(corpus.people[person].arm_span))
+        body = body_from_calibration(
+            np.array(corpus.people[person].eye_height), np.array(corpus.people[person].arm_span)
+        )
         truth, tilts = corpus.truth(frames).astype(np.float64), tilts_of(person)
-        as_it_is, image = (*tracked, truth, tilts), (*mirror.trackers(*tracked), mirror.joints(truth), mirror.tilts(tilts))
+        as_it_is, image = (
+            (*tracked, truth, tilts),
+            (*mirror.trackers(*tracked), mirror.joints(truth), mirror.tilts(tilts)),
+        )
         for positions, rotations, joints, hands in (as_it_is, image):
             turned = body.with_hands(hands)
             vector, _ = frame_features(positions, rotations, turned)
@@ -79,14 +84,18 @@ def test_without_any_variation_a_window_is_the_corpus_s_own_or_its_mirror_image(
 def test_hands_of_tilts_that_no_hand_has_are_turned_by_the_usual_one():
     turned = hand_turned_corpus(1.3)
     parts = BodyParts(turned, tuple(turned.people))
-    assert not hand_tilt.believed(parts.tilts).any()
-    assert_rows_of(draw_batch(parts, 60, PLAIN, np.random.default_rng(1)), corpus_rows(turned, lambda _: hand_tilt.usual()))
+    assert not hand_tilt.plausible(parts.tilts).any()
+    assert_rows_of(
+        draw_batch(parts, 60, PLAIN, np.random.default_rng(1)), corpus_rows(turned, lambda _: hand_tilt.usual())
+    )
 
 
 def test_people_count_alike_at_an_exponent_of_one_however_much_there_is_of_them():
     people = ("002", "003")
     # The first person has half of the second's frames.
-    shorter = replace(CORPUS, clip_people=("010", *CORPUS.clip_people[1:]), people=CORPUS.people | {"010": CORPUS.people["002"]})
+    shorter = replace(
+        CORPUS, clip_people=("010", *CORPUS.clip_people[1:]), people=CORPUS.people | {"010": CORPUS.people["002"]}
+    )
     parts = BodyParts(shorter, people, BalanceConfig(people=1.0))
     assert np.bincount(parts.person).tolist() == [80, 160]
     drawn = (parts.draw_trunks(np.random.default_rng(3), 6000), parts.draw_arms(np.random.default_rng(4), 6000)[0])
@@ -97,7 +106,7 @@ def test_people_count_alike_at_an_exponent_of_one_however_much_there_is_of_them(
 def test_arms_of_others_move_the_hands_but_not_the_torso():
     plain = draw_batch(PARTS, 200, PLAIN, np.random.default_rng(2))
     mixed = draw_batch(PARTS, 200, replace(PLAIN, recombined=1.0), np.random.default_rng(2))
-    # The same frames are drawn first; mirroring is drawn later, so compare what mirroring leaves alone: the height of the hips.
+    # Both draws select the same frames but mirror differently: compare the height of the hips, which mirroring keeps.
     np.testing.assert_allclose(joints_of(mixed)[:, 5, 1], joints_of(plain)[:, 5, 1], atol=1e-5)
     assert np.abs(hand_positions(mixed.inputs) - hand_positions(plain.inputs)).max() > 0.3
 
@@ -111,25 +120,33 @@ def test_arms_have_the_length_that_the_calibration_knows(recombined):
     span_ratio = batch.inputs[:, ARM_LENGTH]
     for elbow, shoulder, hand in ((0, 2, slice(7, 10)), (1, 3, slice(16, 19))):
         wrist = batch.inputs[:, hand] * span_ratio[:, None]
-        length = np.linalg.norm(joints[:, elbow] - joints[:, shoulder], axis=1) + np.linalg.norm(wrist - joints[:, elbow], axis=1)
+        length = np.linalg.norm(joints[:, elbow] - joints[:, shoulder], axis=1) + np.linalg.norm(
+            wrist - joints[:, elbow], axis=1
+        )
         # Generated people are 0.24 of the eye height between the shoulders, the calibrated skeleton a little less.
         assert np.abs(length / span_ratio - 1).max() < 0.06
 
 
 def test_typed_forearms_are_those_of_the_arms_that_were_drawn():
     """On either side, in a mirror or not: IK's arms have more of the drawn ones' own bones."""
-    untold, told = (
-        draw_batch(PARTS, 300, replace(PLAIN, recombined=1.0, typed_forearms=part, forearm_error=0.0), np.random.default_rng(10)) for part in (0, 1)
+    without, typed = (
+        draw_batch(
+            PARTS,
+            300,
+            replace(PLAIN, recombined=1.0, typed_forearms=part, forearm_error=0.0),
+            np.random.default_rng(10),
+        )
+        for part in (0, 1)
     )
 
     def upper_arms(joints):
         return np.linalg.norm(joints[:, :2] - joints[:, 2:4], axis=-1)
 
     # The frames drawn are the same ones, and so is the truth.
-    own = upper_arms(joints_of(told))
-    np.testing.assert_allclose(own, upper_arms(joints_of(untold)), atol=1e-4)
-    average, believed = (upper_arms(batch.inputs[:, IK_JOINTS].reshape(-1, 6, 3)) for batch in (untold, told))
-    assert np.corrcoef((own - average).ravel(), (believed - average).ravel())[0, 1] > 0.99
+    own = upper_arms(joints_of(typed))
+    np.testing.assert_allclose(own, upper_arms(joints_of(without)), atol=1e-4)
+    average, with_typed = (upper_arms(batch.inputs[:, IK_JOINTS].reshape(-1, 6, 3)) for batch in (without, typed))
+    assert np.corrcoef((own - average).ravel(), (with_typed - average).ravel())[0, 1] > 0.99
 
 
 def test_a_lost_hand_says_so_and_comes_to_rest_beside_the_hips_in_time():
@@ -184,7 +201,9 @@ def test_a_hand_lost_for_the_whole_window_is_held_at_one_place_beside_the_headse
 def test_a_hand_that_has_been_seen_again_was_lost_in_earlier_frames_of_the_window():
     """It is back for one to sixteen frames of a window of fifteen: the last of them were before the loss was over."""
     plain = replace(PLAIN, window_frames=(0, 6, 15), lost_frames=60, returned=1.0)
-    back, seen = (draw_batch(PARTS, 2000, replace(plain, lost_hand=part), np.random.default_rng(7)) for part in (1.0, 0.0))
+    back, seen = (
+        draw_batch(PARTS, 2000, replace(plain, lost_hand=part), np.random.default_rng(7)) for part in (1.0, 0.0)
+    )
     np.testing.assert_array_equal(frame_of(back, 0), frame_of(seen, 0))
     lost = [frame_of(back, place)[:, SEEN] == 0 for place in (1, 2)]
     # Back for at most six of the sixteen, or for fifteen, and not lost so shortly that it was seen before that.
@@ -203,7 +222,9 @@ def test_trackers_jitter_in_position_and_rotation_at_every_frame_of_the_window_a
         # In eye heights; generated people's are 1.4 to 1.8 m.
         assert 0.5e-3 < frame[:, HEADSET_HEIGHT].std() < 0.75e-3
         # An axis is moved by the rotations about the two others, and by those of the head that the heading frame follows.
-        assert np.linalg.norm(frame[:, HANDS[0]][:, 3:6], axis=1).mean() == pytest.approx(1e-2 * np.sqrt(2 / 3), rel=0.25)
+        assert np.linalg.norm(frame[:, HANDS[0]][:, 3:6], axis=1).mean() == pytest.approx(
+            1e-2 * np.sqrt(2 / 3), rel=0.25
+        )
     assert abs(np.corrcoef(*(frame[:, HEADSET_HEIGHT] for frame in moved))[0, 1]) < 0.1
 
 
@@ -215,7 +236,9 @@ def test_late_trackers_tell_of_the_frame_before():
 
 
 def test_seated_people_are_lower_and_shaped_the_same():
-    standing, seated = (draw_batch(PARTS, 200, replace(PLAIN, seated=part), np.random.default_rng(9)) for part in (0.0, 1.0))
+    standing, seated = (
+        draw_batch(PARTS, 200, replace(PLAIN, seated=part), np.random.default_rng(9)) for part in (0.0, 1.0)
+    )
     drop = standing.inputs[:, 0] - seated.inputs[:, 0]
     assert (drop > 0.19).all()
     assert (drop < 0.36).all()
@@ -223,10 +246,12 @@ def test_seated_people_are_lower_and_shaped_the_same():
 
 
 def test_hands_continue_their_forearms_on_average():
-    """Whose arm it is, on which side and in a mirror or not: the hand's −Z then lies along the forearm, but for how far this wrist is bent."""
+    """The hand's −Z lies along the forearm, except for the bend of the wrist, for every person, side and mirror image."""
 
     def bends(corpus):
-        batch = draw_batch(BodyParts(corpus, tuple(corpus.people)), 400, replace(PLAIN, recombined=1.0), np.random.default_rng(6))
+        batch = draw_batch(
+            BodyParts(corpus, tuple(corpus.people)), 400, replace(PLAIN, recombined=1.0), np.random.default_rng(6)
+        )
         hands = hand_positions(batch.inputs) * batch.inputs[:, ARM_LENGTH, None, None]
         forearms = hands - joints_of(batch)[:, :2]
         forearms /= np.linalg.norm(forearms, axis=-1, keepdims=True)

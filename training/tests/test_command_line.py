@@ -24,7 +24,9 @@ def test_a_run_has_one_seed_for_both_networks():
         assert (config.paper.seed, config.learned.seed) == (3, 3)
 
 
-@pytest.mark.parametrize(("option", "task"), [("--select", "selection"), ("--noticed", "noticed wear"), ("--lockbox", "lockbox")])
+@pytest.mark.parametrize(
+    ("option", "task"), [("--select", "selection"), ("--noticed", "noticed wear"), ("--lockbox", "lockbox")]
+)
 def test_a_study_is_done_instead_of_the_training(option, task):
     assert config_of(["--generated", option]).task == task
 

@@ -22,7 +22,9 @@ def right_wrist(seconds):
 
 def test_a_lost_hand_is_held_then_lowered_and_then_rests_beside_the_hip():
     np.testing.assert_allclose(right_wrist(LOST_HAND["holdSeconds"]), RAISED)
-    heights = [right_wrist(LOST_HAND["holdSeconds"] + share * LOST_HAND["restSeconds"])[1] for share in np.linspace(0, 1, 20)]
+    heights = [
+        right_wrist(LOST_HAND["holdSeconds"] + share * LOST_HAND["restSeconds"])[1] for share in np.linspace(0, 1, 20)
+    ]
     assert (np.diff(heights) < 0).all()
     rest = right_wrist(LOST_HAND["holdSeconds"] + LOST_HAND["restSeconds"])
     np.testing.assert_allclose(right_wrist(60.0), rest)

@@ -11,7 +11,14 @@ from threepoint_training.differentiable_kinematics import DifferentiableKinemati
 from threepoint_training.features import ARM_LENGTH, IK_JOINTS
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.skeleton import load_proportions
-from threepoint_training.train_learned import HeldOut, fitted_errors_cm, held_out, ik_errors_cm, mean_distances, raw_errors_cm
+from threepoint_training.train_learned import (
+    HeldOut,
+    fitted_errors_cm,
+    held_out,
+    ik_errors_cm,
+    mean_distances,
+    raw_errors_cm,
+)
 
 pytestmark = pytest.mark.training
 
@@ -51,7 +58,11 @@ def test_elbows_lie_where_both_bones_let_them_be(typed):
     arms = people.inputs[:, -CHEST_FEATURES:][:, ARMS].reshape(-1, 2, ARM_COLUMNS // 3, 3)
     for side in (0, 1):
         # From IK's shoulder, chest frame.
-        wrist, elbow, shoulder = arms[:, side, 0] * arm[:, None], arms[:, side, 3] + elbow_shift[:, side], shoulder_shift[:, side]
+        wrist, elbow, shoulder = (
+            arms[:, side, 0] * arm[:, None],
+            arms[:, side, 3] + elbow_shift[:, side],
+            shoulder_shift[:, side],
+        )
         reachable = np.linalg.norm(wrist - shoulder, axis=1) < 0.95 * arm
         assert reachable.sum() > 50
         for end, bone in ((wrist, arm - upper), (shoulder, upper)):
@@ -73,7 +84,9 @@ def test_errors_are_those_of_joints_on_their_bones():
     below[:, 5, 1] = -0.1
     there = HeldOut(PEOPLE.inputs, np.zeros_like(PEOPLE.targets), PEOPLE.eye_height, PEOPLE.people, PEOPLE.clips)
     assert raw_errors_cm(below.reshape(1, 18), there)[:, 5].min() > 10
-    np.testing.assert_allclose(fitted_errors_cm(below.reshape(1, 18), there)[:, :5], ik_errors_cm(there)[:, :5], atol=1e-3)
+    np.testing.assert_allclose(
+        fitted_errors_cm(below.reshape(1, 18), there)[:, :5], ik_errors_cm(there)[:, :5], atol=1e-3
+    )
     assert np.median(fitted_errors_cm(below.reshape(1, 18), there)[:, 5]) < 3
 
 

@@ -117,7 +117,7 @@ def test_the_ik_joints_within_are_those_of_the_solver(motion):
 
 @pytest.mark.parametrize("rate", [60, 72, 90, 120])
 def test_the_window_means_the_same_at_every_frame_rate(rate):
-    """Of features that change linearly, at a moment that every rate samples."""
+    """The features change linearly, and every rate samples the compared moment."""
     slope = np.random.default_rng(4).normal(size=FEATURES)
     times = np.arange(rate + 1) / rate
     window = windowed(times[:, None] * slope, times, (0.0, 0.1, 0.25))
@@ -137,7 +137,9 @@ def test_euler_angles_compose_to_the_rotation():
     rotations = np.random.default_rng(6).normal(size=(200, 4))
     rotations /= np.linalg.norm(rotations, axis=-1, keepdims=True)
     angles = euler_yxz(rotations)
-    x, y, z = (quaternion.from_axis_angle(np.broadcast_to(np.eye(3)[axis], (200, 3)), angles[:, axis]) for axis in range(3))
+    x, y, z = (
+        quaternion.from_axis_angle(np.broadcast_to(np.eye(3)[axis], (200, 3)), angles[:, axis]) for axis in range(3)
+    )
     composed = quaternion.multiply(quaternion.multiply(y, x), z)
     np.testing.assert_allclose(np.abs(np.sum(composed * rotations, axis=-1)), 1, atol=1e-9)
 
@@ -155,7 +157,9 @@ def turned_about_the_headset(vector: np.ndarray, q: np.ndarray) -> np.ndarray:
     turned = vector.copy()
     for part in (HEAD_AXES, *HANDS, IK_JOINTS):
         vectors = vector[:, part].reshape(len(vector), -1, 3)
-        turned[:, part] = quaternion.rotate(np.broadcast_to(q, (*vectors.shape[:-1], 4)), vectors).reshape(len(vector), -1)
+        turned[:, part] = quaternion.rotate(np.broadcast_to(q, (*vectors.shape[:-1], 4)), vectors).reshape(
+            len(vector), -1
+        )
     return turned
 
 
@@ -186,4 +190,6 @@ def test_the_residual_is_what_to_add_to_ik(motion):
     up = np.array([0.0, 0.03, 0.0])
     np.testing.assert_allclose(residual(floor, positions, rotations, BODY, vector), 0.0, atol=1e-12)
     answer = residual(floor + up, positions, rotations, BODY, vector).reshape(-1, 6, 3)
-    np.testing.assert_allclose(answer, 0.03 / BODY.eye_height[0] * np.repeat(chest_axes(vector)[:, None, :, 1], 6, axis=1), atol=1e-12)
+    np.testing.assert_allclose(
+        answer, 0.03 / BODY.eye_height[0] * np.repeat(chest_axes(vector)[:, None, :, 1], 6, axis=1), atol=1e-12
+    )

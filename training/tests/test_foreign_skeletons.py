@@ -10,7 +10,14 @@ from threepoint_training.mocap_bvh import parse_bvh
 from threepoint_training.motion import MocapError
 from threepoint_training.prepared_corpus import JOINTS, LEG_JOINTS, PreparedCorpus
 from threepoint_training.skeleton_map import read_skeleton_map
-from threepoint_training.synthetic_skeletons import IDENTITY, along, angles_of, game_bvh, write_asf_amc, write_cmuconvert_bvh
+from threepoint_training.synthetic_skeletons import (
+    IDENTITY,
+    along,
+    angles_of,
+    game_bvh,
+    write_asf_amc,
+    write_cmuconvert_bvh,
+)
 
 X, Y, Z = np.eye(3)
 
@@ -58,7 +65,9 @@ def test_one_that_lost_nothing_stays_as_it_is(tmp_path: Path) -> None:
     write_cmuconvert_bvh(tmp_path / "whole.bvh", angles_of(2, 4), lost=False)
     motion = parse_bvh(tmp_path / "whole.bvh")
     assert motion.notes == ()
-    rest = {name: motion.rest_positions[motion.index(name)] for name in ("Spine1", "Neck", "LeftHand", "LeftFingerBase")}
+    rest = {
+        name: motion.rest_positions[motion.index(name)] for name in ("Spine1", "Neck", "LeftHand", "LeftFingerBase")
+    }
     np.testing.assert_allclose(rest["Neck"] - rest["Spine1"], [0, 2, 0.12], atol=1e-8)
     np.testing.assert_allclose(rest["LeftFingerBase"] - rest["LeftHand"], [1.7, 0, 0], atol=1e-8)
 
@@ -68,7 +77,10 @@ def test_a_trunk_bone_that_is_lost_for_good_is_refused(tmp_path: Path) -> None:
     write_cmuconvert_bvh(text_of, angles_of(3, 60))
     # Other names than cmuconvert's: what the trunk was is not known.
     text_of.write_text(text_of.read_text().replace("LowerBack", "Belly"))
-    with pytest.raises(MocapError, match=r"01_01\.bvh: Neck \(neck\) lies on Spine1 \(chest\) in the rest pose: the file lost a bone of the trunk"):
+    with pytest.raises(
+        MocapError,
+        match=r"01_01\.bvh: Neck \(neck\) lies on Spine1 \(chest\) in the rest pose: the file lost a bone of the trunk",
+    ):
         prepared(tmp_path)
 
 
@@ -85,7 +97,15 @@ def moving(frames: int = 60) -> tuple[list[dict[str, np.ndarray]], list[np.ndarr
         bend = quaternion.multiply(body, quaternion.from_axis_angle(X, np.array(0.5 * share)))
         arm = quaternion.multiply(bend, quaternion.from_axis_angle(Z, np.array(-1.1 * share)))
         hand = quaternion.multiply(arm, quaternion.from_axis_angle(X, np.array(0.8 * share)))
-        turns.append({"Hips": body, "Spine": bend, "Head": quaternion.multiply(bend, yaw(30 * share)), "LeftArm": arm, "LeftHand": hand})
+        turns.append(
+            {
+                "Hips": body,
+                "Spine": bend,
+                "Head": quaternion.multiply(bend, yaw(30 * share)),
+                "LeftArm": arm,
+                "LeftHand": hand,
+            }
+        )
         hips.append(np.array([20 * share, 93.0, 50 * share]))
     return turns, hips
 
@@ -93,7 +113,15 @@ def moving(frames: int = 60) -> tuple[list[dict[str, np.ndarray]], list[np.ndarr
 def write_map(path: Path, **entries: object) -> Path:
     names = {"hips": "Hips", "spine": "Spine", "chest": "Spine1", "neck": "Neck", "head": "Head"}
     for side in ("Left", "Right"):
-        theirs = {"UpperArm": "Arm", "LowerArm": "ForeArm", "Hand": "Hand", "UpperLeg": "UpLeg", "LowerLeg": "Leg", "Foot": "Foot", "Toes": "Toe"}
+        theirs = {
+            "UpperArm": "Arm",
+            "LowerArm": "ForeArm",
+            "Hand": "Hand",
+            "UpperLeg": "UpLeg",
+            "LowerLeg": "Leg",
+            "Foot": "Foot",
+            "Toes": "Toe",
+        }
         names |= {f"{side.lower()}{ours}": f"{side}{name}" for ours, name in theirs.items()}
     path.write_text(json.dumps({"joints": names, **entries}))
     return path
@@ -113,10 +141,10 @@ def test_bones_folded_along_an_axis_are_no_t_pose(tmp_path: Path, axis: np.ndarr
     (tmp_path / "walk.bvh").write_text(game_bvh(along(axis), *moving())[0])
     with pytest.raises(MocapError) as error:
         prepared(tmp_path)
-    told = str(error.value)
-    assert f"walk.bvh: the rest pose is no T-pose: {sentence}" in told
-    assert "restFrame" in told
-    assert "restPose" in told
+    message = str(error.value)
+    assert f"walk.bvh: the rest pose is no T-pose: {sentence}" in message
+    assert "restFrame" in message
+    assert "restPose" in message
 
 
 @pytest.mark.parametrize("axis", [X, -Y, Z])
@@ -199,6 +227,10 @@ def test_legs_are_kept_as_truth_in_the_same_floor_frame(tmp_path: Path) -> None:
 
 def test_a_forearm_without_length_is_refused(tmp_path: Path) -> None:
     text = game_bvh({name: IDENTITY for name in along(X)}, *moving())[0]
-    (folder(tmp_path, "p") / "walk.bvh").write_text(text.replace("OFFSET 26.000000000 0.000000000 0.000000000", "OFFSET 0 0 0"))
-    with pytest.raises(MocapError, match=r"walk.bvh: LeftHand \(leftHand\) lies on LeftForeArm \(leftLowerArm\) in the rest pose"):
+    (folder(tmp_path, "p") / "walk.bvh").write_text(
+        text.replace("OFFSET 26.000000000 0.000000000 0.000000000", "OFFSET 0 0 0")
+    )
+    with pytest.raises(
+        MocapError, match=r"walk.bvh: LeftHand \(leftHand\) lies on LeftForeArm \(leftLowerArm\) in the rest pose"
+    ):
         prepared(tmp_path)

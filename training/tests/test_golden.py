@@ -69,7 +69,10 @@ def test_the_contract_speaks_of_the_file_beside_it(name):
     assert stated["sha256"] == hashlib.sha256(content).hexdigest()
     assert stated["sha256"] == committed("models.json")[name]["sha256"]
     session = onnxruntime.InferenceSession(content)
-    for tensors, stated_tensors in ((session.get_inputs(), stated["inputs"]), (session.get_outputs(), stated["outputs"])):
+    for tensors, stated_tensors in (
+        (session.get_inputs(), stated["inputs"]),
+        (session.get_outputs(), stated["outputs"]),
+    ):
         assert [(t.name, t.shape) for t in tensors] == [(t["name"], t["shape"]) for t in stated_tensors]
     assert stated["outputs"][0]["shape"] == [1, OUTPUTS]
     if name == "learned":

@@ -18,7 +18,7 @@ TILTS = RANDOM.normal(size=(50, 2)) * 0.4
 
 
 def worn_off(corpus, left, right):
-    """The same people with hands turned against their forearms."""
+    """Returns the corpus with its hands rotated against their forearms."""
     turns = quaternion.from_rotation_vector(np.array([[0.0, 0.0, 0.0], left, right]))
     return replace(corpus, rotations=quaternion.multiply(corpus.rotations.astype(np.float64), turns).astype(np.float32))
 
@@ -38,7 +38,9 @@ def test_a_tracker_that_is_turned_sees_the_tilt_that_undoes_it():
     worn = quaternion.from_rotation_vector(RANDOM.normal(size=(50, 3)) * 0.2)
     along = np.broadcast_to([0.0, 0.0, -1.0], (50, 3))
     seen = quaternion.multiply(worn, hand_tilt.turn_of(hand_tilt.turned(TILTS, worn)))
-    np.testing.assert_allclose(quaternion.rotate(seen, along), quaternion.rotate(hand_tilt.turn_of(TILTS), along), atol=1e-12)
+    np.testing.assert_allclose(
+        quaternion.rotate(seen, along), quaternion.rotate(hand_tilt.turn_of(TILTS), along), atol=1e-12
+    )
 
 
 def test_what_is_measured_of_a_clip_comes_from_the_others():
@@ -46,7 +48,8 @@ def test_what_is_measured_of_a_clip_comes_from_the_others():
     clips = CORPUS.clips_of({"002"})
     rotations = CORPUS.rotations.copy()
     rotations[CORPUS.clip_slice(clips[0])] = quaternion.multiply(
-        rotations[CORPUS.clip_slice(clips[0])].astype(np.float64), quaternion.from_rotation_vector(np.array([0.6, 0.0, 0.0]))
+        rotations[CORPUS.clip_slice(clips[0])].astype(np.float64),
+        quaternion.from_rotation_vector(np.array([0.6, 0.0, 0.0])),
     )
     changed = hand_tilt.ForearmMeans(replace(CORPUS, rotations=rotations), ("002",))
     np.testing.assert_array_equal(changed.elsewhere(clips[0]), forearms.elsewhere(clips[0]))
@@ -54,8 +57,10 @@ def test_what_is_measured_of_a_clip_comes_from_the_others():
 
 
 def test_with_exact_tilts_it_does_not_matter_how_hands_are_worn():
-    """But for turns about the forearm, which no calibration of this kind tells."""
-    positions, rotations = (part[:90].astype(np.float64) for part in (CORPUS.positions[:, [4, 7, 10]], CORPUS.rotations))
+    """Rotations about the forearm are excluded, because this calibration does not measure them."""
+    positions, rotations = (
+        part[:90].astype(np.float64) for part in (CORPUS.positions[:, [4, 7, 10]], CORPUS.rotations)
+    )
     tilts = np.array([[0.3, -0.2], [-0.1, 0.4]])
     worn = quaternion.conjugate(hand_tilt.turn_of(tilts))
     turned = rotations.copy()
@@ -66,7 +71,9 @@ def test_with_exact_tilts_it_does_not_matter_how_hands_are_worn():
 
 
 def test_the_calibration_errs_by_its_standard_deviation():
-    errors = measured_tilts(np.zeros((4000, 2)), np.broadcast_to([0.0, 0.0, 0.0, 1.0], (4000, 4)), TrackerConfig(), RANDOM)
+    errors = measured_tilts(
+        np.zeros((4000, 2)), np.broadcast_to([0.0, 0.0, 0.0, 1.0], (4000, 4)), TrackerConfig(), RANDOM
+    )
     assert np.sqrt((errors**2).sum(axis=1).mean()) == pytest.approx(TrackerConfig().hand_tilt_error, rel=0.05)
 
 
@@ -87,7 +94,9 @@ def test_ik_of_turned_hands_is_fitted_beside_that_of_hands_as_they_come():
 
 def test_a_fit_sees_hands_of_both_kinds():
     """Proportions are the page's; half of the frames have hands that are turned by their tilts."""
-    frames = fit_ik.sample(worn_off(CORPUS, [0.5, 0.0, 0.0], [0.5, 0.0, 0.0]), ("002",), load_proportions(), None, 1, mirrored=False)
+    frames = fit_ik.sample(
+        worn_off(CORPUS, [0.5, 0.0, 0.0], [0.5, 0.0, 0.0]), ("002",), load_proportions(), None, 1, mirrored=False
+    )
     turned = frames.body.hands_turned.all(axis=1)
     np.testing.assert_array_equal(turned, frames.body.hands_turned.any(axis=1))
     assert turned.mean() == pytest.approx(0.5, abs=0.01)
@@ -102,5 +111,7 @@ def test_the_usual_tilt_is_that_of_people_s_right_hands_and_of_their_left_ones_i
     """Worn off by a tilt, hands are found to have it besides the little that generated ones have."""
     tilt = np.array([0.3, -0.2])
     off = [np.append(-each, 0.0) for each in (tilt * mirror.TILT, tilt)]
-    before, after = (fit_proportions.fit(corpus, tuple(CORPUS.people))["handTilt"] for corpus in (CORPUS, worn_off(CORPUS, *off)))
+    before, after = (
+        fit_proportions.fit(corpus, tuple(CORPUS.people))["handTilt"] for corpus in (CORPUS, worn_off(CORPUS, *off))
+    )
     np.testing.assert_allclose(np.subtract(after, before), tilt, atol=0.01)

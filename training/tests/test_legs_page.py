@@ -28,10 +28,10 @@ def test_people_count_alike_and_another_laboratory_by_itself() -> None:
         ("the true pelvis", "15.0"), ("IK", "15.0"), ("learned", "15.0"),
         ("the true pelvis, another laboratory", "40.0"), ("IK, another laboratory", "40.0"), ("learned, another laboratory", "40.0"),
     ]  # fmt: skip
-    assert lines[0][head.index("contact told")] == "80 %"
+    assert lines[0][head.index("contact agreed")] == "80 %"
 
 
-def test_the_page_without_a_place_for_them_is_told(tmp_path: Path) -> None:
+def test_a_page_without_marks_is_refused(tmp_path: Path) -> None:
     (tmp_path / "legs.json").write_text('{"people": {}}')
     page = tmp_path / "page.md"
     page.write_text("# Legs\n")

@@ -48,7 +48,10 @@ def test_each_evaluation_appends_the_errors_of_lockbox_people_alone(models, tmp_
     held_out = train_learned.held_out(CORPUS, ("009",), WINDOW, hands_measured=False)
     of_ik = train_learned.ik_errors_cm(held_out)
     errors = first["cm"]["009"]
-    assert errors["IK"] == {"all joints": pytest.approx(of_ik.mean(), abs=0.006), "elbows": pytest.approx(of_ik[:, :2].mean(), abs=0.006)}
+    assert errors["IK"] == {
+        "all joints": pytest.approx(of_ik.mean(), abs=0.006),
+        "elbows": pytest.approx(of_ik[:, :2].mean(), abs=0.006),
+    }
     assert errors["learned"] != errors["IK"]
     for joints in selection.JOINTS:
         ratio = errors["learned"][joints] / errors["IK"][joints]
@@ -80,7 +83,9 @@ def test_the_command_evaluates_the_networks_in_out(models, tmp_path):
     for file in list(person.iterdir()):
         file.rename(person / file.name.replace("p", "009", 1))
     log = tmp_path / "log.json"
-    config = replace(TrainConfig(mocap=tmp_path / "mocap"), task="lockbox", out=models, lockbox_log=log, cache=tmp_path / "cache")
+    config = replace(
+        TrainConfig(mocap=tmp_path / "mocap"), task="lockbox", out=models, lockbox_log=log, cache=tmp_path / "cache"
+    )
     assert pipeline.main(config, Console(quiet=True)) == {}
     (row,) = json.loads(log.read_text())
     assert list(row["cm"]) == ["009"]

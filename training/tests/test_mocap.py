@@ -72,13 +72,19 @@ def write(folder: Path, name: str, text: str) -> Path:
 
 
 def amc(*frames: str) -> str:
-    return ":FULLY-SPECIFIED\n:DEGREES\n" + "".join(f"{number}\n{frame}\n" for number, frame in enumerate(frames, start=1))
+    return ":FULLY-SPECIFIED\n:DEGREES\n" + "".join(
+        f"{number}\n{frame}\n" for number, frame in enumerate(frames, start=1)
+    )
 
 
 def test_a_bone_turns_about_its_own_axes(tmp_path: Path) -> None:
     skeleton = parse_asf(write(tmp_path, "01.asf", ASF))
     motion = parse_amc(
-        write(tmp_path, "01_01.amc", amc("root 1 2 3 0 0 0\nupper 0 0\nlower 0", "root 0 0 0 0 90 0\nupper 0 90\nlower 90")),
+        write(
+            tmp_path,
+            "01_01.amc",
+            amc("root 1 2 3 0 0 0\nupper 0 0\nlower 0", "root 0 0 0 0 90 0\nupper 0 90\nlower 90"),
+        ),
         skeleton,
     )
     at = {name: motion.positions[:, motion.index(name)] for name in ("root", "upper:end", "lower:end")}
@@ -125,9 +131,13 @@ def test_bad_motion_names_file_and_line(tmp_path: Path, frame: str, sentence: st
         ("Degrees", "", 90.0),
     ],
 )
-def test_angles_are_in_the_unit_that_the_motion_says_else_in_the_skeletons(tmp_path: Path, unit: str, header: str, angle: float) -> None:
+def test_angles_are_in_the_unit_that_the_motion_says_else_in_the_skeletons(
+    tmp_path: Path, unit: str, header: str, angle: float
+) -> None:
     tilt = np.pi / 6 if unit == "rad" else 30
-    skeleton = parse_asf(write(tmp_path, "01.asf", ASF.replace("angle deg", f"angle {unit}").replace("axis 0 0 30", f"axis 0 0 {tilt}")))
+    skeleton = parse_asf(
+        write(tmp_path, "01.asf", ASF.replace("angle deg", f"angle {unit}").replace("axis 0 0 30", f"axis 0 0 {tilt}"))
+    )
     frame = f"root 0 0 0 0 0 0\nupper {angle} 0\nlower 0"
     motion = parse_amc(write(tmp_path, "01_01.amc", amc(frame).replace(":DEGREES", header)), skeleton)
     expected = [np.sqrt(3) / 2, 0.5, np.sqrt(3)]
@@ -166,8 +176,14 @@ def test_bvh_rotations_apply_in_the_order_of_the_channels(tmp_path: Path) -> Non
     [
         (("0 1 0 90 0 0 0 90 0", "0 1 0 90"), "clip.bvh, line 20: a frame has 4 numbers, the hierarchy has 9 channels"),
         (("Frames: 2", "Frames: 3"), "clip.bvh: “Frames: 3”, but 2 follow"),
-        (("Frame Time: 0.008333", "Frame Time: 0"), "clip.bvh: frame rate unknown; a line “Frame Time: seconds” is needed"),
-        (("CHANNELS 3 Z", "CHANNELS 4 Z"), "clip.bvh, line 9: CHANNELS should be a count and as many names, is “4 Zrotation Xrotation Yrotation”"),
+        (
+            ("Frame Time: 0.008333", "Frame Time: 0"),
+            "clip.bvh: frame rate unknown; a line “Frame Time: seconds” is needed",
+        ),
+        (
+            ("CHANNELS 3 Z", "CHANNELS 4 Z"),
+            "clip.bvh, line 9: CHANNELS should be a count and as many names, is “4 Zrotation Xrotation Yrotation”",
+        ),
     ],
 )
 def test_bad_bvh_names_file_and_line(tmp_path: Path, change: tuple[str, str], sentence: str) -> None:

@@ -20,7 +20,7 @@ MIRROR = np.array([-1.0, 1.0, 1.0], np.float32)
 
 @pytest.fixture
 def network() -> CorrectionNetwork:
-    """As it is before training: random weights, but the data's mean and scale."""
+    """Returns an untrained network: random weights with the mean and scale of the data."""
     torch.manual_seed(1)
     network = CorrectionNetwork(len(WINDOW), width=32, dropout=0.0)
     network.normalise(torch.from_numpy(PEOPLE.inputs), torch.from_numpy(PEOPLE.targets))

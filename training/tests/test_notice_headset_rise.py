@@ -32,7 +32,8 @@ def test_a_headset_that_sits_higher_takes_the_shoulders_away_from_hands():
     wearer = draw_wearer(TrackerConfig(), np.random.default_rng(1))
     higher = replace(wearer, eyes_in_head=wearer.eyes_in_head + [0.0, 0.03, 0.0])
     of_both = [
-        reaches(*simulate(CORPUS.positions, CORPUS.rotations, worn, TrackerConfig(), np.random.default_rng(2)), BODY) for worn in (wearer, higher)
+        reaches(*simulate(CORPUS.positions, CORPUS.rotations, worn, TrackerConfig(), np.random.default_rng(2)), BODY)
+        for worn in (wearer, higher)
     ]
     lower = -np.diff(np.median([each[..., 1] for each in of_both], axis=(1, 2)))
     assert lower.item() * BODY.arm == pytest.approx(0.03, abs=0.01)

@@ -1,4 +1,4 @@
-"""Facts about what minutes of wearing tell of a calibration that is wrong."""
+"""Tests of the estimation of calibration errors from minutes of motion."""
 
 from dataclasses import replace
 

@@ -88,14 +88,14 @@ def test_other_rates_are_brought_to_60(tmp_path: Path) -> None:
     np.testing.assert_allclose(np.diff(corpus.positions[:, 0, 0]), -1 / 60, atol=1e-5)
 
 
-def test_a_teleport_cuts_the_clip_and_is_told(tmp_path: Path) -> None:
+def test_a_teleport_cuts_the_clip_and_is_reported(tmp_path: Path) -> None:
     jump = [(0.0, 92.0, 0.0, 0.0)] * 60 + [(300.0, 92.0, 0.0, 0.0)] * 60
     corpus = corpus_of(tmp_path, p1_jump=person_bvh(jump))
     assert corpus.clips == ("p1_jump#1", "p1_jump#2")
     assert corpus.problems == ("p1_jump: teleports at frame 61; cut there",)
 
 
-def test_what_is_too_short_to_be_motion_is_left_out_and_told(tmp_path: Path) -> None:
+def test_what_is_too_short_to_be_motion_is_left_out_and_reported(tmp_path: Path) -> None:
     jump = [(0.0, 92.0, 0.0, 0.0)] * 20 + [(300.0, 92.0, 0.0, 0.0)] * 60
     corpus = corpus_of(tmp_path, p1_jump=person_bvh(jump), p1_short=person_bvh(STANDING[:20]))
     assert corpus.clips == ("p1_jump",)
@@ -106,7 +106,7 @@ def test_what_is_too_short_to_be_motion_is_left_out_and_told(tmp_path: Path) -> 
     )
 
 
-def test_a_broken_file_is_told_and_the_rest_goes_on(tmp_path: Path) -> None:
+def test_a_broken_file_is_reported_and_the_rest_is_read(tmp_path: Path) -> None:
     good = person_bvh(STANDING)
     corpus = corpus_of(tmp_path, p1_walk=good, p2_walk=good.replace("MOTION", "MOTTION"))
     assert corpus.clips == ("p1_walk",)

@@ -24,7 +24,9 @@ def dense(weights, transposed):
 
 
 def int8_of(model):
-    return {t.name: numpy_helper.to_array(t) for t in model.graph.initializer if t.data_type == TensorProto.INT8 and t.dims}
+    return {
+        t.name: numpy_helper.to_array(t) for t in model.graph.initializer if t.data_type == TensorProto.INT8 and t.dims
+    }
 
 
 @pytest.mark.parametrize("transposed", [True, False])

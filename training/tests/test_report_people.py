@@ -1,4 +1,4 @@
-"""Facts about whom the report measures, of the people in a folder."""
+"""Tests of the selection of the people that the report measures."""
 
 import json
 import subprocess

@@ -70,7 +70,9 @@ def test_a_constant_gain_of_every_person_and_seed_is_no_tie_and_noise_is_one():
     gain = selection.compare(better, one)["all people, all joints"]
     assert (gain.mean, gain.standard_error) == (pytest.approx(-0.02), pytest.approx(0.0, abs=1e-9))
     assert not gain.is_tie
-    another = [{name: person(10.0, each.ours.mean() + random.normal(scale=0.5)) for name, each in seed.items()} for seed in one]
+    another = [
+        {name: person(10.0, each.ours.mean() + random.normal(scale=0.5)) for name, each in seed.items()} for seed in one
+    ]
     assert selection.compare(another, one)["all people, all joints"].is_tie
 
 
@@ -79,7 +81,9 @@ def test_everyone_is_judged_by_networks_of_each_seed_that_have_not_seen_them(tmp
     recipe = train_learned.TrainLearnedConfig(width=8, batch=32, steps=2)
     reported = []
     found = selection.main(corpus, recipe, selection.SelectionConfig(groups=2, seeds=2), reported.append)
-    assert reported == [f"held out: {group}; seed {recipe.seed + number}" for group in ("002, 004", "003") for number in (0, 1)]
+    assert reported == [
+        f"held out: {group}; seed {recipe.seed + number}" for group in ("002, 004", "003") for number in (0, 1)
+    ]
     assert all(set(seed["all"]) == {"002", "003", "004"} for seed in found)
     network = train_learned.train(corpus, ("002", "004"), recipe)
     held_out = train_learned.held_out(corpus, ("003",), recipe.window_seconds, hands_measured=False)
@@ -87,13 +91,17 @@ def test_everyone_is_judged_by_networks_of_each_seed_that_have_not_seen_them(tmp
     np.testing.assert_array_equal(found[0]["all"]["003"].ours, own.ours)
     assert (found[1]["all"]["003"].ours != own.ours).any()
     selection.save(found, tmp_path / "selection/recipe.json")
-    assert selection.figures(selection.load(tmp_path / "selection/recipe.json")[1]["all"]) == selection.figures(found[1]["all"])
+    assert selection.figures(selection.load(tmp_path / "selection/recipe.json")[1]["all"]) == selection.figures(
+        found[1]["all"]
+    )
 
 
 def test_the_command_compares_a_recipe_with_those_judged_before(tmp_path):
     printed = io.StringIO()
     config = TrainConfig(mocap=None, task="selection", groups=2, selections=tmp_path)
-    first, second = (replace(config, learned=train_learned.TrainLearnedConfig(width=8, batch=32, steps=steps)) for steps in (1, 2))
+    first, second = (
+        replace(config, learned=train_learned.TrainLearnedConfig(width=8, batch=32, steps=steps)) for steps in (1, 2)
+    )
     pipeline.main(first, Console(quiet=True))
     pipeline.main(second, Console(file=printed, width=300))
     (earlier,) = tmp_path.glob("*-1.json")

@@ -14,7 +14,8 @@ BODY = body_from_calibration(np.array(EYES), np.array(SPAN))
 LEFT_ELBOW, RIGHT_ELBOW, LEFT_SHOULDER, RIGHT_SHOULDER, CHEST, HIPS = range(6)
 # Knuckles down, thumbs forward: hands of arms that hang.
 HANGING = {
-    sign: quaternion.from_matrix(np.array([[0.0, sign, 0.0], [0.0, 0.0, 1.0], [sign, 0.0, 0.0]])) for sign in (-1.0, 1.0)
+    sign: quaternion.from_matrix(np.array([[0.0, sign, 0.0], [0.0, 0.0, 1.0], [sign, 0.0, 0.0]]))
+    for sign in (-1.0, 1.0)
 }
 
 
@@ -106,14 +107,18 @@ def test_bone_lengths_are_those_of_the_calibrated_body(motion, body):
         assert within.sum() > 20
         forearm = np.linalg.norm(wrist - joints[:, elbow], axis=-1)
         np.testing.assert_allclose(forearm[within], float(body.forearm[side]), rtol=1e-6)
-    np.testing.assert_allclose(np.linalg.norm(joints[:, CHEST] - joints[:, HIPS], axis=-1), float(BODY.lower_back[0]), rtol=1e-6)
+    np.testing.assert_allclose(
+        np.linalg.norm(joints[:, CHEST] - joints[:, HIPS], axis=-1), float(BODY.lower_back[0]), rtol=1e-6
+    )
 
 
 def test_the_mirror_image_has_the_mirrored_body(motion):
     positions, rotations = motion
     joints = solve_ik.solve(positions, rotations, BODY)
     mirrored_positions, mirrored_rotations = mirror.trackers(positions, rotations)
-    np.testing.assert_allclose(solve_ik.solve(mirrored_positions, mirrored_rotations, BODY), mirror.joints(joints), atol=1e-9)
+    np.testing.assert_allclose(
+        solve_ik.solve(mirrored_positions, mirrored_rotations, BODY), mirror.joints(joints), atol=1e-9
+    )
 
 
 def test_finite_wherever_the_hands_are():

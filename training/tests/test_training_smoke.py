@@ -17,7 +17,7 @@ SEED = 5
 
 @pytest.fixture(scope="module", autouse=True)
 def one_thread():
-    """As the pipeline does; several that wait for each other on a busy machine take minutes for seconds of work."""
+    """Limits torch to one thread, as the pipeline does: on a busy machine several threads take minutes for seconds of work."""
     import torch
 
     before = torch.get_num_threads()
@@ -32,7 +32,9 @@ def config(tmp_path_factory):
 
     base = quick(TrainConfig(mocap=None, folds=("A",), seed=SEED, out=tmp_path_factory.mktemp("models")))
     base = replace(base, cross_validation=tmp_path_factory.mktemp("folds"), fp32_out=tmp_path_factory.mktemp("fp32"))
-    return replace(base, learned=replace(base.learned, steps=60, batch=256, seed=SEED), paper=replace(base.paper, seed=SEED))
+    return replace(
+        base, learned=replace(base.learned, steps=60, batch=256, seed=SEED), paper=replace(base.paper, seed=SEED)
+    )
 
 
 @pytest.fixture(scope="module")
@@ -115,7 +117,11 @@ def test_the_32_bit_network_is_the_same_one_unquantised(config, run, name):
 
 def test_the_table_has_a_row_per_estimator_and_protocol(run):
     held_out = [f"{name}, fold A (005)" for name in ("IK", "paper", "learned")]
-    seen = [f"{name}, {protocol}" for protocol in ("frame-random 80/20", "all subjects, trained on") for name in ("paper", "learned")]
+    seen = [
+        f"{name}, {protocol}"
+        for protocol in ("frame-random 80/20", "all subjects, trained on")
+        for name in ("paper", "learned")
+    ]
     assert list(run) == held_out + seen
     assert all(0 < values["mean"] < 60 for values in run.values())
 
@@ -133,7 +139,9 @@ def test_the_page_s_networks_know_all_subjects_and_carry_the_errors_on_people_he
 def test_the_paper_s_network_is_made_of_the_varied_people_alone_and_says_so(config, run, printed):
     """004, 006 and 007 of the generated people are not among the varied."""
     people = {
-        (folder, name): contract(folder, name)["trainedOn"]["people"] for folder in (config.out, config.cross_validation) for name in ("paper", "learned")
+        (folder, name): contract(folder, name)["trainedOn"]["people"]
+        for folder in (config.out, config.cross_validation)
+        for name in ("paper", "learned")
     }
     assert people[config.out, "paper"] == ["002", "003", "005"]
     assert people[config.out, "learned"] == ["002", "003", "004", "005", "006", "007"]

@@ -14,32 +14,74 @@ from .training_config import Task, TrainConfig, quick
 # Options that ask for something else instead of training the networks, and what that is.
 _TASKS: dict[str, tuple[Task, str]] = {
     "--select": ("selection", "the recipe judged by the selection metric, and compared with earlier ones"),
-    "--noticed": ("noticed wear", "what minutes of wearing tell of a wrong calibration, of people held out in four groups, for docs/accuracy.md"),
-    "--lockbox": ("lockbox", "the learned network in --out on the lockbox people, logged in training/lockbox-log.json; for a release only"),
+    "--noticed": (
+        "noticed wear",
+        "the estimation of calibration errors from minutes of motion, on people held out in four groups, for docs/accuracy.md",
+    ),
+    "--lockbox": (
+        "lockbox",
+        "the learned network in --out on the lockbox people, logged in training/lockbox-log.json; for a release only",
+    ),
 }
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="npm run train --", description="Trains the networks of the page from motion capture.")
+    parser = argparse.ArgumentParser(
+        prog="npm run train --", description="Trains the networks of the page from motion capture."
+    )
     source = parser.add_mutually_exclusive_group(required=True)
     source.add_argument("--mocap", type=Path, help="folder with .asf/.amc or .bvh files")
     source.add_argument("--generated", action="store_true", help="generated motion instead, to try the pipeline")
-    parser.add_argument("--skeleton", type=Path, help="a skeleton map (docs/evaluation.md)")
+    parser.add_argument("--skeleton", type=Path, help="a skeleton map (docs/accuracy.md)")
     parser.add_argument("--out", type=Path, default=TrainConfig.out)
     parser.add_argument("--fp32", type=Path, help="also writes the networks with 32-bit weights there, to compare with")
     parser.add_argument("--seed", type=int, default=TrainConfig.seed)
-    parser.add_argument("--threads", type=int, default=TrainConfig.threads, help="more are faster with large cores; weights differ in the last digits")
-    parser.add_argument("--folds", default=",".join(TrainConfig.folds), help="who is held out in turn; the first one's networks are written (default: A,B)")
-    parser.add_argument("--cross-validation", type=Path, default=TrainConfig.cross_validation, help="networks and errors of the folds go there")
-    parser.add_argument("--stage", choices=TrainConfig.stages, help="this one alone; all-subjects takes the errors of an earlier cross-validation")
-    parser.add_argument("--networks", default=",".join(TrainConfig.networks), help="train and replace only these (default: paper,learned)")
-    parser.add_argument("--no-frame-random", action="store_true", help="leave the paper's own protocol out; what an earlier run found stays")
-    parser.add_argument("--refit-kinematics", action="store_true", help="also fit the page's body proportions and IK anew")
+    parser.add_argument(
+        "--threads",
+        type=int,
+        default=TrainConfig.threads,
+        help="more are faster with large cores; weights differ in the last digits",
+    )
+    parser.add_argument(
+        "--folds",
+        default=",".join(TrainConfig.folds),
+        help="who is held out in turn; the first one's networks are written (default: A,B)",
+    )
+    parser.add_argument(
+        "--cross-validation",
+        type=Path,
+        default=TrainConfig.cross_validation,
+        help="networks and errors of the folds go there",
+    )
+    parser.add_argument(
+        "--stage",
+        choices=TrainConfig.stages,
+        help="this one alone; all-subjects takes the errors of an earlier cross-validation",
+    )
+    parser.add_argument(
+        "--networks",
+        default=",".join(TrainConfig.networks),
+        help="train and replace only these (default: paper,learned)",
+    )
+    parser.add_argument(
+        "--no-frame-random",
+        action="store_true",
+        help="leave the paper's own protocol out; what an earlier run found stays",
+    )
+    parser.add_argument(
+        "--refit-kinematics", action="store_true", help="also fit the page's body proportions and IK parameters"
+    )
     for option, (_, what) in _TASKS.items():
-        parser.add_argument(option, dest="tasks", action="append_const", const=option, help=f"instead of all that: {what}")
-    parser.add_argument("--groups", type=int, help="with --select: so many groups in turn instead of one subject at a time")
+        parser.add_argument(
+            option, dest="tasks", action="append_const", const=option, help=f"instead of all that: {what}"
+        )
+    parser.add_argument(
+        "--groups", type=int, help="with --select: so many groups in turn instead of one subject at a time"
+    )
     parser.add_argument("--steps", type=int, help=f"of our network's training (default: {TrainConfig.learned.steps})")
-    parser.add_argument("--quick", action="store_true", help="a twentieth of the training, but for --steps: does it run?")
+    parser.add_argument(
+        "--quick", action="store_true", help="a twentieth of the training, but for --steps: does it run?"
+    )
     return parser
 
 
@@ -80,7 +122,11 @@ def config_of(arguments: Sequence[str]) -> TrainConfig:
         parser.error(f"no network {', '.join(sorted(unknown))}; there are {', '.join(TrainConfig.networks)}")
     config = quick(config) if given.quick else config
     steps = config.learned.steps if given.steps is None else given.steps
-    return replace(config, paper=replace(config.paper, seed=config.seed), learned=replace(config.learned, seed=config.seed, steps=steps))
+    return replace(
+        config,
+        paper=replace(config.paper, seed=config.seed),
+        learned=replace(config.learned, seed=config.seed, steps=steps),
+    )
 
 
 if __name__ == "__main__":

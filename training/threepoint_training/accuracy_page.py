@@ -1,4 +1,4 @@
-"""Renews docs/accuracy.md: tables between its marks, figures beside it. `npm run report` measures and calls this."""
+"""Renews the tables of docs/accuracy.md between its marks, and its figures. `npm run report` calls this."""
 
 import argparse
 import json
@@ -30,18 +30,18 @@ class AccuracyPageConfig:
 def sections(
     evaluation: dict[str, Any], contracts: dict[str, Any], measured: tuple[tables.ByHands, tables.ByHands] | None
 ) -> dict[str, str | None]:
-    """The page's tables by their marks; measured: what `laboratories` gives, None: that table stays as it is."""
+    """Returns the page's tables by their marks; measured: the result of `laboratories`, None keeps that table."""
     corpus, robustness = evaluation["corpus"], evaluation["robustness"]
     motions = f"{corpus['clips']} clips of {corpus['people']} people, {corpus['seconds'] / 60:.0f} minutes"
-    disturbed = f"{', '.join(robustness['people'])}: {robustness['clips']} clips, {robustness['frames'] / 3600:.1f} minutes."
+    disturbed = (
+        f"{', '.join(robustness['people'])}: {robustness['clips']} clips, {robustness['frames'] / 3600:.1f} minutes."
+    )
     return {
         "corpus": f"Evaluated: {motions}; held out: {', '.join(tables.people_held_out(evaluation))}.",
         "aims": tables.aims(evaluation, contracts),
         "summary": tables.summary(evaluation),
         "people": tables.people(evaluation),
         "joints": tables.joints(evaluation),
-        "train-test": tables.train_test(evaluation),
-        "against-ik": tables.against_ik(evaluation),
         "disturbed": f"Clips, a seeded choice of the people held out, {disturbed}",
         "loss": tables.loss(evaluation),
         "noise": tables.noise(evaluation),
@@ -54,7 +54,7 @@ def sections(
 
 
 def laboratories(config: AccuracyPageConfig) -> tuple[tables.ByHands, tables.ByHands] | None:
-    """The evaluations for the table of both laboratories; None, with a printed sentence, where one of them is missing."""
+    """Returns the evaluations for the table of both laboratories, or prints a message and returns None if one is missing."""
     missing = [path for path in (*config.home, *config.elsewhere) if not path.exists()]
     if missing:
         print(f"{', '.join(map(str, missing))}: not measured, so the table of both laboratories stays as it is")

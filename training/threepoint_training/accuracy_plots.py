@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from .accuracy_tables import JOINTS, held_out
 
 Json = dict[str, Any]
-# Colours of Okabe and Ito, told apart with any kind of colour vision; marks differ as well.
+# The palette of Okabe and Ito, which is safe for colour-blind readers; marks differ as well.
 COLOURS = {"ik": "#D55E00", "paper": "#009E73", "learned": "#0072B2"}
 MARKS = {"ik": "s", "paper": "^", "learned": "o"}
 NAMES = {"ik": "IK", "paper": "paper", "learned": "learned"}
@@ -73,7 +73,10 @@ def learning_curve(contract: Json, folder: Path) -> bool:
     top = max(curve["test"])
     label_ends(
         axes,
-        {"test": (curve["test"][-1], "people\nheld out", COLOURS["ik"]), "train": (curve["train"][-1], "people\ntrained on", COLOURS["learned"])},
+        {
+            "test": (curve["test"][-1], "people\nheld out", COLOURS["ik"]),
+            "train": (curve["train"][-1], "people\ntrained on", COLOURS["learned"]),
+        },
         0.15 * top,
     )
     axes.set(xlabel="epochs", ylabel="MSE per coordinate [cm²]", ylim=(0, None), xlim=(0, max(epochs)))
@@ -110,7 +113,14 @@ def by_joint(evaluation: Json, folder: Path) -> None:
         axes.plot(median, y, MARKS[method], color=colour)
         axes.plot(p95, y, "|", color=colour, markersize=9, markeredgewidth=2)
         axes.annotate(
-            NAMES[method], (p95[-1], y[-1]), xytext=(8, 0), textcoords="offset points", va="center", color=colour, fontweight="bold", fontsize=9
+            NAMES[method],
+            (p95[-1], y[-1]),
+            xytext=(8, 0),
+            textcoords="offset points",
+            va="center",
+            color=colour,
+            fontweight="bold",
+            fontsize=9,
         )
     axes.set_yticks(rows, JOINTS.values())
     axes.set(xlabel="error [cm]: mark = median, end of the line = 95th percentile", xlim=(0, None))
@@ -128,14 +138,22 @@ def train_and_test(evaluation: Json, folder: Path) -> bool:
     figure, panels = plt.subplots(1, 3, figsize=(WIDTH, 3.3), sharex=True, sharey=True, layout="constrained")
     rows = np.arange(len(JOINTS))[::-1]
     for axes, (method, colour) in zip(panels, COLOURS.items(), strict=True):
-        seen, unseen = (np.array([evaluation[side][method]["jointMseCm2"][joint] for joint in JOINTS]) for side in ("seen", "unseen"))
+        seen, unseen = (
+            np.array([evaluation[side][method]["jointMseCm2"][joint] for joint in JOINTS])
+            for side in ("seen", "unseen")
+        )
         axes.hlines(rows, seen, unseen, color=colour, linewidth=2, alpha=0.4)
         axes.plot(seen, rows, MARKS[method], color=colour, markerfacecolor="white", markeredgewidth=1.6)
         axes.plot(unseen, rows, MARKS[method], color=colour)
         axes.set_yticks(rows, JOINTS.values())
         axes.grid(axis="y", visible=False)
         axes.set_title(NAMES[method], color=colour)
-    largest = max(evaluation[side][method]["jointMseCm2"][joint] for side in ("seen", "unseen") for method in COLOURS for joint in JOINTS)
+    largest = max(
+        evaluation[side][method]["jointMseCm2"][joint]
+        for side in ("seen", "unseen")
+        for method in COLOURS
+        for joint in JOINTS
+    )
     panels[0].set_xlim(0, 1.07 * largest)
     figure.supxlabel("MSE per coordinate [cm²]: hollow = people trained on, filled = people held out", fontsize=10)
     save(figure, folder, "train-and-test")
@@ -148,14 +166,22 @@ def losses(evaluation: Json, folder: Path) -> None:
     figure, panels = plt.subplots(1, 2, figsize=(WIDTH, 3.3), layout="constrained")
     durations = [0] + [loss["milliseconds"] for loss in estimators["ik"]["losses"]]
     at = np.arange(len(durations))
-    for axes, figure_name, title, aim in ((panels[0], "all", "All joints", 1.3), (panels[1], "elbow", "The elbow of that arm", 1.8)):
+    for axes, figure_name, title, aim in (
+        (panels[0], "all", "All joints", 1.3),
+        (panels[1], "elbow", "The elbow of that arm", 1.8),
+    ):
         ends = {}
         for method, colour in COLOURS.items():
-            ratios = [1.0] + [loss["during"][f"{figure_name}Cm"] / loss["during"][f"{figure_name}SeenCm"] for loss in estimators[method]["losses"]]
+            ratios = [1.0] + [
+                loss["during"][f"{figure_name}Cm"] / loss["during"][f"{figure_name}SeenCm"]
+                for loss in estimators[method]["losses"]
+            ]
             axes.plot(at, ratios, color=colour, marker=MARKS[method])
             ends[method] = (ratios[-1], NAMES[method], colour)
         axes.axhline(aim, color=FAINT, linestyle=(0, (2, 2)), linewidth=1.2, zorder=1)
-        axes.annotate(f"aim for 2 s: {aim} ×", (0, aim), xytext=(0, 4), textcoords="offset points", color="#666666", fontsize=9)
+        axes.annotate(
+            f"aim for 2 s: {aim} ×", (0, aim), xytext=(0, 4), textcoords="offset points", color="#666666", fontsize=9
+        )
         axes.set_xticks(at, [f"{ms} ms" if ms < 1000 else f"{ms // 1000} s" for ms in durations])
         low, high = axes.get_ylim()
         axes.set(ylim=(min(low, 0.97), high + 0.04 * (high - low)), xlabel="hand not seen for")
@@ -181,7 +207,11 @@ def offsets(evaluation: Json, folder: Path) -> None:
             for method, colour in COLOURS.items():
                 clean = estimators[method]["mpjpeCm"]
                 points = sorted(
-                    [(o["offsetCm"], o["mpjpeCm"] - clean) for o in estimators[method]["offsets"] if o["tracker"] == tracker and o["axis"] == axis]
+                    [
+                        (o["offsetCm"], o["mpjpeCm"] - clean)
+                        for o in estimators[method]["offsets"]
+                        if o["tracker"] == tracker and o["axis"] == axis
+                    ]
                     + [(0, 0.0)]
                 )
                 axes.plot(*zip(*points, strict=True), color=colour, marker=MARKS[method], label=NAMES[method])
@@ -215,13 +245,26 @@ def wrong_measures(evaluation: Json, folder: Path) -> None:
         axes.set_xticks(ticks, [f"{'−' if percent < 0 else ''}{abs(percent)} %" for percent in ticks])
         axes.set_title(title)
         axes.ends = ends
-    values = [h["mpjpeCm"] - estimators[m]["mpjpeCm"] for m in COLOURS for key in ("heights", "spans") for h in estimators[m][key]]
+    values = [
+        h["mpjpeCm"] - estimators[m]["mpjpeCm"]
+        for m in COLOURS
+        for key in ("heights", "spans")
+        for h in estimators[m][key]
+    ]
     low, high = min([*values, 0]) - 0.06, max([*values, 0.25]) + 0.06
     panels[0].set_ylim(low, high)
     for axes in panels:
         label_ends(axes, axes.ends, 0.065 * (high - low))
     panels[0].set_ylabel("added to the MPJPE [cm]")
-    panels[0].annotate("more than the aim allows", (0, high), xytext=(0, -11), textcoords="offset points", ha="center", color="#666666", fontsize=9)
+    panels[0].annotate(
+        "more than the aim allows",
+        (0, high),
+        xytext=(0, -11),
+        textcoords="offset points",
+        ha="center",
+        color="#666666",
+        fontsize=9,
+    )
     save(figure, folder, "wrong-measures")
 
 
@@ -248,11 +291,16 @@ def poses(pictures: list[Json], folder: Path) -> None:
         return np.radians(40 if picture["motion"].startswith("left") else -40)
 
     def points(picture: Json) -> np.ndarray:
-        return np.array([_seen_from(point, turn_of(picture)) for body in picture["bodies"].values() for point in body.values()])
+        return np.array(
+            [_seen_from(point, turn_of(picture)) for body in picture["bodies"].values() for point in body.values()]
+        )
 
     # Each row as high as its poses need, at one scale.
     bottoms = [points(picture)[:, 1].min() - 0.06 for picture in pictures]
-    tops = [max(points(picture)[:, 1].max(), max(body["head"][1] for body in picture["bodies"].values()) + 0.18) + 0.06 for picture in pictures]
+    tops = [
+        max(points(picture)[:, 1].max(), max(body["head"][1] for body in picture["bodies"].values()) + 0.18) + 0.06
+        for picture in pictures
+    ]
     heights = [top - bottom for top, bottom in zip(tops, bottoms, strict=True)]
     inches_per_metre = WIDTH / len(columns) / (2 * half_width) * 0.93
     figure, panels = plt.subplots(
@@ -271,18 +319,38 @@ def poses(pictures: list[Json], folder: Path) -> None:
                 colour = TRUTH if method == "truth" else "#b8b8b8" if faint else COLOURS[method]
                 for bone in BONES:
                     x, y = np.transpose([_seen_from(body[joint], turn) for joint in bone])
-                    axes.plot(x - centre, y, color=colour, linewidth=4 if faint else 2.4, solid_capstyle="round", solid_joinstyle="round")
+                    axes.plot(
+                        x - centre,
+                        y,
+                        color=colour,
+                        linewidth=4 if faint else 2.4,
+                        solid_capstyle="round",
+                        solid_joinstyle="round",
+                    )
                     if not faint:
                         axes.plot(x - centre, y, ".", color=colour, markersize=7)
                 x, y = _seen_from(body["head"], turn)
-                axes.add_patch(plt.Circle((x - centre, y + head_height), head_radius, fill=False, color=colour, linewidth=3 if faint else 2.2))
+                axes.add_patch(
+                    plt.Circle(
+                        (x - centre, y + head_height),
+                        head_radius,
+                        fill=False,
+                        color=colour,
+                        linewidth=3 if faint else 2.2,
+                    )
+                )
             axes.set_aspect("equal")
             axes.set(xlim=(-half_width, half_width), ylim=(bottoms[row], tops[row]), xticks=[], yticks=[])
             axes.grid(visible=False)
             for spine in axes.spines.values():
                 spine.set_visible(False)
             if row == 0:
-                axes.set_title(NAMES.get(method, "truth"), color=TRUTH if method == "truth" else COLOURS[method], loc="center", fontsize=11)
+                axes.set_title(
+                    NAMES.get(method, "truth"),
+                    color=TRUTH if method == "truth" else COLOURS[method],
+                    loc="center",
+                    fontsize=11,
+                )
             if column == 0:
                 axes.set_ylabel(picture["motion"].replace(" hand ", " hand\n"), fontsize=9.5, fontweight="bold")
     save(figure, folder, "six-motions")

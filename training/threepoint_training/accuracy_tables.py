@@ -1,4 +1,4 @@
-"""The tables of docs/accuracy.md from what `npm run evaluate` measured; each is Markdown between two marks of the page."""
+"""Formats the results of `npm run evaluate` as the Markdown tables of docs/accuracy.md, each between two marks."""
 
 import re
 from collections.abc import Callable, Iterable
@@ -14,30 +14,30 @@ JOINTS = {
     "pelvis": "pelvis",
 }
 Json = dict[str, Any]
-# Evaluations of the same people with nothing told of their hands, and with hands as the guided calibration measures them.
+# Evaluations of the same people without calibrated hands, and with hands as the guided calibration measures them.
 ByHands = tuple[Json, Json]
 
 
 def held_out(evaluation: Json) -> Json:
-    """The figures of people on whom no network was trained; of all people where there are none such."""
+    """Returns the figures of unseen people, or those of all people if every person was trained on."""
     return evaluation.get("unseen", evaluation["estimators"])
 
 
 def people_held_out(evaluation: Json) -> list[str]:
-    """Names of the people on whom no network was trained; all names where there are none such."""
+    """Returns the names of unseen people, or all names if every person was trained on."""
     names = [name for name, person in evaluation["people"].items() if not person["seen"]]
     return sorted(names or evaluation["people"])
 
 
 def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    """Markdown, the first column to the left, the others to the right."""
+    """Returns a Markdown table with its first column aligned left and the others aligned right."""
     head = list(head)
     lines = [head, ["---", *["---:"] * (len(head) - 1)], *(list(row) for row in rows)]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
 
 def signed(value: float, digits: int = 2) -> str:
-    """+0.12, −0.05."""
+    """Formats a number with its sign: +0.12, −0.05."""
     return f"{'−' if round(value, digits) < 0 else '+'}{abs(value):.{digits}f}"
 
 
@@ -54,27 +54,29 @@ def summary(evaluation: Json) -> str:
             row("MPJPE, six joints: mean [cm]", lambda f: f"{f['mpjpeCm']['mean']:.2f}"),
             row("median / p95 [cm]", lambda f: f"{f['mpjpeCm']['median']:.2f} / {f['mpjpeCm']['p95']:.2f}"),
             row("relative to IK", lambda f: f"{f['mpjpeCm']['mean'] / ik:.3f}"),
-            row("network alone, before kinematics [cm]", lambda f: f"{f['rawMpjpeCm']:.2f}" if "rawMpjpeCm" in f else "–"),
+            row(
+                "network alone, before kinematics [cm]",
+                lambda f: f"{f['rawMpjpeCm']:.2f}" if "rawMpjpeCm" in f else "–",
+            ),
             row("elbow swivel error", lambda f: f"{f['swivelDeg']:.1f}°"),
             row("jerk relative to the true motion", lambda f: f"{f['jerkRatio']:.2f}"),
             row("bone-length variation [mm]", lambda f: f"{f['boneVariationMm']:.3f}"),
-            row("wrist from its tracker: mean / largest [mm]", lambda f: f"{f['handErrorMm']:.3f} / {f['handErrorMaxMm']:.1f}"),
+            row(
+                "wrist from its tracker: mean / largest [mm]",
+                lambda f: f"{f['handErrorMm']:.3f} / {f['handErrorMaxMm']:.1f}",
+            ),
         ],
     )
 
 
 def people(evaluation: Json) -> str:
-    return table(
-        ["MPJPE [cm]", *METHODS.values(), "learned / IK"],
-        [
-            [
-                f"{name} (trained on)" if person["seen"] else name,
-                *(f"{person[method]['mpjpeCm']['mean']:.2f}" for method in METHODS),
-                f"{person['learned']['mpjpeCm']['mean'] / person['ik']['mpjpeCm']['mean']:.2f}",
-            ]
-            for name, person in sorted(evaluation["people"].items(), key=lambda item: (item[1]["seen"], item[0]))
-        ],
-    )
+    """Returns the table of errors by person held out."""
+
+    def row(name: str) -> list[str]:
+        errors = {method: _mpjpe_cm(evaluation["people"][name][method]) for method in METHODS}
+        return [name, *(f"{error:.2f}" for error in errors.values()), f"{errors['learned'] / errors['ik']:.2f}"]
+
+    return table(["MPJPE [cm]", *METHODS.values(), "learned / IK"], map(row, people_held_out(evaluation)))
 
 
 def joints(evaluation: Json) -> str:
@@ -82,52 +84,26 @@ def joints(evaluation: Json) -> str:
     cell = "{median:.1f} / {p95:.1f}"
     return table(
         ["median / p95 [cm]", *METHODS.values()],
-        [[label, *(cell.format(**figures[method]["joints"][joint]) for method in METHODS)] for joint, label in JOINTS.items()],
+        [
+            [label, *(cell.format(**figures[method]["joints"][joint]) for method in METHODS)]
+            for joint, label in JOINTS.items()
+        ],
     )
 
 
-def _by_joint(groups: list[tuple[str, Json]], joint_figure: str, figure: str, digits: int) -> list[list[str]]:
-    return [
-        [label, *(f"{group[joint_figure][joint]:.{digits}f}" for _, group in groups)] for joint, label in JOINTS.items()
-    ] + [["all", *(f"{group[figure]:.{digits}f}" for _, group in groups)]]
-
-
-def train_test(evaluation: Json) -> str:
-    """The paper's table 1: mean squared error by joint, people trained on beside people held out."""
-    if "seen" not in evaluation:
-        return "Only people of one kind, trained on or held out, were evaluated."
-    groups = [
-        (f"{name}, {label}", evaluation[side][method])
-        for method, name in METHODS.items()
-        for side, label in (("seen", "trained on"), ("unseen", "held out"))
-    ]
-    return table(["MSE [cm²]", *(label for label, _ in groups)], _by_joint(groups, "jointMseCm2", "mseCm2", 1))
-
-
-def against_ik(evaluation: Json) -> str:
-    """The paper's tables 2 to 4: MSE, MAE and MPJPE on people held out."""
-    figures = held_out(evaluation)
-    groups = [(name, figures[method]) for method, name in METHODS.items()]
-    mse, mae = _by_joint(groups, "jointMseCm2", "mseCm2", 1), _by_joint(groups, "jointMaeCm", "maeCm", 2)
-    mpjpe = [[f"{figures[method]['joints'][joint]['mean']:.2f}" for method in METHODS] for joint in JOINTS]
-    mpjpe.append([f"{figures[method]['mpjpeCm']['mean']:.2f}" for method in METHODS])
-    head = ["", *(f"{measure}: {name}" for measure in ("MSE [cm²]", "MAE [cm]", "MPJPE [cm]") for name in METHODS.values())]
-    return table(head, [[*a, *b[1:], *c] for a, b, c in zip(mse, mae, mpjpe, strict=True)])
-
-
 def _losses(evaluation: Json) -> list[tuple[str, dict[str, Json]]]:
-    """By length of the loss, the last as those of a headset's hand tracking: what to call it, and each method's figures."""
+    """Returns a label and each method's figures for every length of loss; hand tracking's lengths come last."""
     estimators = evaluation["robustness"]["estimators"]
     fixed = [
         (f"{loss['milliseconds']} ms", {method: estimators[method]["losses"][i] for method in METHODS})
         for i, loss in enumerate(estimators["ik"]["losses"])
     ]
     tracked = {method: estimators[method]["handTracking"] for method in METHODS}
-    return [*fixed, (f"as hand tracking loses it, {tracked['ik']['milliseconds']} ms on average", tracked)]
+    return [*fixed, (f"as in hand tracking, {tracked['ik']['milliseconds']} ms on average", tracked)]
 
 
 def noise(evaluation: Json) -> str:
-    """Error, jerk and trembling under the simulated noise, then under the strong one."""
+    """Returns the table of error, jerk and trembling under the simulated noise and under white noise."""
     names = ("as measured: headset 0.05 mm and 0.03°, hands 0.15 mm and 0.05°", "white: 0.3 mm and 0.1°")
 
     def cell(method: str, number: int) -> str:
@@ -148,10 +124,15 @@ def loss(evaluation: Json) -> str:
         lines: list[tuple[str, Callable[[Json], str]]] = [
             ("all joints", lambda f: ratio(f["during"]["allCm"], f["during"]["allSeenCm"])),
             ("its elbow", lambda f: ratio(f["during"]["elbowCm"], f["during"]["elbowSeenCm"])),
-            ("all joints, 0.5 s after", lambda f: ratio(f["after"]["allCm"], f["after"]["allSeenCm"])),
             ("its elbow, 0.5 s after", lambda f: ratio(f["after"]["elbowCm"], f["after"]["elbowSeenCm"])),
-            ("longest step at the loss", lambda f: f"{f['atLoss']['stepCm']:.1f} ({signed(f['atLoss']['excessCm'], 1)})"),
-            ("longest step at the return", lambda f: f"{f['atReturn']['stepCm']:.1f} ({signed(f['atReturn']['excessCm'], 1)})"),
+            (
+                "longest step at the loss",
+                lambda f: f"{f['atLoss']['stepCm']:.1f} ({signed(f['atLoss']['excessCm'], 1)})",
+            ),
+            (
+                "longest step at the return",
+                lambda f: f"{f['atReturn']['stepCm']:.1f} ({signed(f['atReturn']['excessCm'], 1)})",
+            ),
         ]
         for number, (label, cell) in enumerate(lines):
             count = by_method["ik"]["losses"]
@@ -169,7 +150,9 @@ def offsets(evaluation: Json) -> str:
                 cells = []
                 for method in METHODS:
                     values = [
-                        o["mpjpeCm"] for o in estimators[method]["offsets"] if o["tracker"] == tracker and abs(o["offsetCm"]) == size
+                        o["mpjpeCm"]
+                        for o in estimators[method]["offsets"]
+                        if o["tracker"] == tracker and abs(o["offsetCm"]) == size
                     ]
                     cells.append(signed(of(values) - estimators[method]["mpjpeCm"]))
                 rows.append([f"{tracker} ±{size} cm, {label}", *cells])
@@ -177,7 +160,7 @@ def offsets(evaluation: Json) -> str:
 
 
 def measures(evaluation: Json) -> str:
-    """Wrong calibrations: eye height and arm span."""
+    """Returns the table of errors added by a wrong eye height or arm span."""
     estimators = evaluation["robustness"]["estimators"]
     rows = []
     for key, label in (("heights", "eye height"), ("spans", "arm span")):
@@ -197,7 +180,7 @@ def rates(evaluation: Json) -> str:
 
 
 def precision(evaluation: Json) -> str | None:
-    """8-bit weights against 32-bit ones; None where those were not measured."""
+    """Returns the table of 8-bit against 32-bit weights, or None if the latter were not measured."""
     if "fp32" not in evaluation:
         return None
     int8 = held_out(evaluation)
@@ -215,13 +198,13 @@ def precision(evaluation: Json) -> str | None:
 
 
 def laboratories(home: ByHands, elsewhere: ByHands) -> str:
-    """People held out beside another laboratory's, by what is known of their hands."""
+    """Returns the table of people held out and of another laboratory, with and without calibrated hands."""
     names, others = (", ".join(people_held_out(measured[0])) for measured in (home, elsewhere))
     labelled = {
-        f"{names}, nothing told of the hands": home[0],
-        f"{names}, hands measured": home[1],
-        f"another laboratory ({others}), nothing told of the hands": elsewhere[0],
-        "another laboratory, hands measured": elsewhere[1],
+        f"{names}, hands not calibrated": home[0],
+        f"{names}, hands calibrated": home[1],
+        f"another laboratory ({others}), hands not calibrated": elsewhere[0],
+        "another laboratory, hands calibrated": elsewhere[1],
     }
     rows = []
     for label, evaluation in labelled.items():
@@ -237,33 +220,40 @@ def _mpjpe_cm(report: Json) -> float:
 
 
 def _elbows_cm(figures: Json) -> float:
-    """The mean error of both."""
+    """Returns the mean error of both elbows [cm]."""
     return (figures["joints"]["leftElbow"]["mean"] + figures["joints"]["rightElbow"]["mean"]) / 2
 
 
 def _row(what: str, aim: str, measured: str, met: bool | None) -> list[str]:
-    """A row of `aims`. What is printed is what is judged: callers round first."""
+    """Returns a row of `aims`; callers round first, so that the verdict agrees with the printed value."""
     return [what, aim, measured, {True: "met", False: "missed", None: "not measured"}[met]]
 
 
 def _mean_over_people(people: list[Json], method: str, error: Callable[[Json], float]) -> float:
-    """The mean [cm] of an error, each person weighing the same."""
+    """Returns the mean of an error [cm] with equal weight for each person."""
     return sum(error(person[method]) for person in people) / len(people)
 
 
 def aims(evaluation: Json, contracts: dict[str, Json]) -> str:
-    """What was aimed at, what was measured, and whether that is enough."""
+    """Returns the table of aims, measured values and verdicts."""
     figures, robust = held_out(evaluation), evaluation["robustness"]["estimators"]["learned"]
     ours = figures["learned"]
-    judged = [person for person in evaluation["people"].values() if not person["seen"]] or list(evaluation["people"].values())
+    judged = [person for person in evaluation["people"].values() if not person["seen"]] or list(
+        evaluation["people"].values()
+    )
     ratio, elbow = (
-        round(_mean_over_people(judged, "learned", error) / _mean_over_people(judged, "ik", error), 3) for error in (_mpjpe_cm, _elbows_cm)
+        round(_mean_over_people(judged, "learned", error) / _mean_over_people(judged, "ik", error), 3)
+        for error in (_mpjpe_cm, _elbows_cm)
     )
     worst = round(max(_mpjpe_cm(person["learned"]) / _mpjpe_cm(person["ik"]) for person in judged), 3)
     offset = round(max(o["mpjpeCm"] for o in robust["offsets"]) - robust["mpjpeCm"], 2)
     height = round(max(h["mpjpeCm"] for h in robust["heights"]) - robust["mpjpeCm"], 2)
     long = robust["losses"][-1]["during"]
-    jump = max(loss[when]["excessCm"] for loss in (*robust["losses"], robust["handTracking"]) for when in ("atLoss", "atReturn"))
+    jump = max(
+        loss[when]["excessCm"]
+        for loss in (*robust["losses"], robust["handTracking"])
+        for when in ("atLoss", "atReturn")
+    )
     lost_all, lost_elbow = round(long["allCm"] / long["allSeenCm"], 2), round(long["elbowCm"] / long["elbowSeenCm"], 2)
     held = ", ".join(people_held_out(evaluation))
     rows = [
@@ -274,7 +264,14 @@ def aims(evaluation: Json, contracts: dict[str, Json]) -> str:
     for name, what in (("learned", "our network"), ("paper", "the paper's network")):
         random = contracts[name]["errors"].get(f"{name}, frame-random 80/20")
         measured = f"{random['mean']:.2f} cm" if random else "–"
-        rows.append(_row(f"{what}, the paper's protocol (frame-random)", "≤ 0.9 cm", measured, round(random["mean"], 2) <= 0.9 if random else None))
+        rows.append(
+            _row(
+                f"{what}, the paper's protocol (frame-random)",
+                "≤ 0.9 cm",
+                measured,
+                round(random["mean"], 2) <= 0.9 if random else None,
+            )
+        )
     rows += [
         _row("jerk relative to the true motion", "≤ 1.1", f"{ours['jerkRatio']:.2f}", ours["jerkRatio"] <= 1.1),
     ]
@@ -298,7 +295,7 @@ def aims(evaluation: Json, contracts: dict[str, Json]) -> str:
 
 
 def renew(page: str, sections: dict[str, str | None]) -> str:
-    """The page with what stands between `<!-- NAME -->` and `<!-- /NAME -->` replaced; None leaves a section as it is."""
+    """Replaces the text between `<!-- NAME -->` and `<!-- /NAME -->` in the page; None keeps a section."""
     for name, content in sections.items():
         pattern = re.compile(rf"(<!-- {re.escape(name)} -->\n).*?(<!-- /{re.escape(name)} -->)", re.DOTALL)
         if len(pattern.findall(page)) != 1:

@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 TORSO = ("hips", "chest", "neck", "head")
 ARM = ("UpperArm", "LowerArm", "Hand")
-# Of the corpus [Hz].
+# The frame rate of the corpus [Hz].
 FRAME_RATE = 60
 
 
@@ -77,13 +77,18 @@ class BodyParts:
     as their mirror images, so that each arm is a right one.
     """
 
-    def __init__(self, corpus: PreparedCorpus, people: tuple[str, ...], balance: BalanceConfig = BalanceConfig()) -> None:
+    def __init__(
+        self, corpus: PreparedCorpus, people: tuple[str, ...], balance: BalanceConfig = BalanceConfig()
+    ) -> None:
         clips = corpus.clips_of(people)
         frames = corpus.frames_of(people)
         positions = corpus.positions[frames].astype(np.float64)
         rotations = corpus.rotations[frames].astype(np.float64)
         joint = joints_of(positions)
-        sizes = [(corpus.people[corpus.clip_people[clip]].eye_height, corpus.people[corpus.clip_people[clip]].arm_span) for clip in clips]
+        sizes = [
+            (corpus.people[corpus.clip_people[clip]].eye_height, corpus.people[corpus.clip_people[clip]].arm_span)
+            for clip in clips
+        ]
         lengths = np.diff(corpus.clip_starts)[clips]
         self.clip_start = np.repeat(np.cumsum([0, *lengths[:-1]]), lengths)
         self.sizes = np.repeat(np.array(sizes), lengths, axis=0)
@@ -104,19 +109,29 @@ class BodyParts:
             self.wrist_turns.append(wrist * mirror.ROTATION if side == "left" else wrist)
         forearms = hand_tilt.ForearmMeans(corpus, people)
         own = np.stack([forearms.of(name) for name in people_by_index])
-        # Of each person's left and right hand [P, 2, 2], as a right hand's.
+        # Tilts of each person's left and right hand [P, 2, 2], both as of a right hand.
         self.tilts = np.stack([own[:, 0] * mirror.TILT, own[:, 1]], axis=1)
         self.arm_length = [
-            np.linalg.norm(arm[:, 1] - arm[:, 0], axis=-1) + np.linalg.norm(arm[:, 2] - arm[:, 1], axis=-1) for arm in self.arms
+            np.linalg.norm(arm[:, 1] - arm[:, 0], axis=-1) + np.linalg.norm(arm[:, 2] - arm[:, 1], axis=-1)
+            for arm in self.arms
         ]
-        # Of the left and the right forearm [F, 2], of their arms.
+        # Shares of the left and the right forearm in their arm length [F, 2].
         self.forearm_shares = np.stack(
-            [np.linalg.norm(arm[:, 2] - arm[:, 1], axis=-1) / length for arm, length in zip(self.arms, self.arm_length, strict=True)], axis=1
+            [
+                np.linalg.norm(arm[:, 2] - arm[:, 1], axis=-1) / length
+                for arm, length in zip(self.arms, self.arm_length, strict=True)
+            ],
+            axis=1,
         )
         weights = posture_rarity.frequency(self.person) ** -balance.people
         if balance.postures > 0:
-            weights *= posture_rarity.frequency(posture_rarity.cluster(self._postures(), balance.clusters)) ** -balance.postures
-        self._cumulative_trunks, self._cumulative_arms = (np.cumsum(each) / each.sum() for each in (weights, np.tile(weights, 2)))
+            weights *= (
+                posture_rarity.frequency(posture_rarity.cluster(self._postures(), balance.clusters))
+                ** -balance.postures
+            )
+        self._cumulative_trunks, self._cumulative_arms = (
+            np.cumsum(each) / each.sum() for each in (weights, np.tile(weights, 2))
+        )
 
     def _postures(self) -> Array:
         """The posture [F, 16] of each frame, numbers of about equal spread: elbows and wrists from the neck in the chest frame, in arm lengths; the
@@ -147,7 +162,7 @@ class _Bodies:
 
     parts: BodyParts
     newest: NDArray[np.int64]
-    # Of the left and of the right arm: from which frames, and from which side of the person there.
+    # The source frames of the left and the right arm, and the side of the person there.
     arm_frames: tuple[NDArray[np.int64], NDArray[np.int64]]
     arm_sides: tuple[NDArray[np.int64], NDArray[np.int64]]
     # Eye height and span [N, 2], length of both arms [N], and by how much a chair lowers them [N]; all [m].
@@ -186,13 +201,19 @@ class _Bodies:
         return np.stack([left[:, 1], right[:, 1], left[:, 0], right[:, 0], torso[:, 1], torso[:, 0]], axis=1)
 
     def tilts(self) -> Array:
-        """Of the left and the right hand [N, 2, 2]: those of the people whose arms they are."""
-        left, right = (self.parts.tilts[self.parts.person[frames], sides] for frames, sides in zip(self.arm_frames, self.arm_sides, strict=True))
+        """The tilts of the left and the right hand [N, 2, 2], from the people that the arms are taken from."""
+        left, right = (
+            self.parts.tilts[self.parts.person[frames], sides]
+            for frames, sides in zip(self.arm_frames, self.arm_sides, strict=True)
+        )
         return np.stack([left * mirror.TILT, right], axis=1)
 
     def forearms(self) -> Array:
         """Lengths of the left and of the right forearm [N, 2], in arms of the body's length."""
-        left, right = (self.parts.forearm_shares[frames, sides] for frames, sides in zip(self.arm_frames, self.arm_sides, strict=True))
+        left, right = (
+            self.parts.forearm_shares[frames, sides]
+            for frames, sides in zip(self.arm_frames, self.arm_sides, strict=True)
+        )
         return np.stack([left, right], axis=1) * self.arm_length[:, None]
 
     def tracked_at(self, ago: NDArray[np.int64]) -> tuple[Array, Array]:
@@ -205,7 +226,15 @@ class _Bodies:
     def of(self, chosen: NDArray[np.int64]) -> "_Bodies":
         """These bodies alone."""
         frames, sides = (tuple(each[chosen] for each in arms) for arms in (self.arm_frames, self.arm_sides))
-        return _Bodies(self.parts, self.newest[chosen], frames, sides, self.sizes[chosen], self.arm_length[chosen], self.drop[chosen])
+        return _Bodies(
+            self.parts,
+            self.newest[chosen],
+            frames,
+            sides,
+            self.sizes[chosen],
+            self.arm_length[chosen],
+            self.drop[chosen],
+        )
 
 
 def _draw_bodies(parts: BodyParts, count: int, config: AugmentConfig, random: np.random.Generator) -> _Bodies:
@@ -286,8 +315,11 @@ def _calibrated(bodies: _Bodies, tracking: _Tracking, config: AugmentConfig, ran
     )
     tilts = tracking.images(bodies.tilts(), mirror.tilts(bodies.tilts()))
     tilts = measured_tilts(tilts, tracking.worn[:, 1:], config.trackers, random)
-    body = body.with_hands(np.where(hand_tilt.believed(tilts)[..., None], tilts, hand_tilt.usual()))
-    forearms = tracking.images(bodies.forearms(), bodies.forearms()[:, ::-1]) + random.normal(size=(count, 1)) * config.forearm_error
+    body = body.with_hands(np.where(hand_tilt.plausible(tilts)[..., None], tilts, hand_tilt.usual()))
+    forearms = (
+        tracking.images(bodies.forearms(), bodies.forearms()[:, ::-1])
+        + random.normal(size=(count, 1)) * config.forearm_error
+    )
     return body.with_forearms(forearms, random.uniform(size=(count, 1)) < config.typed_forearms)
 
 
@@ -307,10 +339,14 @@ def _trackers_at(ago: NDArray[np.int64], bodies: _Bodies, tracking: _Tracking) -
     return positions + quaternion.rotate(rotations, tracking.offsets), quaternion.multiply(rotations, tracking.worn)
 
 
-def _with_noise(positions: Array, rotations: Array, trackers: TrackerConfig, random: np.random.Generator) -> tuple[Array, Array]:
+def _with_noise(
+    positions: Array, rotations: Array, trackers: TrackerConfig, random: np.random.Generator
+) -> tuple[Array, Array]:
     """What trackers report that are at these positions [N, 3, 3] and rotations [N, 3, 4]."""
     jitter = draw_turns(trackers.rotation_noise, positions.shape[:-1], random)
-    return positions + random.normal(size=positions.shape) * np.reshape(trackers.position_noise, (-1, 1)), quaternion.multiply(rotations, jitter)
+    return positions + random.normal(size=positions.shape) * np.reshape(
+        trackers.position_noise, (-1, 1)
+    ), quaternion.multiply(rotations, jitter)
 
 
 def _window_at(
@@ -334,7 +370,9 @@ def _window_at(
         positions[lost, column], rotations[lost, column] = carry_with_head(
             place[:, column], turn[:, column], (place[:, 0], turn[:, 0]), (positions[lost, 0], rotations[lost, 0])
         )
-    positions, rotations = complete_hands(positions, rotations, unseen / FRAME_RATE, calibrated.eye_height[:, 0], calibrated.arm[:, 0])
+    positions, rotations = complete_hands(
+        positions, rotations, unseen / FRAME_RATE, calibrated.eye_height[:, 0], calibrated.arm[:, 0]
+    )
     vector, _ = frame_features(positions, rotations, calibrated, unseen == 0)
     return _Reported(positions, rotations, vector)
 
@@ -350,9 +388,7 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
     def noisy(positions: Array, rotations: Array) -> tuple[Array, Array]:
         return _with_noise(positions, rotations, config.trackers, random)
 
-    window = {
-        age: _window_at(age, bodies, tracking, calibrated, noisy) for age in config.window_frames
-    }
+    window = {age: _window_at(age, bodies, tracking, calibrated, noisy) for age in config.window_frames}
     newest, truth = window[0], bodies.truth()
     truth = tracking.images(truth, mirror.joints(truth))
     targets = residual(truth, newest.positions, newest.rotations, calibrated, newest.vector)

@@ -32,7 +32,7 @@ class BvhHierarchy:
         self.offsets[self.names.index(name)] = offset
 
     def rest_positions(self) -> NDArray[np.float64]:
-        """Where joints lie from the root with all angles zero, [joints, 3]."""
+        """Returns the joint positions relative to the root with all angles zero [joints, 3]."""
         rest = np.zeros((len(self.names), 3))
         for joint, parent in enumerate(self.parents):
             if parent >= 0:

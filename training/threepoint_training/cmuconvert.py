@@ -37,10 +37,16 @@ def put_back_lost_bones(hierarchy: BvhHierarchy) -> tuple[str, ...]:
             thorax = _FROM_LOWER_BACK * lower + _FROM_UPPER_BACK * upper
             for name in _HUNG_ON_THORAX:
                 hierarchy.place(name, thorax)
-            notes.append("cmuconvert lost the thorax bone; it is put back, estimated from the two below (0.4 cm off on average)")
+            notes.append(
+                "cmuconvert lost the thorax bone; it is put back, estimated from the two below (0.4 cm off on average)"
+            )
     for side in ("Left", "Right"):
         hand, base, thumb = f"{side}Hand", f"{side}FingerBase", f"{side[0]}Thumb"
-        if hand in hierarchy.names and base in hierarchy.names and _lost(hierarchy.offset(base), hierarchy.offset(hand)):
+        if (
+            hand in hierarchy.names
+            and base in hierarchy.names
+            and _lost(hierarchy.offset(base), hierarchy.offset(hand))
+        ):
             wrist = _WRIST_OF_RADIUS * hierarchy.offset(hand)
             hierarchy.place(base, wrist)
             if thumb in hierarchy.names and _lost(hierarchy.offset(thumb), hierarchy.offset(hand)):

@@ -1,4 +1,4 @@
-"""Where unseen hands are taken to be: held where they were seen last, then on their way to rest beside the hip.
+"""Estimates positions of unseen hands: held at their last tracked position, then moved to rest at the hip.
 
 The twin of src/threepoint/core/estimation/complete-hands.ts for hands that stay lost.
 """
@@ -13,21 +13,27 @@ from .skeleton import load_proportions
 Array = NDArray[np.float64]
 
 
-def carry_with_head(hand: Array, turn: Array, head: tuple[Array, Array], head_now: tuple[Array, Array]) -> tuple[Array, Array]:
+def carry_with_head(
+    hand: Array, turn: Array, head: tuple[Array, Array], head_now: tuple[Array, Array]
+) -> tuple[Array, Array]:
     """A hand [F, 3] and its rotation, seen last under a head (position [F, 3], rotation [F, 4]), carried along to where that head is now."""
     (place, way), (place_now, way_now) = head, head_now
     turned = quaternion.multiply(quaternion.heading(way_now), quaternion.conjugate(quaternion.heading(way)))
     return place_now + quaternion.rotate(turned, hand - place), quaternion.multiply(turned, turn)
 
 
-def complete_hands(positions: Array, rotations: Array, unseen: Array, eye_height: Array, arm: Array) -> tuple[Array, Array]:
+def complete_hands(
+    positions: Array, rotations: Array, unseen: Array, eye_height: Array, arm: Array
+) -> tuple[Array, Array]:
     """Headset and hands [F, 3, 3] as estimators get them; hands come carried along, unseen for so long [F, 2] in seconds (0: seen)."""
     share = _trapezoidal_easing((unseen - LOST_HAND["holdSeconds"]) / LOST_HAND["restSeconds"])
     positions, rotations = positions.copy(), rotations.copy()
     for hand, (place, turn) in enumerate(_rest(positions[:, 0], rotations[:, 0], eye_height, arm)):
         sunk = share[:, hand]
         positions[:, 1 + hand] += sunk[:, None] * (place - positions[:, 1 + hand])
-        rotations[:, 1 + hand] = np.where(sunk[:, None] > 0, quaternion.slerp(rotations[:, 1 + hand], turn, sunk), rotations[:, 1 + hand])
+        rotations[:, 1 + hand] = np.where(
+            sunk[:, None] > 0, quaternion.slerp(rotations[:, 1 + hand], turn, sunk), rotations[:, 1 + hand]
+        )
     return positions, rotations
 
 

@@ -1,4 +1,4 @@
-"""Cross-validation: networks trained without the people of each fold, on whom the reported errors are measured, and the paper's own protocol."""
+"""Cross-validation: trains networks without the people of each fold, reports errors on these, and runs the paper's protocol."""
 
 import json
 import re
@@ -44,10 +44,14 @@ def main(run: TrainingRun, folds: list[str]) -> None:
         errors |= _found_by_other_runs(run, name)
         training = training_people(shipped, tuple(run.corpus.people))
         provenance = fit_networks.provenance(run, name, training, errors, curve if name == "paper" else None)
-        fit_networks.write(run, name, network, provenance, Destination(run.config.cross_validation, run.config.fp32_out))
+        fit_networks.write(
+            run, name, network, provenance, Destination(run.config.cross_validation, run.config.fp32_out)
+        )
 
 
-def _cross_validate(run: TrainingRun, fold: str, is_shipped: bool) -> tuple[dict[str, torch.nn.Module], train_paper.LearningCurve | None]:
+def _cross_validate(
+    run: TrainingRun, fold: str, is_shipped: bool
+) -> tuple[dict[str, torch.nn.Module], train_paper.LearningCurve | None]:
     """Trains one fold's networks; returns them and the learning curve of the paper's.
 
     They are evaluated on the fold's held-out people and, in rows of their own, on evaluation-only subjects (never trained on).
@@ -63,18 +67,26 @@ def _cross_validate(run: TrainingRun, fold: str, is_shipped: bool) -> tuple[dict
     trained: dict[str, torch.nn.Module] = {}
     curve: train_paper.LearningCurve | None = None
     with _kinematics(run, training, fold, is_shipped):
-        tests = {row: train_learned.held_out(corpus, people, config.learned.window_seconds) for row, people in rows.items()}
+        tests = {
+            row: train_learned.held_out(corpus, people, config.learned.window_seconds) for row, people in rows.items()
+        }
         for row, test in tests.items():
             found(f"IK, {row}", train_learned.ik_errors_cm(test))
         if "paper" in config.networks:
             frames = {row: train_paper.frames_of(corpus, people, config.seed) for row, people in rows.items()}
             trained["paper"], curve = fit_networks.followed_paper(run, training, next(iter(frames.values())), label)
             for row, test in frames.items():
-                found(f"paper, {row}", train_paper.joint_errors_cm(train_paper.predict(trained["paper"], test.inputs), test.targets))
+                found(
+                    f"paper, {row}",
+                    train_paper.joint_errors_cm(train_paper.predict(trained["paper"], test.inputs), test.targets),
+                )
         if "learned" in config.networks:
             trained["learned"] = fit_networks.learned(run, training, label)
             for row, test in tests.items():
-                found(f"learned, {row}", train_learned.fitted_errors_cm(train_paper.predict(trained["learned"], test.inputs), test))
+                found(
+                    f"learned, {row}",
+                    train_learned.fitted_errors_cm(train_paper.predict(trained["learned"], test.inputs), test),
+                )
     return trained, curve
 
 
@@ -107,7 +119,9 @@ def compact_json(content: Any) -> str:
 def _found_by_other_runs(run: TrainingRun, name: str) -> dict[str, dict[str, float]]:
     """Errors in the paper's protocol that an earlier contract states, for a run without frame_random; else nothing."""
     contract = None if run.config.frame_random else _contract_of_this_motion(run, name)
-    return {} if contract is None else {row: values for row, values in contract["errors"].items() if "frame-random" in row}
+    return (
+        {} if contract is None else {row: values for row, values in contract["errors"].items() if "frame-random" in row}
+    )
 
 
 def _contract(run: TrainingRun, name: str) -> dict[str, Any] | None:

@@ -81,7 +81,7 @@ class DifferentiableKinematics:
         self.x = torch.tensor([1.0, 0.0, 0.0], dtype=dtype)
         self.thorax = self.rest["upperChest"] + self.rest["neck"]
         self.lower_back_length = (self.rest["spine"] + self.rest["chest"]).norm()
-        # Of shoulders at rest, their middle from the neck's base.
+        # The midpoint of the shoulders at rest, relative to the neck's base.
         left, right = (self.rest[f"{side}Shoulder"] + self.rest[f"{side}UpperArm"] for side in ("left", "right"))
         self.shoulders_from_neck = (left + right) / 2 - self.rest["neck"]
         self.shoulder_width = (right - left)[0]
@@ -91,7 +91,7 @@ class DifferentiableKinematics:
         return self.fit(corrections, inputs, config)[0]
 
     def fit(self, corrections: Tensor, inputs: Tensor, config: FittingConfig) -> tuple[Tensor, Tensor]:
-        """As a call; and which elbows the swivel limiter keeps out of the trunk [N, 2]."""
+        """Returns the fitted joints, and which elbows the swivel limiter keeps out of the trunk [N, 2]."""
         axes, ik_joints = _in_chest_frame(inputs)
         chest_features, arm = inputs[:, -CHEST_FEATURES:], inputs[:, ARM_LENGTH, None, None]
         given = _FittingInput(
@@ -153,7 +153,9 @@ class DifferentiableKinematics:
         moved = shift * TORSO["neckShiftShare"] * (neck_bone.norm() / _length(shift)).clamp_max(1.0)
         return _Unleaned(line, up, neck_to_head, moved)
 
-    def _place_trunk(self, given: _FittingInput, upright: _Unleaned, leans: Tensor, extremity: Tensor) -> tuple[Trunk, Tensor]:
+    def _place_trunk(
+        self, given: _FittingInput, upright: _Unleaned, leans: Tensor, extremity: Tensor
+    ) -> tuple[Trunk, Tensor]:
         """Chest joint, hips and shoulders on their bones below the head, for estimated shoulders that lean by these offsets [N, 2, 3].
 
         A lean turns neck, thorax and shoulder line by less than a right angle each; what it asks back along them is left to the clavicles.
@@ -170,7 +172,10 @@ class DifferentiableKinematics:
         chest = neck - up * self.thorax.norm()
         hips = chest + _unit(estimated[:, 5] + upright.moved - chest) * self.lower_back_length
         pelvis_line = _unit(torch.lerp(line, given.heading_right, TORSO["pelvisToHead"]))
-        lower, upper = (self._aligned(self.thorax, up, side) for side in (torch.lerp(pelvis_line, line, TORSO["chestToShoulders"]), line))
+        lower, upper = (
+            self._aligned(self.thorax, up, side)
+            for side in (torch.lerp(pelvis_line, line, TORSO["chestToShoulders"]), line)
+        )
         shoulders = []
         for number, side in enumerate(("left", "right")):
             swing = _limit("clavicleSwing", extremity[:, number])
@@ -178,7 +183,9 @@ class DifferentiableKinematics:
             shoulders.append(root + _swung(upper @ self.rest[f"{side}UpperArm"], targets[:, number] - root, swing))
         return Trunk(hips, chest, neck, upper), torch.stack(shoulders, dim=1)
 
-    def fit_arms(self, given: _FittingInput, trunk: Trunk, shoulders: Tensor, config: FittingConfig) -> tuple[Tensor, Tensor]:
+    def fit_arms(
+        self, given: _FittingInput, trunk: Trunk, shoulders: Tensor, config: FittingConfig
+    ) -> tuple[Tensor, Tensor]:
         """Elbows [N, 2, 3] where upper arm and forearm let them be, on the side where they are estimated, from the estimated shoulders.
 
         Also which of them the swivel limiter moved [N, 2].
@@ -187,7 +194,10 @@ class DifferentiableKinematics:
         fore = arm - upper
         own, axis = _unit(wrists - estimated[:, 2:4]), _unit(wrists - shoulders)
         pole = _carried(_across(estimated[:, :2] - estimated[:, 2:4], own), own, axis)
-        reached = torch.minimum(torch.maximum(_length(wrists - shoulders), (upper - fore).abs() + config.most_bent), config.straightest * arm)
+        reached = torch.minimum(
+            torch.maximum(_length(wrists - shoulders), (upper - fore).abs() + config.most_bent),
+            config.straightest * arm,
+        )
         along = (upper**2 - fore**2 + reached**2) / (2 * reached)
         centre, radius = shoulders + along * axis, torch.sqrt((upper**2 - along**2).clamp_min(1e-8))
         pole = _unit(_across(pole, axis))
@@ -202,7 +212,7 @@ class DifferentiableKinematics:
 
 
 def _leaned(direction: Tensor, length: Tensor, offset: Tensor) -> Tensor:
-    """Where the end of a bone in this direction [N, 3], unit, points when it is moved by an offset [N, 3], without what of it leads back along it."""
+    """Returns the direction [N, 3] of a bone after its end moves by an offset, without the offset's part against the bone."""
     return _unit(offset + direction * (length - _dot(offset, direction).clamp_max(0.0)))
 
 

@@ -28,7 +28,7 @@ JOINTS_IN_WORDS = "left elbow, right elbow, left shoulder, right shoulder, chest
 
 @dataclass(frozen=True)
 class Provenance:
-    """Where a model comes from."""
+    """The origin of a model."""
 
     corpus: str
     corpus_hash: str
@@ -39,12 +39,19 @@ class Provenance:
     learning_curve: dict[str, list[float]] | None = None
 
     def __post_init__(self) -> None:
-        for unwanted, why in ((evaluation_only(self.people), "evaluation-only"), (in_lockbox(self.people), "in the lockbox")):
+        for unwanted, why in (
+            (evaluation_only(self.people), "evaluation-only"),
+            (in_lockbox(self.people), "in the lockbox"),
+        ):
             if unwanted:
-                raise ValueError(f"{', '.join(unwanted)}: {why} (splits.py), never trained on; no such network is written")
+                raise ValueError(
+                    f"{', '.join(unwanted)}: {why} (splits.py), never trained on; no such network is written"
+                )
 
 
-def to_onnx(network: torch.nn.Module, example: NDArray[np.float32], input_name: str, output_name: str) -> onnx.ModelProto:
+def to_onnx(
+    network: torch.nn.Module, example: NDArray[np.float32], input_name: str, output_name: str
+) -> onnx.ModelProto:
     """The network in evaluation mode as a graph of batch 1."""
     stream = io.BytesIO()
     torch.onnx.export(
@@ -66,7 +73,9 @@ def git_commit() -> str:
     """The commit of the code that trained, with a mark when it was changed since; 'unknown' outside a repository."""
     folder = Path(__file__).parent
     try:
-        commit = subprocess.run(["git", "rev-parse", "HEAD"], cwd=folder, capture_output=True, text=True, check=True).stdout.strip()
+        commit = subprocess.run(
+            ["git", "rev-parse", "HEAD"], cwd=folder, capture_output=True, text=True, check=True
+        ).stdout.strip()
         changed = subprocess.run(["git", "diff", "--quiet", "HEAD", "--", "."], cwd=folder, check=False).returncode
     except (OSError, subprocess.CalledProcessError):
         return "unknown"
@@ -99,7 +108,12 @@ def main(config: ExportConfig, network: torch.nn.Module, examples: NDArray[np.fl
     }
     contract = _write(config, config.out, quantised, quantisation)
     if config.fp32_out is not None:
-        _write(config, config.fp32_out, exact, {"scheme": "none: fp32", "maxAbsoluteDifference": 0, "runtimeTolerance": RUNTIME_TOLERANCE})
+        _write(
+            config,
+            config.fp32_out,
+            exact,
+            {"scheme": "none: fp32", "maxAbsoluteDifference": 0, "runtimeTolerance": RUNTIME_TOLERANCE},
+        )
     return contract
 
 
@@ -132,7 +146,10 @@ def _contract(config: ExportConfig, content: bytes, quantisation: dict[str, Any]
         "trainedOn": {"corpus": provenance.corpus, "corpusHash": provenance.corpus_hash, "people": provenance.people},
         "gitCommit": git_commit(),
         "seed": provenance.seed,
-        "errors": {protocol: {joint: round(value, 2) for joint, value in row.items()} for protocol, row in provenance.errors.items()},
+        "errors": {
+            protocol: {joint: round(value, 2) for joint, value in row.items()}
+            for protocol, row in provenance.errors.items()
+        },
     }
     if provenance.learning_curve is not None:
         contract["learningCurve"] = {"unit": "cm² per coordinate, network alone"} | provenance.learning_curve

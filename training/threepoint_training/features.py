@@ -22,9 +22,7 @@ ARM_LENGTH = 45
 FEATURES = 46
 
 
-def frame_features(
-    positions: Array, rotations: Array, body: Body, seen: Array | None = None
-) -> tuple[Array, Array]:
+def frame_features(positions: Array, rotations: Array, body: Body, seen: Array | None = None) -> tuple[Array, Array]:
     """Features [F, 46] of tracked points in the floor frame ([F, 3, 3], [F, 3, 4]) and the IK joints [F, 6, 3], heading frame [m].
 
     seen [F, 2]: whether each hand is seen in this frame; all, when None.

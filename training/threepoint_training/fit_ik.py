@@ -15,7 +15,7 @@ from .skeleton import Body, body_from_calibration
 
 Array = NDArray[np.float64]
 
-# Where the search starts and what ridge pulls towards: an upright trunk, elbows down, back and a little outward.
+# The initial parameters, which are the target of the ridge penalty: an upright trunk, elbows down, back and a little outward.
 PRIOR: dict[str, Any] = {
     "yaw": [0.3, 0.2],
     "upper": {"forward": [0, 0.25, 0.3, 0.1, 0, 0], "sideways": [0.2, 0.1, 0]},
@@ -103,7 +103,9 @@ def sample(
         wearer = draw_wearer(trackers, random)
         positions, rotations = simulate(true_positions, corpus.rotations[frames], wearer, trackers, random)
         turned = np.broadcast_to((np.arange(len(frames)) % 2 == 1)[:, None], (len(frames), 2))
-        tilts = measured_tilts(np.broadcast_to(forearms.of(name), (len(frames), 2, 2)), wearer.hand_turns, trackers, random)
+        tilts = measured_tilts(
+            np.broadcast_to(forearms.of(name), (len(frames), 2, 2)), wearer.hand_turns, trackers, random
+        )
         rotations = hand_tilt.normalised(rotations, np.where(turned[..., None], tilts, 0.0))
         local, turns, yaw, origin = solve_ik.to_heading(positions, rotations)
         truth = true_positions[:, columns] - origin[:, None]
@@ -111,7 +113,9 @@ def sample(
         sizes = np.tile([person.eye_height, person.arm_span], (len(frames), 1))
         parts.append((local, turns, truth, sizes, turned, np.full(len(frames), name)))
         if mirrored:
-            parts.append((*mirror.trackers(local, turns), mirror.joints(truth), sizes, turned, np.full(len(frames), name)))
+            parts.append(
+                (*mirror.trackers(local, turns), mirror.joints(truth), sizes, turned, np.full(len(frames), name))
+            )
     local, turns, truth, sizes, turned, names = (np.concatenate(columns) for columns in zip(*parts, strict=True))
     body = body_from_calibration(sizes[:, 0], sizes[:, 1], proportions)
     return Sample(local, turns, truth, replace(body, hands_turned=turned), names)
@@ -128,7 +132,9 @@ def fit(frames: Sample, config: FitIkConfig, report: Callable[[int, float], None
 
     def cost(values: Array, errors: Array) -> float:
         distance = np.linalg.norm(errors, axis=-1)
-        huber = np.where(distance < config.robust_scale, distance**2, config.robust_scale * (2 * distance - config.robust_scale))
+        huber = np.where(
+            distance < config.robust_scale, distance**2, config.robust_scale * (2 * distance - config.robust_scale)
+        )
         return float(huber.sum() + config.ridge * count * np.sum((values - prior) ** 2))
 
     damping = 1e-2

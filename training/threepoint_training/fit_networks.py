@@ -143,7 +143,9 @@ def provenance(
     curve: train_paper.LearningCurve | dict[str, list[float]] | None,
 ) -> export.Provenance:
     """What a contract states of a network of this run: corpus, seed, errors [cm] and the subset of `training` that it trained on."""
-    source = "generated motion" if run.config.mocap is None else "CMU Graphics Lab Motion Capture Database and like files"
+    source = (
+        "generated motion" if run.config.mocap is None else "CMU Graphics Lab Motion Capture Database and like files"
+    )
     return export.Provenance(
         corpus=source,
         corpus_hash=run.corpus.corpus_hash,

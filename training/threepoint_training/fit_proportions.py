@@ -46,7 +46,16 @@ def fit(corpus: PreparedCorpus, people: tuple[str, ...]) -> dict[str, Any]:
         left_hand, right_hand = hand_tilt.ForearmMeans(corpus, (name,)).of(name)
         hand = (left_hand * mirror.TILT + right_hand) / 2
         rows[-1] = np.concatenate(
-            [rows[-1], [upper / (upper + fore), EYES_FROM_HEAD_JOINT[1] / person.eye_height, -EYES_FROM_HEAD_JOINT[2] / person.eye_height, *tilts, *hand]]
+            [
+                rows[-1],
+                [
+                    upper / (upper + fore),
+                    EYES_FROM_HEAD_JOINT[1] / person.eye_height,
+                    -EYES_FROM_HEAD_JOINT[2] / person.eye_height,
+                    *tilts,
+                    *hand,
+                ],
+            ]
         )
     mean = [round(float(value), 5) for value in np.mean(rows, axis=0)]
     root = 0.012  # The clavicle starts two centimetres beside the breastbone's middle.
@@ -77,7 +86,9 @@ def _standing_tilts(corpus: PreparedCorpus, name: str) -> tuple[float, float]:
     yaw = quaternion.conjugate(quaternion.heading(corpus.rotations[frames][standing, 0].astype(np.float64)))
 
     def tilt(lower: str, upper: str) -> float:
-        segment = quaternion.rotate(yaw, positions[standing][:, JOINTS.index(upper)] - positions[standing][:, JOINTS.index(lower)])
+        segment = quaternion.rotate(
+            yaw, positions[standing][:, JOINTS.index(upper)] - positions[standing][:, JOINTS.index(lower)]
+        )
         return float(np.median(np.arctan2(-segment[:, 2], segment[:, 1])))
 
     return tilt("chest", "neck"), tilt("hips", "chest")

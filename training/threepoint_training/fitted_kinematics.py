@@ -1,4 +1,4 @@
-"""Body proportions and constants of IK fitted without the people held out, so that errors on these are of people whom nothing was fitted on."""
+"""Fits body proportions and IK parameters without the people held out, so that errors are those of new people."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -18,7 +18,9 @@ class Kinematics:
     parameters: dict[str, Any]
 
 
-def fit(corpus: PreparedCorpus, people: tuple[str, ...], config: FitIkConfig, report: Callable[[int], None] = lambda _: None) -> Kinematics:
+def fit(
+    corpus: PreparedCorpus, people: tuple[str, ...], config: FitIkConfig, report: Callable[[int], None] = lambda _: None
+) -> Kinematics:
     """Fitted on these people; report(iterations done)."""
     proportions = fit_proportions.fit(corpus, people)
     sample = fit_ik.sample(corpus, people, proportions, config.frames_per_person, config.seed)

@@ -28,12 +28,16 @@ def flat_tensors(model: onnx.ModelProto) -> dict[str, NDArray[Any]]:
     """Every number of the learned network's graph by name, widest numbers first. Raises where the graph is another network's."""
     nodes = model.graph.node
     known = {tensor.name: numpy_helper.to_array(tensor) for tensor in model.graph.initializer}
-    known |= {node.output[0]: numpy_helper.to_array(node.attribute[0].t) for node in nodes if node.op_type == "Constant"}
+    known |= {
+        node.output[0]: numpy_helper.to_array(node.attribute[0].t) for node in nodes if node.op_type == "Constant"
+    }
     dequantised = {node.output[0]: node.input for node in nodes if node.op_type == "DequantizeLinear"}
     layers = [node.input for node in nodes if node.op_type == "Gemm"]
     columns = [known[node.input[1]] for node in nodes if node.op_type == "Gather"]
     if len(layers) % len(PERCEPTRONS) or len(columns) != 2:
-        raise ValueError(f"expected two perceptrons and two choices of columns; the graph has {len(layers)} layers, {len(columns)} choices")
+        raise ValueError(
+            f"expected two perceptrons and two choices of columns; the graph has {len(layers)} layers, {len(columns)} choices"
+        )
     mirror, arm = columns
     factors = [known[name] for node in nodes if node.op_type == "Mul" for name in node.input if name in known]
     (signs,) = (factor for factor in factors if factor.shape == mirror.shape)
@@ -58,7 +62,7 @@ def flat_tensors(model: onnx.ModelProto) -> dict[str, NDArray[Any]]:
 
 
 def _narrowed(values: NDArray[Any], type_name: str) -> NDArray[Any]:
-    """The same numbers in fewer bytes; raises where they do not fit."""
+    """Converts values to a smaller type; raises if a value does not fit."""
     narrow = values.astype(type_name)
     np.testing.assert_array_equal(narrow, values)
     return narrow
@@ -69,7 +73,12 @@ def flat_file(model: onnx.ModelProto, file: str) -> tuple[bytes, dict[str, Any]]
     tensors = {name: values.astype(values.dtype.newbyteorder("<")) for name, values in flat_tensors(model).items()}
     content = b"".join(values.tobytes() for values in tensors.values())
     listed = {name: " ".join([TYPES[values.dtype], *map(str, values.shape)]) for name, values in tensors.items()}
-    return content, {"file": file, "bytes": len(content), "sha256": hashlib.sha256(content).hexdigest(), "tensors": listed}
+    return content, {
+        "file": file,
+        "bytes": len(content),
+        "sha256": hashlib.sha256(content).hexdigest(),
+        "tensors": listed,
+    }
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,9 @@ def generate_clip(random: np.random.Generator, frames: int, person: Person) -> t
     arm = (person.arm_span - 0.24 * e) / 2
     yaw = random.uniform(-np.pi, np.pi) + _wave(random, times, 1, 0.8)[:, 0]
     turn = quaternion.from_axis_angle(np.broadcast_to([0.0, 1.0, 0.0], (frames, 3)), yaw)
-    lean = quaternion.multiply(turn, quaternion.from_rotation_vector(_wave(random, times, 3, 0.12) + np.array([-0.1, 0, 0])))
+    lean = quaternion.multiply(
+        turn, quaternion.from_rotation_vector(_wave(random, times, 3, 0.12) + np.array([-0.1, 0, 0]))
+    )
     crouch = 0.08 * e * (1 + _wave(random, times, 1, 0.7)[:, 0])
     hips = random.uniform(-1, 1, 3) * [1, 0, 1] + _wave(random, times, 3, 0.3) * [1, 0.05, 1]
     hips[:, 1] += 0.6 * e - np.maximum(crouch, 0)

@@ -16,7 +16,7 @@ from .features import frame_features
 from .generated_motion import generate_clip
 from .golden_bvh import bvh_vectors
 from .golden_mocap import mocap_vectors
-from .notice_hand_tilts import ToldTilts
+from .notice_hand_tilts import CalibratedTilts
 from .paper_features import paper_features
 from .prepared_corpus import Person
 from .residual import network_input
@@ -30,17 +30,20 @@ GOLDEN = Path(__file__).parents[2] / "tests/golden"
 
 @dataclass(frozen=True)
 class GoldenBody:
-    """Measures [m], and the tilts of the hands that are measured; a forearm that is not told is None."""
+    """The measurements of a body [m], and the measured hand tilts; an unknown forearm is None."""
 
     eye_height: float
     arm_span: float
     forearm: float | None = None
     tilts: dict[str, tuple[float, float]] = field(default_factory=dict)
 
-    def told(self) -> ToldTilts:
-        """What its calibration tells of its hands."""
+    def calibrated(self) -> CalibratedTilts:
+        """The hand tilts of the calibration."""
         sides = ("left", "right")
-        return ToldTilts(np.array([self.tilts.get(side, (0.0, 0.0)) for side in sides]), np.array([side in self.tilts for side in sides]))
+        return CalibratedTilts(
+            np.array([self.tilts.get(side, (0.0, 0.0)) for side in sides]),
+            np.array([side in self.tilts for side in sides]),
+        )
 
     def body(self) -> Body:
         """Hands as they come."""
@@ -48,11 +51,13 @@ class GoldenBody:
         return body if self.forearm is None else body.with_forearms(np.full(2, self.forearm))
 
     def measures(self) -> dict[str, Any]:
-        """As the page has them, without tilts."""
-        return {"eyeHeight": self.eye_height, "armSpan": self.arm_span} | ({} if self.forearm is None else {"forearm": self.forearm})
+        """The body measurements in the page's format, without tilts."""
+        return {"eyeHeight": self.eye_height, "armSpan": self.arm_span} | (
+            {} if self.forearm is None else {"forearm": self.forearm}
+        )
 
     def calibration(self) -> dict[str, Any]:
-        """As the page has it."""
+        """The calibration in the page's format."""
         hands = {side: {"pitch": pitch, "yaw": yaw} for side, (pitch, yaw) in self.tilts.items()}
         return self.measures() | ({"handTilts": hands} if hands else {})
 
@@ -91,7 +96,9 @@ def feature_vectors() -> list[dict[str, Any]]:
         seen = random.uniform(size=(FRAMES, 2)) > 0.15
         times = np.arange(FRAMES) * STRIDE / 60 + random.uniform(0, 0.01, FRAMES)
         metres = notice_hand_tilts.travel(positions)
-        body = notice_hand_tilts.with_noticed_hands(person.body(), positions, rotations, metres, told=person.told(), seen=seen)
+        body = notice_hand_tilts.with_noticed_hands(
+            person.body(), positions, rotations, metres, calibrated=person.calibrated(), seen=seen
+        )
         vector, ik_joints = frame_features(positions, rotations, body, seen)
         floor_joints = _in_floor_frame(ik_joints, positions, rotations)
         cases.append(
@@ -122,7 +129,9 @@ def headset_rise_vectors() -> dict[str, Any]:
     """Arms that hang, swing and are not seen now and then, and what is noticed of the headset by them."""
     random = np.random.default_rng(31)
     arm, count = 0.61, 60
-    reach = np.array([0.0, -1.0, 0.0]) * random.normal(1.02, 0.03, size=(count, 2, 1)) + random.normal(scale=0.15, size=(count, 2, 3)) * [1, 0, 1]
+    reach = np.array([0.0, -1.0, 0.0]) * random.normal(1.02, 0.03, size=(count, 2, 1)) + random.normal(
+        scale=0.15, size=(count, 2, 3)
+    ) * [1, 0, 1]
     seconds, seen = random.uniform(0.5, 1.5, count), random.uniform(size=(count, 2)) > 0.15
     followed = notice_headset_rise.hanging_reach(reach, seconds, seen=seen)
     rises = notice_headset_rise.rise(followed, np.array(arm))
@@ -134,7 +143,9 @@ def headset_rise_vectors() -> dict[str, Any]:
 def _hands_before_the_trunk(positions: Array, ik_joints: Array, body: Body, random: np.random.Generator) -> Array:
     """Wrists close to the chest joint, so that elbows estimated beside IK's lie in the trunk now and then; heading frame."""
     moved = positions.copy()
-    place = np.array([[-0.1, -0.05, -0.16], [0.1, -0.05, -0.16]]) + random.normal(scale=0.05, size=(len(positions), 2, 3))
+    place = np.array([[-0.1, -0.05, -0.16], [0.1, -0.05, -0.16]]) + random.normal(
+        scale=0.05, size=(len(positions), 2, 3)
+    )
     moved[:, 1:] = ik_joints[:, 4:5] + place * body.eye_height
     return moved
 
@@ -144,12 +155,14 @@ def _hands_out_of_reach(positions: Array, ik_joints: Array, body: Body, random: 
     the passes end with then amplifies the last digits of its input."""
     moved = positions.copy()
     reach = moved[:, 1:] - ik_joints[:, 2:4]
-    reach *= random.uniform(0.99, 1.25, (len(positions), 2, 1)) * body.arm / np.linalg.norm(reach, axis=-1, keepdims=True)
+    reach *= (
+        random.uniform(0.99, 1.25, (len(positions), 2, 1)) * body.arm / np.linalg.norm(reach, axis=-1, keepdims=True)
+    )
     moved[:, 1:] = ik_joints[:, 2:4] + reach
     return moved
 
 
-# Where hands are, and the standard deviation of elbows' and of other joints' corrections [eye heights].
+# Positions of the hands, and standard deviations of the corrections of elbows and of other joints [eye heights].
 SITUATIONS: dict[str, tuple[Callable[[Array, Array, Body, np.random.Generator], Array], float, float]] = {
     "hands as tracked": (lambda positions, *_: positions, 0.015, 0.015),
     "hands before the trunk": (_hands_before_the_trunk, 0.2, 0.015),
@@ -175,14 +188,17 @@ def fitted_vectors() -> list[dict[str, Any]]:
             random = np.random.default_rng([13, number, kind])
             positions, rotations = _tracked(person.eye_height, person.arm_span, random)
             local, turns, _, _ = solve_ik.to_heading(positions, rotations)
-            positions = _in_floor_frame(move(local, solve_ik.solve(local, turns, body), body, random), positions, rotations)
+            positions = _in_floor_frame(
+                move(local, solve_ik.solve(local, turns, body), body, random), positions, rotations
+            )
             vector, ik_joints = frame_features(positions, rotations, body)
             inputs = torch.from_numpy(network_input(vector, np.arange(FRAMES) / 60, WINDOW))
             corrections = random.normal(size=ik_joints.shape) * np.array([elbows] * 2 + [others] * 4)[:, None]
             fitted, limited = fitting.fit(torch.from_numpy(corrections), inputs, as_the_page_fits(person.eye_height))
             axes = chest_axes(vector)
             estimated, placed = (
-                _in_floor_frame(ik_joints + person.eye_height * shift @ axes, positions, rotations) for shift in (corrections, fitted.numpy())
+                _in_floor_frame(ik_joints + person.eye_height * shift @ axes, positions, rotations)
+                for shift in (corrections, fitted.numpy())
             )
             frames += [
                 {

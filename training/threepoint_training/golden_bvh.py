@@ -32,7 +32,9 @@ def _text(random: np.random.Generator) -> str:
         x, y, z = random.uniform(-2, 2, 3).round(4)
         channels = [f"{axis}position" for axis in places] + [f"{axis}rotation" for axis in turns]
         numbers += len(channels)
-        lines.extend([f"{pad}{'ROOT' if parent < 0 else 'JOINT'} joint {index}", pad + "{", f"{pad}  OFFSET {x} {y} {z}"])
+        lines.extend(
+            [f"{pad}{'ROOT' if parent < 0 else 'JOINT'} joint {index}", pad + "{", f"{pad}  OFFSET {x} {y} {z}"]
+        )
         lines.append(" ".join([f"{pad}  CHANNELS {len(channels)}", *channels]))
         children = [child for child, (of, *_) in enumerate(JOINTS) if of == index]
         for child in children:

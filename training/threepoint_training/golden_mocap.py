@@ -10,14 +10,17 @@ import numpy as np
 from . import prepare, quaternion, recordings
 from .synthetic_skeletons import GAME, IDENTITY, along, angles_of, game_bvh, write_asf_amc, write_cmuconvert_bvh
 
-# Of every clip; the page is held against every nth frame.
+# Frames per clip, and the stride at which the page is compared.
 FRAMES, STRIDE = 76, 6
 
 
 def _turned(text: str) -> str:
     """An AMC text whose root walks and turns."""
     before, *frames = text.split("root 0 16.5 0 0 0 0\n")
-    return before + "".join(f"root {0.02 * i + 3:.4f} 16.5 {0.01 * i:.4f} 2 {130 + 0.5 * i:.4f} 3\n{frame}" for i, frame in enumerate(frames))
+    return before + "".join(
+        f"root {0.02 * i + 3:.4f} 16.5 {0.01 * i:.4f} 2 {130 + 0.5 * i:.4f} 3\n{frame}"
+        for i, frame in enumerate(frames)
+    )
 
 
 def _acclaim(folder: Path) -> str:
@@ -40,7 +43,10 @@ def _leaping(folder: Path) -> str:
     def about(axis: int, angle: float) -> Any:
         return quaternion.from_axis_angle(np.eye(3)[axis], np.array(angle))
 
-    turns = [{"Hips": about(1, 2 + 0.6 * t), "LeftArm": about(2, -0.9 * np.sin(3 * t)), "Head": about(0, 0.2 + 0.3 * t)} for t in times]
+    turns = [
+        {"Hips": about(1, 2 + 0.6 * t), "LeftArm": about(2, -0.9 * np.sin(3 * t)), "Head": about(0, 0.2 + 0.3 * t)}
+        for t in times
+    ]
     hips = [np.array([20 * t + (300 if i >= FRAMES // 2 else 0), 100, 5 * t]) for i, t in enumerate(times)]
     text, _ = game_bvh({name: IDENTITY for name, *_ in GAME}, turns, hips)
     (folder / "someone_walks.bvh").write_text(text.replace("Frame Time: 0.016666667", "Frame Time: 0.02"))
@@ -51,16 +57,30 @@ def _moving(times: Any) -> list[dict[str, Any]]:
     def about(axis: int, angle: float) -> Any:
         return quaternion.from_axis_angle(np.eye(3)[axis], np.array(angle))
 
-    return [{"Hips": about(1, 0.7 + 0.6 * t), "RightArm": about(2, 0.9 * np.sin(3 * t)), "Head": about(0, 0.2 - 0.3 * t)} for t in times]
+    return [
+        {"Hips": about(1, 0.7 + 0.6 * t), "RightArm": about(2, 0.9 * np.sin(3 * t)), "Head": about(0, 0.2 - 0.3 * t)}
+        for t in times
+    ]
 
 
 def _map(folder: Path, **more: Any) -> None:
     joints = {"hips": "Hips", "spine": "Spine", "chest": "Spine1", "neck": "Neck", "head": "Head"}
     for side in ("left", "right"):
         theirs = side.capitalize()
-        joints |= {f"{side}UpperArm": f"{theirs}Arm", f"{side}LowerArm": f"{theirs}ForeArm", f"{side}Hand": f"{theirs}Hand"}
-        joints |= {f"{side}UpperLeg": f"{theirs}UpLeg", f"{side}LowerLeg": f"{theirs}Leg", f"{side}Foot": f"{theirs}Foot", f"{side}Toes": f"{theirs}Toe"}
-    (folder / "map.json").write_text(json.dumps({"joints": {ours: f"bip_{name}" for ours, name in joints.items()}, **more}))
+        joints |= {
+            f"{side}UpperArm": f"{theirs}Arm",
+            f"{side}LowerArm": f"{theirs}ForeArm",
+            f"{side}Hand": f"{theirs}Hand",
+        }
+        joints |= {
+            f"{side}UpperLeg": f"{theirs}UpLeg",
+            f"{side}LowerLeg": f"{theirs}Leg",
+            f"{side}Foot": f"{theirs}Foot",
+            f"{side}Toes": f"{theirs}Toe",
+        }
+    (folder / "map.json").write_text(
+        json.dumps({"joints": {ours: f"bip_{name}" for ours, name in joints.items()}, **more})
+    )
 
 
 def _foreign(text: str) -> str:
@@ -112,7 +132,11 @@ def mocap_vectors() -> list[dict[str, Any]]:
             for clip in index["clips"]:
                 rows = np.fromfile(out / clip["file"], "<f4").reshape(clip["frames"], -1)
                 person = index["people"][clip["person"]]
-                clips.append({"name": clip["name"], "frames": clip["frames"], "calibration": person, "rows": rows[::STRIDE]})
+                clips.append(
+                    {"name": clip["name"], "frames": clip["frames"], "calibration": person, "rows": rows[::STRIDE]}
+                )
             files = {path.name: path.read_text() for path in sorted(mocap.iterdir())}
-            cases.append({"motion": motion, "files": files, "columns": index["columns"], "stride": STRIDE, "clips": clips})
+            cases.append(
+                {"motion": motion, "files": files, "columns": index["columns"], "stride": STRIDE, "clips": clips}
+            )
     return cases

@@ -51,10 +51,12 @@ def normalised(rotations: Array, tilts: Array | None) -> Array:
     if tilts is None:
         return rotations
     hands = rotations[:, 1:]
-    return np.concatenate([rotations[:, :1], quaternion.multiply(hands, np.broadcast_to(turn_of(tilts), hands.shape))], axis=1)
+    return np.concatenate(
+        [rotations[:, :1], quaternion.multiply(hands, np.broadcast_to(turn_of(tilts), hands.shape))], axis=1
+    )
 
 
-def believed(tilts: Array) -> NDArray[np.bool_]:
+def plausible(tilts: Array) -> NDArray[np.bool_]:
     """Which measured tilts [..., 2] are plausible [...]: no steeper than hands are held; beyond that the wrist was bent."""
     return np.linalg.norm(tilts, axis=-1) <= LIMB["steepestHandTilt"]
 

@@ -15,7 +15,7 @@ Json = dict[str, Any]
 DRIVERS = {"truth": "the true pelvis", "ik": "IK", "learned": "learned"}
 _FIGURES = ("pelvisCm", "kneeCm", "footCm", "skateCmS", "slideCmS", "floatCm", "sinkCm", "agreed")
 _HEAD = (
-    "pelvis [cm]", "knee [cm]", "foot [cm]", "skate [cm/s]", "drawn skate [cm/s]", "floating [cm]", "sinking [cm]", "contact told",
+    "pelvis [cm]", "knee [cm]", "foot [cm]", "skate [cm/s]", "drawn skate [cm/s]", "floating [cm]", "sinking [cm]", "contact agreed",
 )  # fmt: skip
 
 
@@ -25,12 +25,21 @@ def _mean(people: Iterable[Json], driver: str, figure: str) -> float:
 
 
 def _cells(people: list[Json], driver: str) -> list[str]:
-    digits = {"agreed": "{:.0%}", "pelvisCm": "{:.1f}", "kneeCm": "{:.1f}", "footCm": "{:.1f}", "skateCmS": "{:.0f}", "slideCmS": "{:.0f}"}
-    return [digits.get(figure, "{:.2f}").format(_mean(people, driver, figure)).replace("%", " %") for figure in _FIGURES]
+    digits = {
+        "agreed": "{:.0%}",
+        "pelvisCm": "{:.1f}",
+        "kneeCm": "{:.1f}",
+        "footCm": "{:.1f}",
+        "skateCmS": "{:.0f}",
+        "slideCmS": "{:.0f}",
+    }
+    return [
+        digits.get(figure, "{:.2f}").format(_mean(people, driver, figure)).replace("%", " %") for figure in _FIGURES
+    ]
 
 
 def drivers(legs: Json) -> str:
-    """The table by the pelvis that legs hang from: means over people, each weighing the same; evaluation-only subjects in rows of their own."""
+    """Returns the table by source of the pelvis: means over people, equally weighted; evaluation-only subjects have separate rows."""
     people = legs["people"]
     groups = {"": trainable(list(people)), ", another laboratory": evaluation_only(list(people))}
     rows = [

@@ -1,4 +1,4 @@
-"""The lockbox: the error of the page's learned network on people by whom nothing was chosen, measured for a release.
+"""Evaluates the page's learned network for a release, on the lockbox people, who were not used in any choice.
 
 `npm run train -- --mocap DIR --lockbox` calls this. Each evaluation is logged, so that nobody can choose by repeating it.
 """
@@ -31,9 +31,13 @@ def main(corpus: PreparedCorpus, config: LockboxConfig) -> dict[str, Any]:
     contract = json.loads((config.models / "learned.json").read_text())
     people = splits.in_lockbox(tuple(corpus.people))
     if not people:
-        raise MocapError(f"No person of the lockbox ({', '.join(splits.LOCKBOX)}) is in this motion: give a folder with their recordings")
+        raise MocapError(
+            f"No person of the lockbox ({', '.join(splits.LOCKBOX)}) is in this motion: give a folder with their recordings"
+        )
     if known := splits.in_lockbox(contract["trainedOn"]["people"]):
-        raise MocapError(f"{config.models / 'learned.json'} was trained on {', '.join(known)}, who are in the lockbox: train it without them first")
+        raise MocapError(
+            f"{config.models / 'learned.json'} was trained on {', '.join(known)}, who are in the lockbox: train it without them first"
+        )
     held_out = train_learned.held_out(corpus, people, tuple(contract["windowSeconds"]), hands_measured=False)
     errors = selection.errors_by_person(run(onnx.load(config.models / contract["file"]), held_out.inputs), held_out)
     row = {
@@ -42,7 +46,11 @@ def main(corpus: PreparedCorpus, config: LockboxConfig) -> dict[str, Any]:
         "weightsSha256": contract["sha256"],
         "corpusHash": corpus.corpus_hash,
         "cm": {name: _of_person(person) for name, person in errors["all"].items()},
-        "ratios": {frames: {name: round(value, 3) for name, value in selection.figures(errors[frames]).items()} for frames in errors if errors[frames]},
+        "ratios": {
+            frames: {name: round(value, 3) for name, value in selection.figures(errors[frames]).items()}
+            for frames in errors
+            if errors[frames]
+        },
     }
     rows = json.loads(config.log.read_text()) if config.log.exists() else []
     config.log.write_text(json.dumps([*rows, row], indent=2) + "\n")

@@ -217,13 +217,19 @@ def _read_channels(path: Path, skeleton: AsfSkeleton) -> tuple[NDArray[np.float6
             name = words[0]
             count = expected.get(name)
             if count is None or not started:
-                raise MocapError(f"{path.name}, line {line_number}: “{name}” is no bone with freedom in {skeleton.path.name}")
+                raise MocapError(
+                    f"{path.name}, line {line_number}: “{name}” is no bone with freedom in {skeleton.path.name}"
+                )
             try:
                 values = [float(word) for word in words[1:]]
             except ValueError:
-                raise MocapError(f"{path.name}, line {line_number}: “{line.strip()}” has something that is no number") from None
+                raise MocapError(
+                    f"{path.name}, line {line_number}: “{line.strip()}” has something that is no number"
+                ) from None
             if len(values) != count:
-                raise MocapError(f"{path.name}, line {line_number}: {name} has {len(values)} numbers, its skeleton says {count}")
+                raise MocapError(
+                    f"{path.name}, line {line_number}: {name} has {len(values)} numbers, its skeleton says {count}"
+                )
             row[offsets[name] : offsets[name] + count] = values
             seen.add(name)
         close(line_number)
@@ -260,13 +266,17 @@ def parse_amc(path: Path, skeleton: AsfSkeleton, frame_rate: float | None = None
             return values
 
         def turn(values: dict[str, NDArray[np.float64]], axis: NDArray[np.float64]) -> NDArray[np.float64]:
-            angles = np.stack([values.get(name, np.zeros(frames)) for name in ("rx", "ry", "rz")], -1) * radians_per_unit
+            angles = (
+                np.stack([values.get(name, np.zeros(frames)) for name in ("rx", "ry", "rz")], -1) * radians_per_unit
+            )
             order = "".join(name[1] for name in values if name in ("rx", "ry", "rz"))
             motion = euler_quaternion(angles, order or "xyz")
             return quaternion.multiply(axis, quaternion.multiply(motion, quaternion.conjugate(axis)))
 
         root = take(skeleton.root_order)
-        position = np.stack([root.get(name, np.zeros(frames)) for name in ("tx", "ty", "tz")], -1) + skeleton.root_position
+        position = (
+            np.stack([root.get(name, np.zeros(frames)) for name in ("tx", "ty", "tz")], -1) + skeleton.root_position
+        )
         rotations = {"root": turn(root, skeleton.root_axis)}
         starts = {"root": position}
         ends = {"root": position}
@@ -278,8 +288,12 @@ def parse_amc(path: Path, skeleton: AsfSkeleton, frame_rate: float | None = None
                 rotations[bone.name], np.broadcast_to(bone.direction * bone.length, (frames, 3))
             )
         order = [bone.name for bone in skeleton.bones]
-        positions = np.stack([starts["root"], *(starts[name] for name in order), *(ends[name] for name in order)], axis=1)
-        turns = np.stack([rotations["root"], *(rotations[name] for name in order), *(rotations[name] for name in order)], axis=1)
+        positions = np.stack(
+            [starts["root"], *(starts[name] for name in order), *(ends[name] for name in order)], axis=1
+        )
+        turns = np.stack(
+            [rotations["root"], *(rotations[name] for name in order), *(rotations[name] for name in order)], axis=1
+        )
         return positions, turns
 
     rest, _ = pose(None)

@@ -104,7 +104,9 @@ def _read_frames(path: Path, lines: list[str], motion_line: int, width: int) -> 
             except ValueError:
                 raise MocapError(f"{path.name}, line {number}: a frame has something that is no number") from None
             if len(row) != width:
-                raise MocapError(f"{path.name}, line {number}: a frame has {len(row)} numbers, the hierarchy has {width} channels")
+                raise MocapError(
+                    f"{path.name}, line {number}: a frame has {len(row)} numbers, the hierarchy has {width} channels"
+                )
             rows.append(row)
     if not rows:
         raise MocapError(f"{path.name}: no frames")
@@ -114,11 +116,15 @@ def _read_frames(path: Path, lines: list[str], motion_line: int, width: int) -> 
         raise MocapError(f"{path.name}: frame rate unknown; a line “Frame Time: seconds” is needed")
     values = np.array(rows)
     if not np.all(np.isfinite(values)):
-        raise MocapError(f"{path.name}: frame {int(np.flatnonzero(~np.isfinite(values).all(1))[0]) + 1} has a number that is not finite")
+        raise MocapError(
+            f"{path.name}: frame {int(np.flatnonzero(~np.isfinite(values).all(1))[0]) + 1} has a number that is not finite"
+        )
     return values, frame_time
 
 
-def _channels_of(path: Path, hierarchy: BvhHierarchy, rest_pose: Mapping[str, tuple[float, ...]]) -> NDArray[np.float64]:
+def _channels_of(
+    path: Path, hierarchy: BvhHierarchy, rest_pose: Mapping[str, tuple[float, ...]]
+) -> NDArray[np.float64]:
     """One frame [1, channels] of these angles, the root at the origin, every other joint at its offset."""
     for name in rest_pose:
         if name not in hierarchy.names:
@@ -128,7 +134,9 @@ def _channels_of(path: Path, hierarchy: BvhHierarchy, rest_pose: Mapping[str, tu
         angles = rest_pose.get(hierarchy.names[joint], ())
         turning = sum(channel.lower().endswith("rotation") for channel in channels)
         if angles and len(angles) != turning:
-            raise MocapError(f"{path.name}: restPose gives {hierarchy.names[joint]} {len(angles)} angles, the file {turning} rotation channels")
+            raise MocapError(
+                f"{path.name}: restPose gives {hierarchy.names[joint]} {len(angles)} angles, the file {turning} rotation channels"
+            )
         remaining = iter(angles or (0.0,) * turning)
         for channel in channels:
             axis = "XYZ".find(channel[0].upper())
@@ -137,7 +145,9 @@ def _channels_of(path: Path, hierarchy: BvhHierarchy, rest_pose: Mapping[str, tu
     return np.array([row])
 
 
-def _pose(path: Path, hierarchy: BvhHierarchy, values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _pose(
+    path: Path, hierarchy: BvhHierarchy, values: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Forward kinematics of the channels: positions [frames, joints, 3] and global rotations [frames, joints, 4]."""
     frames, count = len(values), len(hierarchy.names)
     positions = np.zeros((frames, count, 3))
@@ -152,7 +162,9 @@ def _pose(path: Path, hierarchy: BvhHierarchy, values: NDArray[np.float64]) -> t
                 # A root's position replaces its offset; the same channel on other joints does too in files that carry them.
                 local[:, "XYZ".index(axis)] = values[:, column]
             elif kind == "rotation" and axis in _AXES:
-                step = quaternion.from_axis_angle(np.broadcast_to(_AXES[axis], (frames, 3)), np.radians(values[:, column]))
+                step = quaternion.from_axis_angle(
+                    np.broadcast_to(_AXES[axis], (frames, 3)), np.radians(values[:, column])
+                )
                 turn = quaternion.multiply(turn, step)
             else:
                 raise MocapError(f"{path.name}: channel “{channel}” of {hierarchy.names[joint]} is not known")

@@ -7,4 +7,6 @@ import json
 from pathlib import Path
 from typing import Any
 
-RULES: dict[str, Any] = json.loads((Path(__file__).parents[2] / "src/threepoint/core/mocap/mocap-rules.json").read_text())
+RULES: dict[str, Any] = json.loads(
+    (Path(__file__).parents[2] / "src/threepoint/core/mocap/mocap-rules.json").read_text()
+)

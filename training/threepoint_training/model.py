@@ -170,7 +170,9 @@ def _perceptron(inputs: int, width: int, hidden_layers: int, dropout: float, out
 def _from_trunk() -> Tensor:
     """[24, 18 + 6]: from the trunk's outputs for a body and its image to corrections of the six joints (elbows with their shoulders) and of both right shoulders."""
     body, image = torch.eye(24).view(2, 4, 3, 24)
-    left, right, chest, hips = ((body[joint] + FLIP[:, None] * image[twin]) / 2 for joint, twin in enumerate([1, 0, 2, 3]))
+    left, right, chest, hips = (
+        (body[joint] + FLIP[:, None] * image[twin]) / 2 for joint, twin in enumerate([1, 0, 2, 3])
+    )
     return torch.cat([left, right, left, right, chest, hips, right, FLIP[:, None] * left]).T
 
 

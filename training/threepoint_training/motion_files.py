@@ -51,7 +51,12 @@ def motion_files(mocap: Path, people: tuple[str, ...] | None) -> list[Source]:
     """Every motion file with its person: the folder it lies in, or the start of its name when all lie in one folder."""
     if not mocap.is_dir():
         raise MocapError(f"{mocap}: no such folder")
-    files = sorted(folder / name for folder, names in _folders(mocap) for name in names if Path(name).suffix.lower() in (".amc", ".bvh"))
+    files = sorted(
+        folder / name
+        for folder, names in _folders(mocap)
+        for name in names
+        if Path(name).suffix.lower() in (".amc", ".bvh")
+    )
     if not files:
         raise MocapError(f"{mocap}: no .amc or .bvh files in this folder or below it")
     sources = []
@@ -64,7 +69,11 @@ def motion_files(mocap: Path, people: tuple[str, ...] | None) -> list[Source]:
         if path.suffix.lower() == ".amc":
             skeletons = sorted(path.parent.glob("*.asf"))
             own = [skeleton for skeleton in skeletons if path.stem.startswith(skeleton.stem)]
-            asf = max(own, key=lambda skeleton: len(skeleton.stem)) if own else (skeletons[0] if len(skeletons) == 1 else None)
+            asf = (
+                max(own, key=lambda skeleton: len(skeleton.stem))
+                if own
+                else (skeletons[0] if len(skeletons) == 1 else None)
+            )
         if people is None or person in people:
             sources.append(Source(person, path, asf))
     if not sources:
@@ -96,4 +105,6 @@ def frame_rate(path: Path, skeleton: SkeletonMap, rates: dict[str, float]) -> fl
         return rates[f"{match[1]}_{match[2]}"]
     if match and _CMU_NAME.match(path.stem):
         return 60.0 if match[1] in _CMU_60_HZ_SUBJECTS else float(RULES["cmu"]["rateHz"])
-    raise MocapError(f"{path.name}: frame rate unknown; give “frameRate” in a skeleton map, or an index.csv beside the files")
+    raise MocapError(
+        f"{path.name}: frame rate unknown; give “frameRate” in a skeleton map, or an index.csv beside the files"
+    )

@@ -17,18 +17,18 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class ToldTilts:
+class CalibratedTilts:
     """What a calibration measured: tilts [2, 2] of the left and the right hand, and of which hands [2] it is known."""
 
     tilts: Array
     known: NDArray[np.bool_]
 
 
-NOTHING_TOLD = ToldTilts(np.zeros((2, 2)), np.zeros(2, bool))
+NO_CALIBRATED_TILTS = CalibratedTilts(np.zeros((2, 2)), np.zeros(2, bool))
 
 
-def untold_forearms(positions: Array, rotations: Array, body: Body) -> Array:
-    """Where IK's forearms point [F, 2, 3], elbow to wrist, in the frames of their hands, by tracked points in the floor frame."""
+def ik_forearms(positions: Array, rotations: Array, body: Body) -> Array:
+    """Returns IK's forearm directions [F, 2, 3], elbow to wrist, in the hands' frames, from tracked points in the floor frame."""
     local, turns, _, _ = solve_ik.to_heading(positions, rotations)
     joints = solve_ik.solve(local, turns, replace(body, hand_tilts=None, hands_turned=None))
     forearms = solve_ik.normalise(local[:, 1:] - joints[:, :2])
@@ -41,36 +41,51 @@ def travel(positions: Array) -> Array:
     return np.linalg.norm(np.diff(from_head, axis=0, prepend=from_head[:1]), axis=-1)
 
 
-def noticed(forearms: Array, metres: Array, told: ToldTilts = NOTHING_TOLD, seen: NDArray[np.bool_] | None = None) -> Array:
+def noticed(
+    forearms: Array,
+    metres: Array,
+    calibrated: CalibratedTilts = NO_CALIBRATED_TILTS,
+    seen: NDArray[np.bool_] | None = None,
+) -> Array:
     """The tilts [F, 2, 2] by which hands are turned in each frame, by what was noticed before it.
 
     forearms [F, 2, 3] in the frames of the hands; metres [F, 2] that each hand travelled since the frame before (`travel`); seen [F, 2]: which hands are, all when None.
     """
-    prior = hand_tilt.direction_of(np.where(told.known[:, None], told.tilts, hand_tilt.usual()))
+    prior = hand_tilt.direction_of(np.where(calibrated.known[:, None], calibrated.tilts, hand_tilt.usual()))
     total = np.zeros_like(prior)
     sums = np.empty_like(forearms)
     weight = metres[:, :, None] * (1.0 if seen is None else seen[:, :, None])
     kept = np.exp(-weight / HAND_TILTS["memoryMetres"])
     for frame, forearm in enumerate(forearms):
-        sums[frame] = _prior_metres(prior, told.known, total)[:, None] * prior + total
+        sums[frame] = _prior_metres(prior, calibrated.known, total)[:, None] * prior + total
         total = total * kept[frame] + forearm * weight[frame]
     tilts = hand_tilt.tilt_of(sums)
-    return tilts * np.minimum(1.0, LIMB["steepestHandTilt"] / np.maximum(np.linalg.norm(tilts, axis=-1, keepdims=True), 1e-12))
+    return tilts * np.minimum(
+        1.0, LIMB["steepestHandTilt"] / np.maximum(np.linalg.norm(tilts, axis=-1, keepdims=True), 1e-12)
+    )
 
 
-def _prior_metres(prior: Array, told: NDArray[np.bool_], total: Array) -> Array:
-    """The weight of each hand's prior direction [2, 3], as metres of travel [2], next to `total` [2, 3], the sum of noticed directions times metres;
-    told: whose prior is a measured tilt."""
+def _prior_metres(prior: Array, calibrated: NDArray[np.bool_], total: Array) -> Array:
+    """Returns the weight of each hand's prior direction [2, 3] in metres of travel [2].
+
+    total [2, 3]: the sum of noticed directions times metres; calibrated: whether the prior is a measured tilt.
+    """
     angle = np.arctan2(np.linalg.norm(np.cross(prior, total), axis=-1), np.sum(prior * total, axis=-1))
     doubted = np.minimum(1.0, (HAND_TILTS["doubtAngle"] / np.maximum(angle, 1e-9)) ** 2)
-    return np.where(told, HAND_TILTS["calibratedMetres"] * doubted, HAND_TILTS["usualMetres"])
+    return np.where(calibrated, HAND_TILTS["calibratedMetres"] * doubted, HAND_TILTS["usualMetres"])
 
 
 def with_noticed_hands(
-    body: Body, positions: Array, rotations: Array, metres: Array, *, told: ToldTilts = NOTHING_TOLD, seen: NDArray[np.bool_] | None = None
+    body: Body,
+    positions: Array,
+    rotations: Array,
+    metres: Array,
+    *,
+    calibrated: CalibratedTilts = NO_CALIBRATED_TILTS,
+    seen: NDArray[np.bool_] | None = None,
 ) -> Body:
-    """The body with the hands of each frame turned as the page turns them, for one clip from its beginning.
+    """Returns the body with the estimated hand tilts of each frame, for one clip from its start.
 
-    positions [F, 3, 3] and rotations [F, 3, 4] of the tracked points, floor frame; metres, told and seen as for `noticed`.
+    positions [F, 3, 3] and rotations [F, 3, 4] of the tracked points, floor frame; metres, calibrated and seen as for `noticed`.
     """
-    return body.with_hands(noticed(untold_forearms(positions, rotations, body), metres, told, seen))
+    return body.with_hands(noticed(ik_forearms(positions, rotations, body), metres, calibrated, seen))

@@ -50,14 +50,14 @@ FAULTS = {
     "arm span −5 %": Fault(arm_span=-0.05),
     "arm span +5 %": Fault(arm_span=0.05),
 }
-COLUMNS = ("IK", "corrected", "ours", "corrected", "ours, another laboratory", "corrected")
+COLUMNS = ("IK", "corrected", "learned", "corrected", "learned, another laboratory", "corrected")
 
 
 @dataclass(frozen=True)
 class NoticedWearConfig:
     """Groups that are held out, who has enough recording time, and which frames and simulated wearers are used."""
 
-    # So many groups are held out in turn.
+    # The number of groups that are held out in turn.
     groups: int = 4
     # People with less recording time are left out: it takes minutes to notice anything.
     fewest_minutes: float = 1.3
@@ -71,7 +71,9 @@ class NoticedWearConfig:
     seed: int = 77
 
 
-def usual_reach(corpus: PreparedCorpus, people: tuple[str, ...], config: NoticedWearConfig = NoticedWearConfig()) -> float:
+def usual_reach(
+    corpus: PreparedCorpus, people: tuple[str, ...], config: NoticedWearConfig = NoticedWearConfig()
+) -> float:
     """Mean distance from IK's shoulders to the wrists while arms hang [arm lengths], over these people's simulated wearers; without people of enough
     recording time that of headset-rise.json."""
     known = [name for name in people if corpus.minutes_of({name}) >= config.fewest_minutes]
@@ -98,7 +100,9 @@ def main(
         return _judged(corpus, group, recipe, ik, config)
 
     reach = usual_reach(corpus, trainable, config)
-    report(f"usual reach of the people that the page's IK is fitted on: {reach:.3f} (headset-rise.json: {HEADSET_RISE['usualReach']})")
+    report(
+        f"usual reach of the people that the page's IK is fitted on: {reach:.3f} (headset-rise.json: {HEADSET_RISE['usualReach']})"
+    )
     home = [judged(group) for group in splits.groups_in_turn(trainable, config.groups)]
     away = judged(elsewhere) if elsewhere else np.full((1, len(FAULTS), 2, 2), np.nan)
     rows = []
@@ -125,9 +129,15 @@ class _Network:
     window_seconds: tuple[float, ...]
 
 
-def _judged(corpus: PreparedCorpus, group: tuple[str, ...], recipe: TrainLearnedConfig, ik: FitIkConfig, config: NoticedWearConfig) -> Array:
+def _judged(
+    corpus: PreparedCorpus,
+    group: tuple[str, ...],
+    recipe: TrainLearnedConfig,
+    ik: FitIkConfig,
+    config: NoticedWearConfig,
+) -> Array:
     """Errors [P, faults, 2, 2] in cm for each person of `group` with enough recording time, with IK and network trained on everyone else; last
-    axes: (IK, ours), (as worn, corrected)."""
+    axes: (IK, learned), (as worn, corrected)."""
     others = tuple(name for name in splits.trainable(tuple(corpus.people)) if name not in group)
     with fitted_kinematics.used(fitted_kinematics.fit(corpus, others, ik)):
         made = _Network(train_learned.train(corpus, others, recipe), recipe.window_seconds)
@@ -153,13 +163,21 @@ def _key(name: str) -> int:
 
 def _draw_worn(name: str, fault: Fault, number: int, config: NoticedWearConfig) -> _Worn:
     """The person's simulated wearer of this number, with this fault."""
-    return _Worn(name, fault.worn(draw_wearer(TrackerConfig(), np.random.default_rng([config.seed, _key(name), number]))), fault)
+    return _Worn(
+        name, fault.worn(draw_wearer(TrackerConfig(), np.random.default_rng([config.seed, _key(name), number]))), fault
+    )
 
 
 def _hanging_reach(corpus: PreparedCorpus, worn: _Worn, usual: float, config: NoticedWearConfig) -> Array:
     """The reach [2] of the left and the right hanging arm that is noticed after all clips of a person [arm lengths]."""
     frames = corpus.frames_of({worn.name}, config.stride)
-    tracked = simulate(corpus.positions[frames], corpus.rotations[frames], worn.wearer, TrackerConfig(), np.random.default_rng(config.seed))
+    tracked = simulate(
+        corpus.positions[frames],
+        corpus.rotations[frames],
+        worn.wearer,
+        TrackerConfig(),
+        np.random.default_rng(config.seed),
+    )
     reaches = notice_headset_rise.reaches(*tracked, _body(corpus, worn.name, worn.fault))
     return notice_headset_rise.hanging_reach(reaches, np.full(len(frames), config.stride / corpus.rate_hz), usual)[-1]
 
@@ -178,9 +196,15 @@ def _errors(corpus: PreparedCorpus, worn: _Worn, made: _Network, config: Noticed
         whole = corpus.clip_slice(clip)
         frames = slice(whole.start, min(whole.stop, whole.start + round(config.longest_clip * corpus.rate_hz)))
         positions, rotations = simulate(
-            corpus.positions[frames], corpus.rotations[frames], worn.wearer, TrackerConfig(), np.random.default_rng([config.seed, clip])
+            corpus.positions[frames],
+            corpus.rotations[frames],
+            worn.wearer,
+            TrackerConfig(),
+            np.random.default_rng([config.seed, clip]),
         )
-        positions[:, 0] -= quaternion.rotate(rotations[:, 0], np.broadcast_to([0.0, worn.rise, 0.0], (len(positions), 3)))
+        positions[:, 0] -= quaternion.rotate(
+            rotations[:, 0], np.broadcast_to([0.0, worn.rise, 0.0], (len(positions), 3))
+        )
         times = np.arange(len(positions)) / corpus.rate_hz
         worn_by = notice_hand_tilts.with_noticed_hands(body, positions, rotations, notice_hand_tilts.travel(positions))
         vector, _ = frame_features(positions, rotations, worn_by)
@@ -189,12 +213,24 @@ def _errors(corpus: PreparedCorpus, worn: _Worn, made: _Network, config: Noticed
         truth = residual(corpus.truth(frames).astype(np.float64), positions, rotations, worn_by, vector)[chosen]
         count = len(truth)
         seen = HeldOut(
-            inputs.astype(np.float32), truth.astype(np.float32), np.full(count, eye_height), np.full(count, name), np.full(count, clip)
+            inputs.astype(np.float32),
+            truth.astype(np.float32),
+            np.full(count, eye_height),
+            np.full(count, name),
+            np.full(count, clip),
         )
-        found.append(np.stack([train_learned.ik_errors_cm(seen), train_learned.fitted_errors_cm(predict(made.network, seen.inputs), seen)], axis=1))
+        found.append(
+            np.stack(
+                [
+                    train_learned.ik_errors_cm(seen),
+                    train_learned.fitted_errors_cm(predict(made.network, seen.inputs), seen),
+                ],
+                axis=1,
+            )
+        )
     return np.concatenate(found).mean(axis=(0, 2))
 
 
 def write(rows: list[list[str]], page: Path = PAGE) -> None:
     """Renews the page's table."""
-    page.write_text(renew(page.read_text(), {"noticed": table(["wrong, and not told [cm]", *COLUMNS], rows)}))
+    page.write_text(renew(page.read_text(), {"noticed": table(["unknown error [cm]", *COLUMNS], rows)}))

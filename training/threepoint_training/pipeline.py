@@ -9,7 +9,17 @@ from pathlib import Path
 import torch
 from rich.console import Console
 
-from . import cross_validate, fit_networks, golden, lockbox, noticed_wear, prepare, selection, train_learned, train_paper, training_page
+from . import (
+    cross_validate,
+    fit_networks,
+    golden,
+    lockbox,
+    noticed_wear,
+    prepare,
+    selection,
+    train_learned,
+    train_paper,
+)
 from .export import git_commit
 from .fit_networks import Destination, TrainingRun
 from .generated_motion import generate_corpus
@@ -33,7 +43,7 @@ def main(config: TrainConfig, console: Console | None = None) -> Rows:
 
 
 def _train(run: TrainingRun) -> Rows:
-    """Networks without the people of each fold, then those of the page; with the page's, golden vectors and docs/training.md are renewed."""
+    """Trains the networks of each fold, then those of the page, and renews the golden vectors with the latter."""
     config = run.config
     folds = cross_validate.usable_folds(run)
     if "cross-validation" in config.stages and folds:
@@ -42,7 +52,6 @@ def _train(run: TrainingRun) -> Rows:
         _train_on_all_subjects(run)
         if config.out.resolve() == (REPOSITORY / "public/models").resolve():
             golden.main(golden.GoldenConfig(config.out))
-            training_page.write(config.out)
     run.report.table(TITLE, ("mean", *LABELS), run.report.rows)
     return run.report.rows
 
@@ -59,7 +68,9 @@ def _train_on_all_subjects(run: TrainingRun) -> None:
         if name == "paper":
             frames = fit_networks.paper_frames(run, subjects, "all subjects")
             network = fit_networks.paper(run, frames, "all subjects")
-            run.report.found(row, train_paper.joint_errors_cm(train_paper.predict(network, frames.inputs), frames.targets))
+            run.report.found(
+                row, train_paper.joint_errors_cm(train_paper.predict(network, frames.inputs), frames.targets)
+            )
         else:
             network = fit_networks.learned(run, subjects, "all subjects")
             test = train_learned.held_out(run.corpus, subjects, run.config.learned.window_seconds)
@@ -75,22 +86,30 @@ def _select(run: TrainingRun) -> Rows:
     for frames in selection.FRAMES:
         figures = [selection.figures(seed[frames]) for seed in found]
         means = {name: sum(each[name] for each in figures) / len(figures) for name in figures[0]}
-        run.report.console.print(f"error relative to IK, {frames} frames: {', '.join(f'{name} {value:.3f}' for name, value in means.items())}")
+        run.report.console.print(
+            f"error relative to IK, {frames} frames: {', '.join(f'{name} {value:.3f}' for name, value in means.items())}"
+        )
     file = run.config.selections / f"{git_commit()}-{run.config.learned.steps}.json"
     for earlier in sorted(set(run.config.selections.glob("*.json")) - {file}):
         other = selection.load(earlier)
         if [set(seed["active"]) for seed in other] != [set(seed["active"]) for seed in found]:
             continue
-        for name, difference in selection.compare([seed["active"] for seed in found], [seed["active"] for seed in other]).items():
+        for name, difference in selection.compare(
+            [seed["active"] for seed in found], [seed["active"] for seed in other]
+        ).items():
             verdict = " (a tie)" if difference.is_tie else ""
-            run.report.console.print(f"minus {earlier.stem}, active frames, {name}: {difference.mean:+.4f} ± {difference.standard_error:.4f}{verdict}")
+            run.report.console.print(
+                f"minus {earlier.stem}, active frames, {name}: {difference.mean:+.4f} ± {difference.standard_error:.4f}{verdict}"
+            )
     selection.save(found, file)
     return {}
 
 
 def _notice(run: TrainingRun) -> Rows:
-    """Judges what minutes of wearing tell of a wrong calibration; renews that table of docs/accuracy.md."""
-    noticed_wear.write(noticed_wear.main(run.corpus, run.config.learned, run.config.ik, report=run.report.console.print))
+    """Evaluates the estimation of calibration errors from minutes of motion; renews its table in docs/accuracy.md."""
+    noticed_wear.write(
+        noticed_wear.main(run.corpus, run.config.learned, run.config.ik, report=run.report.console.print)
+    )
     return {}
 
 
@@ -111,7 +130,11 @@ _TASKS: dict[Task, Callable[[TrainingRun], Rows]] = {
 
 def _corpus(config: TrainConfig, report: TrainingReport) -> PreparedCorpus:
     """The motion to train with; the run says where it is from, what was put right or left out, and how much of it there is."""
-    corpus = generate_corpus(people=6, clips=4, frames=600, seed=config.seed) if config.mocap is None else _prepared(config, config.mocap, report)
+    corpus = (
+        generate_corpus(people=6, clips=4, frames=600, seed=config.seed)
+        if config.mocap is None
+        else _prepared(config, config.mocap, report)
+    )
     for problem in corpus.problems:
         report.console.print(f"  {problem}", markup=False)
     people = tuple(corpus.people)

@@ -24,7 +24,7 @@ RATE_HZ: int = RULES["rateHz"]
 TELEPORT_SPEED: float = RULES["teleportSpeed"]
 SHORTEST_SEGMENT_SECONDS: float = RULES["shortestPieceSeconds"]
 
-# Where a headset's origin (between the eyes) sits from the head joint, in the head's frame: up and forward [m].
+# The headset's origin (between the eyes) relative to the head joint, in the head's frame: up and forward [m].
 EYES_FROM_HEAD_JOINT = np.array(RULES["eyesFromHeadJoint"])
 
 # The wrist's −Z points to the knuckles, +Y out of the back of the hand; in T-pose the knuckles point sideways, palms down.
@@ -60,7 +60,11 @@ def _scale(motion: Motion, skeleton: SkeletonMap, file_name: str) -> float:
     """Metres per unit: the map's, else the one that makes the rest skeleton a person."""
     if skeleton.scale:
         return skeleton.scale
-    rest = {ours: motion.rest_positions[motion.index(theirs)] for ours, theirs in skeleton.joints.items() if theirs in motion.names}
+    rest = {
+        ours: motion.rest_positions[motion.index(theirs)]
+        for ours, theirs in skeleton.joints.items()
+        if theirs in motion.names
+    }
     arm = sum(
         np.linalg.norm(rest[a] - rest[b]) for a, b in (("leftUpperArm", "leftLowerArm"), ("leftLowerArm", "leftHand"))
     )
@@ -69,7 +73,9 @@ def _scale(motion: Motion, skeleton: SkeletonMap, file_name: str) -> float:
     for scale in RULES["units"]:
         if shortest < arm * scale < longest:
             return scale
-    raise MocapError(f"{file_name}: an arm of {arm:.3g} units fits no known unit; give “scale” (metres per unit) in a skeleton map")
+    raise MocapError(
+        f"{file_name}: an arm of {arm:.3g} units fits no known unit; give “scale” (metres per unit) in a skeleton map"
+    )
 
 
 def _to_our_joints(motion: Motion, skeleton: SkeletonMap, rate: float, file_name: str) -> _Clip:
@@ -96,7 +102,9 @@ def _to_our_joints(motion: Motion, skeleton: SkeletonMap, rate: float, file_name
         source = motion.index(skeleton.rotations.get(joint, skeleton.joints[joint]))
         # Rotations relative to the rest pose, in our axes: conjugated by the turn.
         q = motion.rotations[:, source]
-        q = quaternion.multiply(np.broadcast_to(turn, q.shape), quaternion.multiply(q, np.broadcast_to(quaternion.conjugate(turn), q.shape)))
+        q = quaternion.multiply(
+            np.broadcast_to(turn, q.shape), quaternion.multiply(q, np.broadcast_to(quaternion.conjugate(turn), q.shape))
+        )
         if joint in _HAND_REST:
             elbow = rest[joint.replace("Hand", "LowerArm")]
             align = quaternion.rotation_between(_LATERAL[joint], rest[joint] - elbow)
@@ -136,7 +144,13 @@ def _resample(clip: _Clip) -> _Clip:
     step = clip.rate / RATE_HZ
     if abs(step - round(step)) < 1e-3 and step >= 1:
         every = round(step)
-        return replace(clip, positions=clip.positions[::every], rotations=clip.rotations[::every], legs=clip.legs[::every], rate=RATE_HZ)
+        return replace(
+            clip,
+            positions=clip.positions[::every],
+            rotations=clip.rotations[::every],
+            legs=clip.legs[::every],
+            rate=RATE_HZ,
+        )
     duration = (len(clip.positions) - 1) / clip.rate
     times = np.arange(int(np.floor(duration * RATE_HZ)) + 1) / RATE_HZ * clip.rate
     before = np.minimum(times.astype(int), len(clip.positions) - 2)
@@ -174,7 +188,8 @@ def _person(person: str, clips: list[tuple[str, _Clip]]) -> Person:
         return float(np.linalg.norm(rest[a] - rest[b]))
 
     span = length("leftUpperArm", "rightUpperArm") + sum(
-        length(f"{side}UpperArm", f"{side}LowerArm") + length(f"{side}LowerArm", f"{side}Hand") for side in ("left", "right")
+        length(f"{side}UpperArm", f"{side}LowerArm") + length(f"{side}LowerArm", f"{side}Hand")
+        for side in ("left", "right")
     )
     eye_height = _standing_eye_height(first)
     if eye_height is None:
@@ -226,7 +241,9 @@ def corpus_hash(paths: Iterable[Path]) -> str:
     return digest.hexdigest()
 
 
-def _motion(source: Source, skeletons: dict[Path, AsfSkeleton], rest_pose: Mapping[str, tuple[float, ...]] | None) -> Motion:
+def _motion(
+    source: Source, skeletons: dict[Path, AsfSkeleton], rest_pose: Mapping[str, tuple[float, ...]] | None
+) -> Motion:
     """What a file has; `skeletons` keeps those read before."""
     if source.path.suffix.lower() == ".bvh":
         return parse_bvh(source.path, rest_pose)
@@ -271,9 +288,12 @@ class _Reader:
             self.rests[file] = _motion(replace(source, path=file), self.skeletons, None)
         return rest_from_frame(motion, frame, self.rests[file], f"{source.path.name}, {file.name}")
 
-    def told(self) -> list[str]:
-        """What was put right, a sentence for all files that it is true of."""
-        return [f"{files[0]}{f' and {len(files) - 1} more' if len(files) > 1 else ''}: {note}" for note, files in self.notes.items()]
+    def messages(self) -> list[str]:
+        """Returns a message for each correction, with the files that it was applied to."""
+        return [
+            f"{files[0]}{f' and {len(files) - 1} more' if len(files) > 1 else ''}: {note}"
+            for note, files in self.notes.items()
+        ]
 
 
 def main(config: PrepareConfig, progress: Callable[[str], None] = lambda _: None) -> PreparedCorpus:
@@ -328,7 +348,7 @@ def main(config: PrepareConfig, progress: Callable[[str], None] = lambda _: None
         people=people,
         rate_hz=RATE_HZ,
         corpus_hash=digest,
-        problems=(*reader.told(), *problems),
+        problems=(*reader.messages(), *problems),
         legs=np.concatenate(legs),
     )
     if cached:

@@ -19,7 +19,7 @@ LEG_JOINTS = (
     "rightUpperLeg", "rightLowerLeg", "rightFoot", "rightToes",
 )  # fmt: skip
 ROTATIONS = ("head", "leftHand", "rightHand")
-# Of the same three among JOINTS.
+# The indices of the tracked joints in JOINTS.
 TRACKED_COLUMNS = [JOINTS.index(joint) for joint in ROTATIONS]
 
 # The six joints that no tracker sees, in the order of every tensor (src/threepoint/core/body/joints.ts).
@@ -31,13 +31,15 @@ def joints_of(positions: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
     return {name: positions[:, index] for index, name in enumerate(JOINTS)}
 
 
-def chest_axes_of(joints: dict[str, NDArray[np.float64]]) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def chest_axes_of(
+    joints: dict[str, NDArray[np.float64]],
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """The axes [F, 3] of the chest by true joints, unit, in the joints' frame: x from the left to the right shoulder, y up the thorax, z backward."""
     x = joints["rightUpperArm"] - joints["leftUpperArm"]
     x = x / np.linalg.norm(x, axis=-1, keepdims=True)
     up = joints["neck"] - joints["chest"]
     up = up - np.sum(up * x, axis=-1, keepdims=True) * x
-    # A thorax along the line of the shoulders tells no direction.
+    # A thorax along the line of the shoulders has no direction.
     up = up / np.maximum(np.linalg.norm(up, axis=-1, keepdims=True), 1e-9)
     return x, up, np.cross(x, up)
 
@@ -100,7 +102,10 @@ class PreparedCorpus:
     def forearm(self, person: str) -> float:
         """Mean length of a person's forearms, elbow to wrist, over both arms and all frames [m]."""
         positions = self.positions[self.frames_of({person})]
-        forearms = [positions[:, JOINTS.index(f"{side}Hand")] - positions[:, JOINTS.index(f"{side}LowerArm")] for side in ("left", "right")]
+        forearms = [
+            positions[:, JOINTS.index(f"{side}Hand")] - positions[:, JOINTS.index(f"{side}LowerArm")]
+            for side in ("left", "right")
+        ]
         return float(np.linalg.norm(forearms, axis=-1).mean())
 
     def save(self, path: Path) -> None:
@@ -115,7 +120,14 @@ class PreparedCorpus:
             "problems": self.problems,
         }
         legs = {} if self.legs is None else {"legs": self.legs}
-        np.savez(path, positions=self.positions, rotations=self.rotations, clip_starts=self.clip_starts, meta=json.dumps(meta), **legs)
+        np.savez(
+            path,
+            positions=self.positions,
+            rotations=self.rotations,
+            clip_starts=self.clip_starts,
+            meta=json.dumps(meta),
+            **legs,
+        )
 
     @staticmethod
     def load(path: Path) -> "PreparedCorpus":

@@ -48,7 +48,9 @@ def quantise_weights(model: onnx.ModelProto) -> onnx.ModelProto:
             ]
         )
         dequantisers.append(
-            onnx.helper.make_node("DequantizeLinear", [f"{name}.int8", f"{name}.scale", f"{name}.zero"], [name], axis=axis)
+            onnx.helper.make_node(
+                "DequantizeLinear", [f"{name}.int8", f"{name}.scale", f"{name}.zero"], [name], axis=axis
+            )
         )
     for node in reversed(dequantisers):
         graph.node.insert(0, node)

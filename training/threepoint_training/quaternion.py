@@ -32,7 +32,9 @@ def rotate(q: Array, v: Array) -> Array:
     vx, vy, vz = (v[..., part] for part in range(3))
     # By components: np.cross takes three times as long.
     tx, ty, tz = 2.0 * (y * vz - z * vy), 2.0 * (z * vx - x * vz), 2.0 * (x * vy - y * vx)
-    return np.stack([vx + w * tx + (y * tz - z * ty), vy + w * ty + (z * tx - x * tz), vz + w * tz + (x * ty - y * tx)], axis=-1)
+    return np.stack(
+        [vx + w * tx + (y * tz - z * ty), vy + w * ty + (z * tx - x * tz), vz + w * tz + (x * ty - y * tx)], axis=-1
+    )
 
 
 def from_axis_angle(axis: Array, angle: Array) -> Array:
@@ -54,10 +56,42 @@ def from_matrix(m: Array) -> Array:
     # Four candidates, each well conditioned where its own component is the largest.
     candidates = np.stack(
         [
-            np.stack([1 + m00 - m11 - m22, m[..., 0, 1] + m[..., 1, 0], m[..., 0, 2] + m[..., 2, 0], m[..., 2, 1] - m[..., 1, 2]], -1),
-            np.stack([m[..., 0, 1] + m[..., 1, 0], 1 - m00 + m11 - m22, m[..., 1, 2] + m[..., 2, 1], m[..., 0, 2] - m[..., 2, 0]], -1),
-            np.stack([m[..., 0, 2] + m[..., 2, 0], m[..., 1, 2] + m[..., 2, 1], 1 - m00 - m11 + m22, m[..., 1, 0] - m[..., 0, 1]], -1),
-            np.stack([m[..., 2, 1] - m[..., 1, 2], m[..., 0, 2] - m[..., 2, 0], m[..., 1, 0] - m[..., 0, 1], 1 + m00 + m11 + m22], -1),
+            np.stack(
+                [
+                    1 + m00 - m11 - m22,
+                    m[..., 0, 1] + m[..., 1, 0],
+                    m[..., 0, 2] + m[..., 2, 0],
+                    m[..., 2, 1] - m[..., 1, 2],
+                ],
+                -1,
+            ),
+            np.stack(
+                [
+                    m[..., 0, 1] + m[..., 1, 0],
+                    1 - m00 + m11 - m22,
+                    m[..., 1, 2] + m[..., 2, 1],
+                    m[..., 0, 2] - m[..., 2, 0],
+                ],
+                -1,
+            ),
+            np.stack(
+                [
+                    m[..., 0, 2] + m[..., 2, 0],
+                    m[..., 1, 2] + m[..., 2, 1],
+                    1 - m00 - m11 + m22,
+                    m[..., 1, 0] - m[..., 0, 1],
+                ],
+                -1,
+            ),
+            np.stack(
+                [
+                    m[..., 2, 1] - m[..., 1, 2],
+                    m[..., 0, 2] - m[..., 2, 0],
+                    m[..., 1, 0] - m[..., 0, 1],
+                    1 + m00 + m11 + m22,
+                ],
+                -1,
+            ),
         ],
         axis=-2,
     )
@@ -91,7 +125,7 @@ def rotation_between(a: Array, b: Array) -> Array:
 
 
 def continuous(q: Array) -> Array:
-    """The same rotations with signs chosen so that neighbours along the first axis lie in the same hemisphere."""
+    """Flips signs so that neighbours along the first axis lie in the same hemisphere."""
     flips = np.sign(np.sum(q[1:] * q[:-1], axis=-1))
     flips = np.where(flips == 0, 1.0, flips)
     return q * np.concatenate([np.ones_like(flips[:1]), np.cumprod(flips, axis=0)])[..., None]

@@ -18,14 +18,14 @@ from .prepared_corpus import JOINTS, LEG_JOINTS, ROTATIONS, PreparedCorpus
 from .simulate_trackers import FOREARM_ERROR, TrackerConfig, draw_wearer, measured_tilts, simulate
 
 VERSION = 1
-COLUMNS = tuple(f"{point}.{part}" for point in ROTATIONS for part in ("px", "py", "pz", "qx", "qy", "qz", "qw")) + tuple(
-    f"truth.{joint}.{axis}" for joint in JOINTS + LEG_JOINTS for axis in "xyz"
-)
+COLUMNS = tuple(
+    f"{point}.{part}" for point in ROTATIONS for part in ("px", "py", "pz", "qx", "qy", "qz", "qw")
+) + tuple(f"truth.{joint}.{axis}" for joint in JOINTS + LEG_JOINTS for axis in "xyz")
 
 
 @dataclass(frozen=True)
 class RecordingsConfig:
-    """Where the motion is, where the recordings go, and how the trackers err."""
+    """The source of the motion, the folder of the recordings, and the tracker errors."""
 
     prepare: prepare.PrepareConfig
     out: Path
@@ -43,16 +43,24 @@ def write(corpus: PreparedCorpus, config: RecordingsConfig) -> Path:
         wearer = draw_wearer(config.trackers, NormalNumbers(config.seed ^ zlib.crc32(person.encode())))
         random = NormalNumbers(config.seed ^ zlib.crc32(name.encode()))
         frames = corpus.clip_slice(number)
-        positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, config.trackers, random)
+        positions, rotations = simulate(
+            corpus.positions[frames], corpus.rotations[frames], wearer, config.trackers, random
+        )
         tracked = np.concatenate([positions, rotations], axis=-1).reshape(len(positions), -1)
-        legs = np.full((len(positions), len(LEG_JOINTS), 3), np.nan, np.float32) if corpus.legs is None else corpus.legs[frames]
+        legs = (
+            np.full((len(positions), len(LEG_JOINTS), 3), np.nan, np.float32)
+            if corpus.legs is None
+            else corpus.legs[frames]
+        )
         truth = np.concatenate([corpus.positions[frames], legs], axis=1).reshape(len(positions), -1)
         # What arms ahead would have measured: by the person's other clips, with one error for all of them.
         error = np.random.default_rng([config.seed, 2, zlib.crc32(person.encode())])
         tilts = measured_tilts(forearms.elsewhere(number), wearer.hand_turns, config.trackers, error)
         file = f"{number:04d}.f32"
         (config.out / file).write_bytes(np.concatenate([tracked, truth], axis=1).astype("<f4").tobytes())
-        clips.append({"name": name, "person": person, "file": file, "frames": len(positions), "handTilts": _as_calibrated(tilts)})
+        clips.append(
+            {"name": name, "person": person, "file": file, "frames": len(positions), "handTilts": _as_calibrated(tilts)}
+        )
     index = {
         "version": VERSION,
         "rateHz": corpus.rate_hz,
@@ -71,16 +79,16 @@ def write(corpus: PreparedCorpus, config: RecordingsConfig) -> Path:
 
 
 def _measures(corpus: PreparedCorpus, name: str, seed: int) -> dict[str, float]:
-    """Of a person [m]; the forearm as its owner would type it."""
+    """Returns a person's measurements [m]; the forearm has the error of a typed value."""
     person = corpus.people[name]
     error = np.random.default_rng([seed, 3, zlib.crc32(name.encode())]).normal() * FOREARM_ERROR
     return {"eyeHeight": person.eye_height, "armSpan": person.arm_span, "forearm": corpus.forearm(name) + error}
 
 
 def _as_calibrated(tilts: NDArray[np.float64]) -> dict[str, dict[str, float]]:
-    """Tilts [2, 2] as the page's calibration has them, without those that it does not believe."""
-    sides = zip(("left", "right"), tilts.tolist(), hand_tilt.believed(tilts), strict=True)
-    return {side: {"pitch": pitch, "yaw": yaw} for side, (pitch, yaw), believed in sides if believed}
+    """Converts tilts [2, 2] to the page's calibration, without implausible ones."""
+    sides = zip(("left", "right"), tilts.tolist(), hand_tilt.plausible(tilts), strict=True)
+    return {side: {"pitch": pitch, "yaw": yaw} for side, (pitch, yaw), known in sides if known}
 
 
 def main(config: RecordingsConfig) -> Path:

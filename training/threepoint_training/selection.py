@@ -25,7 +25,7 @@ FRAMES = ("all", "active")
 
 @dataclass(frozen=True)
 class PersonErrors:
-    """Mean errors of one person in cm by joint [6], of IK and of ours, over some frames."""
+    """Mean errors by joint [6] of IK and of the learned network, for one person over some frames [cm]."""
 
     frames: int
     of_ik: Array
@@ -65,7 +65,10 @@ class SelectionConfig:
 
 
 def main(
-    corpus: PreparedCorpus, recipe: TrainLearnedConfig, config: SelectionConfig = SelectionConfig(), report: Callable[[str], None] = lambda _: None
+    corpus: PreparedCorpus,
+    recipe: TrainLearnedConfig,
+    config: SelectionConfig = SelectionConfig(),
+    report: Callable[[str], None] = lambda _: None,
 ) -> list[dict[str, People]]:
     """By seed and by FRAMES: errors on each trainable person, of a network trained on everyone outside the person's group; IK keeps its constants."""
     everyone = splits.trainable(tuple(corpus.people))
@@ -84,7 +87,10 @@ def main(
 def save(found: list[dict[str, People]], file: Path) -> None:
     """Writes what `main` found."""
     seeds = [
-        {frames: {name: [each.frames, each.of_ik.tolist(), each.ours.tolist()] for name, each in people.items()} for frames, people in seed.items()}
+        {
+            frames: {name: [each.frames, each.of_ik.tolist(), each.ours.tolist()] for name, each in people.items()}
+            for frames, people in seed.items()
+        }
         for seed in found
     ]
     file.parent.mkdir(parents=True, exist_ok=True)
@@ -94,7 +100,13 @@ def save(found: list[dict[str, People]], file: Path) -> None:
 def load(file: Path) -> list[dict[str, People]]:
     """Reads what `save` wrote."""
     return [
-        {frames: {name: PersonErrors(count, np.array(of_ik), np.array(ours)) for name, (count, of_ik, ours) in people.items()} for frames, people in seed.items()}
+        {
+            frames: {
+                name: PersonErrors(count, np.array(of_ik), np.array(ours))
+                for name, (count, of_ik, ours) in people.items()
+            }
+            for frames, people in seed.items()
+        }
         for seed in json.loads(file.read_text())
     ]
 
@@ -110,7 +122,9 @@ def figures(people: People) -> dict[str, float]:
     found = {}
     for group, names in (("all people", tuple(people)), ("worse half", worse_half(people))):
         for joints, columns in JOINTS.items():
-            ours, of_ik = (np.mean([getattr(people[name], key)[columns].mean() for name in names]) for key in ("ours", "of_ik"))
+            ours, of_ik = (
+                np.mean([getattr(people[name], key)[columns].mean() for name in names]) for key in ("ours", "of_ik")
+            )
             found[f"{group}, {joints}"] = float(ours / of_ik)
     return found
 
@@ -141,9 +155,14 @@ def compare(a: list[People], b: list[People]) -> dict[str, Difference]:
     for group, names in (("all people", everyone), ("worse half", half)):
         for joints, columns in JOINTS.items():
             paired = np.array(
-                [[one[name].ours[columns].mean() - other[name].ours[columns].mean() for name in names] for one, other in zip(a, b, strict=True)]
+                [
+                    [one[name].ours[columns].mean() - other[name].ours[columns].mean() for name in names]
+                    for one, other in zip(a, b, strict=True)
+                ]
             )
             scale = np.mean([one[name].of_ik[columns].mean() for one in a for name in names])
-            variance = paired.mean(axis=0).var(ddof=1) / len(names) + (paired.mean(axis=1).var(ddof=1) / seeds if seeds > 1 else 0.0)
+            variance = paired.mean(axis=0).var(ddof=1) / len(names) + (
+                paired.mean(axis=1).var(ddof=1) / seeds if seeds > 1 else 0.0
+            )
             found[f"{group}, {joints}"] = Difference(float(paired.mean() / scale), float(np.sqrt(variance) / scale))
     return found

@@ -34,9 +34,11 @@ class TrackerConfig:
     headset_pitch: float = np.radians(_TRACKERS["headsetPitchDegrees"])  # [rad]
     wrist_offset: float = _TRACKERS["wristOffset"]  # [m] per axis
     hand_turn: float = np.radians(_TRACKERS["handTurnDegrees"])  # [rad] about a random axis
-    # Of head, left hand and right hand, drawn anew in each frame: [m] per axis; [rad] about a random axis.
+    # Noise of head, left hand and right hand, drawn for each frame: [m] per axis; [rad] about a random axis.
     position_noise: tuple[float, float, float] = _by_tracker(_TRACKERS["positionNoise"])
-    rotation_noise: tuple[float, float, float] = tuple(np.radians(_by_tracker(_TRACKERS["rotationNoiseDegrees"])).tolist())
+    rotation_noise: tuple[float, float, float] = tuple(
+        np.radians(_by_tracker(_TRACKERS["rotationNoiseDegrees"])).tolist()
+    )
     hand_tilt_error: float = np.radians(5.0)  # [rad], of the calibration that measures the hands
 
 

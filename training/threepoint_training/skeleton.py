@@ -34,18 +34,18 @@ class Body:
     lower_back: Array  # hips to chest
     clavicle_root: Array  # from the neck's base
     shoulder: Array  # from the neck's base
-    # Of the left and the right hand (hand_tilt): tilts [..., 2, 2] that they are turned by, and whether they are [..., 2]. None: no hand is.
+    # Tilts of the left and the right hand (hand_tilt) [..., 2, 2], and whether each is applied [..., 2]; None: no tilts.
     hand_tilts: Array | None = None
     hands_turned: NDArray[np.bool_] | None = None
 
     def with_forearms(self, lengths: Array, known: NDArray[np.bool_] | bool = True) -> "Body":
-        """The same body, its left and right forearm told to be this long [..., 2] [m], where they are known; believed as far as the page does."""
-        told = np.clip(lengths, LIMB["forearmShare"]["min"] * self.arm, LIMB["forearmShare"]["max"] * self.arm)
-        forearm = np.where(known, self.forearm + LIMB["forearmTrust"] * (told - self.forearm), self.forearm)
+        """Returns the body with measured forearms [..., 2] [m] where known, weighted as on the page."""
+        measured = np.clip(lengths, LIMB["forearmShare"]["min"] * self.arm, LIMB["forearmShare"]["max"] * self.arm)
+        forearm = np.where(known, self.forearm + LIMB["forearmTrust"] * (measured - self.forearm), self.forearm)
         return replace(self, upper_arm=self.arm - forearm, forearm=forearm)
 
     def with_hands(self, tilts: Array) -> "Body":
-        """The same body with these tilts [..., 2, 2] of its hands."""
+        """Returns the body with these hand tilts [..., 2, 2]."""
         return replace(self, hand_tilts=tilts, hands_turned=np.ones(2, bool))
 
 

@@ -1,4 +1,4 @@
-"""Which joint of a file is which joint of ours: built in for CMU's ASF and common BVH skeletons, else read from JSON."""
+"""Maps the joints of a file to the project's joints: built in for CMU's ASF and common BVH skeletons, else from JSON."""
 
 import json
 from dataclasses import dataclass, field, replace
@@ -59,16 +59,28 @@ def read_skeleton_map(path: Path) -> SkeletonMap:
         raise MocapError(f"{path.name}, line {error.lineno}: no valid JSON: {error.msg}") from None
     if not isinstance(content, dict) or not isinstance(content.get("joints"), dict):
         raise MocapError(f"{path.name}: expected an object with “joints”")
-    unknown = set(content) - {"name", "scale", "frameRate", "up", "forward", "joints", "rotations", "restFrame", "restPose"}
+    unknown = set(content) - {
+        "name",
+        "scale",
+        "frameRate",
+        "up",
+        "forward",
+        "joints",
+        "rotations",
+        "restFrame",
+        "restPose",
+    }
     if unknown:
-        raise MocapError(f"{path.name}: “{sorted(unknown)[0]}” is not known; see docs/evaluation.md")
+        raise MocapError(f"{path.name}: “{sorted(unknown)[0]}” is not known; see docs/accuracy.md")
     joints = content["joints"]
     for joint in REQUIRED_JOINTS:
         if not isinstance(joints.get(joint), str):
             raise MocapError(f"{path.name}: joints.{joint} is missing")
     for joint in joints:
         if joint not in REQUIRED_JOINTS + OPTIONAL_JOINTS:
-            raise MocapError(f"{path.name}: joints.{joint} is none of ours ({', '.join(REQUIRED_JOINTS + OPTIONAL_JOINTS)})")
+            raise MocapError(
+                f"{path.name}: joints.{joint} is none of ours ({', '.join(REQUIRED_JOINTS + OPTIONAL_JOINTS)})"
+            )
     for key in ("up", "forward"):
         if content.get(key, "+y") not in _AXES:
             raise MocapError(f"{path.name}: “{key}” should be one of {', '.join(_AXES)}")
@@ -109,7 +121,9 @@ def _rest_frame(content: dict[str, Any], path: Path) -> tuple[int | None, Path |
     else:
         file, frame = None, given
     if not isinstance(frame, int) or isinstance(frame, bool) or frame < 1:
-        raise MocapError(f"{path.name}: “restFrame” should be the number of a frame, from 1, or {{\"file\": …, \"frame\": …}}")
+        raise MocapError(
+            f'{path.name}: “restFrame” should be the number of a frame, from 1, or {{"file": …, "frame": …}}'
+        )
     return frame, file
 
 
@@ -120,7 +134,9 @@ def _rest_pose(content: dict[str, Any], path: Path) -> dict[str, tuple[float, ..
     if not isinstance(given, dict):
         raise MocapError(f"{path.name}: “restPose” should be an object: angles [degrees] by the file's joint")
     for joint, angles in given.items():
-        if not isinstance(angles, list) or not all(isinstance(angle, int | float) and not isinstance(angle, bool) for angle in angles):
+        if not isinstance(angles, list) or not all(
+            isinstance(angle, int | float) and not isinstance(angle, bool) for angle in angles
+        ):
             raise MocapError(f"{path.name}: restPose.{joint} should be a list of angles [degrees]")
     return {joint: tuple(map(float, angles)) for joint, angles in given.items()}
 
@@ -128,7 +144,9 @@ def _rest_pose(content: dict[str, Any], path: Path) -> dict[str, tuple[float, ..
 def find_skeleton_map(names: tuple[str, ...], file_name: str) -> SkeletonMap:
     """The built-in map that fits best: with all needed joints and most of the others; none raises MocapError."""
     known = set(names)
-    fitting = [candidate for candidate in BUILT_IN if all(candidate.joints[joint] in known for joint in REQUIRED_JOINTS)]
+    fitting = [
+        candidate for candidate in BUILT_IN if all(candidate.joints[joint] in known for joint in REQUIRED_JOINTS)
+    ]
     if not fitting:
         raise MocapError(
             f"{file_name}: a skeleton that is not known here (it has {', '.join(names[:8])}, …); give a map with --skeleton MAP.json"

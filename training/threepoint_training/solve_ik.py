@@ -108,16 +108,20 @@ def _turn_chest(points: _Points, k: dict[str, Any]) -> Array:
     forward_x = k["yaw"][0] * across[:, 2] + k["yaw"][1] * middle[:, 0]
     forward_z = -1 - k["yaw"][0] * across[:, 0] + k["yaw"][1] * middle[:, 2]
     saturation = LIMITS["yawSaturation"]
-    return _yaw_matrix(saturation * np.tanh(np.arctan2(-forward_x, np.maximum(-forward_z, LIMITS["leastAhead"])) / saturation))
+    return _yaw_matrix(
+        saturation * np.tanh(np.arctan2(-forward_x, np.maximum(-forward_z, LIMITS["leastAhead"])) / saturation)
+    )
 
 
 def _lean_trunk(points: _Points, turn: Array, body: Body, k: dict[str, Any]) -> tuple[Array, Array]:
     """2. Lean: the frames of thorax and lower back [F, 3, 3], axes as columns."""
     middle, left, right = points.middle, points.left, points.right
     crouch = _within(1 - points.headset[:, 1] / body.eye_height[..., 0], LIMITS["crouch"])
-    # Of the gaze, the head's −Z, and of its right axis the vertical parts.
+    # The vertical components of the gaze (the head's −Z) and of the head's right axis.
     looking_down, right_up = points.head[..., 1, 2], points.head[..., 1, 0]
-    sagittal = np.stack([np.ones_like(crouch), looking_down, crouch, -middle[:, 2], -middle[:, 1], looking_down * crouch], -1)
+    sagittal = np.stack(
+        [np.ones_like(crouch), looking_down, crouch, -middle[:, 2], -middle[:, 1], looking_down * crouch], -1
+    )
     lateral = np.stack([right_up, middle[:, 0], right[:, 1] - left[:, 1]], -1)
 
     def frame(segment: dict[str, list[float]]) -> Array:
@@ -136,14 +140,18 @@ def _place_neck(points: _Points, thorax: Array, body: Body, k: dict[str, Any]) -
     """4. Neck base [F, 3], below the head joint."""
     length = np.linalg.norm(body.neck_to_head, axis=-1, keepdims=True)
     rest = np.broadcast_to(body.neck_to_head / length, points.headset.shape)
-    return points.head_joint - length * normalise((1 - k["neck"]) * _apply(thorax, rest) + k["neck"] * _apply(points.head, rest))
+    return points.head_joint - length * normalise(
+        (1 - k["neck"]) * _apply(thorax, rest) + k["neck"] * _apply(points.head, rest)
+    )
 
 
 def _place_trunk(neck: Array, thorax_up: Array, lower_back_up: Array, body: Body) -> tuple[Array, Array]:
     """5. Chest joint and hips [F, 3], hips no lower than the floor allows."""
     chest_joint = neck - body.thorax * thorax_up
     hips = chest_joint - body.lower_back * lower_back_up
-    return chest_joint, np.concatenate([hips[:, :1], np.maximum(hips[:, 1:2], LIMITS["lowestHips"] * body.eye_height), hips[:, 2:]], -1)
+    return chest_joint, np.concatenate(
+        [hips[:, :1], np.maximum(hips[:, 1:2], LIMITS["lowestHips"] * body.eye_height), hips[:, 2:]], -1
+    )
 
 
 def _side_sign(side: int) -> Array:
@@ -181,7 +189,9 @@ def _place_elbow(side: int, points: _Points, arm: tuple[Array, Array], body: Bod
     return two_bone_elbow(shoulder, wrist, *bones, _apply(thorax, pole * _side_sign(side)), thorax=thorax)
 
 
-def two_bone_elbow(shoulder: Array, wrist: Array, upper_arm: Array, forearm: Array, pole: Array, *, thorax: Array) -> Array:
+def two_bone_elbow(
+    shoulder: Array, wrist: Array, upper_arm: Array, forearm: Array, pole: Array, *, thorax: Array
+) -> Array:
     """The elbow [F, 3] on the side of `pole`, or where that is along the arm, below or behind the thorax's axes; out of reach: on the straight arm."""
     axis = wrist - shoulder
     distance = np.linalg.norm(axis, axis=-1, keepdims=True)
@@ -191,6 +201,8 @@ def two_bone_elbow(shoulder: Array, wrist: Array, upper_arm: Array, forearm: Arr
         short = np.linalg.norm(across, axis=-1, keepdims=True) < LIMB["undefinedPole"]
         across = np.where(short, substitute - _dot(substitute, axis) * axis, across)
     across = normalise(across)
-    reach = np.clip(distance, np.abs(upper_arm - forearm) + LIMB["mostBent"], (upper_arm + forearm) * LIMB["straightest"])
+    reach = np.clip(
+        distance, np.abs(upper_arm - forearm) + LIMB["mostBent"], (upper_arm + forearm) * LIMB["straightest"]
+    )
     along = (upper_arm**2 - forearm**2 + reach**2) / (2 * reach)
     return shoulder + along * axis + np.sqrt(np.maximum(upper_arm**2 - along**2, 0)) * across

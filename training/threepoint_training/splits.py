@@ -23,7 +23,9 @@ _PARTNERS = {"019": "018", "061": "060"}
 
 def draw_lockbox() -> tuple[str, ...]:
     """Draws LOCKBOX again."""
-    return tuple(sorted(str(person) for person in np.random.default_rng(_LOCKBOX_SEED).choice(sorted(VARIED), 4, replace=False)))
+    return tuple(
+        sorted(str(person) for person in np.random.default_rng(_LOCKBOX_SEED).choice(sorted(VARIED), 4, replace=False))
+    )
 
 
 def groups_in_turn(people: tuple[str, ...], count: int | None = None) -> list[tuple[str, ...]]:

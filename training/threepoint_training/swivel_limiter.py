@@ -54,7 +54,7 @@ def limit_swivel(circles: ElbowCircles, poles: Tensor, trunk: Trunk) -> tuple[Te
 
 
 def _inside(circles: ElbowCircles, zero: Tensor, quarter: Tensor, trunk: Trunk) -> Callable[[Tensor], Tensor]:
-    """A function that tells of swivel angles [N, 2], from `zero` towards `quarter` [rad], whether elbows there are in the trunk capsule [N, 2]."""
+    """Returns a predicate of swivel angles [N, 2], from `zero` towards `quarter` [rad]: whether the elbows are in the trunk capsule [N, 2]."""
     unit = (trunk.neck - trunk.chest).norm(dim=-1)[:, None]
     spine = trunk.neck - trunk.hips
     up = _unit(spine)
@@ -70,7 +70,9 @@ def _inside(circles: ElbowCircles, zero: Tensor, quarter: Tensor, trunk: Trunk) 
     height = spine.norm(dim=-1)[:, None] / (TRUNK_CAPSULE["cap"] * unit)
 
     def is_inside(angle: Tensor) -> Tensor:
-        x, y, z = (centre + torch.cos(angle)[..., None] * towards_zero + torch.sin(angle)[..., None] * towards_quarter).unbind(-1)
+        x, y, z = (
+            centre + torch.cos(angle)[..., None] * towards_zero + torch.sin(angle)[..., None] * towards_quarter
+        ).unbind(-1)
         beyond = y - y.clamp_min(0).minimum(height)
         return x * x + beyond * beyond + z * z < 1
 

@@ -26,13 +26,32 @@ def _bones() -> list[tuple[str, str, Array]]:
     bones = [(name, parent, np.array(way)) for name, parent, way in _TRUNK]
     for side, sign in (("l", 1.0), ("r", -1.0)):
         own = {name for name, _, _ in _SIDE}
-        bones += [(side + name, side + parent if parent in own else parent, np.array(way) * [sign, 1, 1]) for name, parent, way in _SIDE]
+        bones += [
+            (side + name, side + parent if parent in own else parent, np.array(way) * [sign, 1, 1])
+            for name, parent, way in _SIDE
+        ]
     return bones
 
 
 BONES = _bones()
 # Turned about all three axes in AMC; the others stay as they are.
-MOVING = ["lowerback", "upperback", "thorax", "lowerneck", "head", "lhumerus", "rhumerus", "lradius", "rradius", "lwrist", "rwrist", "lhand", "rhand", "lfemur", "rtibia"]
+MOVING = [
+    "lowerback",
+    "upperback",
+    "thorax",
+    "lowerneck",
+    "head",
+    "lhumerus",
+    "rhumerus",
+    "lradius",
+    "rradius",
+    "lwrist",
+    "rwrist",
+    "lhand",
+    "rhand",
+    "lfemur",
+    "rtibia",
+]
 
 # cmuconvert's joints: name, ASF bone whose start and rotation it is (None: only rotation zero), parent, bone whose vector is its offset.
 _CMUCONVERT = [
@@ -58,7 +77,9 @@ def angles_of(seed: int, frames: int) -> dict[str, Array]:
     """AMC angles [frames, 3] of the moving bones [degrees] about x, y, z, slow enough for a person."""
     random = np.random.default_rng(seed)
     times = np.arange(frames)[:, None] / 120
-    return {bone: 20 * np.sin(2 * np.pi * random.uniform(0.1, 0.5, 3) * times + random.uniform(0, 6, 3)) for bone in MOVING}
+    return {
+        bone: 20 * np.sin(2 * np.pi * random.uniform(0.1, 0.5, 3) * times + random.uniform(0, 6, 3)) for bone in MOVING
+    }
 
 
 def write_asf_amc(folder: Path, angles: dict[str, Array]) -> None:
@@ -83,7 +104,7 @@ def write_asf_amc(folder: Path, angles: dict[str, Array]) -> None:
 
 
 def write_cmuconvert_bvh(path: Path, angles: dict[str, Array], lost: bool = True) -> None:
-    """The same motion as cmuconvert has it; `lost`: with the bones lost that it loses."""
+    """Writes the motion in cmuconvert's format; `lost`: without the bone lengths that it loses."""
     ways = {name: way for name, _, way in BONES}
     joints = []
     for name, bone, parent, way in _CMUCONVERT:
@@ -97,7 +118,9 @@ def write_cmuconvert_bvh(path: Path, angles: dict[str, Array], lost: bool = True
     bone_of = {name: bone for name, bone, _, _ in _CMUCONVERT}
     for frame in range(len(next(iter(angles.values())))):
         # Rz·Ry·Rx in both formats.
-        turns = [angles[bone_of[name]][frame][::-1] if bone_of[name] in angles else np.zeros(3) for name, _, _ in joints]
+        turns = [
+            angles[bone_of[name]][frame][::-1] if bone_of[name] in angles else np.zeros(3) for name, _, _ in joints
+        ]
         rows.append(np.concatenate([[0.0, 16.5, 0.0], *turns]))
     path.write_text(bvh_text(joints, rows, 1 / 120))
 
@@ -107,8 +130,14 @@ def bvh_text(joints: list[tuple[str, str | None, Array]], rows: list[Array], fra
 
     def block(name: str) -> str:
         _, parent, offset = next(joint for joint in joints if joint[0] == name)
-        below = "".join(block(child) for child, above, _ in joints if above == name) or "End Site\n{\nOFFSET 0.3 0 0\n}\n"
-        channels = "3 Zrotation Yrotation Xrotation" if parent else "6 Xposition Yposition Zposition Zrotation Yrotation Xrotation"
+        below = (
+            "".join(block(child) for child, above, _ in joints if above == name) or "End Site\n{\nOFFSET 0.3 0 0\n}\n"
+        )
+        channels = (
+            "3 Zrotation Yrotation Xrotation"
+            if parent
+            else "6 Xposition Yposition Zposition Zrotation Yrotation Xrotation"
+        )
         at = " ".join(f"{value:.9f}" for value in offset)
         return f"{'JOINT' if parent else 'ROOT'} {name}\n{{\nOFFSET {at}\nCHANNELS {channels}\n{below}}}\n"
 
@@ -144,7 +173,9 @@ def along(axis: Array) -> dict[str, Array]:
     return rest
 
 
-def game_bvh(rest: dict[str, Array], turns: list[dict[str, Array]], hips: list[Array]) -> tuple[str, dict[str, list[float]]]:
+def game_bvh(
+    rest: dict[str, Array], turns: list[dict[str, Array]], hips: list[Array]
+) -> tuple[str, dict[str, list[float]]]:
     """
     A BVH whose joints are turned by `rest` when the person is in T-pose; its frames turn the joints of the T-pose by global rotations
     `turns` (others as their parents). Also returns the angles of the T-pose, as a skeleton map's restPose wants them.
@@ -167,6 +198,7 @@ def game_bvh(rest: dict[str, Array], turns: list[dict[str, Array]], hips: list[A
         return quaternion.multiply(quaternion.conjugate(world(parent_of[name])), world(name))
 
     rows = [
-        np.concatenate([at, *(zyx_degrees(local(turned, name)) for name, _, _ in GAME)]) for turned, at in zip(turns, hips, strict=True)
+        np.concatenate([at, *(zyx_degrees(local(turned, name)) for name, _, _ in GAME)])
+        for turned, at in zip(turns, hips, strict=True)
     ]
     return bvh_text(joints, rows, 1 / 60), {name: zyx_degrees(local({}, name)).tolist() for name, _, _ in GAME}

@@ -98,7 +98,9 @@ def train(config: GaitConfig, data: _Data) -> GaitWeights:
         y = torch.from_numpy((data.targets[rows] - centre) / spread)
         predicted = network(x)
         loss = nn.functional.smooth_l1_loss(predicted[:, _OTHERS], y[:, _OTHERS], beta=0.5)
-        loss = loss + config.standing_weight * nn.functional.binary_cross_entropy_with_logits(predicted[:, _STANDING], y[:, _STANDING])
+        loss = loss + config.standing_weight * nn.functional.binary_cross_entropy_with_logits(
+            predicted[:, _STANDING], y[:, _STANDING]
+        )
         optimiser.zero_grad()
         loss.backward()
         optimiser.step()
@@ -141,7 +143,9 @@ def main(config: GaitConfig) -> None:
     if config.held_out:
         for number in range(config.groups):
             rest = tuple(person for place, person in enumerate(people) if place % config.groups != number)
-            _write(config.held_out / f"{number}.json", train(config, _load(config, index, rest)), rest, index["corpusHash"])
+            _write(
+                config.held_out / f"{number}.json", train(config, _load(config, index, rest)), rest, index["corpusHash"]
+            )
             print(f"without {', '.join(people[number :: config.groups])}: {len(rest)} people", flush=True)
     _write(config.out, train(config, _load(config, index, people)), people, index["corpusHash"])
     print(f"{config.out}: {len(people)} people")

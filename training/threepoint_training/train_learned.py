@@ -15,7 +15,7 @@ from .chest_features import CHEST_FEATURES
 from .differentiable_kinematics import DifferentiableKinematics
 from .features import FEATURES, frame_features
 from .model import CorrectionNetwork
-from .notice_hand_tilts import NOTHING_TOLD, ToldTilts
+from .notice_hand_tilts import NO_CALIBRATED_TILTS, CalibratedTilts
 from .prepared_corpus import PreparedCorpus
 from .residual import OUTPUTS, network_input, residual
 from .simulate_trackers import TrackerConfig, Wearer, draw_wearer, measured_tilts, simulate
@@ -88,9 +88,13 @@ def held_out(
         for clip in corpus.clips_of({name}):
             frames = corpus.clip_slice(clip)
             random = np.random.default_rng([_HELD_OUT_SEED, 1, clip])
-            positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, _TRACKERS, random)
-            told = _measured(forearms.elsewhere(clip), wearer, name) if hands_measured else NOTHING_TOLD
-            turned = notice_hand_tilts.with_noticed_hands(body, positions, rotations, notice_hand_tilts.travel(positions), told=told)
+            positions, rotations = simulate(
+                corpus.positions[frames], corpus.rotations[frames], wearer, _TRACKERS, random
+            )
+            calibrated = _measured(forearms.elsewhere(clip), wearer, name) if hands_measured else NO_CALIBRATED_TILTS
+            turned = notice_hand_tilts.with_noticed_hands(
+                body, positions, rotations, notice_hand_tilts.travel(positions), calibrated=calibrated
+            )
             vector, _ = frame_features(positions, rotations, turned)
             inputs = network_input(vector, np.arange(len(positions)) / corpus.rate_hz, window_seconds)
             targets = residual(corpus.truth(frames).astype(np.float64), positions, rotations, turned, vector)
@@ -105,10 +109,10 @@ def _random_of(name: str, *stream: int) -> np.random.Generator:
     return np.random.default_rng([_HELD_OUT_SEED, *stream, zlib.crc32(name.encode())])
 
 
-def _measured(tilts: Array, wearer: Wearer, name: str) -> ToldTilts:
+def _measured(tilts: Array, wearer: Wearer, name: str) -> CalibratedTilts:
     """The calibration's measurement of hands with these tilts [2, 2], where it is plausible; one error for all clips of a person."""
     measured = measured_tilts(tilts, wearer.hand_turns, _TRACKERS, _random_of(name, 2))
-    return ToldTilts(measured, hand_tilt.believed(measured))
+    return CalibratedTilts(measured, hand_tilt.plausible(measured))
 
 
 def fitted_errors_cm(output: NDArray[np.float32], people: HeldOut) -> NDArray[np.float64]:
@@ -148,7 +152,9 @@ def train(
     averaged.load_state_dict(network.state_dict())
     averaged.eval()
     optimiser = torch.optim.AdamW(network.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, config.learning_rate, total_steps=config.steps, pct_start=0.1)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(
+        optimiser, config.learning_rate, total_steps=config.steps, pct_start=0.1
+    )
     keep = 0.5 ** (1 / config.average_half_life_steps)
     network.train()
     for step in range(config.steps):
@@ -187,7 +193,10 @@ class TrainFrameRandomConfig:
 
 
 def train_frame_random(
-    frames: HeldOut, chosen: NDArray[np.int64], config: TrainFrameRandomConfig, report: Callable[[int, float], None] = lambda *_: None
+    frames: HeldOut,
+    chosen: NDArray[np.int64],
+    config: TrainFrameRandomConfig,
+    report: Callable[[int, float], None] = lambda *_: None,
 ) -> CorrectionNetwork:
     """Trains on the chosen frames as they are; report(step, loss)."""
     torch.manual_seed(config.seed)
@@ -195,7 +204,9 @@ def train_frame_random(
     network = CorrectionNetwork((x.shape[1] - CHEST_FEATURES) // FEATURES, config.width, 0.0, config.hidden_layers)
     network.normalise(x, y)
     optimiser = torch.optim.AdamW(network.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, config.learning_rate, total_steps=config.steps, pct_start=0.1)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(
+        optimiser, config.learning_rate, total_steps=config.steps, pct_start=0.1
+    )
     network.train()
     for step in range(config.steps):
         batch = torch.randint(len(x), (config.batch,))

@@ -54,9 +54,13 @@ def frames_of(corpus: PreparedCorpus, people: tuple[str, ...], seed: int) -> Pap
         for clip in corpus.clips_of({name}):
             frames = corpus.clip_slice(clip)
             random = np.random.default_rng([seed, 1, clip])
-            positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, trackers, random)
+            positions, rotations = simulate(
+                corpus.positions[frames], corpus.rotations[frames], wearer, trackers, random
+            )
             inputs.append(paper_features(positions, rotations).astype(np.float32))
-            targets.append((corpus.truth(frames) - floor_under_head(positions)).reshape(len(positions), -1).astype(np.float32))
+            targets.append(
+                (corpus.truth(frames) - floor_under_head(positions)).reshape(len(positions), -1).astype(np.float32)
+            )
             clips.append(np.full(len(positions), clip))
     return PaperFrames(np.concatenate(inputs), np.concatenate(targets), np.concatenate(clips))
 
@@ -102,7 +106,9 @@ def train(
     return network.eval()
 
 
-def follow_learning(train: PaperFrames, test: PaperFrames, every: int = 16) -> tuple[LearningCurve, Callable[[float, PaperNetwork], None]]:
+def follow_learning(
+    train: PaperFrames, test: PaperFrames, every: int = 16
+) -> tuple[LearningCurve, Callable[[float, PaperNetwork], None]]:
     """A curve and the watch that fills it, from one frame in `every` of each side; it changes nothing of the training."""
     curve = LearningCurve()
 
@@ -130,7 +136,9 @@ def _midway(inputs: NDArray[np.float32], following: NDArray[np.int64]) -> NDArra
 def predict(network: torch.nn.Module, inputs: NDArray[np.float32], batch: int = 8192) -> NDArray[np.float32]:
     """The network's output, no gradients."""
     with torch.no_grad():
-        return np.concatenate([network(torch.from_numpy(inputs[i : i + batch])).numpy() for i in range(0, len(inputs), batch)])
+        return np.concatenate(
+            [network(torch.from_numpy(inputs[i : i + batch])).numpy() for i in range(0, len(inputs), batch)]
+        )
 
 
 def joint_errors_cm(output: NDArray[np.float32], target: NDArray[np.float32]) -> NDArray[np.float32]:

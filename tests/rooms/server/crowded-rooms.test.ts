@@ -1,7 +1,7 @@
 import { fork } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import { expect, onTestFinished, test } from 'vitest';
-import type { ClientAnswer, Heard, Load, Meeting } from '../../../bench/relay/conversation';
+import type { ClientAnswer, Load, Meeting, PoseLatencies } from '../../../bench/relay/conversation';
 import { isNightly } from '../../nightly';
 import { measured } from '../../reliability/measured';
 import { heardFrom, kill } from '../../server/child-process';
@@ -28,7 +28,7 @@ async function play(port: number, { rooms, seconds }: typeof crowd) {
   clients.send({ relay: 'ours', port, secret: testSecret, room: 3, hz: 30, plays: true } satisfies Meeting);
   clients.send({ rooms, warmUpSeconds: 1, seconds } satisfies Load);
   expect(await heardFrom<ClientAnswer>(clients)).toBe('measuring');
-  return { heard: await heardFrom<Heard>(clients), leave: () => kill(clients) };
+  return { heard: await heardFrom<PoseLatencies>(clients), leave: () => kill(clients) };
 }
 
 test('rooms of three play on time, and are gone with all that they took when their players are, three times over', {

@@ -39,7 +39,7 @@ export const part = (bone: string, softness: number, solid: Solid): Part => ({ b
 
 const each = (region: Region, change: (part: Part) => Part): Region => ({ ...region, parts: region.parts.map(change) });
 
-/** The same region elsewhere, or larger about a point. */
+/** Moves a region, or scales it about a point. */
 export const movedRegion = (region: Region, move: Parameters<typeof moved>[1]): Region =>
   each(region, (one) => ({ ...one, solid: moved(one.solid, move) }));
 

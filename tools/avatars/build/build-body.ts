@@ -13,7 +13,7 @@ const smoothstep = (start: number, end: number, value: number): number => {
   return t * t * (3 - 2 * t);
 };
 
-/** Where people look: face, hands, shoulders. */
+/** Returns vertex weights that keep detail in face, hands and shoulders. */
 function importance({ positions }: Surface, { rig, careful }: Figure): Float32Array {
   const { wrist } = rig.armJoints;
   return Float32Array.from({ length: positions.length / 3 }, (_, v) => {
@@ -27,11 +27,11 @@ function importance({ positions }: Surface, { rig, careful }: Figure): Float32Ar
   });
 }
 
-/** So far from its line [of its radius] skin belongs to a finger. */
+/** The distance from a finger's line [radii] within which skin belongs to it. */
 const fingerReach = 1.8;
 
 /**
- * Of each vertex, 0 to 1: from joint to joint of a finger it goes up and down in turn. Fingers are straight at rest, where an edge from
+ * Returns a value of each vertex, 0 to 1, that rises and falls in turn from joint to joint of a finger. Fingers are straight at rest, where an edge from
  * knuckle to tip costs no shape; along such an edge this changes, and corners of it are at the joints, where fingers bend.
  */
 function alongFingers({ positions }: Surface, { rig }: Figure): Float32Array {
@@ -52,7 +52,7 @@ function alongFingers({ positions }: Surface, { rig }: Figure): Float32Array {
   });
 }
 
-/** Where on the way between two points another is nearest, 0 to 1, and how far from there [m]. */
+/** Returns the nearest point on a segment, 0 to 1, and its distance [m]. */
 function onLine(at: Point, from: Point, to: Point): { readonly share: number; readonly distance: number } {
   const way = to.map((value, axis) => value - from[axis]!);
   const past = at.map((value, axis) => value - from[axis]!);

@@ -4,7 +4,7 @@ import type { Seam } from './surface-labels';
 
 /** A face against the average one. */
 export interface FaceMeasures {
-  /** Of the whole head, and of its width besides. */
+  /** The scale of the whole head, and the additional scale of its width. */
   readonly size: number;
   readonly width: number;
   /** Half width and half height of an eye, how far out of the middle it lies and how much higher its outer corner is [m]. */
@@ -13,18 +13,18 @@ export interface FaceMeasures {
   readonly brow: { readonly thickness: number; readonly above: number };
   /** Half width and half height of the mouth [m]. */
   readonly mouth: readonly [number, number];
-  /** Of the jaw's width; absent: 1. */
+  /** The scale of the jaw's width; absent: 1. */
   readonly jaw?: number;
-  /** Of the nose; absent: 1. */
+  /** The scale of the nose; absent: 1. */
   readonly nose?: number;
   /** Fuller cheeks and chin [m]; absent: the average ones. */
   readonly cheeks?: number;
 }
 
-/** What of a face its mouth is told by. */
+/** The measures of a face that determine its mouth. */
 export type MouthMeasures = Pick<FaceMeasures, 'size' | 'width' | 'mouth'>;
 
-/** Where heads are made larger from: the head's joint. */
+/** The origin of the head's scaling: the head joint. */
 const root: Point = [0, 1.516, -0.012];
 const eyeHeight = 1.594;
 const mouthHeight = 1.536;
@@ -32,7 +32,7 @@ const mouthHeight = 1.536;
 const chin = 1.49;
 const neckFront = 1.462;
 
-/** The same region on a head of these measures. */
+/** Scales a region to a head of these measures. */
 export const inHead = (region: Region, { size, width }: FaceMeasures): Region =>
   movedRegion(region, { about: root, factor: [size * width, size, size] });
 
@@ -110,7 +110,7 @@ function eyeRadius({ eye }: FaceMeasures, x: number, y: number, larger = 1): num
 const circle = (x: number, y: number, cx: number, cy: number, radius: number): number =>
   Math.hypot(x - cx, y - cy) - radius;
 
-/** Where the lips of the average head meet [m]. */
+/** The height of the line between the average head's lips [m]. */
 const lipsMeetAt = (x: number): number => mouthHeight + 6 * x * x;
 /** Half of the dark line between lips [m]; its round ends lie before their corners. */
 const lineThickness = 0.0011;
@@ -207,7 +207,7 @@ export function faceFineness(face: FaceMeasures, worldX: number, worldY: number,
   return Math.min(mouthFineness(face, worldX, worldY, worldZ), (atBrow ? 0.005 : 0.012) * face.size);
 }
 
-/** The same at a mouth alone. */
+/** Returns the mesh fineness at the mouth alone. */
 export function mouthFineness(face: MouthMeasures, worldX: number, worldY: number, worldZ: number): number {
   const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
   const [wide, high] = face.mouth;
@@ -217,7 +217,7 @@ export function mouthFineness(face: MouthMeasures, worldX: number, worldY: numbe
 /** How far around an eye the skin goes along with its lids [eyes]. */
 const lidReach = 1.9;
 
-/** Where a place of the face goes when the eyes close: both lids onto one line a little below the middle; null: it stays. */
+/** Returns the place of a face point with closed eyes: both lids on one line below the middle; null: unchanged. */
 export function closedEyes(face: FaceMeasures, worldX: number, worldY: number, worldZ: number): Point | null {
   const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
   const radius = eyeRadius(face, x, y);
@@ -239,7 +239,7 @@ const lipRaise = 0.0018;
 /** What of the jaw's turn the corners of a mouth take part in, and how much narrower an open one is [share]. */
 const cornerShare = 0.42;
 const narrowing = 0.1;
-/** So far from where the lips meet the skin stretches, above and below [m]; what is between them lies so deep when they are apart [m]. */
+/** The range of skin that stretches above and below the lips [m], and the depth of the gap between open lips [m]. */
 const stretch = { above: 0.014, below: 0.022 };
 const depth = 0.012;
 /** Less than this is not seen [m]. */
@@ -256,7 +256,7 @@ function jawShare({ mouth: [wide] }: MouthWidth, x: number, below: number, isLow
   return lip + (1 - lip) * smoothstep(0, stretch.below, below);
 }
 
-/** Where a place of the face goes when the mouth opens: the jaw turns down and back, and takes lips and chin along; null: it stays. */
+/** Returns the place of a face point with an open mouth: the jaw turns down and back with lips and chin; null: unchanged. */
 export function openMouth(face: MouthMeasures, worldX: number, worldY: number, worldZ: number): Point | null {
   const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
   const [wide] = face.mouth;

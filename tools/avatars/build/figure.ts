@@ -19,12 +19,12 @@ export interface MeshPlan {
 /** Shapes that a face can take, by the names that VRM has for them: closed eyes, and a mouth that says "ah". */
 export type FaceShape = 'blink' | 'aa';
 
-/** Where a place of the skin goes for a shape; null: it stays. */
+/** Returns the place of a skin point under a shape; null: unchanged. */
 export type Displacement = (x: number, y: number, z: number) => Point | null;
 
 /** A body to be built and written. */
 export interface Figure extends Anatomy {
-  /** Of the file. */
+  /** The file's name. */
   readonly name: string;
   readonly title: string;
   /** The first seam that has a triangle's middle on its inner side says what it is; all else is this. */

@@ -46,7 +46,7 @@ const neckline = ({ top }: GarmentStyle, x: number, y: number, z: number): numbe
 
 /** An edge as of cloth. */
 const edge = 0.005;
-/** Where trousers end above: under every hem. */
+/** The upper end of trousers: below every hem [m]. */
 const waist = 1.04;
 
 export function garmentsOf(style: GarmentStyle, { rig, torso, leg, arm, foot }: Undressed): Garments {

@@ -51,7 +51,7 @@ export interface PersonMeasures {
   readonly breast: { readonly at: Point; readonly radii: Point };
   readonly belly?: { readonly at: Point; readonly radii: Point };
   readonly seat: number;
-  /** Of the neck and of what runs down from it to the shoulders. */
+  /** The girth of the neck, and of the muscle from neck to shoulders. */
   readonly neck: number;
   readonly trapezius: number;
   readonly limbs: Girths;
@@ -90,10 +90,10 @@ function torsoOf({ rig, chest, waist, hips, breast, belly, seat, trapezius }: Pe
   };
 }
 
-/** So near to the edge of a top, at neck, cuffs and hem, triangles are small [m]; less than any cloth lies off what it covers. */
+/** The distance from a top's edges within which triangles are small [m]; less than any cloth's distance from the skin. */
 const atEdge = 0.0025;
 
-/** The same displacement along the surface: lids slide over the eyes. */
+/** Projects a displacement onto the surface: lids slide over the eyes. */
 const onSurface =
   (body: DistanceField, displaced: Displacement): Displacement =>
   (x, y, z) => {

@@ -18,7 +18,7 @@ export interface RigMeasures {
   readonly shoulder?: number;
   /** From shoulder to elbow, and from elbow to wrist; absent: as the average arm of 1.39 m of span. */
   readonly arm?: readonly [number, number];
-  /** Of the average hand at this stature; absent: 1. */
+  /** The scale of the average hand at this stature; absent: 1. */
   readonly hand?: number;
 }
 
@@ -32,7 +32,7 @@ export interface BodyRig {
   readonly armJoints: { readonly shoulder: number; readonly elbow: number; readonly wrist: number };
   /** Five separate fingers; the thumb lies forward and a little below, as in a hand at ease. */
   readonly fingers: readonly Finger[];
-  /** Where along a finger joint `index` (0 to 3: knuckle to tip) lies. */
+  /** Returns the position of finger joint `index` (0 to 3: knuckle to tip). */
   fingerPoint(finger: Finger, index: number): Point;
 }
 

@@ -30,7 +30,7 @@ export const boxOf = (solids: readonly Pick<Solid, 'min' | 'max'>[]): Pick<Solid
   };
 };
 
-/** The same piece elsewhere, larger by `factor` about a point, which moves by `by`. */
+/** Moves a piece by `by` and scales it by `factor` about a point. */
 export function moved(piece: Solid, { about = [0, 0, 0], factor = [1, 1, 1], by = [0, 0, 0] }: Move): Solid {
   const there = (p: Point): Point => [
     about[0] + (p[0] - about[0]) * factor[0] + by[0],

@@ -35,7 +35,7 @@ export const tintOf = (label: Label): readonly [number, number, number] => {
   return look.tint ?? [1, 1, 1];
 };
 
-/** Where its function is zero the label changes; negative: inside. */
+/** A border between labels, where its function is zero; negative: inside. */
 export interface Seam {
   readonly label: Label;
   readonly value: (x: number, y: number, z: number) => number;

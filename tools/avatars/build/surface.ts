@@ -179,7 +179,7 @@ const onSeam = 4e-4;
 
 type PlaceValue = (x: number, y: number, z: number) => number;
 
-/** Where on the way from one vertex to another a value is zero, 0 to 1: halved, as values of seams are not linear. */
+/** Returns the zero of a value between two vertices, 0 to 1, by bisection, because seam functions are not linear. */
 function zeroBetween(positions: readonly number[], a: number, b: number, value: PlaceValue): number {
   const at = (t: number): number => {
     const on = (axis: number) => positions[3 * a + axis]! * (1 - t) + positions[3 * b + axis]! * t;

@@ -9,7 +9,7 @@ export interface Skinned {
   readonly surface: Surface;
   readonly normals: Float32Array;
   readonly skin: SkinWeights;
-  /** Of each triangle: what it is, and whether it belongs to the head. */
+  /** The label of each triangle, and whether it belongs to the head. */
   readonly labels: readonly Label[];
   readonly ofHead: readonly boolean[];
   /** How far each vertex goes for each shape of the face [m]. */

@@ -18,7 +18,7 @@ const headline = 34;
 /** A body's picture [pixels] in the row of all bodies of a folder. */
 const bodyWidth = 300;
 const bodyHeight = 520;
-/** So long [s] a posture is held before its picture, and how often [Hz] it is drawn until then. */
+/** The time a posture is held before its picture [s], and the frame rate until then [Hz]. */
 const heldSeconds = 2;
 const rateHz = 30;
 

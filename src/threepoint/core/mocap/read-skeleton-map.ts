@@ -28,13 +28,13 @@ const isObject = (value: unknown): value is Content =>
 const isNumber = (value: unknown): value is number => typeof value === 'number' && Number.isFinite(value);
 
 /**
- * The map of a skeleton in a JSON text, as the evaluation takes it (docs/evaluation.md). Throws a sentence where something is missing, unknown or
+ * The map of a skeleton in a JSON text, as the evaluation takes it (docs/accuracy.md). Throws a sentence where something is missing, unknown or
  * of the wrong kind.
  */
 export function readSkeletonMap(text: string, name: string): SkeletonMap {
   const content = parse(text);
   const unknown = Object.keys(content).find((key) => !keys.includes(key));
-  if (unknown !== undefined) throw new Error(`${shown(unknown)} is not known: docs/evaluation.md says what a map has`);
+  if (unknown !== undefined) throw new Error(`${shown(unknown)} is not known: docs/accuracy.md says what a map has`);
   const { up = '+y', forward = '+z' } = content;
   for (const [key, axis] of Object.entries({ up, forward }))
     if (!Object.hasOwn(directions, String(axis)))

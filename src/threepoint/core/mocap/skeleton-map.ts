@@ -88,5 +88,5 @@ function unknownSkeleton(names: readonly string[]): string {
   if (least.length <= 2)
     return `the skeleton has no ${least.join(' and no ')}, which head and hands and the truth are made of`;
   const some = names.slice(0, 8).map(shown).join(', ');
-  return `a skeleton that is not known here (it has ${some}, …); a map of it, a .json that is dropped too, says which joint is which: docs/evaluation.md`;
+  return `a skeleton that is not known here (it has ${some}, …); a map of it, a .json that is dropped too, says which joint is which: docs/accuracy.md`;
 }
