@@ -15,12 +15,12 @@ const types: Readonly<Record<string, string>> = {
 };
 
 export interface PlainServer {
-  /** Where the folder is served, with a slash at its end. */
+  /** The URL of the folder, with a trailing slash. */
   readonly address: string;
   close(): Promise<void>;
 }
 
-/** Serves a folder's files and nothing else, as any host of static pages does: no headers of ours, no routes. */
+/** Serves a folder's files and nothing else, like a static host: without the project's headers and routes. */
 export async function servePlainly(folder: string, under = '/'): Promise<PlainServer> {
   const server = createServer((request, response) => {
     const { pathname } = new URL(request.url ?? '/', 'http://localhost');

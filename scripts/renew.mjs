@@ -1,5 +1,5 @@
-// npm run renew -- --mocap DIR [--from STEP] [--only STEP] [--list]: every table and figure of docs/training.md and docs/accuracy.md anew, with
-// the networks that they are of, step by step; renew-steps.mjs says which.
+// npm run renew -- --mocap DIR [--from STEP] [--only STEP] [--list]: renews every table and figure of docs/training.md and
+// docs/accuracy.md, and the networks they describe, in the steps of renew-steps.mjs.
 import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { chosenSteps, commandLine, commandLineOf, commandOf } from './renew-steps.mjs';
@@ -22,7 +22,7 @@ function options() {
   }
 }
 
-/** 1:02:03 */
+/** Formats seconds as 1:02:03. */
 function duration(milliseconds) {
   const seconds = Math.round(milliseconds / 1000);
   const two = (value) => `${value}`.padStart(2, '0');
@@ -39,7 +39,7 @@ await main(async () => {
   const { mocap = 'DIR', ...given } = options();
   const chosen = chosenSteps(given);
   if (given.list) return list(chosen, mocap);
-  // Steps get the folder that the person who typed it means, wherever they themselves run.
+  // The folder is relative to the directory in which the command was typed; the steps run elsewhere.
   const folder = resolve(process.env.INIT_CWD ?? process.cwd(), mocap);
   for (const [number, step] of chosen.entries()) {
     const title = `renew ${number + 1} of ${chosen.length}, ${step.name}`;

@@ -1,4 +1,4 @@
-/** Prints a figure that a test has measured, for the reader of its output. */
+/** Prints the figures that a test has measured. */
 export const tell = (row: string, figures: Readonly<Record<string, string | number>>): void =>
   console.log(
     `${row}: ${Object.entries(figures)
@@ -6,7 +6,7 @@ export const tell = (row: string, figures: Readonly<Record<string, string | numb
       .join(', ')}`,
   );
 
-/** The value below which this share of them lies. */
+/** Returns the value below which this share of the values lies. */
 export const percentile = (values: readonly number[], share: number): number => {
   const sorted = [...values].sort((a, b) => a - b);
   return sorted[Math.min(sorted.length - 1, Math.floor(sorted.length * share))] ?? Number.NaN;

@@ -19,7 +19,7 @@ import { studiedArcher } from '../study/participant/played-round';
 import { measured } from './measured';
 
 const frameMs = 1000 / 72;
-/** Leaps of the page's time [s], each taken back again a while later; the shorter ones are of the full suite. */
+/** The steps of the page's clock [s], each reverted 4 s later; the short ones run in the full suite only. */
 const leaps = [-20, 20];
 const shorterLeaps = [-5, 5];
 
@@ -30,7 +30,7 @@ interface Part {
   render?(time: number, frame: TrackingFrame | null): void;
 }
 
-/** The page's frame loop at 72 Hz over a device whose time stamps leap as told. */
+/** Returns the page's frame loop at 72 Hz over a device whose timestamps a test can step. */
 function page(part: Part) {
   let stamp = 30_000;
   let buttons = nothingPressed;

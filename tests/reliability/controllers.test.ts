@@ -33,7 +33,7 @@ test('the two change sides while one holds a ball: it is let go of, never thrown
     for (const trigger of [0, 1]) {
       const thrower = ballThrower().carry(1);
       const there = { ...thrower.chest, x: thrower.chest.x + distance };
-      // Each side is another device at once, at the other's place, with the other's trigger.
+      // Both sides swap devices in one frame: each has the other's pose and trigger.
       thrower.hold({ fist: thrower.chest, trigger: 1, device: 4 }, { fist: there, trigger, device: 3 }, 0.5);
       thrown += thrower.deeds.filter((deed) => deed === 'throw').length;
       stuck += thrower.held.right === null && thrower.held.left === null ? 0 : 1;

@@ -12,7 +12,7 @@ import { shotWithOneHand } from '../games/archery/one-handed-round';
 import { playRound, steady } from '../games/archery/playing';
 import { measured } from './measured';
 
-/** Eyes above the floor [m] of people of 1.10 to 2.20 m, and of the same people seated. */
+/** The body measures [m] of people of 1.10 to 2.20 m, standing and seated. */
 const people = [1.03, 1.4, 1.6, 1.8, 2.06].flatMap((eyeHeight) => [
   { eyeHeight, armLength: 0.355 * eyeHeight },
   { eyeHeight: 0.72 * eyeHeight, armLength: 0.355 * eyeHeight },
@@ -46,7 +46,7 @@ test('archery with one hand: a round can be won from any height', () => {
   measured('flows', { 'archery with one hand': `${won} of ${played} rounds won` });
 });
 
-/** Three built-in players; one of them has one hand alone. */
+/** Runs a match of three built-in players; one of them may have one hand only. */
 function ballMatch(eyeHeight: number, oneHanded: { readonly player: number; readonly side: Side } | null) {
   let state: BallState = ballRules.start(['ann', 'ben', 'cal'], 3, { balls: 8, seconds: 60 });
   const bots = stations.map((arenaFromFloor, player) =>

@@ -10,7 +10,7 @@ import { measured } from './measured';
 
 const released = { left: allReleased, right: allReleased };
 
-/** One of two people in a room of this page; who wears a headset that is taken off draws no frames at all. */
+/** Returns a player in a local room. A player whose headset is off draws no frames. */
 function person(host: ReturnType<typeof createBallLoopbackHost>, name: string, seat: number) {
   const play = createBallPlay({
     connect: host.connect,

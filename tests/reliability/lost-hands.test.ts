@@ -15,7 +15,7 @@ import { measured } from './measured';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 
-/** A person who stands still, whose hands are lost or guessed for this long and then seen again. */
+/** Returns the tracking of a person who stands still and whose hands are lost or emulated for a while. */
 function spoiled(
   time: number,
   which: 'left' | 'right' | 'both',
@@ -40,7 +40,7 @@ test('a wrist goes to rest and comes back without a jump, whichever hand, howeve
   let cases = 0;
   for (const name of ['ik', 'learned', 'paper'] as const) {
     const network = name === 'ik' ? undefined : await openShippedModel(name);
-    // Networks cost a hundred times what IK costs, and the hands are not theirs: by night they do all of it too.
+    // Networks cost a hundred times as much as IK and share its handling of lost hands: they run all cases at night only.
     const thorough = name === 'ik' || isNightly;
     for (const which of thorough ? (['left', 'right', 'both'] as const) : (['both'] as const)) {
       for (const how of ['null', 'emulated'] as const) {

@@ -12,7 +12,7 @@ import { measured } from './measured';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 
-/** What a network may do from its twentieth run on. */
+/** The faults of a network, which start with its twentieth run. */
 const faults: Readonly<Record<string, (output: Float32Array) => Promise<Float32Array>>> = {
   'answers NaN': async (output) => output.map(() => Number.NaN),
   'answers one NaN': async (output) => output.map((value, i) => (i === 7 ? Number.NaN : value)),
@@ -42,7 +42,7 @@ test('a network that breaks while it runs: no bone is ever NaN, the fault is kno
       };
       const estimator = createEstimator(name, defaultCalibration, network);
       let known: number | null = null;
-      // The learned network is asked about every second of them.
+      // The learned network runs in every second frame.
       for (let i = 0; i < 80; i++) {
         const frame = actorFrame(3 + i / 72, defaultCalibration);
         const joints = forwardKinematics(skeleton, (await show(estimator, frame)).body!);

@@ -20,7 +20,7 @@ import { poseOf } from '../threepoint/core/estimation/drawn';
 import { measured } from './measured';
 
 const rates = [72, 80, 90, 120] as const;
-/** 30 % of the frames, in a pattern that drops up to two in a row. */
+/** Returns whether a frame is dropped: 30 % are, at most two in a row. */
 const dropped = (frame: number): boolean => (frame * 7) % 10 < 3;
 const never = (): boolean => false;
 const ways = rates.flatMap((rate) => [never, dropped].map((drop) => ({ rate, drop })));
@@ -72,7 +72,7 @@ test('balls fly the same at every rate', () => {
         actions.push({ type: 'grab', player: leftThrower, sequence: 1, side: 'right', ball: 0 });
         deed = 2;
       } else if (deed === 2 && time > 1) {
-        // When in its frame a hand let go is the hand's own time, whenever the frame came.
+        // The time of release is a time of the hand's motion, independent of the frame's time.
         actions.push({
           type: 'throw',
           player: leftThrower,
@@ -97,7 +97,7 @@ test('balls fly the same at every rate', () => {
   let worst = 0;
   for (const { rate, drop } of ways) {
     const flight = flightAt(rate, drop);
-    // After a second of flight, at the same time of the match.
+    // The positions are compared after a second of flight, at the same time of the match.
     const off = add(flight.position, addScaled(vec3(0, 0, 0), flight.velocity, reference.at + 1 - flight.at));
     const same = add(reference.position, reference.velocity);
     worst = Math.max(worst, distance(off, same));
@@ -131,7 +131,7 @@ test('filters of the body come to the same joints at every rate', () => {
   const skeleton = skeletonFromCalibration(defaultCalibration);
   const bodyAt = (rate: number, drop: (frame: number) => boolean) => {
     const estimator = createEstimator('ik', defaultCalibration);
-    // The last frame is common to all rates, wherever the others lay.
+    // The last frame is at the same time for all rates.
     const times = [...framesOf(rate, drop, 2), 2].map((time) => 10 + time);
     const poses = times.map((time) => poseOf(estimator, actorFrame(time, defaultCalibration)));
     return forwardKinematics(skeleton, poses.at(-1)!.body!);

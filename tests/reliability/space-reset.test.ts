@@ -16,7 +16,7 @@ import { show } from '../threepoint/core/estimation/drawn';
 import { openShippedModel } from '../threepoint/core/estimation/shipped-models';
 import { measured } from './measured';
 
-/** A quarter turn and a metre: where the floor lies after the device has recentred. */
+/** The floor frame after the device has recentred: turned by a quarter turn and moved by 1 m. */
 const newFromOld: Transform<'floor', 'floor'> = {
   position: vec3(1, 0, 0),
   orientation: fromAxisAngle(up, Math.PI / 2),
@@ -29,7 +29,7 @@ const recentred = (frame: TrackingFrame): TrackingFrame => ({
   rightHand: frame.rightHand && moved(frame.rightHand),
 });
 
-/** Lets another body know how these hands are held: that alone outlasts a recentre. */
+/** Copies the tilts of the hands to another estimator: a recentre resets all other state. */
 function holdAlike(from: PoseEstimator, to: PoseEstimator): void {
   if (!(from instanceof Pipeline && to instanceof Pipeline)) return;
   const [known, told] = [from.state.tilts, to.state.tilts];
