@@ -24,7 +24,7 @@ export interface TalkerOptions {
   readonly viewport?: { readonly width: number; readonly height: number };
   /** The environment of a browser that uses the machine's audio devices instead of the fake microphone. */
   readonly device?: Readonly<Record<string, string>>;
-  /** Computes four frames a second and draws almost none: for a participant of whom only the voice matters. */
+  /** Computes four frames a second and draws almost none, for tests that only need this page's voice. */
   readonly seldomDrawn?: boolean;
 }
 

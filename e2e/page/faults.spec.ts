@@ -89,7 +89,7 @@ test('a lost graphics device comes back with the game as it was: mirror, archery
 });
 
 for (const place of ['studio', 'archery', 'ball'] as const) {
-  // The same code reads the headset in all three: the games are looked at by night.
+  // All three places read the headset with the same code, so the games are tested at night only.
   const when = place === 'studio' ? '@realtime ' : '@nightly ';
   test(`${when}in VR (${place}): a head that is lost for 3 s, a menu, a headset taken off`, async ({ page }) => {
     await open(page, `emulate&play=${place}&seed=7&panel=off&quality=low&estimator=learned`);

@@ -7,7 +7,7 @@ type Page = Parameters<typeof open>[0];
 
 test.use({ viewport: { width: 480, height: 300 } });
 
-/** Of play by the built-in archer; THREEPOINT_LONG_MINUTES for less. */
+/** The duration of play by the built-in archer [min]; THREEPOINT_LONG_MINUTES shortens it. */
 const minutes = Number(process.env.THREEPOINT_LONG_MINUTES ?? 20);
 
 interface Holdings {
@@ -21,7 +21,7 @@ interface Holdings {
   readonly heap: number;
 }
 
-/** What a page keeps [MB], after a collection, told apart by a heap snapshot: objects, and code that the engine compiles as it goes. */
+/** Returns a page's heap after a garbage collection [MB], from a heap snapshot: objects, and code compiled by the engine. */
 async function kept(cdp: CDPSession): Promise<{ readonly objects: number; readonly code: number }> {
   const parts: string[] = [];
   const hear = ({ chunk }: { chunk: string }) => void parts.push(chunk);

@@ -51,7 +51,7 @@ const test = base.extend<{ folder: string }>({
   },
 });
 
-// Every visit builds the page anew.
+// Every visit reloads the page.
 test.describe.configure({ timeout: 240_000 });
 
 async function visit(page: Page, query = 'quality=low&panel=off'): Promise<void> {

@@ -42,7 +42,7 @@ test.describe(`echo${loudspeakerInstalled ? '' : ' (PulseAudio is not installed)
         await unmute(ann);
         await heard(ben);
         await unmute(ben);
-        // What Ann hears is her own voice, which Ben's page has played, placed where she stands: Ben says nothing.
+        // Ann receives her own voice, which Ben's page has played at her position: Ben is silent.
         if (!cancelling) await heard(ann);
         // The canceller learns the way from loudspeaker to microphone from what goes by.
         await loudness(ann, 60);

@@ -133,7 +133,7 @@ test('between a room and the open controls the button that enters VR is read who
       }
     }
   }
-  // Where both leave it no room it waits for the controls to be closed, as below a sheet of controls.
+  // If both leave no space for the button, it is hidden until the controls are closed.
   await page.setViewportSize({ width: 780, height: 600 });
   await expect(page.locator('button.enter')).toBeHidden();
   await controls.click();

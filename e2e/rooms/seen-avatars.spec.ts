@@ -110,7 +110,7 @@ async function comes(origin: string, room: string, name: string) {
     return hash;
   };
   return {
-    /** Resolves to the file's hash, once the server has it and the room was told. */
+    /** Resolves to the file's hash, once the server has stored it and the room was notified. */
     putOn: (file: ArrayBuffer) => order(new Uint8Array(file)),
     kept: () => order(null),
     async stop() {
@@ -261,7 +261,7 @@ freshTest(
       expect(await page.evaluate(() => 'attacked' in window)).toBe(false);
       await joint(page, 'hips');
 
-      // Another file than the one that was told of: on its way to Ben alone.
+      // Only Ben receives a file other than the announced one.
       const [swapped, good] = [blue(), blue()];
       await eve.stop();
       const last = await comes(server.origin, 'birch', 'Eve');

@@ -9,14 +9,17 @@ import { countsOf, type InspectedNode, inspectNode, megabytes } from '../kept-me
 import { probe } from '../page-fixture';
 import { bar, heard, loudness, type Talker, test, voicesOf } from '../talkers';
 
-/** Of talk and play; THREEPOINT_SOAK_MINUTES for more. Not for fewer: what is compiled in the first four minutes is 1 MB of a page's heap. */
+/**
+ * The duration of talk and play [min]; THREEPOINT_SOAK_MINUTES lengthens it. A shorter run would measure compilation: code
+ * compiled in the first four minutes takes 1 MB of a page's heap.
+ */
 const minutes = Number(process.env.THREEPOINT_SOAK_MINUTES ?? 10);
 /** One person mutes and unmutes so often, */
 const mutesAMinute = 5;
 /** and the other leaves the voices and joins them again this often [minutes]. */
 const rejoinEvery = 5;
 
-/** A line for each minute, so that a run that breaks has told what it saw. */
+/** The file with a line of figures for each minute, which remains if a run breaks. */
 const file = fileURLToPath(new URL('../../artifacts/soak.jsonl', import.meta.url));
 
 // A trace would keep each of the test's questions for hours, and film nothing that is looked at.

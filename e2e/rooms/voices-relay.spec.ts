@@ -22,7 +22,7 @@ function keepConnections(): void {
   };
 }
 
-/** Kinds of all addresses that a page has found of itself or heard of the other, and the passes of its connections that are open. */
+/** Returns the kinds of all local and remote ICE candidates of a page, and the credentials of its open connections. */
 const found = (page: Page) =>
   page.evaluate(async () => {
     const kinds = new Set<string>();

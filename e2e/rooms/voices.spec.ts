@@ -101,7 +101,7 @@ test('in the headset one of two is muted, then hidden, by the menu; the list at 
     inPage: keepWritten,
     viewport: { width: 800, height: 500 },
   });
-  // As long as names may be.
+  // The name has the maximum length.
   const long = 'Wilhelmina Montgomer';
   const { page: ben } = await talker(origin, 'Ben', { seldomDrawn: true });
   const { page: mina } = await talker(origin, long, { seldomDrawn: true });
@@ -213,7 +213,7 @@ test('a microphone that its device ends is taken again; refused then, a sentence
   await heard(ann);
   await heard(ben);
 
-  // All audio of this browser ends and begins anew, as in a headset that slept: tracks end by themselves, contexts are suspended.
+  // All audio of this browser restarts, as after a headset's sleep: tracks end by themselves, contexts are suspended.
   process.kill(serviceOf(pid, 'AudioService'), 'SIGKILL');
   await expect.poll(microphones).toEqual(['ended', 'live']);
   await heard(ann);

@@ -15,7 +15,7 @@ import {
 } from '../study-participant';
 import { experimenter, shortStudy } from '../study-server';
 
-/** Chromium loads a page that has asked for WebXR anew, as the browsers of the tests do with every page. */
+/** Navigates back and forward. Chromium reloads a page that has used WebXR; the test browsers reload every page. */
 async function backAndForward(page: Page, origin: string): Promise<void> {
   await page.goBack();
   expect(page.url()).toBe(`${origin}/withdraw`);

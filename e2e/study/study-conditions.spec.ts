@@ -41,7 +41,7 @@ function plan(): StudyPlan {
   return parsePlan(JSON.stringify({ ...short, conditions, tasks, questionnaires: [body] }), 'conditions.json');
 }
 
-/** Where a hand was tracked, and where it was drawn, in a frame. */
+/** The tracked and the drawn position of a hand in a frame. */
 interface Sample {
   readonly time: number;
   readonly tracked: Point;
@@ -66,7 +66,7 @@ const follow = (page: Page, frames: number, reach: number): Promise<readonly Sam
     [frames, reach] as const,
   );
 
-/** Where the hand was tracked at a time, on the way between two frames. */
+/** Returns the tracked position of the hand at a time, interpolated between two frames. */
 function trackedAt(samples: readonly Sample[], time: number): Point {
   const next = samples.findIndex((sample) => sample.time >= time);
   const [before, after] = [samples[next - 1], samples[next]];

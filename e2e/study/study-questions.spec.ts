@@ -31,7 +31,7 @@ function shortExample(id: string) {
   };
 }
 
-/** Consents, notes the code and tells of oneself as a person who reads German. */
+/** Consents, confirms the code and submits the demographic questions, in German. */
 async function agreeAndTellInGerman(page: Page): Promise<void> {
   await expect(page.locator('.study-card')).toHaveAttribute('lang', 'de');
   await page.getByLabel(/Ich habe dies gelesen/).check();
@@ -151,7 +151,7 @@ test('questions of every kind are answered alike in the headset and at the desk,
     ['body', 'de'],
     ['nasa-tlx-raw', 'de'],
   ]);
-  // What was told is recorded as values, the same in every language.
+  // Answers are recorded as values that do not depend on the language.
   const told = (await recordsOf(origin, 'every-kind')).find(({ kind }) => kind === 'demographics');
   expect(told?.body).toEqual({
     ...{ gender: 'not-said', age: 26, major: 'Informatik', vrExperience: 'once-or-twice', vrSystems: '' },

@@ -19,7 +19,7 @@ const standsSeconds = 15;
 const standsPictures = 2 * standsSeconds + 1;
 /** For what takes each page some of its pictures. */
 const patience = { timeout: 180_000 };
-/** As long as the paper's: a command of the experimenter arrives within it on a machine that has much else to do [s]. */
+/** The duration of a match [s], as in the paper. It is long enough for an experimenter's command on a busy machine. */
 const matchSeconds = 90;
 
 // Three headsets in software rendering take minutes.

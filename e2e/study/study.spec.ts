@@ -173,7 +173,7 @@ test('a link without its invitation asks for it, a wrong one is said, and the li
   await agree();
   await expect(page.getByText('This is not the invitation of P02.')).toBeVisible();
   const link = await experimenter(origin).link('invited', 'P02', '&quality=low');
-  // As a person would: the whole link into the address of the same tab.
+  // The whole link is entered as the address of the same tab.
   await page.evaluate((address) => location.assign(address), link);
   await agree();
   await expect(page.getByText('write this down')).toBeVisible();

@@ -9,7 +9,7 @@ import { servePlainly } from '../plain-server';
 
 const iwer = fileURLToPath(new URL('../../node_modules/iwer/build/iwer.min.js', import.meta.url));
 
-/** An object of three.js, as far as it tells whether it is drawn. */
+/** The part of a three.js object that decides whether it is drawn. */
 interface Drawn {
   readonly visible: boolean;
   readonly parent: Drawn | null;
@@ -27,7 +27,7 @@ interface SelfAvatar {
 declare global {
   interface Window {
     selfAvatar?: SelfAvatar;
-    /** Of iwer's script. */
+    /** The global of iwer's script. */
     IWER: {
       readonly metaQuest3: object;
       readonly XRDevice: new (config: object, options: object) => { installRuntime(options: object): void };

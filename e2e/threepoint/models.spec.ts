@@ -10,7 +10,7 @@ const faults: Readonly<Record<string, (route: Route) => Promise<void>>> = {
     await route.fulfill({ status: 200, body: body.subarray(0, Math.floor(body.length / 2)) });
   },
   'not a model': (route) => route.fulfill({ status: 200, body: '<!doctype html><title>Sign in to the Wi-Fi</title>' }),
-  // Same length, one bit wrong: only the checksum of the contract tells.
+  // The length is unchanged and one bit is wrong: only the contract's checksum detects it.
   'flipped in one bit': async (route) => {
     const body = await (await route.fetch()).body();
     const middle = Math.floor(body.length / 2);
@@ -27,7 +27,7 @@ const firstBody = (page: Page): Promise<number> =>
   });
 
 for (const [fault, fulfil] of Object.entries(faults)) {
-  // One by day: what tells the others apart is asked of load-regressor in unit tests.
+  // Only one fault runs by day: the unit tests of load-regressor cover the others.
   const suite = fault === 'missing' ? '' : ' @full';
   test(`a model that is ${fault}: IK takes over and the page says so${suite}`, async ({ page, complaints }) => {
     complaints.allow(/learned/, /404/);
