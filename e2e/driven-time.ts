@@ -179,4 +179,4 @@ export const pass = (page: Page, frames: number): Promise<void> =>
 export const goOn = (page: Page): Promise<void> => page.evaluate(() => window.drivenTime?.goOn());
 
 /** Ends driven time: the page's frames follow the display again and are drawn. */
-export const letTimePass = (page: Page): Promise<void> => page.evaluate(() => window.drivenTime?.end());
+export const endDrivenTime = (page: Page): Promise<void> => page.evaluate(() => window.drivenTime?.end());

@@ -12,23 +12,23 @@ interface Written {
 declare global {
   interface Window {
     /** Set by `recordCanvasText`. */
-    writtenOnCanvases?: Written[];
+    canvasTexts?: Written[];
   }
 }
 
 /** Records all text that is drawn on canvases; an init script that runs in the page. */
-export function keepWritten(): void {
+export function recordCanvasText(): void {
   const { fillText } = CanvasRenderingContext2D.prototype;
   const written: Written[] = [];
-  window.writtenOnCanvases = written;
+  window.canvasTexts = written;
   CanvasRenderingContext2D.prototype.fillText = function (text, x, y, ...rest) {
     written.push({ text, x, y });
     fillText.call(this, text, x, y, ...rest);
   };
 }
 
-export const writtenAs = (page: Page, text: string) =>
-  page.waitForFunction((wanted) => window.writtenOnCanvases?.findLast(({ text }) => text === wanted), text);
+export const waitForCanvasText = (page: Page, text: string) =>
+  page.waitForFunction((wanted) => window.canvasTexts?.findLast(({ text }) => text === wanted), text);
 
 /** The menu's centre [m] and yaw in the floor frame, as set in the page's shell/vr-menu. */
 const menuAt = [1.1, 1.3, -1.15] as const;
@@ -63,14 +63,14 @@ async function pullAt(page: Page, { x, y }: Written): Promise<void> {
 
 /** Presses the item with this label on the headset's menu. */
 export async function pressInMenu(page: Page, label: string): Promise<void> {
-  await pullAt(page, (await (await writtenAs(page, label)).jsonValue()) as Written);
+  await pullAt(page, (await (await waitForCanvasText(page, label)).jsonValue()) as Written);
 }
 
 /** Presses the button with this label below this player's name in the menu's list of players, as drawn last. */
 export async function pressBelow(page: Page, name: string, label: string): Promise<void> {
   const found = await page.waitForFunction(
     ({ name, label, playerHeight }) => {
-      const written = window.writtenOnCanvases ?? [];
+      const written = window.canvasTexts ?? [];
       const list = written.slice(written.findLastIndex(({ text }) => text === 'Other players'));
       const named = list.find(({ text }) => text === name);
       const below = list.slice(

@@ -5,7 +5,7 @@ import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import { serve } from 'threepoint-http/web-server';
 import type { Probe } from 'threepoint-page/shell/probe';
 import { createPageHandler } from '../server/page';
-import { driveTime, letTimePass, rest } from './driven-time';
+import { driveTime, endDrivenTime, rest } from './driven-time';
 import { type EmulatedHeadset, emulatedHeadset, frames, type Point } from './emulated-headset';
 
 export { expect };
@@ -97,8 +97,8 @@ const stateOf = (page: Page): Promise<string> =>
   });
 
 /** Ends the session and resets the emulated headset and controllers to their initial state, if the page has them. */
-async function layDown(page: Page): Promise<void> {
-  await letTimePass(page);
+async function resetHeadset(page: Page): Promise<void> {
+  await endDrivenTime(page);
   await page.evaluate(async (placement) => {
     const device = window.emulatedDevice;
     if (!device) return;
@@ -117,7 +117,7 @@ async function layDown(page: Page): Promise<void> {
       for (const button of ['trigger', 'squeeze'] as const) device.controllers[side].updateButtonValue(button, 0);
       device.hands[side].updatePinchValue(0);
     }
-  }, laidDown);
+  }, initialPlacement);
   await page.waitForFunction(() => window.threepoint?.probe().activity === 'desktop');
 }
 
@@ -127,17 +127,17 @@ async function resetCalibration(page: Page): Promise<void> {
   await reset.evaluate((button: HTMLButtonElement) => button.click());
 }
 
-const laidDown = {
+const initialPlacement = {
   head: [0, 1.6, 0],
   left: [-0.25, 1.1, -0.3],
   right: [0.25, 1.1, -0.3],
 } as const satisfies Record<string, Point>;
 
 /** Resets the page to its state after loading; resolves to false if a test has changed more than this can undo. */
-async function takenBack(page: Page): Promise<boolean> {
+async function resetToLoaded(page: Page): Promise<boolean> {
   const before = loaded.get(page);
   if (!before) return false;
-  await layDown(page);
+  await resetHeadset(page);
   await resetCalibration(page);
   return (await stateOf(page)) === before.left;
 }
@@ -151,18 +151,18 @@ export async function open(page: Page, query: string): Promise<void> {
   const estimator = (wanted.get('estimator') ?? 'learned') as EstimatorName;
   wanted.delete('estimator');
   const studio = !wanted.has('play') && !wanted.has('study');
-  if (studio && loaded.get(page)?.query === wanted.toString() && (await takenBack(page))) {
+  if (studio && loaded.get(page)?.query === wanted.toString() && (await resetToLoaded(page))) {
     await page.evaluate(() => (document.activeElement as HTMLElement | null)?.blur());
     await page.keyboard.press(String(estimatorKeys.indexOf(estimator) + 1));
     await expect.poll(async () => (await probe(page)).estimator, { intervals: [20] }).toBe(estimator);
     return;
   }
-  if (loaded.has(page)) await forget(page);
+  if (loaded.has(page)) await clearStorage(page);
   await load(page, query);
 }
 
 /** Clears what the page stores in this browser, as on a first visit. */
-async function forget(page: Page): Promise<void> {
+async function clearStorage(page: Page): Promise<void> {
   await page.evaluate(async () => {
     localStorage.clear();
     sessionStorage.clear();
@@ -230,20 +230,20 @@ export async function newPage(browser: Browser, base: string, kept = false): Pro
 }
 
 /** Collects a page's errors, and its requests outside `home`, until it is stopped; the list grows as they occur. */
-export function listen(page: Page, home: string): { readonly heard: readonly string[]; stop(): void } {
-  const heard: string[] = [];
+export function collectErrors(page: Page, home: string): { readonly errors: readonly string[]; stop(): void } {
+  const errors: string[] = [];
   const onConsole = (message: ConsoleMessage) => {
     // A blocked resource is a console error too, so this includes violations of the policy.
-    if (message.type() === 'error') heard.push(`console: ${message.text()} (${message.location().url})`);
+    if (message.type() === 'error') errors.push(`console: ${message.text()} (${message.location().url})`);
   };
-  const onError = (error: Error) => heard.push(`exception: ${error.stack ?? error.message}`);
+  const onError = (error: Error) => errors.push(`exception: ${error.stack ?? error.message}`);
   const onRequest = (request: Request) => {
     const { protocol, href, origin } = new URL(request.url());
-    if (!['data:', 'blob:'].includes(protocol) && !href.startsWith(home)) heard.push(`asked ${origin}: ${href}`);
+    if (!['data:', 'blob:'].includes(protocol) && !href.startsWith(home)) errors.push(`asked ${origin}: ${href}`);
   };
   page.on('console', onConsole).on('pageerror', onError).on('request', onRequest);
   return {
-    heard,
+    errors,
     stop: () => page.off('console', onConsole).off('pageerror', onError).off('request', onRequest),
   };
 }
@@ -284,12 +284,12 @@ export const test = base.extend<{ complaints: ExpectedComplaints }, { origin: st
 
   complaints: [
     async ({ page, origin }, use) => {
-      const { heard, stop } = listen(page, `${origin}/`);
+      const { errors, stop } = collectErrors(page, `${origin}/`);
       const allowed: RegExp[] = [];
       await use({ allow: (...patterns) => allowed.push(...patterns) });
       stop();
       expect(
-        heard.filter((text) => !allowed.some((pattern) => pattern.test(text))),
+        errors.filter((text) => !allowed.some((pattern) => pattern.test(text))),
         'complaints of the page',
       ).toEqual([]);
     },

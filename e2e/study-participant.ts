@@ -101,7 +101,7 @@ export async function headsetOf(page: Page): Promise<EmulatedHeadset> {
 }
 
 /** Fills in the demographic questions; does not submit them. */
-export async function tellOfOneself(page: Page): Promise<void> {
+export async function fillInDemographics(page: Page): Promise<void> {
   await page.getByLabel('I prefer not to say').check();
   await page.getByLabel(/Age/).fill('26');
   await page.getByLabel(/Field of study/).fill('Computer science');
@@ -111,11 +111,11 @@ export async function tellOfOneself(page: Page): Promise<void> {
 }
 
 /** Consents, confirms the withdrawal code and submits the demographic questions. */
-export async function agreeAndTell(page: Page): Promise<void> {
+export async function consentAndFillIn(page: Page): Promise<void> {
   await page.getByLabel(/I have read this/).check();
   await page.getByRole('button', { name: 'I agree' }).click();
   await page.getByRole('button', { name: 'I have noted it' }).click();
-  await tellOfOneself(page);
+  await fillInDemographics(page);
   await page.getByRole('button', { name: 'Continue' }).click();
 }
 

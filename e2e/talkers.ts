@@ -184,5 +184,5 @@ export const loudness = (page: Page, readings = 1): Promise<number> => middle(pa
  */
 export const attenuation = (page: Page): Promise<number> => middle(page, 15, 'byDistance');
 
-export const heard = (page: Page) => expect.poll(() => loudness(page), { timeout: 60_000 }).toBeGreaterThan(-50);
-export const silent = (page: Page) => expect.poll(() => loudness(page), { timeout: 60_000 }).toBeLessThan(-90);
+export const expectVoices = (page: Page) => expect.poll(() => loudness(page), { timeout: 60_000 }).toBeGreaterThan(-50);
+export const expectSilence = (page: Page) => expect.poll(() => loudness(page), { timeout: 60_000 }).toBeLessThan(-90);

@@ -1,6 +1,6 @@
 import type { CDPSession } from '@playwright/test';
-import { measured } from '../../tests/reliability/measured';
-import { countsOf, megabytes } from '../kept-memory';
+import { reportFigures } from '../../tests/reliability/report-figures';
+import { countsOf, megabytes } from '../memory-usage';
 import { expect, open, probe, freshTest as test } from '../page-fixture';
 
 type Page = Parameters<typeof open>[0];
@@ -110,7 +110,7 @@ test('@nightly @long rounds of archery, one after the other: nothing grows after
     after.objects,
     `objects [MB]; all of the heap: ${seen.map((one) => one.heap.toFixed(1)).join(', ')}`,
   ).toBeLessThan(1.1 * begun.objects);
-  measured('long-run', {
+  reportFigures('long-run', {
     played: `${seen.length} rounds in ${played.toFixed(0)} min`,
     'geometries, textures, programs': `${first.geometries}, ${first.textures}, ${first.programs}: +${most('geometries')}, +${most('textures')}, +${most('programs')}`,
     'listeners, workers': `+${Math.max(0, listeners)}, +${most('workers')}`,

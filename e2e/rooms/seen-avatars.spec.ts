@@ -3,7 +3,7 @@ import { createHash, randomBytes } from 'node:crypto';
 import { once } from 'node:events';
 import { fileURLToPath } from 'node:url';
 import { changed, type GltfJson } from '../../tests/threepoint/avatar/glb';
-import { serveElsewhere } from '../elsewhere-server';
+import { serveCrossOrigin } from '../cross-origin-server';
 import type { GuestAnswer, GuestOrder } from '../guest-process';
 import { expect, freshTest, joinedRoom, joint, keepPicture, probe, test } from '../page-fixture';
 import { serveStudies } from '../study-server';
@@ -206,7 +206,7 @@ freshTest(
   async ({ browser }) => {
     test.setTimeout(240_000);
     const file = blue();
-    const elsewhere = await serveElsewhere(file, hashOf(file));
+    const elsewhere = await serveCrossOrigin(file, hashOf(file));
     const server = await serveStudies({ THREEPOINT_AVATARS_FROM: elsewhere.folder, THREEPOINT_AVATAR_MEGABYTES: '0' });
     const context = await browser.newContext({
       baseURL: server.origin,

@@ -3,7 +3,7 @@ import { parsePlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import type { Point } from '../emulated-headset';
 import { distance, enterVr, expect, keepPicture, probe } from '../page-fixture';
-import { agreeAndTell, calibrate, press, reaches, stretched, takePart, tenHertz, test } from '../study-participant';
+import { calibrate, consentAndFillIn, press, reaches, stretched, takePart, tenHertz, test } from '../study-participant';
 import { experimenter, shortStudy } from '../study-server';
 
 const conditions = [
@@ -103,7 +103,7 @@ test('every condition is done to the body: method, avatar, mirror, whole or uppe
   const study = plan();
   await experimenter(origin).begin(study, true);
   const headset = await takePart(page, origin, study.id, 'P01');
-  await agreeAndTell(page);
+  await consentAndFillIn(page);
   await enterVr(page, tenHertz);
   await headset.place(stretched);
   await calibrate(page);

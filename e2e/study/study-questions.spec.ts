@@ -32,7 +32,7 @@ function shortExample(id: string) {
 }
 
 /** Consents, confirms the code and submits the demographic questions, in German. */
-async function agreeAndTellInGerman(page: Page): Promise<void> {
+async function consentAndFillInInGerman(page: Page): Promise<void> {
   await expect(page.locator('.study-card')).toHaveAttribute('lang', 'de');
   await page.getByLabel(/Ich habe dies gelesen/).check();
   await page.getByRole('button', { name: 'Ich willige ein' }).click();
@@ -69,7 +69,7 @@ test('questions of every kind are answered alike in the headset and at the desk,
   await page.getByLabel('Language').selectOption('de');
   await expect(page.getByRole('heading', { name: 'Teilnahme' })).toBeVisible();
   await keepPicture(page, 'study-consent-language');
-  await agreeAndTellInGerman(page);
+  await consentAndFillInInGerman(page);
 
   await enterVr(page, tenHertz);
   await headset.place(stretched);

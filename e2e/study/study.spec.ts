@@ -4,6 +4,7 @@ import { promisify } from 'node:util';
 import { enterVr, expect, keepPicture } from '../page-fixture';
 import {
   calibrate,
+  fillInDemographics,
   headsetOf,
   openResults,
   press,
@@ -13,7 +14,6 @@ import {
   stretched,
   study,
   takePart,
-  tellOfOneself,
   tenHertz,
   test,
 } from '../study-participant';
@@ -42,7 +42,7 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
 
   await page.getByRole('button', { name: 'Continue' }).click();
   await expect(page.getByRole('alert').filter({ hasText: 'still needs an answer' })).toBeVisible();
-  await tellOfOneself(page);
+  await fillInDemographics(page);
   await keepPicture(page, 'study-demographics');
   await page.getByRole('button', { name: 'Continue' }).click();
 

@@ -5,7 +5,7 @@ import { buildExample, exampleNames, packLibrary } from '../../scripts/build-exa
 import { emulatedHeadset, type Point } from '../emulated-headset';
 import { wristByGrip, wristName } from '../hands-on-controllers';
 import { distance } from '../page-fixture';
-import { servePlainly } from '../plain-server';
+import { serveStatic } from '../static-server';
 
 const iwer = fileURLToPath(new URL('../../node_modules/iwer/build/iwer.min.js', import.meta.url));
 
@@ -65,7 +65,7 @@ test.describe('examples of the package @realtime', () => {
   for (const name of exampleNames) {
     test(`${name}: the body is there, its hands on the controllers @realtime`, async ({ page }) => {
       test.setTimeout(300_000);
-      const server = await servePlainly(await buildExample(name, folder));
+      const server = await serveStatic(await buildExample(name, folder));
       const faults: string[] = [];
       page.on('pageerror', ({ message }) => faults.push(message));
       page.on('console', (message) => {

@@ -1,5 +1,5 @@
 import type { Page, Route } from '@playwright/test';
-import { measured } from '../../tests/reliability/measured';
+import { reportFigures } from '../../tests/reliability/report-figures';
 import { enterVr, expect, joint, openWithHeadset, probe, freshTest as test } from '../page-fixture';
 
 /** What can be wrong with a model file, and how the server would answer then. */
@@ -56,7 +56,9 @@ test('without WebAssembly IK takes over and the page says so', async ({ page, co
   await page.waitForFunction(() => window.threepoint?.probe().loading.firstBody !== undefined);
   answer();
   await ready;
-  measured('no-wasm', { 'body drawn by IK': `${(await firstBody(page)).toFixed(2)} s after the page's script began` });
+  reportFigures('no-wasm', {
+    'body drawn by IK': `${(await firstBody(page)).toFixed(2)} s after the page's script began`,
+  });
   await expect.poll(async () => (await probe(page)).estimator).toBe('ik');
   await expect(page.getByRole('alert').filter({ hasText: /IK|inverse kinematics/i })).toBeVisible();
 });

@@ -18,13 +18,13 @@ export function merge(
   return after;
 }
 
-const told = (value: string | number): string =>
+const formatted = (value: string | number): string =>
   typeof value === 'number' ? String(Number(value.toPrecision(3))) : value;
 const cell = (text: string): string => text.replaceAll('|', '\\|');
 
 function table(part: Readonly<Record<string, Row>>, figures: Figures): string {
   const lines = Object.entries(part).map(([name, { inject, sees, target }]) => {
-    const own = Object.entries(figures[name as RowName] ?? {}).map(([what, value]) => `${what}: ${told(value)}`);
+    const own = Object.entries(figures[name as RowName] ?? {}).map(([what, value]) => `${what}: ${formatted(value)}`);
     return `| ${[inject, sees, target, own.join('; ')].map(cell).join(' | ')} |`;
   });
   return ['| what is done | what must be seen | target | measured |', '| --- | --- | --- | --- |', ...lines].join('\n');

@@ -3,7 +3,7 @@ import { createArcheryGestures, defaultArcheryGestureSettings } from 'threepoint
 import { expect, test } from 'vitest';
 import { bowman, posed } from '../games/archery/bowman';
 import { ballThrower } from './ball-thrower';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
 /** The duration of the system menu [s]: hands and buttons are absent, the head stays tracked. */
 const menuSeconds = 10;
@@ -72,7 +72,7 @@ test('behind a menu a ball stays in its hand; let go there, it is not thrown', (
     expect(still.deeds).toEqual(['grab']);
   }
   expect(thrown).toBe(0);
-  measured('blurred', {
+  reportFigures('blurred', {
     'balls thrown': thrown,
     'arrows shot': archerBehindMenu(0).shots,
     'still held': 'arrow and ball',

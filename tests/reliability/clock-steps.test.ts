@@ -16,7 +16,7 @@ import { Recorder } from 'threepoint-page/studio/recorder';
 import { type PlayedStep, playTrial } from 'threepoint-study/participant/study-trial';
 import { describe, expect, test } from 'vitest';
 import { studiedArcher } from '../study/participant/played-round';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
 const frameMs = 1000 / 72;
 /** The steps of the page's clock [s], each reverted 4 s later; the short ones run in the full suite only. */
@@ -107,7 +107,7 @@ function goesOn(step: number): void {
     until(() => play.newest?.state.phase === 'over');
     expect(play.newest?.state).toMatchObject({ end: 'targets', score: 50 });
     expect(faults).toEqual([]);
-    measured('clock-steps', {
+    reportFigures('clock-steps', {
       [`archery, ${step} s and back`]: `stands still ${Math.abs(standing).toFixed(2)} s, first frame ${leapt.toFixed(2)} s`,
     });
   });

@@ -10,7 +10,7 @@ import { createThrower } from 'threepoint-games/ball/thrower-motion';
 import { expect, test } from 'vitest';
 import { shotWithOneHand } from '../games/archery/one-handed-round';
 import { playRound, steady } from '../games/archery/playing';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
 /** The body measures [m] of people of 1.10 to 2.20 m, standing and seated. */
 const people = [1.03, 1.4, 1.6, 1.8, 2.06].flatMap((eyeHeight) => [
@@ -29,7 +29,7 @@ test('archery: each person finishes a round with 50 of 50, with either hand, sta
     }
   }
   expect(finished).toBe(played);
-  measured('flows', { archery: `${finished} of ${played} rounds won` });
+  reportFigures('flows', { archery: `${finished} of ${played} rounds won` });
 });
 
 test('archery with one hand: a round can be won from any height', () => {
@@ -43,7 +43,7 @@ test('archery with one hand: a round can be won from any height', () => {
     }
   }
   expect(won).toBe(played);
-  measured('flows', { 'archery with one hand': `${won} of ${played} rounds won` });
+  reportFigures('flows', { 'archery with one hand': `${won} of ${played} rounds won` });
 });
 
 /** Runs a match of three built-in players; one of them may have one hand only. */
@@ -100,5 +100,5 @@ test('the ball game: each person throws and catches, seated too; with one hand i
     }
   }
   expect(oneHanded).toBe(6);
-  measured('flows', { ...figures, 'ball game with one hand': `${oneHanded} of 6 matches finished with a score` });
+  reportFigures('flows', { ...figures, 'ball game with one hand': `${oneHanded} of 6 matches finished with a score` });
 });

@@ -6,7 +6,7 @@ import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import { createBallPlay } from 'threepoint-page/ball/ball-play';
 import { expect, test } from 'vitest';
 import { poseOf } from '../threepoint/core/estimation/drawn';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
 const released = { left: allReleased, right: allReleased };
 
@@ -69,5 +69,5 @@ test('a headset taken off for 20 s: others see “away” at once when told, wit
     rows[told ? '“away” when the page says so' : '“away” when it does not say so'] =
       `after ${away.toFixed(2)} s, back after ${back.toFixed(2)} s`;
   }
-  measured('hidden', rows);
+  reportFigures('hidden', rows);
 });

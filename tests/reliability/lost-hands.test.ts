@@ -11,7 +11,7 @@ import { expect, test } from 'vitest';
 import { isNightly } from '../nightly';
 import { poseOf, show } from '../threepoint/core/estimation/drawn';
 import { openShippedModel } from '../threepoint/core/estimation/shipped-models';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 
@@ -64,7 +64,7 @@ test('a wrist goes to rest and comes back without a jump, whichever hand, howeve
     }
   }
   expect(worst).toBeLessThan(0.05);
-  measured('hand-lost', {
+  reportFigures('hand-lost', {
     'longest step of a wrist': `${(100 * worst).toFixed(1)} cm in a frame of 60 Hz (${cases} cases)`,
   });
 });
@@ -79,5 +79,5 @@ test('others learn of it: null and emulated arrive as they are', () => {
     expect(arrived?.pose.leftHand?.tracking ?? null).toBe(how === 'null' ? null : 'emulated');
     expect(arrived?.pose.rightHand?.tracking).toBe('tracked');
   }
-  measured('hand-lost', { 'flags that reach others': 'null, emulated' });
+  reportFigures('hand-lost', { 'flags that reach others': 'null, emulated' });
 });

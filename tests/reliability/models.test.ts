@@ -8,7 +8,7 @@ import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { expect, test } from 'vitest';
 import { show } from '../threepoint/core/estimation/drawn';
 import { openShippedModel } from '../threepoint/core/estimation/shipped-models';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 
@@ -58,7 +58,7 @@ test('a network that breaks while it runs: no bone is ever NaN, the fault is kno
   }
   expect(broken).toBe(0);
   expect(latest).toBe(1);
-  measured('bad-model', {
+  reportFigures('bad-model', {
     'bones NaN': `${broken} of ${bones}`,
     'fault known after': `${latest} frame`,
     faults: Object.keys(faults).length,

@@ -17,7 +17,7 @@ import { startGuidedCalibration, stepGuidedCalibration } from 'threepoint/core/t
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { expect, test } from 'vitest';
 import { poseOf } from '../threepoint/core/estimation/drawn';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
 const statures = [1.1, 1.2, 1.35, 1.5, 1.7, 1.9, 2.1, 2.2];
 const bodyOf = (stature: number): Calibration => ({
@@ -101,7 +101,7 @@ test.each([
     });
     expect(seen.pelvis).toBeGreaterThan(0);
     expect(seen.off).toBeLessThan(1e-3);
-    measured('people', { [posture]: figure(`measured in 2 s ${guided} of ${statures.length}`, seen) });
+    reportFigures('people', { [posture]: figure(`measured in 2 s ${guided} of ${statures.length}`, seen) });
   },
 );
 
@@ -112,7 +112,7 @@ test('a floor half a metre too low: no one is measured wrongly; with the height 
   const seen = worn(lower, (body) => body);
   expect(seen.pelvis).toBeGreaterThan(0);
   expect(seen.off).toBeLessThan(1e-3);
-  measured('people', {
+  reportFigures('people', {
     'a floor half a metre too low': figure(
       `asked to type the height ${statures.length} of ${statures.length}; with it typed`,
       seen,

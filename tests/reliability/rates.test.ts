@@ -17,7 +17,7 @@ import { createMatch } from 'threepoint-games/match';
 import { expect, test } from 'vitest';
 import { hold, inFront, leftThrower, stand, velocityTo } from '../games/ball/playing';
 import { poseOf } from '../threepoint/core/estimation/drawn';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
 const rates = [72, 80, 90, 120] as const;
 /** Returns whether a frame is dropped: 30 % are, at most two in a row. */
@@ -52,7 +52,7 @@ test('arrows fly and land the same at every rate', () => {
     });
   }
   expect(worst).toBeLessThan(1e-3);
-  measured('rates', { arrows: `${(1000 * worst).toFixed(4)} mm apart` });
+  reportFigures('rates', { arrows: `${(1000 * worst).toFixed(4)} mm apart` });
 });
 
 test('balls fly the same at every rate', () => {
@@ -103,7 +103,7 @@ test('balls fly the same at every rate', () => {
     worst = Math.max(worst, distance(off, same));
   }
   expect(worst).toBeLessThan(1e-3);
-  measured('rates', { balls: `${(1000 * worst).toFixed(4)} mm apart after 1 s` });
+  reportFigures('rates', { balls: `${(1000 * worst).toFixed(4)} mm apart after 1 s` });
 });
 
 test('a hand throws equally fast at every rate', () => {
@@ -124,7 +124,7 @@ test('a hand throws equally fast at every rate', () => {
     worst = Math.max(worst, distance(speedBy(times), speedBy(fine)));
   }
   expect(worst).toBeLessThan(0.1);
-  measured('rates', { 'throws of a hand': `${(100 * worst).toFixed(1)} cm/s apart` });
+  reportFigures('rates', { 'throws of a hand': `${(100 * worst).toFixed(1)} cm/s apart` });
 });
 
 test('filters of the body come to the same joints at every rate', () => {
@@ -143,5 +143,5 @@ test('filters of the body come to the same joints at every rate', () => {
     worst = Math.max(worst, ...jointNames.map((joint) => distance(joints[joint].position, reference[joint].position)));
   }
   expect(worst).toBeLessThan(0.005);
-  measured('rates', { joints: `${(1000 * worst).toFixed(2)} mm apart` });
+  reportFigures('rates', { joints: `${(1000 * worst).toFixed(2)} mm apart` });
 });

@@ -14,7 +14,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { expect, test } from 'vitest';
 import { show } from '../threepoint/core/estimation/drawn';
 import { openShippedModel } from '../threepoint/core/estimation/shipped-models';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
 /** The floor frame after the device has recentred: turned by a quarter turn and moved by 1 m. */
 const newFromOld: Transform<'floor', 'floor'> = {
@@ -65,7 +65,7 @@ test('a space that is reset leaves no body on the way: the first frame is drawn 
     }
   }
   expect(between).toBe(0);
-  measured('space-reset', {
+  reportFigures('space-reset', {
     'bodies between the two places': `${between} of ${20 * (estimatorNames.length - 1)}`,
     'difference from a new body': `${(1000 * worst).toFixed(3)} mm`,
   });

@@ -1,5 +1,5 @@
 /** Prints the figures that a test has measured. */
-export const tell = (row: string, figures: Readonly<Record<string, string | number>>): void =>
+export const printFigures = (row: string, figures: Readonly<Record<string, string | number>>): void =>
   console.log(
     `${row}: ${Object.entries(figures)
       .map(([name, value]) => `${name} ${typeof value === 'number' ? Number(value.toFixed(2)) : value}`)
