@@ -3,14 +3,15 @@ import { defaultClientConditions, defineConfig, type Plugin } from 'vite';
 import { contentSecurityPolicy } from './src/http/security-headers.ts';
 
 /**
- * Sources from which the page may read files that are named by address: those of `npm run build -- --files-from`, else any over https:. Where a
- * server of ours sends the page, its header narrows them further (THREEPOINT_FILES_FROM).
+ * The sources from which the page may load files by address: those of `npm run build -- --files-from`, otherwise any over
+ * https:. The project's server restricts them further by its header (THREEPOINT_FILES_FROM).
  */
 const filesFrom = process.env.THREEPOINT_BUILD_FILES_FROM?.split(',').filter(Boolean) ?? ['https:'];
 
 /**
- * Says the server's policy in the pages themselves, for hosts that send no headers of ours. Without frame-ancestors, which browsers read in
- * a header alone. Pages under development have none: the development server's own scripts would break it.
+ * Adds the server's content security policy to the pages themselves, for hosts that do not send its headers. It omits
+ * frame-ancestors, which browsers only read in a header. Pages of the development server have no policy: that server's own
+ * scripts would violate it.
  */
 const policyInPages: Plugin = {
   name: 'policy-in-pages',
@@ -28,7 +29,7 @@ const policyInPages: Plugin = {
   ],
 };
 
-/** Decoders ask for modules of Node where they run in Node; in a browser they never get there, and the bundle need not speak of them. */
+/** Node modules that decoders import only in Node; the bundle for browsers omits them. */
 const decodersWithoutNode: Plugin = {
   name: 'decoders-without-node',
   enforce: 'pre',
@@ -40,7 +41,7 @@ const decodersWithoutNode: Plugin = {
 };
 
 export default defineConfig({
-  // Where the page is served from: any folder, unless `npm run build -- --base` names one (scripts/build.mjs).
+  // The page can be served from any folder, unless `npm run build -- --base` names one (scripts/build.mjs).
   base: './',
   plugins: [policyInPages],
   resolve: {
@@ -51,26 +52,26 @@ export default defineConfig({
       ),
     },
   },
-  // Rooms and studies are those of `npm start`, which runs beside the development server.
+  // Requests for rooms and studies go to `npm start`, which runs next to the development server.
   server: {
     host: '127.0.0.1',
     port: 5173,
     proxy: { '/api': 'http://127.0.0.1:3333', '/relay': { target: 'http://127.0.0.1:3333', ws: true } },
   },
   preview: { host: '127.0.0.1', port: 4173 },
-  // Workers are modules, so that they may load the parts they need.
+  // Workers are modules, so that they can import chunks.
   worker: { format: 'es', plugins: () => [decodersWithoutNode] },
   build: {
     target: 'es2022',
-    // The policy of the server allows scripts of our own files alone: nothing may be inlined into the page as a data: URL.
+    // The server's policy allows scripts from files of the same origin only: nothing may be inlined as a data: URL.
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },
-    // What loads what, for scripts/build-service-worker.mjs, which takes it away.
+    // The manifest of imports is for scripts/build-service-worker.mjs, which deletes it.
     manifest: true,
     chunkSizeWarningLimit: 1200,
     rolldownOptions: {
       input: ['index.html', 'results.html', 'experimenter.html', 'preview.html', 'withdraw.html'],
-      // The emulator's panel uses packages that mark themselves for servers we do not have.
+      // The emulator's panel uses packages with directives for server components, which this page does not have.
       onwarn(warning, warn) {
         if (warning.code !== 'MODULE_LEVEL_DIRECTIVE') warn(warning);
       },

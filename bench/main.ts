@@ -5,7 +5,7 @@ import { reasonOf } from 'threepoint/core/errors/reasons';
 import { serve, type WebServer } from 'threepoint-http/web-server';
 import { findChromium } from '../scripts/chromium.mjs';
 import { createPageHandler } from '../server/page';
-import { tell } from '../tests/tell';
+import { printFigures } from '../tests/print-figures';
 import { builtIn, measureAllocations } from './allocations';
 import { measureAvatarLoading } from './avatar-loading';
 import { type MeasuredNetwork, measureNetworks } from './networks';
@@ -202,7 +202,7 @@ const measurePart: Readonly<Record<Part, (browser: Browser) => Promise<object>>>
     const server = await serve(createPageHandler(builtIn('dist')), { host: '127.0.0.1', port: 0 });
     try {
       const loading = await measureAvatarLoading(browser, `http://localhost:${server.port}`, options.avatar);
-      tell(`${loading.name}, ${loading.megabytes.toFixed(1)} MB`, {
+      printFigures(`${loading.name}, ${loading.megabytes.toFixed(1)} MB`, {
         'shown after [s]': loading.shownAfter / 1000,
         'longest tasks of the page [ms of processor time]': loading.longestTasks.join(' '),
         'without it': loading.longestWithout.join(' '),

@@ -1,6 +1,6 @@
 import { readdirSync, readFileSync } from 'node:fs';
 
-/** The processes of this machine, each with its parent. */
+/** Returns the parent of every process of this machine, by process id. */
 function parents(): ReadonlyMap<number, number> {
   const found = new Map<number, number>();
   for (const name of readdirSync('/proc')) {
@@ -10,13 +10,13 @@ function parents(): ReadonlyMap<number, number> {
       const [, rest = ''] = readFileSync(`/proc/${pid}/stat`, 'utf8').split(/\) /);
       found.set(pid, Number(rest.split(' ')[1]));
     } catch {
-      // reason: it has ended since the list was read.
+      // reason: the process has ended since the list was read.
     }
   }
   return found;
 }
 
-/** All processes that a browser has started, and those that they have; without its own. */
+/** Returns all descendants of a browser's process. */
 export function processesOf(browser: number): readonly number[] {
   const all = parents();
   const descends = (pid: number): boolean => {
@@ -26,7 +26,10 @@ export function processesOf(browser: number): readonly number[] {
   return [...all.keys()].filter(descends);
 }
 
-/** The process of a Chromium that does this for all its pages: NetworkService has all its sockets, those of WebRTC too, AudioService its devices. */
+/**
+ * Returns the Chromium process that runs this service for all pages. NetworkService owns all sockets, those of WebRTC
+ * included; AudioService owns the audio devices.
+ */
 export function serviceOf(browser: number, name: 'NetworkService' | 'AudioService'): number {
   for (const pid of processesOf(browser)) {
     if (readFileSync(`/proc/${pid}/cmdline`, 'utf8').includes(`mojom.${name}`)) return pid;
@@ -34,7 +37,7 @@ export function serviceOf(browser: number, name: 'NetworkService' | 'AudioServic
   throw new Error(`the browser ${browser} has no process for its ${name}`);
 }
 
-/** Memory of a browser's processes together [MB], what several of them share counted once. */
+/** Returns the memory of all processes of a browser [MB]; pages that several processes share count once. */
 export function memoryOf(browser: number): number {
   let kilobytes = 0;
   for (const pid of [browser, ...processesOf(browser)]) {

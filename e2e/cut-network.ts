@@ -1,6 +1,6 @@
 import { serviceOf } from './browser-processes';
 
-/** Lets nothing in or out of this browser (its process), until what comes back is called: the page and its driver go on. */
+/** Stops all network traffic of this browser (its process id) until the returned function is called; pages keep running. */
 export function cutNetwork(browser: number): () => void {
   const pid = serviceOf(browser, 'NetworkService');
   process.kill(pid, 'SIGSTOP');

@@ -1,21 +1,21 @@
 import type { Page } from '@playwright/test';
 import type { Probe } from 'threepoint-page/shell/probe';
 
-/** How far the page's clock goes on from one frame to the next [ms], unless a test says: that of a device with 40 Hz. */
+/** The default step of the page's clock per frame [ms]: a device at 40 Hz. */
 const usualStepMs = 25;
 
 declare global {
   interface Window {
-    /** Put there by `driveTime` in this file. */
+    /** Set by `driveTime` in this file. */
     drivenTime?: {
-      /** Resolves when a frame has been drawn that began after this call; held time goes on by this one frame. */
+      /** Resolves when a frame that began after this call has been drawn; stopped time advances by that frame. */
       drawn(): Promise<void>;
-      /** Holds time after the first frame in which the game shows this. */
+      /** Stops time after the first frame in which the game's probe has these values. */
       holdAt(shows: object): Promise<void>;
-      /** Holds time at the frame at hand. */
+      /** Stops time at the current frame. */
       hold(): void;
       goOn(): void;
-      /** Lets so many frames pass and holds time again. */
+      /** Runs this number of frames and stops time again. */
       pass(frames: number): Promise<void>;
       end(): void;
     };
@@ -23,10 +23,10 @@ declare global {
 }
 
 /**
- * Drives the page's clock, for what is played and waited for and not looked at: each frame is `stepMs` later than the one before it, however
- * long the machine takes, and follows as soon as that one and what it left to be done are through. It is computed whole, but for the
- * graphics device, which is given nothing of it. So minutes of play take seconds, and a slow machine never makes a pause of its own.
- * Timers and the time of day go on as they do.
+ * Drives the page's clock, for tests that play without looking at the picture. Each frame is `stepMs` later than the last,
+ * regardless of how long the machine takes. It starts as soon as the last frame and its pending tasks are done. All of it
+ * is computed except the draw calls, which are dropped. Minutes of play take seconds, and a slow machine adds no pauses.
+ * Timers and the time of day are unchanged.
  */
 export const driveTime = (page: Page, stepMs = usualStepMs): Promise<void> =>
   page.evaluate((stepMs) => {
@@ -37,7 +37,7 @@ export const driveTime = (page: Page, stepMs = usualStepMs): Promise<void> =>
 
     let time = realNow();
     let begun = time;
-    // Within a frame, and before the next, time passes as it does, but never as far as the next frame.
+    // Between frames the clock advances in real time, but never as far as the next frame.
     performance.now = () => time + Math.min(realNow() - begun, 0.99 * stepMs);
 
     const gameShows = (shows: object) => {
@@ -55,7 +55,7 @@ export const driveTime = (page: Page, stepMs = usualStepMs): Promise<void> =>
     const { port1, port2 } = new MessageChannel();
     let inFrame = false;
     let announced = false;
-    /** A message is a task like others: what the frame before this one has left to be done comes first. */
+    /** Queues the next frame as a task, so that pending tasks of the last frame run first. */
     const announce = () => {
       if (!announced) port2.postMessage(null);
       announced = true;
@@ -86,7 +86,7 @@ export const driveTime = (page: Page, stepMs = usualStepMs): Promise<void> =>
         try {
           callback(time);
         } catch (error) {
-          // As in a browser: one that throws does not keep the others from being called.
+          // A callback that throws does not prevent the other callbacks, as in a browser.
           reportError(error);
         }
       }
@@ -148,7 +148,7 @@ export const driveTime = (page: Page, stepMs = usualStepMs): Promise<void> =>
         }),
       end() {
         Object.assign(prototype, own);
-        // The page's clock neither goes back nor leaps: what it is ahead or behind it stays.
+        // The page's clock stays continuous: its offset from real time is kept.
         const ahead = performance.now() - realNow();
         performance.now = () => realNow() + ahead;
         window.requestAnimationFrame = (callback) => request((at) => callback(at + ahead));
@@ -161,22 +161,22 @@ export const driveTime = (page: Page, stepMs = usualStepMs): Promise<void> =>
     };
   }, stepMs);
 
-/** Lets driven time go on until the game shows this, and holds it there. */
+/** Runs driven time until the game's probe has these values, and stops it there. */
 export const holdAt = <Game extends NonNullable<Probe['game']>>(page: Page, shows: Partial<Game>): Promise<void> =>
   page.evaluate((shows) => window.drivenTime?.holdAt(shows), shows as object);
 
-/** Stands still until time passes again: a page that no test looks at neither computes nor draws frames beside the one that is looked at. */
+/** Stops the page's frames until time resumes, so that a page no test is looking at takes no time from others. */
 export async function rest(page: Page): Promise<void> {
   await driveTime(page);
   await page.evaluate(() => window.drivenTime?.hold());
 }
 
-/** Lets so many frames pass and holds time after them. */
+/** Runs this number of frames and stops time after them. */
 export const pass = (page: Page, frames: number): Promise<void> =>
   page.evaluate((frames) => window.drivenTime?.pass(frames), frames);
 
-/** Lets time that is held go on. */
+/** Resumes driven time. */
 export const goOn = (page: Page): Promise<void> => page.evaluate(() => window.drivenTime?.goOn());
 
-/** Lets the page's time go on as it does for a person again, and draws what is to be seen. */
-export const letTimePass = (page: Page): Promise<void> => page.evaluate(() => window.drivenTime?.end());
+/** Ends driven time: the page's frames follow the display again and are drawn. */
+export const endDrivenTime = (page: Page): Promise<void> => page.evaluate(() => window.drivenTime?.end());

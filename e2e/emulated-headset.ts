@@ -4,20 +4,20 @@ export type Point = readonly [x: number, y: number, z: number];
 export type Rotation = readonly [x: number, y: number, z: number, w: number];
 export type Side = 'left' | 'right';
 
-/** Position [m] and orientation in the floor frame, as plain numbers that cross into the page. */
+/** A position [m] and orientation in the floor frame, as plain numbers that can be passed into the page. */
 export interface PlacedPose {
   readonly position: Point;
   readonly orientation: Rotation;
 }
 
-/** Where to put what the emulator tracks; a hand is placed by its target ray, as iwer does it. What is absent stays. */
+/** The poses to set on the emulated devices. A hand is placed by its target ray, as in iwer; absent poses are unchanged. */
 export interface Placement {
   readonly head?: Partial<PlacedPose>;
   readonly left?: Partial<PlacedPose>;
   readonly right?: Partial<PlacedPose>;
 }
 
-/** What iwer keeps behind its symbols, as far as a test steers it. */
+/** The part of iwer's device that tests control; iwer stores it under a symbol. */
 interface Device {
   position: { set(...xyz: Point): void };
   quaternion: { set(...xyzw: Rotation): void };
@@ -35,9 +35,9 @@ interface TrackedInput {
   quaternion: { set(...xyzw: Rotation): void };
   connected: boolean;
   updateTargetRaySpace(): void;
-  /** Of a controller. */
+  /** Sets how far a controller's button is pressed, 0 to 1. */
   updateButtonValue(id: 'trigger' | 'squeeze', value: number): void;
-  /** Of a hand. */
+  /** Sets how far a tracked hand pinches, 0 to 1. */
   updatePinchValue(value: number): void;
   readonly inputSource: {
     readonly targetRaySpace: object;
@@ -48,12 +48,12 @@ interface TrackedInput {
 
 declare global {
   interface Window {
-    /** Put there by `reachDevice` in this file: the emulator that iwer keeps behind navigator.xr. */
+    /** Set by `reachDevice` in this file: the emulator that iwer stores in navigator.xr. */
     emulatedDevice: Device;
   }
 }
 
-/** Finds the emulator behind navigator.xr, which iwer keeps under a symbol, and keeps it for the other functions here. */
+/** Finds the emulator that iwer stores in navigator.xr under a symbol, and stores it for the other functions here. */
 async function reachDevice(page: Page): Promise<void> {
   await page.waitForFunction(() => {
     const system = navigator.xr as unknown as Record<symbol, { device: Window['emulatedDevice'] }> | undefined;
@@ -64,7 +64,7 @@ async function reachDevice(page: Page): Promise<void> {
   });
 }
 
-/** Resolves after as many animation frames of the page. */
+/** Resolves after this number of animation frames of the page. */
 export async function frames(page: Page, count: number): Promise<void> {
   await page.evaluate(
     (left) =>
@@ -76,32 +76,32 @@ export async function frames(page: Page, count: number): Promise<void> {
   );
 }
 
-/** Steers the emulated headset of a page. */
+/** Controls the emulated headset of a page. */
 export interface EmulatedHeadset {
   place(placement: Placement): Promise<void>;
   setConnected(side: Side, connected: boolean): Promise<void>;
   useInput(mode: 'controller' | 'hand'): Promise<void>;
-  /** How far a tracked hand pinches, 0 to 1. */
+  /** Sets how far a tracked hand pinches, 0 to 1. */
   pinch(side: Side, closed: number): Promise<void>;
-  /** How far a controller's trigger is pressed, 0 to 1. */
+  /** Sets how far a controller's trigger is pressed, 0 to 1. */
   pull(side: Side, pressed: number): Promise<void>;
   recentre(): Promise<void>;
   setVisibility(state: 'visible' | 'visible-blurred' | 'hidden'): Promise<void>;
   endSession(): Promise<void>;
-  /** Pose in the floor frame of the controller's grip as WebXR reports it, from iwer's own matrices. */
+  /** Returns the pose of the controller's grip in the floor frame as WebXR reports it, from iwer's own matrices. */
   grip(side: Side): Promise<PlacedPose>;
-  /** Pose in the floor frame of the tracked hand's wrist joint. */
+  /** Returns the pose of the tracked hand's wrist joint in the floor frame. */
   wristJoint(side: Side): Promise<PlacedPose>;
 }
 
-/** Takes the emulator of the page in hand; waits until the page has installed it. */
+/** Returns the controls of the page's emulator; waits until the page has installed it. */
 export async function emulatedHeadset(page: Page): Promise<EmulatedHeadset> {
   await reachDevice(page);
 
   const place = (placement: Placement) =>
     page.evaluate((wanted) => {
       const device = window.emulatedDevice;
-      // Else the emulator's own panel puts head and hands back where its mouse left them, in every frame.
+      // Otherwise the emulator's own panel resets head and hands to its own poses in every frame.
       device.controlMode = 'programmatic';
       const put = (
         target: { position: { set(...xyz: Point): void }; quaternion: { set(...xyzw: Rotation): void } },
@@ -117,14 +117,14 @@ export async function emulatedHeadset(page: Page): Promise<EmulatedHeadset> {
       }
     }, placement);
 
-  /** The pose of one of an input's spaces: iwer's 4×4 matrices, column by column, from the space up to the floor. */
+  /** Returns the pose of a space of an input: the product of iwer's column-major 4×4 matrices up to the floor. */
   const spacePose = (side: Side, name: 'gripSpace' | 'wrist'): Promise<PlacedPose> =>
     page.evaluate(
       ([side, name]) => {
         type Space = { offsetMatrix: ArrayLike<number>; parentSpace?: object };
         const { controllers, hands } = window.emulatedDevice;
         const input = (name === 'wrist' ? hands : controllers)[side];
-        // A session does this in every frame; outside of one it has to be done here.
+        // A session does this in every frame; without a session it has to be done here.
         input.updateTargetRaySpace();
         const source = input.inputSource;
         const own = (space: object) => {
@@ -142,7 +142,7 @@ export async function emulatedHeadset(page: Page): Promise<EmulatedHeadset> {
           matrix = new DOMMatrix(Array.from(own(space).offsetMatrix)).multiply(matrix);
         }
         const m = matrix;
-        // The largest of the four components first: the others follow from it without cancellation.
+        // The largest of the four components comes first: the others follow from it without cancellation.
         const squares = [
           1 + m.m11 - m.m22 - m.m33,
           1 - m.m11 + m.m22 - m.m33,

@@ -1,12 +1,12 @@
 import { writeFileSync } from 'node:fs';
 
-/** Samples a second of the file below. */
+/** The sample rate of the file [Hz]. */
 const rate = 48_000;
 const seconds = 4;
 
 /**
- * Writes a WAV file of a voice-like sound: five harmonics that swell and fade four times a second, as syllables do, so that no suppression of noise
- * takes it for a hum. It can be played in a loop without a click.
+ * Writes a WAV file of a voice-like sound: five harmonics that swell and fade four times a second, as syllables do.
+ * Noise suppression would remove a steady tone. The file can be played in a loop without a click.
  */
 export function writeFakeVoice(path: string): void {
   const count = rate * seconds;

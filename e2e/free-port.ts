@@ -1,7 +1,7 @@
 import { once } from 'node:events';
 import { createServer } from 'node:net';
 
-/** A port of loopback that was free a moment ago. */
+/** Returns a TCP port of loopback that was free when it was probed. */
 export async function freePort(): Promise<number> {
   const probing = createServer().listen(0, '127.0.0.1');
   await once(probing, 'listening');

@@ -1,16 +1,16 @@
-// A person in a room without a page, as a process of its own: what this one imports, Playwright's loader does not read.
+// A room client without a page, as a separate process: Playwright's loader does not load what it imports.
 import { createHash } from 'node:crypto';
 import { createAvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
 import { arrive, until } from '../tests/rooms/server/running-relay';
 
 export interface GuestOrder {
   readonly id: number;
-  /** A file to be put on; null: to be asked whether the server still has the last one. */
+  /** The avatar file to wear; null: ask the server for the hash of the last one. */
   readonly file: Uint8Array<ArrayBuffer> | null;
 }
 export interface GuestAnswer {
   readonly id: number;
-  /** Of the file that is on, or was asked for; null: the server has none. */
+  /** The hash of the file that is worn or was asked for; null: the server has none. */
   readonly hash: string | null;
   readonly refused?: string;
 }
@@ -34,7 +34,7 @@ process.on('message', (order: GuestOrder) => {
     (error: Error) => process.send?.({ id: order.id, hash: null, refused: error.message } satisfies GuestAnswer),
   );
 });
-// Its seat is free for the next one at once.
+// The client leaves at once, so that its seat is free for the next one.
 process.on('disconnect', () => {
   person.stop();
   setTimeout(() => process.exit(0), 100);

@@ -3,7 +3,7 @@ import { menuHeight, menuWidth } from 'threepoint-page/activity/activity-menu';
 import { playerHeight } from 'threepoint-page/ball/players-sheet';
 import { emulatedHeadset, frames } from './emulated-headset';
 
-/** What is written on the sheets of the headset, and where on its canvas [pixels]. */
+/** A text drawn on one of the headset's sheets, and its position on the canvas [pixels]. */
 interface Written {
   readonly text: string;
   readonly x: number;
@@ -11,34 +11,35 @@ interface Written {
 }
 declare global {
   interface Window {
-    /** Put there by `keepWritten`. */
-    writtenOnCanvases?: Written[];
+    /** Set by `recordCanvasText`. */
+    canvasTexts?: Written[];
   }
 }
 
-/** In the page, before anything of it: canvases tell a test what is written on them from then on. */
-export function keepWritten(): void {
+/** Records all text that is drawn on canvases; an init script that runs in the page. */
+export function recordCanvasText(): void {
   const { fillText } = CanvasRenderingContext2D.prototype;
   const written: Written[] = [];
-  window.writtenOnCanvases = written;
+  window.canvasTexts = written;
   CanvasRenderingContext2D.prototype.fillText = function (text, x, y, ...rest) {
     written.push({ text, x, y });
     fillText.call(this, text, x, y, ...rest);
   };
 }
 
-export const writtenAs = (page: Page, text: string) =>
-  page.waitForFunction((wanted) => window.writtenOnCanvases?.findLast(({ text }) => text === wanted), text);
+export const waitForCanvasText = (page: Page, text: string) =>
+  page.waitForFunction((wanted) => window.canvasTexts?.findLast(({ text }) => text === wanted), text);
 
-/** The menu's middle [m] and its yaw, floor frame (app/shell/vr-menu/vr-menu.ts); eyes that look at it from a metre away. */
+/** The menu's centre [m] and yaw in the floor frame, as set in the page's shell/vr-menu. */
 const menuAt = [1.1, 1.3, -1.15] as const;
 const menuYaw = -0.74;
+/** The head pose that looks at the menu from a distance of 1 m. */
 export const lookingAtMenu = {
   position: [menuAt[0] + Math.sin(menuYaw), 1.3, menuAt[2] + Math.cos(menuYaw)],
   orientation: [0, Math.sin(menuYaw / 2), 0, Math.cos(menuYaw / 2)],
 } as const;
 
-/** Pulls the right trigger at this place of the menu's sheet: 40 cm before it, straight at it. */
+/** Pulls the right trigger while the controller points at this position of the menu's sheet from 40 cm in front of it. */
 async function pullAt(page: Page, { x, y }: Written): Promise<void> {
   const headset = await emulatedHeadset(page);
   const { sine, cosine } = { sine: Math.sin(menuYaw), cosine: Math.cos(menuYaw) };
@@ -60,16 +61,16 @@ async function pullAt(page: Page, { x, y }: Written): Promise<void> {
   await frames(page, 3);
 }
 
-/** Presses what has this word on the menu in the headset. */
+/** Presses the item with this label on the headset's menu. */
 export async function pressInMenu(page: Page, label: string): Promise<void> {
-  await pullAt(page, (await (await writtenAs(page, label)).jsonValue()) as Written);
+  await pullAt(page, (await (await waitForCanvasText(page, label)).jsonValue()) as Written);
 }
 
-/** Presses the button with this word that stands below this name in the menu's list of the other players, as it was drawn last. */
+/** Presses the button with this label below this player's name in the menu's list of players, as drawn last. */
 export async function pressBelow(page: Page, name: string, label: string): Promise<void> {
   const found = await page.waitForFunction(
     ({ name, label, playerHeight }) => {
-      const written = window.writtenOnCanvases ?? [];
+      const written = window.canvasTexts ?? [];
       const list = written.slice(written.findLastIndex(({ text }) => text === 'Other players'));
       const named = list.find(({ text }) => text === name);
       const below = list.slice(

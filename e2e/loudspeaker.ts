@@ -10,21 +10,24 @@ const program = installed('pulseaudio');
 const control = installed('pactl');
 export const loudspeakerInstalled = program !== null && control !== null;
 
-/** A loudspeaker that the microphone stands beside: what a program plays, it hears, as loud, with the delay of both buffers, without a room. */
+/**
+ * A virtual loudspeaker whose output is the microphone's input: at the same level, delayed by both buffers, without
+ * reverberation.
+ */
 export interface Loudspeaker {
-  /** Of a program that is to use both. */
+  /** The environment of a process that uses this loudspeaker and microphone. */
   readonly environment: Readonly<Record<string, string>>;
   close(): Promise<void>;
 }
 
-/** PulseAudio, for this test alone, with a sink that goes nowhere and a source that has what it plays. */
+/** Starts a PulseAudio for this test alone, with a null sink and a source that records the sink's output. */
 export async function startLoudspeaker(): Promise<Loudspeaker> {
   const folder = mkdtempSync(join(tmpdir(), 'threepoint-sound-'));
   const socket = join(folder, 'socket');
   const own = { ...process.env, HOME: folder, XDG_RUNTIME_DIR: folder } as Record<string, string>;
   const modules = [
     'module-null-sink sink_name=loudspeaker rate=48000',
-    // A monitor is no microphone to Chromium; what is made from one is.
+    // Chromium does not offer a monitor as a microphone, but it offers a source remapped from one.
     'module-remap-source master=loudspeaker.monitor source_name=microphone',
     `module-native-protocol-unix socket=${socket} auth-anonymous=1`,
   ];

@@ -1,9 +1,9 @@
 import type { Page } from '@playwright/test';
 
-/** What the page shows of motion capture that is open. */
+/** The page's card of the open motion capture. */
 export const card = (page: Page) => page.getByRole('region', { name: 'Motion capture' });
 
-/** Opens these files as a person does who chooses them in the panel. */
+/** Opens these files through the panel's file input. */
 export async function choose(
   page: Page,
   files: Parameters<ReturnType<Page['locator']>['setInputFiles']>[0],
@@ -12,6 +12,6 @@ export async function choose(
   await page.getByLabel('Open motion capture').and(page.locator('input')).setInputFiles(files);
 }
 
-/** The numbers of a row of the card [cm]: of the picture and of the clip, for each method. */
+/** Returns the errors in a row of the card [cm]: of the current moment and of the clip, for each method. */
 export const errors = async (page: Page, joint: string): Promise<number[]> =>
   (await card(page).getByRole('row', { name: joint }).getByRole('cell').allTextContents()).map(Number);

@@ -5,12 +5,12 @@ import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import { serve } from 'threepoint-http/web-server';
 import type { Probe } from 'threepoint-page/shell/probe';
 import { createPageHandler } from '../server/page';
-import { driveTime, letTimePass, rest } from './driven-time';
+import { driveTime, endDrivenTime, rest } from './driven-time';
 import { type EmulatedHeadset, emulatedHeadset, frames, type Point } from './emulated-headset';
 
 export { expect };
 
-/** One snapshot of the probe; the page must have made it by now. */
+/** Returns a snapshot of the page's probe. Throws if the page has not installed it yet. */
 export function probe(page: Page): Promise<Probe> {
   return page.evaluate(() => {
     if (!window.threepoint) throw new Error('the page has no window.threepoint');
@@ -18,7 +18,7 @@ export function probe(page: Page): Promise<Probe> {
   });
 }
 
-/** Waits until the page plays the ball game in a room that has taken it in. */
+/** Waits until the page plays the ball game and has joined its room. */
 export async function joinedRoom(page: Page): Promise<void> {
   await page.waitForFunction(
     () => {
@@ -30,7 +30,7 @@ export async function joinedRoom(page: Page): Promise<void> {
   );
 }
 
-/** Where a joint is now [m], floor frame; an avatar that has only just been opened is waited for. */
+/** Returns a joint's current position [m, floor frame]; waits for an avatar that is still loading. */
 export async function joint(page: Page, name: string): Promise<Point> {
   const shown = await page.waitForFunction((name) => window.threepoint?.probe().avatar.joints[name], name);
   const position = await shown.jsonValue();
@@ -38,7 +38,7 @@ export async function joint(page: Page, name: string): Promise<Point> {
   return position;
 }
 
-/** Where a joint comes to a stand [m], floor frame: the arm of a hand that has only just been seen is on its way there. */
+/** Returns a joint's position [m, floor frame] once it is still: an arm blends towards a hand that is newly tracked. */
 export async function settledJoint(page: Page, name: string): Promise<Point> {
   let still = 0;
   let position = await joint(page, name);
@@ -61,18 +61,18 @@ export function distance(a: Point, b: Point): number {
   return Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/** Estimators in the order of their keys on the page. */
+/** The estimators in the order of their keys on the page. */
 const estimatorKeys: readonly EstimatorName[] = ['learned', 'ik', 'paper', 'hands-only'];
 
-/** What a page was left with: as it was after loading, a test may find it without loading it anew. */
+/** The state of a page right after loading. A page that can be reset to it is reused without a reload. */
 interface LoadedPage {
-  /** Of the address, without the estimator. */
+  /** The query of the page's address, without the estimator. */
   readonly query: string;
   readonly left: string;
 }
 const loaded = new WeakMap<Page, LoadedPage>();
 
-/** Everything that a test can change in the studio and that the next one would notice, as one text. */
+/** Returns all state of the studio that a test can change and that would affect the next test, as one string. */
 const stateOf = (page: Page): Promise<string> =>
   page.evaluate(() => {
     const { calibration, view, recorder, avatar, notices } = window.threepoint!.probe();
@@ -80,7 +80,7 @@ const stateOf = (page: Page): Promise<string> =>
       (each) => each.checked,
     );
     const tab = document.querySelector('[role=tab][aria-selected=true]')?.textContent;
-    // Which estimator is remembered does not matter: a test that opens the page names one. What is empty was forgotten.
+    // The stored estimator does not matter, because `open` sets it. Empty values equal absent ones.
     const stored = Object.values({ ...localStorage, ...sessionStorage }).map((text) =>
       text.replace(/"estimator":"[a-z-]+",?/, '').replace(/^\{\}$/, ''),
     );
@@ -96,9 +96,9 @@ const stateOf = (page: Page): Promise<string> =>
     ]);
   });
 
-/** Takes the emulated headset off and lays its controllers down where they were; nothing where the page has none. */
-async function layDown(page: Page): Promise<void> {
-  await letTimePass(page);
+/** Ends the session and resets the emulated headset and controllers to their initial state, if the page has them. */
+async function resetHeadset(page: Page): Promise<void> {
+  await endDrivenTime(page);
   await page.evaluate(async (placement) => {
     const device = window.emulatedDevice;
     if (!device) return;
@@ -117,52 +117,52 @@ async function layDown(page: Page): Promise<void> {
       for (const button of ['trigger', 'squeeze'] as const) device.controllers[side].updateButtonValue(button, 0);
       device.hands[side].updatePinchValue(0);
     }
-  }, laidDown);
+  }, initialPlacement);
   await page.waitForFunction(() => window.threepoint?.probe().activity === 'desktop');
 }
 
-/** A headset that has been worn has measured its wearer's height; presses the page's own button against that. */
+/** Resets the calibration with the page's own button: a session measures the user's height. */
 async function resetCalibration(page: Page): Promise<void> {
   const reset = page.getByRole('button', { name: 'Reset calibration', includeHidden: true });
   await reset.evaluate((button: HTMLButtonElement) => button.click());
 }
 
-const laidDown = {
+const initialPlacement = {
   head: [0, 1.6, 0],
   left: [-0.25, 1.1, -0.3],
   right: [0.25, 1.1, -0.3],
 } as const satisfies Record<string, Point>;
 
-/** Takes the page back to how it was when it had loaded; false where a test has changed more than that can undo. */
-async function takenBack(page: Page): Promise<boolean> {
+/** Resets the page to its state after loading; resolves to false if a test has changed more than this can undo. */
+async function resetToLoaded(page: Page): Promise<boolean> {
   const before = loaded.get(page);
   if (!before) return false;
-  await layDown(page);
+  await resetHeadset(page);
   await resetCalibration(page);
   return (await stateOf(page)) === before.left;
 }
 
 /**
- * Opens the page with this query and waits until a body is on the screen. A studio that has been opened with it before and is as it was
- * then, is not loaded again: only its estimator is chosen as the query says. Games and studies begin anew.
+ * Opens the page with this query and waits until a body is drawn. A studio already open with the same query is reset and
+ * reused: only the estimator is set. Games and studies are always reloaded.
  */
 export async function open(page: Page, query: string): Promise<void> {
   const wanted = new URLSearchParams(query);
   const estimator = (wanted.get('estimator') ?? 'learned') as EstimatorName;
   wanted.delete('estimator');
   const studio = !wanted.has('play') && !wanted.has('study');
-  if (studio && loaded.get(page)?.query === wanted.toString() && (await takenBack(page))) {
+  if (studio && loaded.get(page)?.query === wanted.toString() && (await resetToLoaded(page))) {
     await page.evaluate(() => (document.activeElement as HTMLElement | null)?.blur());
     await page.keyboard.press(String(estimatorKeys.indexOf(estimator) + 1));
     await expect.poll(async () => (await probe(page)).estimator, { intervals: [20] }).toBe(estimator);
     return;
   }
-  if (loaded.has(page)) await forget(page);
+  if (loaded.has(page)) await clearStorage(page);
   await load(page, query);
 }
 
-/** Empties what the page keeps in this browser, as for a visitor who comes for the first time. */
-async function forget(page: Page): Promise<void> {
+/** Clears what the page stores in this browser, as on a first visit. */
+async function clearStorage(page: Page): Promise<void> {
   await page.evaluate(async () => {
     localStorage.clear();
     sessionStorage.clear();
@@ -170,7 +170,7 @@ async function forget(page: Page): Promise<void> {
   });
 }
 
-/** Loads the page with this query, as a visitor does who comes again: what it remembers, it remembers. */
+/** Loads the page with this query, as on a later visit: the page's stored data is kept. */
 export async function load(page: Page, query: string): Promise<void> {
   loaded.delete(page);
   await page.goto(`/?${query}`);
@@ -182,18 +182,18 @@ export async function load(page: Page, query: string): Promise<void> {
   loaded.set(page, { query: kept.toString(), left: await stateOf(page) });
 }
 
-/** Opens the page with the emulator, no actor moving it, drawn small. */
+/** Opens the page with the emulator, without the actor, at low quality. */
 export async function openWithHeadset(page: Page, query = ''): Promise<EmulatedHeadset> {
   await open(page, `emulate&actor=off&quality=low${query ? `&${query}` : ''}`);
   return emulatedHeadset(page);
 }
 
 /**
- * Presses the button as a person would, and waits for the session. There the page's time is driven, in the usual steps or in these [ms];
- * null: it goes on as it does, for what is about time itself or about what is drawn meanwhile.
+ * Presses the page's button and waits for the session. The page's time is then driven, by default in steps of 25 ms.
+ * `stepMs: null` keeps real time, for tests about time itself or about drawing.
  */
 export async function enterVr(page: Page, { stepMs }: { readonly stepMs?: number | null } = {}): Promise<void> {
-  // In a study the button speaks the participant's language.
+  // In a study the button is in the participant's language.
   await page.getByRole('button', { name: /Enter VR|VR starten/ }).click();
   await page.waitForFunction(() => Boolean(window.emulatedDevice?.activeSession));
   if (stepMs !== null) await driveTime(page, stepMs);
@@ -202,19 +202,22 @@ export async function enterVr(page: Page, { stepMs }: { readonly stepMs?: number
 
 const artifacts = fileURLToPath(new URL('../artifacts/screenshots/', import.meta.url));
 
-/** Keeps a picture for people to look at: artifacts/screenshots/NAME.png. */
+/** Saves a screenshot for people to look at: artifacts/screenshots/NAME.png. */
 export async function keepPicture(page: Page, name: string): Promise<void> {
   mkdirSync(artifacts, { recursive: true });
   await page.evaluate(() => window.drivenTime?.drawn());
   await page.screenshot({ path: `${artifacts}${name}.png` });
 }
 
-/** Complaints of the page that a test brings about on purpose, as patterns. */
+/** The errors of the page that a test causes on purpose, as patterns. */
 export interface ExpectedComplaints {
   allow(...patterns: RegExp[]): void;
 }
 
-/** A page in a context of its own that says where its policy is broken. Addresses are relative to `base`; `kept`: the browser may keep it. */
+/**
+ * Opens a page in a new context that logs violations of its content security policy. Addresses are relative to `base`;
+ * `kept` allows the service worker.
+ */
 export async function newPage(browser: Browser, base: string, kept = false): Promise<Page> {
   const context = await browser.newContext({ baseURL: base, serviceWorkers: kept ? 'allow' : 'block' });
   const page = await context.newPage();
@@ -226,28 +229,28 @@ export async function newPage(browser: Browser, base: string, kept = false): Pro
   return page;
 }
 
-/** Hears what a page complains about until it is stopped, requests for what is not below `home` included; the texts fill as they come. */
-export function listen(page: Page, home: string): { readonly heard: readonly string[]; stop(): void } {
-  const heard: string[] = [];
+/** Collects a page's errors, and its requests outside `home`, until it is stopped; the list grows as they occur. */
+export function collectErrors(page: Page, home: string): { readonly errors: readonly string[]; stop(): void } {
+  const errors: string[] = [];
   const onConsole = (message: ConsoleMessage) => {
-    // A blocked resource shows as an error of the console too: violations of the policy land here.
-    if (message.type() === 'error') heard.push(`console: ${message.text()} (${message.location().url})`);
+    // A blocked resource is a console error too, so this includes violations of the policy.
+    if (message.type() === 'error') errors.push(`console: ${message.text()} (${message.location().url})`);
   };
-  const onError = (error: Error) => heard.push(`exception: ${error.stack ?? error.message}`);
+  const onError = (error: Error) => errors.push(`exception: ${error.stack ?? error.message}`);
   const onRequest = (request: Request) => {
     const { protocol, href, origin } = new URL(request.url());
-    if (!['data:', 'blob:'].includes(protocol) && !href.startsWith(home)) heard.push(`asked ${origin}: ${href}`);
+    if (!['data:', 'blob:'].includes(protocol) && !href.startsWith(home)) errors.push(`asked ${origin}: ${href}`);
   };
   page.on('console', onConsole).on('pageerror', onError).on('request', onRequest);
   return {
-    heard,
+    errors,
     stop: () => page.off('console', onConsole).off('pageerror', onError).off('request', onRequest),
   };
 }
 
 /**
- * Tests on the built page, served as `npm start` serves it; each also fails on anything the page complains about. They share one page,
- * which `open` loads anew only where it must; a test that changes the browser around the page takes `freshTest`.
+ * The test function for the built page, served as `npm start` serves it. A test also fails on any error of the page.
+ * Tests share one page, which `open` reloads only when needed; tests that change the browser itself use `freshTest`.
  */
 export const test = base.extend<{ complaints: ExpectedComplaints }, { origin: string; sharedPage: Page }>({
   origin: [
@@ -281,12 +284,12 @@ export const test = base.extend<{ complaints: ExpectedComplaints }, { origin: st
 
   complaints: [
     async ({ page, origin }, use) => {
-      const { heard, stop } = listen(page, `${origin}/`);
+      const { errors, stop } = collectErrors(page, `${origin}/`);
       const allowed: RegExp[] = [];
       await use({ allow: (...patterns) => allowed.push(...patterns) });
       stop();
       expect(
-        heard.filter((text) => !allowed.some((pattern) => pattern.test(text))),
+        errors.filter((text) => !allowed.some((pattern) => pattern.test(text))),
         'complaints of the page',
       ).toEqual([]);
     },
@@ -294,7 +297,7 @@ export const test = base.extend<{ complaints: ExpectedComplaints }, { origin: st
   ],
 });
 
-/** The same with a browser context of the test's own: nothing stored, nothing replaced by another test. */
+/** Like `test`, with a new browser context for each test: nothing is stored or replaced by another test. */
 export const freshTest = test.extend({
   page: async ({ browser, origin, viewport }, use) => {
     const page = await newPage(browser, origin);

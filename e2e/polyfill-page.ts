@@ -1,4 +1,4 @@
-// A page of another engine: it knows WebXR alone, asks for the body of WebXR Body Tracking, and runs on an emulated headset without one.
+// A page that uses WebXR directly, without three.js: it requests WebXR Body Tracking on an emulated headset that lacks it.
 import { metaQuest3, XRDevice } from 'iwer';
 import { installBodyTracking } from 'threepoint/api/polyfill';
 
@@ -30,12 +30,12 @@ async function begin(init: XRSessionInit): Promise<XRSession> {
   return session;
 }
 
-/** What the page sees after so many frames. */
+/** Resolves to the result of `look` in the last of this number of frames. */
 function after<Result>(session: XRSession, frames: number, look: (frame: FrameWithBody) => Result): Promise<Result> {
   return new Promise((resolve, reject) => {
     let left = frames;
     const step = (_: number, frame: XRFrame): void => {
-      // A page that looks at its body in every frame.
+      // The page reads its body in every frame.
       const { body } = frame as FrameWithBody;
       const space = body?.get('hips');
       if (space) frame.getPose(space, space);

@@ -2,7 +2,7 @@ import { readFileSync } from 'node:fs';
 import type { Page } from '@playwright/test';
 import { expect, open, probe } from './page-fixture';
 
-/** So many seconds of the actor, recorded by the page. */
+/** Records this many seconds of the actor with the page's recorder. */
 export async function recordTheActor(page: Page, seconds = 1.5): Promise<void> {
   await open(page, 'emulate&quality=low&estimator=ik');
   await page.getByRole('tab', { name: 'Recording' }).click();
@@ -11,7 +11,7 @@ export async function recordTheActor(page: Page, seconds = 1.5): Promise<void> {
   await page.getByRole('button', { name: 'Stop' }).click();
 }
 
-/** What the page offers for download when this button is pressed. */
+/** Presses a button and returns the file that the page offers for download. */
 export async function downloaded(
   page: Page,
   button: string,

@@ -19,7 +19,7 @@ export const test = pageTest.extend<object, { origin: string }>({
 
 declare global {
   interface Window {
-    /** Set by a test: this page draws twice a second. */
+    /** Set by a test: the page draws twice a second. */
     resting?: boolean;
   }
 }
@@ -41,8 +41,9 @@ export const stretched = {
 } as const;
 
 /**
- * Points the right controller's ray at a target of the sheet, waits until it is lit and pulls the trigger; `leave`: takes the arms back
- * to where calibration wants them before the trigger is let go. All within the page: on a slow machine every word to it costs a frame.
+ * Points the right controller's ray at a target of the sheet, waits until it is highlighted and pulls the trigger. `leave`
+ * returns the arms to the calibration pose before the trigger is released. It all runs inside the page, because on a slow
+ * machine each call into the page costs a frame.
  */
 export const press = (page: Page, id: string, leave = false): Promise<void> =>
   page.evaluate(
@@ -69,12 +70,12 @@ export const press = (page: Page, id: string, leave = false): Promise<void> =>
       left.position.set(-0.19, 1.4, -0.6);
       for (const hand of [left, right]) {
         hand.quaternion.set(...upright);
-        // The built-in archer may hold a bow drawn when its round ends: a trigger that is held cannot be pulled.
+        // The built-in archer may hold the bow drawn when its round ends: a trigger that is held cannot be pulled.
         hand.updateButtonValue('trigger', 0);
       }
-      // The ray may lie on the target already: a frame must see the trigger let go.
+      // The ray may be on the target already: one frame must see the trigger released.
       await frame();
-      // The sheet comes up with a wearer who has just risen.
+      // The sheet follows the user's head when they have just stood up.
       await until(() => aimed() && study()?.pointedAt === id);
       const before = JSON.stringify(study()?.screen);
       right.updateButtonValue('trigger', 1);
@@ -99,8 +100,8 @@ export async function headsetOf(page: Page): Promise<EmulatedHeadset> {
   return emulatedHeadset(page);
 }
 
-/** Says about oneself what has to be said; not handed in yet. */
-export async function tellOfOneself(page: Page): Promise<void> {
+/** Fills in the demographic questions; does not submit them. */
+export async function fillInDemographics(page: Page): Promise<void> {
   await page.getByLabel('I prefer not to say').check();
   await page.getByLabel(/Age/).fill('26');
   await page.getByLabel(/Field of study/).fill('Computer science');
@@ -109,24 +110,24 @@ export async function tellOfOneself(page: Page): Promise<void> {
   await page.getByLabel('Well without correction').check();
 }
 
-/** Consents to what is shown, notes the code and hands in what has to be said about oneself. */
-export async function agreeAndTell(page: Page): Promise<void> {
+/** Consents, confirms the withdrawal code and submits the demographic questions. */
+export async function consentAndFillIn(page: Page): Promise<void> {
   await page.getByLabel(/I have read this/).check();
   await page.getByRole('button', { name: 'I agree' }).click();
   await page.getByRole('button', { name: 'I have noted it' }).click();
-  await tellOfOneself(page);
+  await fillInDemographics(page);
   await page.getByRole('button', { name: 'Continue' }).click();
 }
 
 export async function calibrate(page: Page): Promise<void> {
   await reaches(page, 'calibration');
   await press(page, 'calibrate', true);
-  // Five seconds of the page's time are fifty frames, and each costs what the machine needs for it.
+  // Five seconds of the page's time are fifty frames, which may take long on a slow machine.
   await expect.poll(() => screen(page), { intervals: [100], timeout: 90_000 }).toMatch(/-(ready|failed)$/);
   expect(await screen(page)).toMatch(/-ready$/);
 }
 
-/** Questions and rounds need few frames, and each draws the sheet anew. */
+/** The step for questionnaires and rounds, which need few frames: each frame redraws the sheet. */
 export const tenHertz = { stepMs: 100 };
 
 export const recordsOf = async (origin: string, id: string): Promise<readonly StudyRecord[]> =>

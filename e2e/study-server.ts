@@ -13,7 +13,7 @@ export const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 
 const atRoot = (path: string) => fileURLToPath(new URL(`../${path}`, import.meta.url));
 
-/** The server as `npm start` runs it, with these settings, on a port of its own; what is recorded is gone when it closes. */
+/** Starts the server as `npm start` does, with these settings, on a free port; its records are deleted when it closes. */
 export async function serveStudies(settings: Readonly<Record<string, string>> = {}) {
   const directory = mkdtempSync(join(tmpdir(), 'threepoint-studies-'));
   const child = spawn(process.execPath, ['--import', 'tsx', 'server/main.ts', '--port', '0', '--studies', directory], {
@@ -41,7 +41,7 @@ export async function serveStudies(settings: Readonly<Record<string, string>> = 
   };
 }
 
-/** The paper's study with its times cut short, archery alone. */
+/** Returns the paper's study with shortened times and archery alone. */
 export function shortStudy(id: string): StudyPlan {
   const paper = parsePlan(readFileSync(atRoot('public/studies/paper.json'), 'utf8'), 'paper.json');
   return {
@@ -59,7 +59,7 @@ export function shortStudy(id: string): StudyPlan {
   };
 }
 
-/** The ball game alone, for one group of three, with matches of so many seconds, without practice and questionnaire time. */
+/** Returns a study of the ball game alone, for one group of three, with matches of this length and without practice. */
 export function shortBallStudy(id: string, trialSeconds: number): StudyPlan {
   const paper = parsePlan(readFileSync(atRoot('public/studies/paper.json'), 'utf8'), 'paper.json');
   return {
@@ -77,7 +77,7 @@ export function shortBallStudy(id: string, trialSeconds: number): StudyPlan {
   };
 }
 
-/** Speaks to the experimenter's side of a server. */
+/** A client of the experimenter's API of a server. */
 export function experimenter(origin: string) {
   const ask = (path: string, method = 'GET', body?: unknown) =>
     fetch(`${origin}/api/studies${path}`, {
@@ -87,7 +87,7 @@ export function experimenter(origin: string) {
     });
   return {
     ask,
-    /** The link to a participant's place, as the experimenter's page shows it, with switches of the page. */
+    /** Returns a participant's link as the experimenter's page shows it, with additional parameters of the page. */
     async link(study: string, participant: string, switches = ''): Promise<string> {
       const { participants } = (await (await ask(`/${study}/participants`)).json()) as {
         participants: readonly ParticipantState[];
@@ -95,7 +95,7 @@ export function experimenter(origin: string) {
       const invitation = participants.find((one) => one.participant === participant)?.invitation ?? null;
       return new URL(studyLink({ study, participant, invitation }).replace('#', `${switches}#`), origin).href;
     },
-    /** Takes a participant's place and consents; returns the way to the place. */
+    /** Claims a participant's place and consents; returns the place's path in the API. */
     async consented({ id: study, consent }: StudyPlan, participant: string): Promise<string> {
       const place = `/${study}/participants/${participant}`;
       const at = Date.now() / 1000;

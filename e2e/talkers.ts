@@ -9,28 +9,28 @@ import { serveStudies } from './study-server';
 
 export interface Talker {
   readonly page: Page;
-  /** The browser's own process. */
+  /** The process id of the browser. */
   readonly pid: number;
 }
 
 export interface TalkerOptions {
-  /** refused: by the browser, when the page asks for it. */
+  /** `refused`: the browser denies the page's request. */
   readonly microphone?: 'given' | 'refused' | 'none';
-  /** Of the address, beside or instead of the usual. */
+  /** Query parameters that extend or replace the default ones. */
   readonly query?: string;
-  /** Runs in the page before anything of it. */
+  /** A script that runs in the page before its own scripts. */
   readonly inPage?: () => void;
-  /** What is seen of the page [CSS pixels]. */
+  /** The size of the viewport [CSS pixels]. */
   readonly viewport?: { readonly width: number; readonly height: number };
-  /** Environment of a browser that uses the sound of the machine, instead of a microphone that says syllables. */
+  /** The environment of a browser that uses the machine's audio devices instead of the fake microphone. */
   readonly device?: Readonly<Record<string, string>>;
-  /** Of its frames four a second are computed and next to none is drawn: for a person who is only heard. */
+  /** Computes four frames a second and draws almost none, for tests that only need this page's voice. */
   readonly seldomDrawn?: boolean;
 }
 
 /**
- * In the page: four frames a second, each computed whole; one a minute is drawn too. Several people on a machine that draws in software leave
- * each other no time, and what is said and kept does not depend on what is drawn.
+ * Computes four frames a second and draws one a minute; runs in the page. With software rendering several pages would
+ * starve each other, and voices do not depend on drawing.
  */
 function drawSeldom(): void {
   const waiting = new Map<number, FrameRequestCallback>();
@@ -66,19 +66,19 @@ function drawSeldom(): void {
   }
 }
 
-/** Drawn by a graphics device in software, what is written on the game's boards costs more than all the rest. */
+/** Flags that draw 2D canvases on the CPU: on a software GPU the text of the game's boards costs most of a frame. */
 const withoutGraphics = ['--disable-accelerated-2d-canvas', '--disable-gpu-compositing', '--disable-gpu-rasterization'];
 
 type Server = Awaited<ReturnType<typeof serveStudies>>;
 
 interface VoicesFixtures {
-  /** A server with these settings, until the test ends. */
+  /** Starts a server with these settings, which closes when the test ends. */
   serve(settings?: Readonly<Record<string, string>>): Promise<Server>;
-  /** A person in a browser of their own, in one room of the server at this address, with a microphone that says syllables. */
+  /** Starts a browser whose page joins the room of the server at this origin, with a fake microphone that plays a voice. */
   talker(origin: string, name: string, options?: TalkerOptions): Promise<Talker>;
 }
 
-/** Tests with servers and people who talk; all of them end with the test. */
+/** The test function for tests with servers and browsers that talk; all of them close when the test ends. */
 export const test = base.extend<VoicesFixtures, { voiceFile: string }>({
   voiceFile: [
     // biome-ignore lint/correctness/noEmptyPattern: Playwright reads the fixture's needs from this pattern
@@ -103,7 +103,7 @@ export const test = base.extend<VoicesFixtures, { voiceFile: string }>({
     for (const server of servers) await server.close();
   },
 
-  // After `serve`: browsers are closed before the servers that their pages are from.
+  // The dependency on `serve` closes browsers before the servers of their pages.
   talker: async ({ serve: _, voiceFile, launchOptions }, use) => {
     const browsers: { close(): Promise<void> }[] = [];
     const usual = { width: 1100, height: 700 };
@@ -145,7 +145,7 @@ export const voicesOf = async (page: Page): Promise<VoicesProbe> => {
   return game.voices;
 };
 
-/** How it stands with the only other person, as this page has it. */
+/** Returns the state of the only other person's voice, as this page has it. */
 export const otherOf = async (page: Page) => (await voicesOf(page)).people[0];
 
 export const bar = (page: Page) => page.getByRole('group', { name: 'Voices', exact: true });
@@ -159,7 +159,7 @@ export async function joinVoices(page: Page): Promise<void> {
 
 export const connected = (page: Page) => expect.poll(async () => (await otherOf(page))?.link).toBe('connected');
 
-/** The middle one of so many readings of a page's voices, each over a third of a second. */
+/** Returns the median of this number of readings of a page's voices, each over a third of a second. */
 async function middle(page: Page, readings: number, of: 'loudness' | 'byDistance'): Promise<number> {
   const voices = await page.evaluate(async (count) => {
     const seen: { loudness: number; byDistance: number }[] = [];
@@ -175,14 +175,14 @@ async function middle(page: Page, readings: number, of: 'loudness' | 'byDistance
   return voices.map((one) => one[of]).sort((a, b) => a - b)[readings >> 1] ?? Number.NaN;
 }
 
-/** How loud all voices are at the ears of this page [dB of full scale]. */
+/** Returns the level of all voices in this page's output [dBFS]. */
 export const loudness = (page: Page, readings = 1): Promise<number> => middle(page, readings, 'loudness');
 
 /**
- * What distance and direction do to the voices [dB], of fifteen readings. Loudness alone would not tell: a browser changes how loud its
- * microphone is over minutes, and stretches what arrives late.
+ * Returns the gain by distance and direction [dB], the median of fifteen readings. The level alone is not sufficient: a
+ * browser changes the microphone's gain over minutes, and stretches audio that arrives late.
  */
 export const attenuation = (page: Page): Promise<number> => middle(page, 15, 'byDistance');
 
-export const heard = (page: Page) => expect.poll(() => loudness(page), { timeout: 60_000 }).toBeGreaterThan(-50);
-export const silent = (page: Page) => expect.poll(() => loudness(page), { timeout: 60_000 }).toBeLessThan(-90);
+export const expectVoices = (page: Page) => expect.poll(() => loudness(page), { timeout: 60_000 }).toBeGreaterThan(-50);
+export const expectSilence = (page: Page) => expect.poll(() => loudness(page), { timeout: 60_000 }).toBeLessThan(-90);

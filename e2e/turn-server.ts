@@ -9,7 +9,7 @@ import { freePort } from './free-port';
 export const turnProgram = installed('turnserver');
 export const turnSecret = 'turn-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 
-/** What deploy/compose.yaml starts coturn with, as its shell would read it. */
+/** Returns the arguments of coturn in deploy/compose.yaml, as its shell would parse them. */
 function composeArguments(): readonly string[] {
   const file = fileURLToPath(new URL('../deploy/compose.yaml', import.meta.url));
   const { services } = parse(readFileSync(file, 'utf8'), { merge: true }) as {
@@ -22,7 +22,7 @@ function composeArguments(): readonly string[] {
   return words.map((word) => word.replace('"$$SECRET"', turnSecret));
 }
 
-/** coturn as deploy/compose.yaml starts it, on this machine's own loopback and a port of its own. */
+/** Starts coturn as deploy/compose.yaml does, on loopback and a free port. */
 export async function startTurn() {
   const port = await freePort();
   const here = [
@@ -32,7 +32,7 @@ export async function startTurn() {
     '--no-tls',
     '--no-dtls',
   ];
-  // On the internet no page may be reached on the relay's own machine; here both are.
+  // The deployment denies peers on the relay's own machine; in this test both peers are on it.
   const child = spawn(turnProgram ?? 'turnserver', [...composeArguments(), ...here, '--allow-loopback-peers'], {
     stdio: ['ignore', 'pipe', 'pipe'],
   });
@@ -44,7 +44,7 @@ export async function startTurn() {
   child.stderr.setEncoding('utf8').on('data', hear);
   return {
     url: `turn:127.0.0.1:${port}?transport=udp`,
-    /** What it has written to its log. */
+    /** The log output of coturn. */
     get said() {
       return said;
     },

@@ -1,6 +1,6 @@
-// npm run avatars:try -- DIR [--out OUT]: opens each avatar of a folder as the page does and writes a sheet of pictures beside its name: T-pose,
-// reach up, bow drawn, crouch, wave, and what the wearer sees; all.png has them side by side, each waving. What is refused is told with its
-// reason. OUT is DIR/sheets unless told.
+// npm run avatars:try -- DIR [--out OUT]: opens each avatar of a folder as the page does and writes OUT/NAME.png with its
+// poses: T-pose, reach up, bow drawn, crouch, wave, and the first-person view. OUT/all.png shows all avatars waving.
+// Prints the reason for each rejected file. OUT defaults to DIR/sheets.
 import { mkdirSync, readdirSync, statSync, writeFileSync } from 'node:fs';
 import { basename, extname, join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
@@ -14,7 +14,7 @@ function options() {
   const { values, positionals } = parseArgs({ options: { out: { type: 'string' } }, allowPositionals: true });
   const [given] = positionals;
   if (given === undefined) throw new SetupError(`avatars:try: a folder with avatars is needed\n${usage}`);
-  // Paths mean what they mean to the person who typed them.
+  // Paths are relative to the directory in which the command was typed.
   const from = process.env.INIT_CWD ?? process.cwd();
   const folder = resolve(from, given);
   if (!statSync(folder, { throwIfNoEntry: false })?.isDirectory()) {
@@ -23,7 +23,7 @@ function options() {
   return { folder, out: values.out ? resolve(from, values.out) : join(folder, 'sheets') };
 }
 
-/** A server of the page and of the folder's files, on a free port of this machine. */
+/** Starts a server for the page and the folder's files on a free port of this machine. */
 async function startServer(folder) {
   const { createServer } = await import('vite');
   const server = await createServer({
@@ -51,7 +51,7 @@ await main(async () => {
   });
   try {
     const page = await browser.newPage();
-    // The page's sources are translated as they are asked for: on a busy machine that takes a minute.
+    // The server compiles the page's sources on request: on a busy machine that takes a minute.
     page.setDefaultTimeout(300_000);
     page.on('pageerror', (error) => console.log(`  ${error.message}`));
     await page.goto(`${server.resolvedUrls.local[0]}tools/avatars/try/sheet.html`);

@@ -1,4 +1,5 @@
-// npm run bench:relay [-- --json FILE] [--quick]: how many clients a relay process carries, beside a plain socket.io relay.
+// npm run bench:relay [-- --json FILE] [--quick]: measures how many clients a relay process carries, next to a plain
+// socket.io relay.
 import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';
@@ -16,7 +17,7 @@ await main(async () => {
   const measure = ['--import', 'tsx', 'bench/relay/main.ts'];
   for (const [name, value] of Object.entries(values)) {
     if (value === true) measure.push(`--${name}`);
-    // The path means what it means to the person who typed it.
+    // The path is relative to the directory in which the command was typed.
     else measure.push(`--${name}`, name === 'json' ? resolve(process.env.INIT_CWD ?? process.cwd(), value) : value);
   }
   const { code } = await run(process.execPath, measure, { cwd: root, limitSeconds: 3600 });

@@ -1,9 +1,10 @@
-// npm run bench [-- --json FILE] [visit frames archery ball crowd allocations networks avatar] [--rounds N]: what a frame costs, by estimator and by stage, in
-// headless Chromium. Named parts only are measured; all of them take an hour on two cores without a graphics device, "frames --rounds 3" minutes.
-// npm run bench networks -- --device: WebGPU on the machine's graphics device instead of in software.
-// Each part prints how long it took and is written to FILE when it is through; ratios of frames have intervals of 95 % confidence.
-// npm run bench -- --allocations [ik paper learned mirror archery ball3 ball8 hands stillScene]: only what frames leave to the collector, and which
-// functions leave it.
+// npm run bench [-- --json FILE] [visit frames archery ball crowd allocations networks avatar] [--rounds N]: measures the
+// time of a frame by estimator and by stage, in headless Chromium. Without names it measures every part, which takes an
+// hour on two cores without a GPU; "frames --rounds 3" takes minutes.
+// npm run bench networks -- --device: uses WebGPU on the machine's GPU instead of in software.
+// Each part prints its duration and is written to FILE when it ends; ratios of frames have 95 % confidence intervals.
+// npm run bench -- --allocations [ik paper learned mirror archery ball3 ball8 hands stillScene]: measures only the garbage
+// that frames allocate, and the functions that allocate it.
 import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { buildWhenStale } from './build.mjs';
@@ -12,7 +13,7 @@ import { ensureInstalled } from './installation.mjs';
 import { main, root, run } from './run-command.mjs';
 
 const vite = (...options) => run('npx', ['vite', 'build', '--logLevel', 'warn', ...options], { cwd: root });
-/** Functions keep their names, and a map leads back to the sources. */
+/** The build options of benchmarks: function names and source maps are kept. */
 const readable = ['--minify', 'false', '--sourcemap'];
 
 await main(async () => {
@@ -35,7 +36,7 @@ await main(async () => {
   const page = await vite('--config', 'bench/vite.config.ts', ...(values.allocations ? readable : []));
   if (page.code !== 0) return page.code;
   const measure = ['--import', 'tsx', 'bench/main.ts'];
-  // Paths mean what they mean to the person who typed it.
+  // Paths are relative to the directory in which the command was typed.
   const from = process.env.INIT_CWD ?? process.cwd();
   if (values.json) measure.push('--json', resolve(from, values.json));
   if (values.avatar) measure.push('--avatar', resolve(from, values.avatar));

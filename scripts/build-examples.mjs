@@ -1,4 +1,4 @@
-// Builds each of examples/ as its reader would: in an empty folder, with the packed package in place of the sources.
+// Builds each of examples/ as its reader would: in an empty folder, with the packed package instead of the sources.
 import { cpSync, mkdtempSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -22,7 +22,7 @@ export const exampleNames = readdirSync(join(root, 'examples'), { withFileTypes:
   .filter((file) => file.isDirectory())
   .map(({ name }) => name);
 
-/** A folder outside of the repository with the tarball in it, so that nothing is found in the repository's own packages. */
+/** Creates a folder outside the repository with the tarball, so that no import resolves to the repository's packages. */
 export async function packLibrary() {
   await buildLibrary();
   const folder = mkdtempSync(join(tmpdir(), 'threepoint-examples-'));

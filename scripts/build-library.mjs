@@ -1,5 +1,6 @@
-// Builds the package “threepoint” into dist-library/: ESM with source maps, types, the learned network's weights, the models for the runtime,
-// the mannequin; prints what each entry weighs, and fails where the documents say otherwise. `npm pack ./dist-library` makes the tarball.
+// Builds the package “threepoint” into dist-library/: ESM with source maps, types, the learned network's weights, the
+// models for the runtime, and the mannequin. Prints the size of each entry and fails if a document states another size.
+// `npm pack ./dist-library` makes the tarball.
 import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -11,11 +12,11 @@ import { sourceResolution } from './source-condition.mjs';
 
 const out = join(root, 'dist-library');
 const entries = ['index', 'motion', 'three', 'onnx', 'onnx-worker', 'polyfill'];
-/** The manifest of the workspace; the published one is the same without what only this repository can resolve. */
+/** The manifest of the workspace; the published one omits what only this repository can resolve. */
 const own = JSON.parse(readFileSync(join(root, 'src/threepoint/package.json'), 'utf8'));
 const external = (id) => Object.keys(own.peerDependencies).some((name) => id === name || id.startsWith(`${name}/`));
 
-/** Files of the package beside its code, and where they lie here. */
+/** Files of the package other than code: path in the package to path in the repository. */
 const copied = {
   'models/learned.bin': 'public/models/learned.bin',
   'models/learned.json': 'public/models/learned.json',
@@ -37,7 +38,7 @@ function published() {
   });
   return {
     ...rest,
-    // Sources have more files of this kind: workers, which a bundler would drop.
+    // The sources also have workers with side effects, which a bundler would drop.
     sideEffects: ['./onnx-worker.js'],
     exports: Object.fromEntries(outside),
   };
@@ -46,8 +47,8 @@ function published() {
 const weightsModule = '\0learned-weights';
 
 /**
- * Puts the weights into a module of JavaScript that loads when they are needed: a file that code names by its address is lost by bundlers that
- * know nothing of such addresses, and a page would draw inverse kinematics for ever.
+ * Embeds the weights in a JavaScript module that loads on demand. Some bundlers drop files that code references by URL;
+ * the page would then never leave its fallback, inverse kinematics.
  */
 const weightsInModule = {
   name: 'weights-in-module',
@@ -73,7 +74,7 @@ const weightsInModule = {
 
 const sourceOf = (name) => join(root, `src/threepoint/api/${name}.ts`);
 
-/** input: where each entry begins, by its name. */
+/** Bundles the entries; `input` maps the name of each entry to its source file. */
 async function bundle(input, plugins) {
   return rolldown({
     input,
@@ -86,7 +87,7 @@ async function bundle(input, plugins) {
   });
 }
 
-/** Chunks lie beside the entries: what is stated relative to one is true of all. */
+/** Chunks lie in the entries' folder, so that paths relative to one hold for all. */
 const output = {
   format: 'esm',
   chunkFileNames: ({ name }) => (name.includes('learned-weights') ? 'learned-weights.js' : 'shared-[hash].js'),
@@ -98,7 +99,7 @@ async function writeCode() {
   await build.close();
 }
 
-/** Declarations of the compiler, a file for each module; Node's resolution wants the names of files in full. */
+/** Writes the compiler's declarations, a file for each module, with the full file names that Node's resolution requires. */
 async function writeTypes() {
   const { code } = await run(process.execPath, ['node_modules/typescript/bin/tsc', '-p', 'tsconfig.library.json']);
   if (code !== 0) throw new SetupError(`The library's types could not be written: exit code ${code}.`);
@@ -120,7 +121,7 @@ function writeFiles() {
   writeFileSync(join(out, 'package.json'), `${JSON.stringify(published(), null, 2)}\n`);
 }
 
-/** A page that draws with avatars of its own making, as a bundler sees it. */
+/** The entry of a page that draws its own avatars, as a bundler sees it. */
 const trackerAlone = {
   name: 'tracker-alone',
   resolveId: { filter: { id: /^tracker-alone$/ }, handler: (id) => id },
@@ -130,7 +131,7 @@ const trackerAlone = {
   },
 };
 
-/** Bytes of code with all that it loads at once, minified, and the same as brotli; what it loads later or as a peer is not in it. */
+/** Returns the bytes of minified code with its static imports, plain and by brotli; without dynamic imports and peers. */
 async function weigh(input, plugins = [weightsInModule]) {
   const build = await bundle({ entry: input }, plugins);
   const { output: files } = await build.generate({ ...output, minify: true });
@@ -154,7 +155,7 @@ export async function buildLibrary() {
   writeFiles();
 }
 
-/** What is measured, by the name that src/threepoint/README.md gives it in its table. */
+/** The measured entries, by their names in the table of src/threepoint/README.md. */
 async function measureSizes() {
   const sizes = {};
   for (const name of entries) {
@@ -166,7 +167,7 @@ async function measureSizes() {
   return sizes;
 }
 
-/** Throws where src/threepoint/README.md or README.md says another size than was measured. */
+/** Throws if src/threepoint/README.md or README.md states another size than the measured one. */
 async function checkDocuments(sizes) {
   const rows = Object.entries(sizes).map(([what, { min, brotli }]) => ({
     what,

@@ -1,5 +1,5 @@
-// Builds the server into JavaScript, for machines without the tools that run it from its sources: node dist-server/main.mjs. Its packages stay
-// outside (npm ci --omit=dev). The page is a build of its own (npm run build).
+// Builds the server into JavaScript, for machines without the tools that run it from its sources: node
+// dist-server/main.mjs. Its dependencies are not bundled (npm ci --omit=dev). npm run build builds the page.
 import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -8,13 +8,13 @@ import { rolldown } from 'rolldown';
 import { main, root, SetupError } from './run-command.mjs';
 import { sourceResolution } from './source-condition.mjs';
 
-/** The server reads package.json, dist/ and study-data/ beside its own folder, which a build replaces as server/ does. */
+/** The default output folder, next to server/: the server reads ../package.json, ../dist/ and ../study-data/. */
 const usualOut = 'dist-server';
 const worker = '-worker.mjs';
 
 /**
- * Returns the entry of the server and those of its threads and of its processes by name. From source these begin with NAME-worker.mjs, which
- * loads NAME-work.ts through a loader for TypeScript; in the build NAME-worker.mjs is NAME-work.ts itself.
+ * Returns the entries of the server, its threads and its child processes by name. From source these begin with
+ * NAME-worker.mjs, which loads NAME-work.ts with a loader for TypeScript; in the build NAME-worker.mjs is NAME-work.ts.
  */
 function entries() {
   const workers = ['server', 'src/study/server/export'].flatMap((folder) =>
@@ -35,8 +35,8 @@ const packages = ['server', ...['games', 'http', 'rooms', 'study', 'threepoint']
 const manifestIn = (folder) => JSON.parse(readFileSync(join(root, folder, 'package.json'), 'utf8'));
 
 /**
- * Bundles the server's own files into `out`; packages and Node's modules are imported where it runs. The package.json beside them names those
- * packages alone, so that npm prune removes those of the page.
+ * Bundles the server's own files into `out`; packages and Node's modules are imported at run time. The written
+ * package.json names those packages alone, so that npm prune removes the page's packages.
  */
 export async function buildServer(out) {
   const { version, type } = manifestIn('.');

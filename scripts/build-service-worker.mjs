@@ -4,16 +4,16 @@ import { join, sep } from 'node:path';
 import { root } from './run-command.mjs';
 import { sourceResolution } from './source-condition.mjs';
 
-/** Other pages than the one that is kept; they need their server. */
+/** The pages that are not cached, because they need their server. */
 const otherPages = ['experimenter.html', 'preview.html', 'results.html', 'withdraw.html'];
 
 /**
- * Files that no page which is kept asks for: a server's business, weights for pages without the runtime (the library's), and what computes
- * by WebGPU (27 MB, behind ?ep=webgpu alone).
+ * Files that the cached page never requests: files for the server, the library's weights for pages without the runtime,
+ * and the WebGPU runtime (27 MB, loaded only with ?ep=webgpu).
  */
 const unkept = /^(api|studies)\/|(^|\/)\.|\.html$|\.webgpu\.|\.asyncify-|^models\/.*\.bin$|^sw\.js$/;
 
-/** Files that these pages of Vite's manifest load, now or later. */
+/** Returns the files that these pages of Vite's manifest load, statically or dynamically. */
 function reached(manifest, pages) {
   const files = new Set();
   const visited = new Set();
@@ -28,7 +28,7 @@ function reached(manifest, pages) {
   return files;
 }
 
-/** The files of a built page that a browser keeps, relative to its folder, each with what its content is known by. */
+/** Returns the files of a built page that a browser caches, relative to its folder, each with a revision of its content. */
 export function keptFiles(directory, manifest) {
   const ours = reached(manifest, ['index.html']);
   const others = reached(manifest, otherPages);
@@ -44,22 +44,22 @@ export function keptFiles(directory, manifest) {
         .digest();
       return {
         url,
-        // Vite names what is in assets/ by its content; everything else is told apart by it.
+        // Vite's names in assets/ contain a hash of the content; other files need a revision.
         revision: url.startsWith('assets/') ? null : digest.toString('hex').slice(0, 16),
         integrity: `sha256-${digest.toString('base64')}`,
       };
     });
 }
 
-/** The list of files as the service worker reads it; another list is another version. */
+/** Returns the list of files as the service worker reads it; a changed list is a new version. */
 const listed = (files) => `self.keptFiles=${JSON.stringify(files)};\n`;
 
-/** Writes sw.js into a directory that Vite has built a page into, with all it needs in one file. */
+/** Writes sw.js, bundled into one file, into the directory of a built page. */
 export async function buildServiceWorker(directory) {
   const manifestFile = join(directory, '.vite/manifest.json');
   const files = keptFiles(directory, JSON.parse(readFileSync(manifestFile, 'utf8')));
   rmSync(join(directory, '.vite'), { recursive: true });
-  // Loaded here, where it is installed: the commands that install what is missing load this file first.
+  // The import is dynamic, because the commands that install missing packages load this file first.
   const { rolldown } = await import('rolldown');
   const bundle = await rolldown({
     input: join(root, 'src/page/offline/service-worker.ts'),

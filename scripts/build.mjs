@@ -7,7 +7,7 @@ import { brotliCompress, constants, gzip } from 'node:zlib';
 import { buildServiceWorker } from './build-service-worker.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
 
-/** Everything the built page depends on. */
+/** The paths that the built page depends on. */
 const sources = [
   'index.html',
   'results.html',
@@ -24,10 +24,13 @@ const sources = [
 ];
 const stampFile = '.source-hash';
 
-/** The build's defaults: where the page lies, where it may be served from (any folder), and from where it may read files (its host's header decides). */
+/**
+ * The defaults of the build: the base path (relative, so that any folder works), the output folder, and the origins from
+ * which the page may load files (null: the host's header decides).
+ */
 const usual = { base: './', out: join(root, 'dist'), filesFrom: null };
 
-/** Text and machine code shrink; pictures and quantised weights do not. */
+/** The files that are worth compressing: text and machine code, not pictures and quantised weights. */
 const compressible = /\.(html|js|css|json|svg|wasm|txt|vrm|glb|webmanifest)$/;
 
 function filesUnder(path) {
@@ -38,7 +41,7 @@ function filesUnder(path) {
     .flatMap((name) => filesUnder(join(path, name)));
 }
 
-/** Returns the options of `npm run build -- …`. A SetupError says what is wrong with them. */
+/** Returns the options of `npm run build -- …`. Throws a SetupError if they are invalid. */
 export function buildOptions(args) {
   let values;
   try {
@@ -63,7 +66,7 @@ export function buildOptions(args) {
   return { base, out: out === undefined ? usual.out : emptied(out), filesFrom };
 }
 
-/** A directory that a build may empty: a new one, an empty one, or that of a build before. */
+/** Returns the full path of a directory that is missing, empty, or an earlier build. Throws if it holds anything else. */
 function emptied(out) {
   if (out === '') throw new SetupError('--out "": expected a directory for the built page.');
   const directory = resolve(root, out);
@@ -84,7 +87,7 @@ function sourceHash({ base, filesFrom }) {
   return hash.digest('hex');
 }
 
-/** Puts .br and .gz beside the files that get smaller by it, so that the server never compresses while it serves. */
+/** Writes .br and .gz next to the files that get smaller by it, so that the server never compresses on request. */
 async function precompress(directory) {
   const files = filesUnder(directory).filter((file) => compressible.test(file) && statSync(file).size > 1024);
   await Promise.all(
@@ -102,7 +105,7 @@ async function precompress(directory) {
 }
 
 /**
- * Builds the page from the sources, whether or not it is stale.
+ * Builds the page from the sources, even if it is up to date.
  * @param {{ base: string, out: string, filesFrom?: string | null }} options
  */
 export async function build({ base, out, filesFrom = usual.filesFrom } = usual) {
@@ -117,7 +120,7 @@ export async function build({ base, out, filesFrom = usual.filesFrom } = usual) 
   writeFileSync(join(out, stampFile), hash);
 }
 
-/** Builds dist/ when it was not built from exactly these sources. */
+/** Builds dist/ unless it was built from exactly these sources. */
 export async function buildWhenStale() {
   const stamp = join(usual.out, stampFile);
   if (existsSync(stamp) && readFileSync(stamp, 'utf8') === sourceHash(usual)) return;

@@ -1,5 +1,6 @@
-// node scripts/check-language.mjs [PATH …]: lists comments and documents that are not in plain technical English, by file and line. The rules are
-// few and mechanical: they find habits, not style. tests/language.test.ts asserts that none is left.
+// node scripts/check-language.mjs [PATH …]: lists comments and documents that are not in plain technical English, by file
+// and line. The rules are few and mechanical: they find habits, not style. tests/language.test.ts asserts that none is
+// left.
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -7,19 +8,19 @@ import { pathToFileURL } from 'node:url';
 import ts from 'typescript';
 import { root } from './run-command.mjs';
 
-/** A comment that begins so is the rest of a sentence that is not there. */
+/** The first words of comments that are sentence fragments. */
 const fragment = /^(Of|As|So|Those|Whose|Whom|Where|The same)\b/;
-/** Words that stand for the field's own, or that English no longer uses; in study texts participants are told, which `allowed` permits. */
+/** Words that replace a technical term, or that are archaic. `allowed` lists the files in which they are right. */
 const unwanted = /\b(told|tells?|hears?|heard|anew|whither|in vain|to be had|believed?|of ours|whom|let go of)\b/i;
 const longestSentence = 25;
 const longestLine = 120;
 
-/** Files in which a word is the right one. */
+/** The words that are right in a file, by file. */
 const allowed = {
   'docs/study.md': /\btold\b/,
 };
 
-/** Returns the comments of a TypeScript or JavaScript file: line of the first character, and text without its marks. */
+/** Returns the comments of a TypeScript or JavaScript file: the line of the first character, and the text without marks. */
 function commentsOfScript(text) {
   const found = [];
   const add = (start, raw) => {
@@ -54,7 +55,7 @@ function commentsOfScript(text) {
   return joined(found, text);
 }
 
-/** Lines of // that follow each other are one comment. */
+/** Joins consecutive // lines into one comment. */
 function joined(comments, text) {
   const lines = text.split('\n');
   const result = [];
@@ -141,7 +142,7 @@ function problemsOfFile(file, text) {
   return problems;
 }
 
-/** Files whose words are checked: what the project's people read, and nothing that is generated or another's. */
+/** The files whose language is checked: neither generated files nor other authors' texts. */
 const checked = /\.(ts|mjs|cjs|py|md)$/;
 const unchecked = /^(tests\/golden\/|CHANGELOG\.md$|LICENSE|docs\/(reliability|accuracy)\.md$)/;
 

@@ -1,5 +1,5 @@
-// Uses the packed package as its users do: compiles examples/consumer.ts against it, as bundlers and as Node resolve modules, strictly,
-// declarations included, and runs examples/in-node.mjs.
+// Uses the packed package as its users do. Compiles examples/consumer.ts against it, with the module resolution of
+// bundlers and of Node, strictly and with declarations checked; runs examples/in-node.mjs.
 import { copyFileSync, mkdirSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { build } from 'esbuild';
@@ -12,7 +12,7 @@ const resolutions = [
   { module: 'node16', moduleResolution: 'node16' },
 ];
 
-/** The package as `npm install` lays it down; its peers are found in the repository's own packages. */
+/** Installs the package as `npm install` does; its peers resolve to the repository's own packages. */
 async function unpack() {
   const modules = join(folder, 'node_modules');
   rmSync(folder, { recursive: true, force: true });
@@ -33,10 +33,10 @@ async function unpack() {
     throw new SetupError(`${tarball} could not be unpacked:\n${unpacked?.output ?? 'tar is not there'}`);
 }
 
-/** Faults in declarations of three-vrm are its own: they name files without extensions, which Node's resolution wants. */
+/** Errors in three-vrm's declarations, which are ignored: they import without the extensions Node's resolution requires. */
 const foreign = /^[^(]*\bnode_modules[\\/]@pixiv[\\/]/;
 
-/** What the compiler finds wrong of ours and of the page's. */
+/** Returns the compiler's errors in the package and in the consumer. */
 async function compile(config) {
   const { code, output } = await run(process.execPath, ['node_modules/typescript/bin/tsc', '-p', config], {
     capture: true,
@@ -72,7 +72,7 @@ async function runExample() {
   if (code !== 0) throw new SetupError(`A program of Node that uses the package ends with code ${code}:\n${output}`);
 }
 
-/** Bundlers that know nothing of addresses in code keep the weights, too: a page without them would draw inverse kinematics for ever. */
+/** Checks that bundlers which ignore URLs in code keep the weights; a page without them stays with inverse kinematics. */
 async function bundleWeights() {
   const program = join(folder, 'weights.mjs');
   writeFileSync(

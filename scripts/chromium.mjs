@@ -11,13 +11,13 @@ const installedNames = [
   '/Applications/Chromium.app/Contents/MacOS/Chromium',
 ];
 
-/** A browser counts only when it starts: Ubuntu's chromium-browser may be a note that asks for a snap. */
+/** Returns whether this browser starts: Ubuntu's chromium-browser may be a stub that asks for a snap. */
 async function starts(executable) {
   const result = await runQuietly(executable, ['--version', '--no-sandbox'], { limitSeconds: 30 });
   return result !== null && result.code === 0 && /Chrom/.test(result.output);
 }
 
-/** Where a program lies on PATH; null where it does not. */
+/** Returns the full path of a program on PATH, or null if it is not found. */
 function onPath(name) {
   const directories = isAbsolute(name) ? [''] : (process.env.PATH ?? '').split(delimiter);
   return directories.map((directory) => join(directory, name)).find((path) => existsSync(path)) ?? null;
@@ -29,7 +29,7 @@ async function playwrightsOwn() {
   return existsSync(path) && (await starts(path)) ? path : null;
 }
 
-/** The Chromium to test with: CHROMIUM_PATH, the system's, or Playwright's own; null where there is none. */
+/** Returns the path of the Chromium to test with: CHROMIUM_PATH, the system's, or Playwright's own; null if none exists. */
 export async function findChromium() {
   const named = process.env.CHROMIUM_PATH;
   if (named) {
@@ -61,7 +61,7 @@ async function installWithDistribution() {
   return findChromium();
 }
 
-/** Like `findChromium`, but installs one where there is none. Throws a SetupError that says what to do. */
+/** Like `findChromium`, but installs Chromium if none is found. Throws a SetupError that says what to do. */
 export async function ensureChromium() {
   const found = await findChromium();
   if (found !== null) return found;

@@ -1,7 +1,8 @@
-// npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--robustness] [--speed] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR] [--legs]:
-// the shipping path on recorded motion. Python prepares the recordings with their truth, TypeScript drives them.
-// npm run evaluate -- --recording FILE [--recording FILE] [--json FILE] [--models DIR]: on the page's own recordings, the body that their device
-// reported as the truth.
+// npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--robustness]
+// [--speed] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR] [--legs]: evaluates the shipping code path
+// on recorded motion. Python prepares the recordings with their ground truth; TypeScript runs the estimators on them.
+// npm run evaluate -- --recording FILE [--recording FILE] [--json FILE] [--models DIR]: evaluates on recordings of the
+// page, with the body that the device reported as ground truth.
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
@@ -55,7 +56,7 @@ function options() {
 
 await main(async () => {
   const given = options();
-  // Paths on the command line mean what they mean to the person who typed them.
+  // Paths are relative to the directory in which the command was typed.
   const path = (name) => resolve(process.env.INIT_CWD ?? process.cwd(), name);
   await ensureInstalled();
   if (given.recording) {

@@ -1,5 +1,5 @@
-// npm run goldens -- --mocap DIR [--write] [--quick] [--all] [--only ROWS] [--frames DIR] [--models DIR]: what the estimators say of recorded
-// motion, compared with what tests/golden/estimates.json froze; with --write it is frozen anew.
+// npm run goldens -- --mocap DIR [--write] [--quick] [--all] [--only ROWS] [--frames DIR] [--models DIR]: compares the
+// estimates of recorded motion with tests/golden/estimates.json; --write replaces that file.
 import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, statSync } from 'node:fs';
 import { join, resolve } from 'node:path';
@@ -36,7 +36,7 @@ function options() {
   }
 }
 
-/** Changes with the files of DIR and with the programs that read them. */
+/** Returns a hash of the files of DIR and of the programs that read them. */
 function recordingsKey(mocap) {
   const hash = createHash('sha256');
   const files = readdirSync(mocap, { recursive: true, encoding: 'utf8' }).sort();
@@ -53,7 +53,7 @@ function recordingsKey(mocap) {
   return hash.digest('hex').slice(0, 16);
 }
 
-/** The folder of the recordings with their truth, prepared by Python once and kept in .cache; an exit code where it cannot be. */
+/** Returns the folder of recordings with ground truth, prepared by Python and cached in .cache; an exit code on failure. */
 async function prepareRecordings(mocap) {
   if (!existsSync(mocap)) throw new SetupError(`goldens: ${mocap}: no such folder\n${usage}`);
   const folder = join(root, '.cache/goldens', `recordings-${recordingsKey(mocap)}`);
@@ -75,7 +75,7 @@ async function prepareRecordings(mocap) {
 
 await main(async () => {
   const given = options();
-  // Paths on the command line mean what they mean to the person who typed them.
+  // Paths are relative to the directory in which the command was typed.
   const path = (name) => resolve(process.env.INIT_CWD ?? process.cwd(), name);
   await ensureInstalled();
   const { folder, code: failed } = await prepareRecordings(path(given.mocap));

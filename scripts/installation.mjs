@@ -5,15 +5,15 @@ import { root, run, SetupError } from './run-command.mjs';
 const packagesIn = (file) => JSON.parse(readFileSync(file, 'utf8')).packages ?? {};
 
 /**
- * Why node_modules does not hold what package-lock.json asks for, or null when it does. npm notes what it installed in
- * node_modules/.package-lock.json, and writes that file last, so an installation that was cut short shows too.
+ * Returns why node_modules does not match package-lock.json, or null if it does. npm lists what it installed in
+ * node_modules/.package-lock.json and writes that file last, so an interrupted installation is detected too.
  */
 export function missingInstallation(directory = root) {
   const installedFile = join(directory, 'node_modules/.package-lock.json');
   if (!existsSync(installedFile)) return 'nothing is installed yet';
   const installed = packagesIn(installedFile);
   for (const [path, wanted] of Object.entries(packagesIn(join(directory, 'package-lock.json')))) {
-    // The root itself, links, and what npm may leave out on this platform.
+    // Skipped are the root itself, links, and optional packages that npm may omit on this platform.
     if (path === '' || wanted.link || wanted.optional || wanted.devOptional) continue;
     if (installed[path]?.version !== wanted.version) {
       return `${path.replace('node_modules/', '')} ${wanted.version} is missing`;
@@ -22,7 +22,7 @@ export function missingInstallation(directory = root) {
   return null;
 }
 
-/** Installs the packages of package-lock.json where they are missing or older; never into a folder that belongs to another copy. */
+/** Installs the packages of package-lock.json if they are missing or outdated, but never into another clone's folder. */
 export async function ensureInstalled(directory = root) {
   const reason = missingInstallation(directory);
   if (reason === null) return;

@@ -1,4 +1,4 @@
-/** A size that a document says may be so far from what was measured, as a share of it; a small one may be rounded further. */
+/** The relative tolerance between a stated and a measured size; small sizes have a larger one, for rounding. */
 const tolerance = 0.03;
 
 const kilobytes = (bytes, digits) => `${(bytes / 1000).toFixed(digits)} kB`;
@@ -7,8 +7,8 @@ const isTrue = (kB, bytes) =>
   Math.abs(1000 * kB - bytes) <= tolerance * bytes || kilobytes(bytes, digitsOf(kB)) === `${kB} kB`;
 
 /**
- * Sentences for the sizes in the text of a document, the file of this name, that are no longer true. claims: `what` weighs so many `bytes`, the
- * pattern `says` finds their kilobytes in the text.
+ * Returns a message for each size in a document that is no longer true. A claim states that `what` has this many `bytes`;
+ * its pattern `says` finds the kilobytes in the text.
  */
 export function staleSizes(file, text, claims) {
   return claims.flatMap(({ what, says, bytes }) => {

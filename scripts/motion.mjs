@@ -1,5 +1,5 @@
 // npm run motion -- FILE --to bvh|csv|vrma|glb [--estimator NAME] [--out FILE] [--unit m|cm] [--rate HZ] [--avatar FILE]:
-// a recording of the page as a file for other programs; docs/motion.md says which and how.
+// converts a recording of the page for other programs (docs/motion.md).
 import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';
@@ -28,7 +28,7 @@ function options() {
 await main(async () => {
   const { file, values } = options();
   await ensureInstalled();
-  // Paths on the command line mean what they mean to the person who typed them.
+  // Paths are relative to the directory in which the command was typed.
   const path = (name) => resolve(process.env.INIT_CWD ?? process.cwd(), name);
   const given = { ...values, file: path(file) };
   for (const name of ['out', 'avatar']) if (given[name]) given[name] = path(given[name]);

@@ -4,7 +4,7 @@ import { join } from 'node:path';
 import { root, run, runQuietly, SetupError } from './run-command.mjs';
 
 const projectFile = join(root, 'training/pyproject.toml');
-/** Installs what pyproject.toml asks for; nothing needs it afterwards. */
+/** The installer of the packages in pyproject.toml; nothing else needs it. */
 const uv = 'uv==0.9.11';
 const interpreters = ['python3', 'python3.13', 'python3.12', 'python3.11', 'python'];
 
@@ -43,7 +43,7 @@ async function createVenv(directory) {
 const pythonIn = (directory) =>
   process.platform === 'win32' ? join(directory, 'Scripts/python.exe') : join(directory, 'bin/python');
 
-/** What training/pyproject.toml asks for, read by Python itself, which knows TOML. */
+/** Returns the requirements in training/pyproject.toml, read by Python's own TOML parser. */
 async function requirements(python, extras) {
   const script = `
 import sys, tomllib
@@ -57,8 +57,8 @@ for requirement in project.get('dependencies', []) + [r for extra in sys.argv[2:
 }
 
 /**
- * By uv, which takes a quarter of pip's time; by pip itself where uv cannot be had or finds no registry (pip's own configuration may
- * name one).
+ * Installs with uv, which takes a quarter of pip's time. Falls back to pip if uv cannot be installed or finds no registry,
+ * because pip's configuration may name one.
  */
 async function installPackages(python, wanted) {
   const pip = ['-m', 'pip', 'install', '--no-input', '--disable-pip-version-check', '--prefer-binary'];
@@ -72,8 +72,8 @@ async function installPackages(python, wanted) {
 }
 
 /**
- * The path of a Python that has what training/pyproject.toml asks for, with its named extras; made in .cache on first use
- * and again when that file changes. Throws a SetupError that says what is missing.
+ * Returns the path of a Python with the requirements of training/pyproject.toml and these extras. The environment is
+ * created in .cache on first use and again when that file changes. Throws a SetupError that says what is missing.
  */
 export async function pythonEnvironment({ extras = [] } = {}) {
   const hash = createHash('sha256').update(readFileSync(projectFile)).digest('hex').slice(0, 12);
@@ -81,7 +81,7 @@ export async function pythonEnvironment({ extras = [] } = {}) {
   if (existsSync(join(directory, 'complete'))) return pythonIn(directory);
 
   mkdirSync(join(root, '.cache'), { recursive: true });
-  // Made under another name and renamed when complete: two scripts that start together do not meet half a one.
+  // The environment is created under a temporary name and renamed, so that a concurrent script never sees half of it.
   const unfinished = `${directory}.${process.pid}`;
   try {
     let problem = await createVenv(unfinished);

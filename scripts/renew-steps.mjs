@@ -1,7 +1,7 @@
 import { join } from 'node:path';
 import { root, SetupError } from './run-command.mjs';
 
-// The first fold's networks with 32-bit weights: cross-validation leaves them there for the report to compare with.
+// The first fold's networks with 32-bit weights, which cross-validation writes for the comparison in the report.
 const fp32 = join(root, '.cache/fp32');
 
 /**
@@ -30,7 +30,7 @@ export const steps = [
     renews: 'what wearing tells of a wrong calibration, in docs/accuracy.md',
     takes: 'an hour',
   },
-  // Its bodies are those of the page's networks.
+  // This step uses the page's networks for the body.
   {
     name: 'gait',
     script: 'train:gait',
@@ -61,7 +61,7 @@ export const steps = [
   },
 ];
 
-/** The steps that were asked for: all, those from one on, or one. */
+/** Returns the selected steps: all, those from one on, or one. */
 export function chosenSteps({ from, only } = {}) {
   if (from !== undefined && only !== undefined) throw new SetupError('renew: either --from or --only');
   const name = from ?? only;
@@ -73,7 +73,7 @@ export function chosenSteps({ from, only } = {}) {
   return steps.slice(first, only === undefined ? steps.length : first + 1);
 }
 
-/** What Node runs for a step. */
+/** Returns the arguments with which Node runs a step. */
 export const commandOf = ({ script, options }, mocap) => [
   join(root, 'scripts', `${script.replace(':', '-')}.mjs`),
   '--mocap',
@@ -81,9 +81,9 @@ export const commandOf = ({ script, options }, mocap) => [
   ...options,
 ];
 
-/** As a person types it. */
+/** Returns the command line of an npm script, with its options quoted for a shell. */
 export const commandLine = (script, ...options) =>
   ['npm', 'run', script, '--', ...options].map((word) => (/[^\w./:-]/.test(word) ? `"${word}"` : word)).join(' ');
 
-/** A step as a person types it. */
+/** Returns the command line of a step. */
 export const commandLineOf = ({ script, options }, mocap) => commandLine(script, '--mocap', mocap, ...options);

@@ -22,7 +22,7 @@ function options() {
   }
 }
 
-/** 1:02:03 */
+/** Formats seconds as 1:02:03. */
 function duration(milliseconds) {
   const seconds = Math.round(milliseconds / 1000);
   const two = (value) => `${value}`.padStart(2, '0');
@@ -39,7 +39,7 @@ await main(async () => {
   const { mocap = 'DIR', ...given } = options();
   const chosen = chosenSteps(given);
   if (given.list) return list(chosen, mocap);
-  // Steps get the folder that the person who typed it means, wherever they themselves run.
+  // The folder is relative to the directory in which the command was typed; the steps run elsewhere.
   const folder = resolve(process.env.INIT_CWD ?? process.cwd(), mocap);
   for (const [number, step] of chosen.entries()) {
     const title = `renew ${number + 1} of ${chosen.length}, ${step.name}`;

@@ -1,7 +1,9 @@
-// npm run report -- --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]: measures the shipping path with the
-// networks that npm run train left without their fold's people, and renews the tables and figures of docs/accuracy.md. npm run report --
-// --redraw: the same from what was measured last. npm run report -- --legs --mocap DIR: the table of legs alone, with the page's network for
-// the body and those that npm run train:gait left for the gait of people they have not seen.
+// npm run report -- --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]: measures the
+// shipping code path with the cross-validation networks of npm run train, each on people it was not trained on, and renews
+// the tables and figures of docs/accuracy.md.
+// npm run report -- --redraw: renews them from the last measurement.
+// npm run report -- --legs --mocap DIR: renews the table of legs alone, with the page's network for the body and the
+// cross-validation networks of npm run train:gait.
 import { existsSync, mkdirSync, rmSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
@@ -17,7 +19,7 @@ const usage =
   'models the networks of a cross-validation (.cache/cross-validation, where npm run train leaves them); fp32 what npm run train -- --fp32 ' +
   'wrote. docs/accuracy.md is renewed.';
 const sixHours = 6 * 3600;
-// Poses are motion data: they stay in the cache, only pictures of them go into docs.
+// Poses are motion data: they stay in the cache, and only figures of them go into docs.
 const measured = join(root, '.cache/report');
 const env = { PYTHONPATH: `${root}/training` };
 
@@ -39,18 +41,18 @@ function options() {
 
 const path = (name) => resolve(process.env.INIT_CWD ?? process.cwd(), name);
 
-/** Runs npm run evaluate on the motion that was given, with these options beside; resolves to its exit code. */
+/** Runs npm run evaluate on the given motion with these additional options; resolves to its exit code. */
 async function evaluate({ mocap, skeleton }, ...beside) {
   const command = [join(root, 'scripts/evaluate.mjs'), '--mocap', path(mocap), ...beside];
   if (skeleton) command.push('--skeleton', path(skeleton));
   return (await run(process.execPath, command, { cwd: root, limitSeconds: sixHours })).code;
 }
 
-/** Measures legs and renews their tables. */
+/** Measures the legs and renews their tables. */
 async function reportLegs(given) {
   mkdirSync(measured, { recursive: true });
   const json = join(measured, 'legs.json');
-  // People are measured with networks that have not seen them.
+  // Each person is measured with networks that were not trained on them.
   const gaits = join(root, '.cache/gait');
   if (!existsSync(gaits))
     throw new SetupError(`report: there are no networks in ${gaits}; npm run train:gait makes them\n${usage}`);
@@ -63,7 +65,7 @@ async function reportLegs(given) {
   return (await run(await pythonEnvironment(), renew, { cwd: root, env, limitSeconds: 600 })).code;
 }
 
-/** Where the table of both laboratories is measured: people held out and those of another one, hands as recorded and as measured. */
+/** The measurements of the table of both laboratories: held-out people and another laboratory's, hands as recorded and measured. */
 const laboratories = Object.fromEntries(
   ['home', 'elsewhere'].map((group) => [
     group,
@@ -71,7 +73,7 @@ const laboratories = Object.fromEntries(
   ]),
 );
 
-/** Whom the tables are of, and who of both laboratories is there: Python knows the people, and whose each file is. */
+/** Returns the people of the tables and of both laboratories; Python maps files to people. */
 async function peopleIn(mocap) {
   const list = ['-m', 'threepoint_training.report_people', '--mocap', mocap];
   const python = await pythonEnvironment();
@@ -80,11 +82,11 @@ async function peopleIn(mocap) {
   return JSON.parse(output);
 }
 
-/** Measures what all tables and figures but those of legs are made of; resolves to an exit code. */
+/** Measures the data of all tables and figures except those of legs; resolves to an exit code. */
 async function measure(given, models, { evaluation, figures }) {
   const there = await peopleIn(path(given.mocap));
   mkdirSync(measured, { recursive: true });
-  // Of other networks or people than those measured now: better no table than a mixed one.
+  // Earlier results are deleted, because they may be from other networks or people.
   for (const file of Object.values(laboratories).flat()) rmSync(file, { force: true });
   const tables = ['--models', models, '--robustness', '--json', evaluation, '--figures', figures];
   const people = given.people ?? there.tables.join(',');

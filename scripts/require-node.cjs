@@ -1,11 +1,11 @@
-// Runs before everything else, on any Node there is: syntax of 2015, nothing installed yet.
+// Runs before all other modules, on any version of Node: syntax of 2015, no packages.
 const { readFileSync } = require('fs');
 const { join } = require('path');
 
 const needed = JSON.parse(readFileSync(join(__dirname, '..', 'package.json'), 'utf8')).engines.node;
 const found = process.versions.node;
 
-/** For the form that package.json uses: alternatives of a caret or a lower bound, '^20.19.0 || >=22.12.0'. */
+/** Returns whether a version satisfies a range in package.json's form, caret or lower bound: '^20.19.0 || >=22.12.0'. */
 function satisfies(version, range) {
   const numbers = version.split('.').map(Number);
   return range.split('||').some((alternative) => {
@@ -19,7 +19,7 @@ function satisfies(version, range) {
   });
 }
 
-// Programs that this one starts resolve the project's packages to their sources, as it does (node -C source).
+// Child processes resolve the project's packages to their sources too (node -C source).
 process.env.NODE_OPTIONS = `${process.env.NODE_OPTIONS || ''} --conditions=source`;
 
 if (!satisfies(found, needed)) {

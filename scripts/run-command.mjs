@@ -4,10 +4,10 @@ import { fileURLToPath } from 'node:url';
 /** The root of the repository, without a trailing slash. */
 export const root = fileURLToPath(new URL('..', import.meta.url)).replace(/[\\/]$/, '');
 
-/** A sentence for the person at the terminal, who needs no stack. */
+/** An error whose message is shown without a stack. */
 export class SetupError extends Error {}
 
-/** Children still running, each the leader of its own process group, so that nothing outlives the script that started it. */
+/** The running child processes. Each leads its own process group, so that none outlives the script that started it. */
 const running = new Set();
 
 function killGroup(child, signal) {
@@ -26,7 +26,7 @@ function endWithChildren(signal) {
   process.exit(exitCodes[signal]);
 }
 
-/** Signals end the children too, but only while there are any: a server in this process ends in its own way. */
+/** Registers the signal handlers only while children run: a server in this process handles signals itself. */
 function watchSignals() {
   for (const signal of Object.keys(exitCodes)) {
     process.off(signal, endWithChildren);
@@ -35,8 +35,8 @@ function watchSignals() {
 }
 
 /**
- * Runs a program in the repository's root, its standard input closed, and resolves to its exit code, its output (when
- * `capture`) and whether it ran past `limitSeconds`. Never rejects for a program that fails; does for one that is not there.
+ * Runs a program in the repository's root with its standard input closed. Resolves to its exit code, its output (with
+ * `capture`) and whether it ran past `limitSeconds`. Rejects only if the program does not exist.
  */
 export function run(command, args, { env = {}, cwd = root, capture = false, limitSeconds = 3600 } = {}) {
   return new Promise((resolve, reject) => {
@@ -72,7 +72,7 @@ export function run(command, args, { env = {}, cwd = root, capture = false, limi
   });
 }
 
-/** Like `run` with its output captured; null where the program is not installed. */
+/** Like `run` with captured output; resolves to null if the program is not installed. */
 export async function runQuietly(command, args, options = {}) {
   try {
     return await run(command, args, { ...options, capture: true });
@@ -82,7 +82,7 @@ export async function runQuietly(command, args, options = {}) {
   }
 }
 
-/** npm passes a signal only to the shell between us: when that shell is gone, the user of `npm start` has stopped it. */
+/** Ends this process when its parent shell has ended: npm passes signals only to that shell. */
 function stopWithParent() {
   const parent = process.ppid;
   setInterval(() => {
@@ -90,7 +90,7 @@ function stopWithParent() {
   }, 500).unref();
 }
 
-/** Runs the script body and turns a SetupError into its sentence and exit code 1. */
+/** Runs a script's body; prints the message of a SetupError and exits with code 1. */
 export async function main(body) {
   if (process.env.npm_lifecycle_event) stopWithParent();
   try {

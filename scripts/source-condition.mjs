@@ -1,7 +1,7 @@
-/** The condition by which the packages of this project export their sources, so that nothing is built to run or to test them. */
+/** The export condition under which this project's packages export their sources, so that they run without a build. */
 export const sourceCondition = 'source';
 
-/** Returns the resolution of a bundler that takes these packages from their sources; `platform`: 'browser' or 'node'. */
+/** Returns a bundler's resolve options that map these packages to their sources; `platform`: 'browser' or 'node'. */
 export const sourceResolution = (platform) => ({
   conditionNames: [
     sourceCondition,

@@ -5,7 +5,7 @@ import { main, SetupError } from './run-command.mjs';
 await main(async () => {
   await ensureInstalled();
   if (!process.argv.includes('--help')) await buildWhenStale();
-  // Found only now: tsx may just have been installed.
+  // tsx is resolved here, because it may just have been installed.
   const { register } = await import('tsx/esm/api');
   register();
   try {

@@ -1,4 +1,5 @@
-// npm run study:check -- PLAN.json [--participant P01]: what is wrong with a plan, or how long it takes and what its participants see.
+// npm run study:check -- PLAN.json [--participant P01]: prints the errors of a plan, or its duration and what its
+// participants see.
 import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';
@@ -19,7 +20,7 @@ function options() {
 await main(async () => {
   const { file, participant } = options();
   await ensureInstalled();
-  // Paths on the command line mean what they mean to the person who typed them.
+  // Paths are relative to the directory in which the command was typed.
   const path = resolve(process.env.INIT_CWD ?? process.cwd(), file);
   const args = ['--import', 'tsx', 'src/study/cli/check/main.ts', path, ...(participant ? [participant] : [])];
   const { code } = await run(process.execPath, args);

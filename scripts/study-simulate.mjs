@@ -1,5 +1,6 @@
-// npm run study:simulate -- STUDY.json [--out DIR] [--participants 15] [--seed 7] [--effect late-200=-0.8 …] [--score-effect late-200=-0.1 …]:
-// a simulation, a whole study of simulated participants through the sessions, the store and the exports; docs/study.md says how they are modelled.
+// npm run study:simulate -- STUDY.json [--out DIR] [--participants 15] [--seed 7] [--effect late-200=-0.8 …]
+// [--score-effect late-200=-0.1 …]: simulates a whole study, with simulated participants in the real sessions, store and
+// exports. docs/study.md describes their model.
 import { basename, join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';
@@ -31,7 +32,7 @@ await main(async () => {
   const study = plan ?? join(root, 'public/studies/paper.json');
   const into = out ?? `SIMULATED-${basename(study, '.json')}`;
   await ensureInstalled();
-  // Paths on the command line mean what they mean to the person who typed them.
+  // Paths are relative to the directory in which the command was typed.
   const path = (name) => resolve(process.env.INIT_CWD ?? process.cwd(), name);
   const args = ['--import', 'tsx', 'src/study/cli/simulate/main.ts', '--out', path(into), '--plan', path(study)];
   for (const [name, value] of Object.entries(rest)) {

@@ -1,4 +1,4 @@
-// npm run study:verify -- FILE.zip: computes an exported study anew from its raw records and says what differs.
+// npm run study:verify -- FILE.zip: recomputes an exported study from its raw records and prints the differences.
 import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';
@@ -15,7 +15,7 @@ function file() {
 }
 
 await main(async () => {
-  // Paths on the command line mean what they mean to the person who typed them.
+  // Paths are relative to the directory in which the command was typed.
   const path = resolve(process.env.INIT_CWD ?? process.cwd(), file());
   await ensureInstalled();
   const { code } = await run(process.execPath, ['--import', 'tsx', 'src/study/cli/verify/main.ts', path]);

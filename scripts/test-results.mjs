@@ -1,11 +1,11 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { relative } from 'node:path';
 
-/** The specs of a suite of Playwright's report and of the suites within it. */
+/** Returns the specs of a suite in Playwright's report, including those of nested suites. */
 const specsOf = ({ specs = [], suites = [] }) => [...specs, ...suites.flatMap(specsOf)];
 
 const readers = {
-  /** `chosen`: whether tests of these tags were asked for; the runner counts all others as skipped. */
+  /** Reads Vitest's report. `chosen`: whether tests of these tags were selected; the runner counts all others as skipped. */
   vitest(text, chosen = () => true) {
     const report = JSON.parse(text);
     const tests = report.testResults.flatMap((file) =>
@@ -13,7 +13,7 @@ const readers = {
     );
     const asked = tests.filter(({ tags = [] }) => chosen(tags));
     const of = (...kinds) => asked.filter(({ status }) => kinds.includes(status));
-    // A file that does not even load has no tests of its own to fail.
+    // A file that fails to load has no tests that could fail.
     const broken = report.testResults.filter((file) => file.status === 'failed' && file.assertionResults.length === 0);
     return {
       passed: of('passed').length,
@@ -38,7 +38,7 @@ const readers = {
     const specs = suites.flatMap(specsOf).filter(({ ok }) => !ok);
     return {
       passed: stats.expected + stats.flaky,
-      // Errors outside every test: a configuration that does not load, a server that does not start.
+      // These errors are outside all tests: a configuration that does not load, a server that does not start.
       failures: [
         ...errors.map(({ message = 'an error without words' }) => message.split('\n')[0]),
         ...specs.map(({ file, title }) => `${file}: ${title}`),
@@ -48,14 +48,14 @@ const readers = {
   },
 };
 
-/** Tests by outcome and the names of those that failed, as a runner's report file states them; null where it wrote none. */
+/** Returns the counts of a runner's report file by outcome and the names of failed tests; null if there is no file. */
 export function readResults(runner, file, chosen) {
   if (!existsSync(file)) return null;
   const { passed, failures, skipped } = readers[runner](readFileSync(file, 'utf8'), chosen);
   return { passed, failed: failures.length, skipped, failures };
 }
 
-/** The line that ends a run: '12 passed, 0 failed', with the skipped where there are any. */
+/** Returns the last line of a run: '12 passed, 0 failed', and the skipped tests if there are any. */
 export function countLine({ passed, failed, skipped }) {
   return `${passed} passed, ${failed} failed${skipped ? `, ${skipped} skipped` : ''}`;
 }

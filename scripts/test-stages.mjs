@@ -14,7 +14,7 @@ const vitest = (report, ...args) => [
   node('vitest/vitest.mjs', 'run', ...args, '--reporter=default', '--reporter=json', `--outputFile.json=${report}`),
 ];
 
-/** Browser tests: 'day' those without a mark, 'full', 'realtime' and 'nightly' those marked so (playwright.config.ts). */
+/** Returns the commands of browser tests: 'day' runs untagged tests, the others those with that tag (playwright.config.ts). */
 const playwright = (tests) => async (report) => {
   process.env.CHROMIUM_PATH = await ensureChromium();
   process.env.PLAYWRIGHT_JSON_OUTPUT_NAME = report;
@@ -24,14 +24,14 @@ const playwright = (tests) => async (report) => {
 };
 
 /**
- * Each stage: the commands it consists of (report: where its runner leaves the outcome), its runner, how long it may take, and the suite it
- * belongs to: 'day' (npm test), 'full' (npm run test:full), 'training', 'nightly'. `singleCore`: it keeps one core busy, so that another of
- * its kind can run beside it. `waits`: it uses all cores, but waits for servers and sockets so much that another can use one of them.
- * `chosen`: which unit tests it runs, by their tags.
+ * The stages: commands (`report`: the file for the runner's results), runner, time limit, and suite: 'day' (npm test),
+ * 'full' (npm run test:full), 'training' or 'nightly'. `singleCore`: uses one core, so that another such stage can run at
+ * the same time. `waits`: uses all cores but waits for servers and sockets, so that another stage can use one core.
+ * `chosen`: the unit tests it runs, by tag.
  */
 export const stages = {
-  // The longest first: of those of one core two run side by side.
-  // The package, built as it is published: its parts, where its types are found, what each entry weighs.
+  // The longest stages come first: two single-core stages run at the same time.
+  // The package, built as it is published: its parts, its types, and the size of each entry.
   library: {
     suite: 'day',
     singleCore: true,
@@ -52,7 +52,7 @@ export const stages = {
     runner: 'pytest',
     commands: (report) => pytest({ extras: [], marker: 'not training', report }),
   },
-  // The page as the browser tests ask for it.
+  // The built page, as the browser tests load it.
   page: {
     suite: 'day',
     singleCore: true,
@@ -61,8 +61,8 @@ export const stages = {
       return [];
     },
   },
-  // Core without the browser's types and without ambient ones: window, performance and console are unknown there. The service worker with a
-  // worker's types.
+  // Core is compiled without the browser's types and without ambient ones: window, performance and console are undefined.
+  // The service worker is compiled with a worker's types.
   'core-types': {
     suite: 'day',
     singleCore: true,
@@ -88,7 +88,7 @@ export const stages = {
     commands: (report) => vitest(report, '--tags-filter=!full'),
   },
   e2e: { suite: 'day', runner: 'playwright', commands: playwright('day') },
-  // A page of the package's users, compiled against it by every resolution of modules it is made for, and a program of Node.
+  // A user's page, compiled against the package with every supported module resolution, and a program for Node.
   'library-use': {
     suite: 'full',
     singleCore: true,
@@ -101,7 +101,7 @@ export const stages = {
     suite: 'full',
     runner: 'vitest',
     chosen: (tags) => tags.includes('full'),
-    // Most files have nothing of that tag: they are read, not loaded.
+    // Most files have no test with that tag: they are read, not loaded.
     commands: (report) => vitest(report, '--tags-filter=full', '--experimental.preParse'),
   },
   'e2e-full': { suite: 'full', runner: 'playwright', commands: playwright('full') },
@@ -112,7 +112,7 @@ export const stages = {
     limitSeconds: 1200,
     commands: (report) => pytest({ extras: ['train'], marker: 'training', report }),
   },
-  // Every unit test once more, with more cases of each property and longer runs.
+  // Every unit test again, with more cases of each property and longer runs.
   'unit-nightly': {
     suite: 'nightly',
     runner: 'vitest',
@@ -126,5 +126,5 @@ export const stages = {
   'e2e-nightly': { suite: 'nightly', runner: 'playwright', limitSeconds: 5400, commands: playwright('nightly') },
 };
 
-/** The names of the stages of a suite, in their order. */
+/** Returns the names of the stages of a suite, in order. */
 export const stagesOf = (suite) => Object.keys(stages).filter((name) => stages[name].suite === suite);

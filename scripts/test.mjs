@@ -10,14 +10,14 @@ import { stages, stagesOf } from './test-stages.mjs';
 
 const reports = join(root, 'artifacts/test-reports');
 
-/** Failing tests of a stage that the summary names. */
+/** The maximum number of failed tests of a stage that the summary names. */
 const mostNamed = 20;
 
 const seconds = (start) => `${((performance.now() - start) / 1000).toFixed(1)} s`;
 
 const heading = (name) => `\n── ${name} ${'─'.repeat(Math.max(3, 70 - name.length))}`;
 
-/** Runs one stage. `quiet`: its output is kept and printed whole at its end, for stages that run side by side. */
+/** Runs one stage. `quiet`: its output is buffered and printed at its end, for stages that run at the same time. */
 async function runStage(name, { quiet = false } = {}) {
   const { commands, runner, chosen, limitSeconds = 600 } = stages[name];
   const report = join(reports, `${name}.${runner === 'pytest' ? 'xml' : 'json'}`);
@@ -40,15 +40,15 @@ async function runStage(name, { quiet = false } = {}) {
   if (quiet) console.log(kept.join('\n').trimEnd());
   const results = (runner && readResults(runner, report, chosen)) ?? { passed: 0, failed: 0, skipped: 0, failures: [] };
   if (results.failed === 0 && runner && results.passed === 0) problems.push('no test ran');
-  // A stage that failed without a failing test (types, lint, a crash) counts as one, so that the last line cannot hide it.
+  // A stage that failed without a failed test (types, lint, a crash) counts as one, so that the last line includes it.
   if (results.failed === 0 && problems.length > 0) results.failed = 1;
   if (results.failed > 0 && problems.length === 0) problems.push(`${results.failed} failed`);
   return { name, results, problems, counted: Boolean(runner), time: seconds(start) };
 }
 
 /**
- * Runs stages in their order. Neighbours that keep one core busy run side by side, as many as there are cores. Every other stage has the
- * machine to itself, but for one that waits a good deal: it runs beside those before it, which leave it a core.
+ * Runs the stages in order. Consecutive single-core stages run at the same time, one per core. Any other stage runs alone,
+ * except one with `waits`, which runs together with the stages before it.
  */
 async function runStages(names) {
   const outcomes = [];
@@ -75,7 +75,7 @@ function printSummary(outcomes, start) {
   for (const { name, results, problems, counted, time } of outcomes) {
     const words = [counted ? countLine(results) : '', ...problems].filter(Boolean).join('; ');
     console.log(`${problems.length === 0 ? '✓' : '✗'} ${name.padEnd(14)}${time.padStart(8)}  ${words}`);
-    // Here once more, as a log of CI is often kept by its end alone.
+    // The failures are repeated here, because often only the end of a CI log is kept.
     for (const failure of results.failures.slice(0, mostNamed)) console.log(`✗   ${failure}`);
     if (results.failures.length > mostNamed) console.log(`✗   and ${results.failures.length - mostNamed} more`);
   }

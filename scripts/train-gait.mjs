@@ -1,6 +1,7 @@
-// npm run train:gait -- --mocap DIR [--skeleton MAP.json] [--people 001,002] [--steps N] [--seed N]: the network that tells where feet are expected.
-// Python prepares the motion, the page's own code makes the inputs, Python trains: without each of four groups of people (.cache/gait, for
-// npm run report -- --legs), then on all of them (src/threepoint/core/estimation/gait-network.json).
+// npm run train:gait -- --mocap DIR [--skeleton MAP.json] [--people 001,002] [--steps N] [--seed N]: trains the network
+// that predicts footsteps. Python prepares the motion, the page's own code computes the inputs, Python trains. It trains
+// without each of four groups of people (.cache/gait, for npm run report -- --legs), then on all people
+// (src/threepoint/core/estimation/gait-network.json).
 import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
@@ -29,7 +30,7 @@ await main(async () => {
   await ensureInstalled();
   const python = await pythonEnvironment({ extras: ['train'] });
   const env = { PYTHONPATH: `${root}/training`, PYTHONUNBUFFERED: '1' };
-  // Recordings and inputs are motion data: nothing of them stays.
+  // Recordings and inputs are motion data: they are deleted.
   const folder = mkdtempSync(join(tmpdir(), 'threepoint-gait-'));
   const [recordings, frames] = ['recordings', 'frames'].map((name) => join(folder, name));
   const heldOut = join(root, '.cache/gait');

@@ -3,12 +3,12 @@ import { runInNewContext } from 'node:vm';
 
 setFlagsFromString('--expose-gc');
 
-/** Collects all that nothing refers to, now. */
+/** Runs a full garbage collection. */
 export const collectGarbage = runInNewContext('gc') as () => void;
 
 /**
- * Collects it, and gives the memory back that V8 would keep for new objects: up to 45 MB after a crowd, more or less by chance. A query of
- * the heap does so, as V8 says in Heap::CollectAllAvailableGarbage; a collection does not.
+ * Runs a full garbage collection and releases the memory that V8 keeps for new objects, which varies up to 45 MB after
+ * many clients. A heap query does so (Heap::CollectAllAvailableGarbage in V8); a collection alone does not.
  */
 export function releaseMemory(): void {
   collectGarbage();

@@ -10,7 +10,7 @@ import { directoryWith } from './temporary-directory';
 
 const root = fileURLToPath(new URL('..', import.meta.url));
 
-/** A project of these files alone, under the same rules as ours. */
+/** Creates a project of these files alone, under the repository's rules. */
 function projectOf(files: Readonly<Record<string, string>>): string {
   const ours = ['biome.json', 'scripts/no-chance-in-core.grit', 'tsconfig.json', 'package.json'];
   const directory = directoryWith({
@@ -21,11 +21,11 @@ function projectOf(files: Readonly<Record<string, string>>): string {
   return directory;
 }
 
-/** Read once and used in this process: a new process for each project would spend a second on starting. */
+/** The rules, loaded once in this process: a new process for each project would take a second to start. */
 const importRules = await extractDepcruiseOptions(join(root, '.dependency-cruiser.mjs'));
 const tsConfig = extractTsConfig(join(root, 'tsconfig.json'));
 
-/** The names of the import rules that these files break, each once. */
+/** Returns the names of the import rules that these files break, without duplicates. */
 async function brokenImportRules(files: Readonly<Record<string, string>>): Promise<string[]> {
   const folders = [...new Set(Object.keys(files).map((path) => path.split('/')[0] as string))];
   const options = { ...structuredClone(importRules), baseDir: projectOf(files) };
@@ -188,7 +188,7 @@ describe('the import rules', () => {
   });
 });
 
-/** The linter's report on these files, in one run. */
+/** Returns the linter's report on these files, from one run. */
 function lint(files: Readonly<Record<string, string>>): string {
   const { stdout, stderr } = spawnSync(
     process.execPath,
@@ -216,7 +216,7 @@ test('chance is refused in core, however it is written, and nowhere else', () =>
     'export const half = (x: number) => Math.sin(x) / 2;\n',
   ] as const;
   const report = lint(Object.fromEntries([...inCore, ...outside, mathematics]));
-  // Each finding begins with its file, line and column.
+  // Each finding starts with its file, line and column.
   const refused = report.split(/^(?=src\/\S+:\d+:\d+ )/m).flatMap((finding) => {
     if (!finding.includes('core has no chance')) return [];
     return finding.slice(0, finding.indexOf(':'));

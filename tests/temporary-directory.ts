@@ -3,7 +3,7 @@ import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { onTestFinished } from 'vitest';
 
-/** A directory with these files, path to content, that exists until the test is over. */
+/** Creates a temporary directory with these files (path to content), which is deleted when the test ends. */
 export function directoryWith(files: Readonly<Record<string, string | Buffer>> = {}): string {
   const directory = mkdtempSync(join(tmpdir(), 'threepoint-'));
   onTestFinished(() => rmSync(directory, { recursive: true, force: true }));

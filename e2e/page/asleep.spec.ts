@@ -1,8 +1,8 @@
 import { chromium, type Page } from '@playwright/test';
 import type { BallProbe } from 'threepoint-page/ball/ball-frame';
-import { measured } from '../../tests/reliability/measured';
+import { reportFigures } from '../../tests/reliability/report-figures';
 import { processesOf } from '../browser-processes';
-import { expect, joinedRoom, listen, probe } from '../page-fixture';
+import { collectErrors, expect, joinedRoom, probe } from '../page-fixture';
 import { test } from '../study-participant';
 
 const hour = 3_600_000;
@@ -70,7 +70,7 @@ for (const { name, slept } of sleeps) {
       try {
         const page = await (await chromium.connect(browserServer.wsEndpoint())).newPage();
         await withClocks(page);
-        const { heard } = listen(page, origin);
+        const { errors } = collectErrors(page, origin);
         const { seat } = await inMatch(page, origin, `asleep-${crypto.randomUUID().slice(0, 8)}`);
         const processes = processesOf(browserServer.process().pid as number);
         for (const pid of processes) process.kill(pid, 'SIGSTOP');
@@ -85,8 +85,8 @@ for (const { name, slept } of sleeps) {
         await plays(page);
         expect(await match(page)).toMatchObject({ seat, voided: asleep === 'while its seat is held' ? 0 : 1 });
         await goesOn(page);
-        expect(heard.filter((text) => !/WebSocket/.test(text))).toEqual([]);
-        measured('asleep', { [`${name}, ${asleep}`]: `back in its seat after ${seconds.toFixed(1)} s` });
+        expect(errors.filter((text) => !/WebSocket/.test(text))).toEqual([]);
+        reportFigures('asleep', { [`${name}, ${asleep}`]: `back in its seat after ${seconds.toFixed(1)} s` });
       } finally {
         await browserServer.close();
       }

@@ -1,7 +1,7 @@
 import { EventEmitter, once } from 'node:events';
-import { measured } from '../../tests/reliability/measured';
+import { reportFigures } from '../../tests/reliability/report-figures';
 import { changed, mannequin } from '../../tests/threepoint/avatar/glb';
-import { serveElsewhere } from '../elsewhere-server';
+import { serveCrossOrigin } from '../cross-origin-server';
 import { expect, freshTest, joint, keepPicture, open, probe, test } from '../page-fixture';
 import { serveStudies } from '../study-server';
 
@@ -64,7 +64,7 @@ test('an avatar of the address that does not arrive leaves our own body standing
   await page.getByRole('button', { name: 'Back to the page’s avatar' }).click();
   await expect(page.getByRole('button', { name: 'Back to the page’s avatar' })).toBeHidden();
   expect(new URL(page.url()).searchParams.has('avatar')).toBe(false);
-  measured('avatar-missing', { 'our own body stands there': `${stood} of ${Object.keys(answers).length}` });
+  reportFigures('avatar-missing', { 'our own body stands there': `${stood} of ${Object.keys(answers).length}` });
 });
 
 test('an avatar on its way can be given up, and ours stays @full', async ({ page }) => {
@@ -117,7 +117,7 @@ test('our own body stands there until the avatar of the address has arrived; the
 freshTest(
   'an avatar of another server is read where the server lists it, and not asked for where it does not @full',
   async ({ browser }) => {
-    const elsewhere = await serveElsewhere(mannequin(), 'other.vrm');
+    const elsewhere = await serveCrossOrigin(mannequin(), 'other.vrm');
     const context = await browser.newContext({ ignoreHTTPSErrors: true, serviceWorkers: 'block' });
     /** The name of the avatar that stands there, once the page has opened the other one or has said why not. */
     async function shownBy(settings: Record<string, string>): Promise<string> {
@@ -142,7 +142,7 @@ freshTest(
       expect(elsewhere.asked).toEqual([]);
       expect(await shownBy({ THREEPOINT_FILES_FROM: elsewhere.origin })).toContain('other.vrm');
       expect(elsewhere.asked).toEqual(['GET /avatars/other.vrm']);
-      measured('policy', { 'requests to a server that is not listed': 0 });
+      reportFigures('policy', { 'requests to a server that is not listed': 0 });
     } finally {
       await context.close();
       await elsewhere.close();

@@ -194,7 +194,7 @@ test('three browsers play a whole match over the relay and agree, one watches, o
     await come('spectate&name=dora');
     // The sender solves, so an elbow moves on the receiver's picture as it does on the sender's own.
     await Promise.all([elbowTravels(cal, 0), elbowTravels(ann, 1), elbowTravels(ben, 2, 0.05)]);
-    // Where pictures come once a second nothing may be caught in the first match: then it is another one.
+    // At one frame a second the first match may end without a catch: then a later match scores.
     const scored = await until(ann, ({ score, phase }) => score > 0 && phase === 'running', 3 * (seconds + 20) * 1000);
     expect(scored.score).toBeGreaterThan(0);
     const late = await come('spectate&name=eve');

@@ -1,4 +1,4 @@
-import { measured } from '../../tests/reliability/measured';
+import { reportFigures } from '../../tests/reliability/report-figures';
 import {
   expect,
   freshTest,
@@ -128,7 +128,7 @@ test('text stands out from its background, for every kind of colour vision @full
   }
   const least = Math.min(...contrasts);
   expect(least).toBeGreaterThan(4.5);
-  measured('comfort', { 'least contrast of text': `${least.toFixed(1)} : 1`, 'larger text': '130 %, remembered' });
+  reportFigures('comfort', { 'least contrast of text': `${least.toFixed(1)} : 1`, 'larger text': '130 %, remembered' });
 });
 
 test('going from place to place leaves no geometry and no texture on the graphics device @full', async ({ page }) => {

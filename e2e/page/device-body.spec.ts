@@ -4,7 +4,7 @@ import { fileURLToPath } from 'node:url';
 import type { Page } from '@playwright/test';
 import { rolldown } from 'rolldown';
 import { sourceResolution } from '../../scripts/source-condition.mjs';
-import { letTimePass, pass } from '../driven-time';
+import { endDrivenTime, pass } from '../driven-time';
 import { emulatedHeadset } from '../emulated-headset';
 import { enterVr, expect, keepPicture, open, probe, freshTest as test } from '../page-fixture';
 
@@ -60,7 +60,7 @@ test('a headset’s own body is asked for on wish alone, drawn, compared, record
   await press(page, 'button', 'Record');
   await pass(page, 400);
   await press(page, 'button', 'Stop');
-  await letTimePass(page);
+  await endDrivenTime(page);
   const overlay = page.locator('#overlay');
   await expect(overlay).toContainText('Learned ·');
   await expect(overlay).toContainText(/cm from the device’s: elbows \d+\.\d, \d+\.\d/);

@@ -1,7 +1,7 @@
 import { fileURLToPath } from 'node:url';
 import { serve } from 'threepoint-http/web-server';
 import { createPageHandler } from '../../server/page';
-import { measured } from '../../tests/reliability/measured';
+import { reportFigures } from '../../tests/reliability/report-figures';
 import { emulatedHeadset, frames } from '../emulated-headset';
 import { enterVr, expect, freshTest, open, probe, test } from '../page-fixture';
 
@@ -85,11 +85,11 @@ test('a lost graphics device comes back with the game as it was: mirror, archery
   await expect(page.getByText('The graphics device is back.')).toBeVisible();
   await expect(page.getByText('The graphics device was lost.')).toBeHidden();
   for (const [where, time] of Object.entries(figures)) expect(Number.parseFloat(time), where).toBeLessThan(3000);
-  measured('graphics-lost', figures);
+  reportFigures('graphics-lost', figures);
 });
 
 for (const place of ['studio', 'archery', 'ball'] as const) {
-  // The same code reads the headset in all three: the games are looked at by night.
+  // All three places read the headset with the same code, so the games are tested at night only.
   const when = place === 'studio' ? '@realtime ' : '@nightly ';
   test(`${when}in VR (${place}): a head that is lost for 3 s, a menu, a headset taken off`, async ({ page }) => {
     await open(page, `emulate&play=${place}&seed=7&panel=off&quality=low&estimator=learned`);
@@ -147,7 +147,7 @@ for (const place of ['studio', 'archery', 'ball'] as const) {
     expect(lost.moved, 'the body freezes').toBe(0);
     expect(lost.drawn, 'the world is drawn all the same').toBeGreaterThan(10);
     expect(lost.back, 'frames until the body is back').toBeLessThanOrEqual(2);
-    measured('head-lost', {
+    reportFigures('head-lost', {
       [place]: `whole again after ${lost.back} frames, ${lost.drawn} drawn meanwhile, 0 exceptions`,
     });
 
@@ -193,11 +193,11 @@ freshTest(
       });
       const start = performance.now();
       await expect(page.getByText('This browser has no WebXR.').first()).toBeVisible();
-      measured('isolation', {
+      reportFigures('isolation', {
         isolated: `${estimator} on ${provider}`,
         'not isolated': 'every other test of the page',
       });
-      measured('no-headset', {
+      reportFigures('no-headset', {
         'no WebXR': `said ${Math.round(performance.now() - start)} ms after the page was ready (${loading.estimator ?? 0} ms)`,
       });
     } finally {
@@ -262,7 +262,7 @@ freshTest('nothing but our own files runs, and a refused session is said', async
   // Trusted Types: no text becomes markup, wherever it is assigned.
   const parsed = await page.locator('.parsed').count();
   expect(parsed).toBe(0);
-  measured('policy', {
+  reportFigures('policy', {
     ran: `${ran.length} of ${attempts} attempts`,
     'requests elsewhere': answered.length,
     'texts parsed as markup': parsed,
@@ -271,6 +271,6 @@ freshTest('nothing but our own files runs, and a refused session is said', async
   const start = performance.now();
   await page.getByRole('button', { name: 'Enter VR' }).click();
   await expect(page.getByRole('alert').filter({ hasText: 'the headset refused the session' })).toBeVisible();
-  measured('no-headset', { 'session refused': `said after ${Math.round(performance.now() - start)} ms` });
+  reportFigures('no-headset', { 'session refused': `said after ${Math.round(performance.now() - start)} ms` });
   expect((await probe(page)).activity).toBe('desktop');
 });

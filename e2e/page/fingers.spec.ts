@@ -10,7 +10,7 @@ const before = {
   right: { position: [0.25, 1.2, -0.35], orientation: [0, 0, 0, 1] },
 } as const;
 
-/** Where a finger of the avatar ends, as drawn [m]. */
+/** Returns the position of a fingertip of the drawn avatar [m]. */
 async function tip(page: Page, side: 'left' | 'right', finger: Finger) {
   const found = (await probe(page)).avatar.fingertips[side][finger];
   if (!found) throw new Error(`the avatar has no ${side} ${finger}`);

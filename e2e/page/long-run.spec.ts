@@ -1,13 +1,13 @@
 import type { CDPSession } from '@playwright/test';
-import { measured } from '../../tests/reliability/measured';
-import { countsOf, megabytes } from '../kept-memory';
+import { reportFigures } from '../../tests/reliability/report-figures';
+import { countsOf, megabytes } from '../memory-usage';
 import { expect, open, probe, freshTest as test } from '../page-fixture';
 
 type Page = Parameters<typeof open>[0];
 
 test.use({ viewport: { width: 480, height: 300 } });
 
-/** Of play by the built-in archer; THREEPOINT_LONG_MINUTES for less. */
+/** The duration of play by the built-in archer [min]; THREEPOINT_LONG_MINUTES shortens it. */
 const minutes = Number(process.env.THREEPOINT_LONG_MINUTES ?? 20);
 
 interface Holdings {
@@ -21,7 +21,7 @@ interface Holdings {
   readonly heap: number;
 }
 
-/** What a page keeps [MB], after a collection, told apart by a heap snapshot: objects, and code that the engine compiles as it goes. */
+/** Returns a page's heap after a garbage collection [MB], from a heap snapshot: objects, and code compiled by the engine. */
 async function kept(cdp: CDPSession): Promise<{ readonly objects: number; readonly code: number }> {
   const parts: string[] = [];
   const hear = ({ chunk }: { chunk: string }) => void parts.push(chunk);
@@ -110,7 +110,7 @@ test('@nightly @long rounds of archery, one after the other: nothing grows after
     after.objects,
     `objects [MB]; all of the heap: ${seen.map((one) => one.heap.toFixed(1)).join(', ')}`,
   ).toBeLessThan(1.1 * begun.objects);
-  measured('long-run', {
+  reportFigures('long-run', {
     played: `${seen.length} rounds in ${played.toFixed(0)} min`,
     'geometries, textures, programs': `${first.geometries}, ${first.textures}, ${first.programs}: +${most('geometries')}, +${most('textures')}, +${most('programs')}`,
     'listeners, workers': `+${Math.max(0, listeners)}, +${most('workers')}`,

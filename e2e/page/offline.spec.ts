@@ -9,12 +9,12 @@ import type { ArcheryProbe } from 'threepoint-page/archery/archery-play';
 import { createPageHandler } from '../../server/page';
 import { holdAt } from '../driven-time';
 import { emulatedHeadset } from '../emulated-headset';
-import { enterVr, expect, keepPicture, listen, newPage, probe } from '../page-fixture';
-import { type PlainServer, servePlainly } from '../plain-server';
+import { collectErrors, enterVr, expect, keepPicture, newPage, probe } from '../page-fixture';
+import { type StaticServer, serveStatic } from '../static-server';
 
 const dist = fileURLToPath(new URL('../../dist', import.meta.url));
 
-interface OurServer extends PlainServer {
+interface OurServer extends StaticServer {
   readonly port: number;
   /** The paths it was asked for. */
   readonly asked: string[];
@@ -33,7 +33,7 @@ async function serveOurs(folder: string, port = 0): Promise<OurServer> {
 }
 
 const hosts = {
-  'a folder of a host of files': (folder: string) => servePlainly(folder, '/threepoint/'),
+  'a folder of a host of files': (folder: string) => serveStatic(folder, '/threepoint/'),
   'our server': (folder: string) => serveOurs(folder),
 };
 
@@ -51,7 +51,7 @@ const test = base.extend<{ folder: string }>({
   },
 });
 
-// Every visit builds the page anew.
+// Every visit reloads the page.
 test.describe.configure({ timeout: 240_000 });
 
 async function visit(page: Page, query = 'quality=low&panel=off'): Promise<void> {
@@ -111,10 +111,10 @@ for (const [where, host] of Object.entries(hosts)) {
   }) => {
     const served = await host(folder);
     const page = await newPage(browser, served.address, true);
-    const { heard } = listen(page, served.address);
+    const { errors } = collectErrors(page, served.address);
     await visit(page);
     await isKept(page);
-    expect(heard, 'of the first visit').toEqual([]);
+    expect(errors, 'of the first visit').toEqual([]);
 
     await served.close();
     await page.context().setOffline(true);
@@ -130,7 +130,7 @@ for (const [where, host] of Object.entries(hosts)) {
     await expect(page.getByText('which does not answer now')).toBeVisible();
     await keepPicture(page, 'offline-rooms');
     expect(
-      heard.filter((text) => !unreachable.test(text)),
+      errors.filter((text) => !unreachable.test(text)),
       'without a network',
     ).toEqual([]);
     await page.context().close();
@@ -243,7 +243,7 @@ test('a browser that can store too little shows the page as ever, and keeps no h
 test('files that are not those of one version are not kept @realtime', async ({ browser, folder }) => {
   const contract = join(folder, 'models/paper.json');
   writeFileSync(contract, readFileSync(contract, 'utf8').replace('{', '{ '));
-  const served = await servePlainly(folder, '/threepoint/');
+  const served = await serveStatic(folder, '/threepoint/');
   const page = await newPage(browser, served.address, true);
   await visit(page);
   await expect

@@ -7,8 +7,8 @@ import type { ArcheryProbe } from 'threepoint-page/archery/archery-play';
 import { build } from '../../scripts/build.mjs';
 import { holdAt } from '../driven-time';
 import { emulatedHeadset } from '../emulated-headset';
-import { enterVr, expect, joint, keepPicture, listen, newPage, probe } from '../page-fixture';
-import { servePlainly } from '../plain-server';
+import { collectErrors, enterVr, expect, joint, keepPicture, newPage, probe } from '../page-fixture';
+import { serveStatic } from '../static-server';
 
 const dist = fileURLToPath(new URL('../../dist', import.meta.url));
 
@@ -16,7 +16,7 @@ const dist = fileURLToPath(new URL('../../dist', import.meta.url));
 const test = base.extend<{ built: string; address: string; complaints: readonly string[] }>({
   built: [dist, { option: true }],
   address: async ({ built }, use) => {
-    const host = await servePlainly(built, '/threepoint/');
+    const host = await serveStatic(built, '/threepoint/');
     await use(host.address);
     await host.close();
   },
@@ -28,10 +28,10 @@ const test = base.extend<{ built: string; address: string; complaints: readonly 
   },
   complaints: [
     async ({ page, address }, use) => {
-      const { heard, stop } = listen(page, address);
-      await use(heard);
+      const { errors, stop } = collectErrors(page, address);
+      await use(errors);
       stop();
-      expect(heard, 'complaints of the page').toEqual([]);
+      expect(errors, 'complaints of the page').toEqual([]);
     },
     { auto: true },
   ],

@@ -2,9 +2,9 @@ import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { chromium, type Page } from '@playwright/test';
-import { measured } from '../../tests/reliability/measured';
-import { expect, joinedRoom, listen, probe } from '../page-fixture';
-import { reaches, recordsOf, tellOfOneself, test } from '../study-participant';
+import { reportFigures } from '../../tests/reliability/report-figures';
+import { collectErrors, expect, joinedRoom, probe } from '../page-fixture';
+import { fillInDemographics, reaches, recordsOf, test } from '../study-participant';
 import { experimenter, shortStudy } from '../study-server';
 
 /** A page of a browser whose user lets no site store anything: localStorage throws, IndexedDB and service workers are refused. */
@@ -25,9 +25,9 @@ async function inClosedBrowser(origin: string, launch: object, body: (page: Page
       }
     });
     expect(refused, 'what this browser says of its storage').toBe('SecurityError');
-    const { heard } = listen(page, origin);
+    const { errors } = collectErrors(page, origin);
     await body(page);
-    expect(heard).toEqual([]);
+    expect(errors).toEqual([]);
   } finally {
     await context.close();
     rmSync(profile, { recursive: true });
@@ -62,7 +62,7 @@ test('a browser that stores nothing shows the page, plays with others and takes 
     await expect(page.getByLabel(/Age/)).toBeVisible();
     await expect(page.getByText('This browser does not let the page store anything')).toBeVisible();
   });
-  measured('storage-denied', { 'pages that failed': '0 of 3' });
+  reportFigures('storage-denied', { 'pages that failed': '0 of 3' });
 });
 
 test('a browser whose IndexedDB alone never answers shows the page and takes part in a study @full', async ({
@@ -87,10 +87,10 @@ test('a browser whose IndexedDB alone never answers shows the page and takes par
   await page.getByLabel(/I have read this/).check({ timeout: 30_000 });
   await page.getByRole('button', { name: 'I agree' }).click();
   await page.getByRole('button', { name: 'I have noted it' }).click();
-  await tellOfOneself(page);
+  await fillInDemographics(page);
   await page.getByRole('button', { name: 'Continue' }).click();
   await expect.poll(async () => (await recordsOf(origin, 'silent')).length).toBe(2);
   await experimenter(origin).ask('/silent/participants/P01/commands', 'POST', { type: 'pause' });
   await reaches(page, 'paused');
-  measured('storage-blocked', { 'pages that stood still': '0 of 2' });
+  reportFigures('storage-blocked', { 'pages that stood still': '0 of 2' });
 });

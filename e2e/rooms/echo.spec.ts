@@ -1,7 +1,7 @@
 import { expect, type Page } from '@playwright/test';
-import { tell } from '../../tests/tell';
+import { printFigures } from '../../tests/print-figures';
 import { loudspeakerInstalled, startLoudspeaker } from '../loudspeaker';
-import { bar, heard, joinVoices, loudness, test } from '../talkers';
+import { bar, expectVoices, joinVoices, loudness, test } from '../talkers';
 
 /** In the page: its microphone's echo is left as it is. */
 function keepEcho(): void {
@@ -40,17 +40,17 @@ test.describe(`echo${loudspeakerInstalled ? '' : ' (PulseAudio is not installed)
         await joinVoices(ann);
         await joinVoices(ben);
         await unmute(ann);
-        await heard(ben);
+        await expectVoices(ben);
         await unmute(ben);
-        // What Ann hears is her own voice, which Ben's page has played, placed where she stands: Ben says nothing.
-        if (!cancelling) await heard(ann);
+        // Ann receives her own voice, which Ben's page has played at her position: Ben is silent.
+        if (!cancelling) await expectVoices(ann);
         // The canceller learns the way from loudspeaker to microphone from what goes by.
         await loudness(ann, 60);
         levels[cancelling ? 'with' : 'without'] = await loudness(ann, 40);
         levels.played = await loudness(ben, 15);
         for (const page of [ann, ben]) await page.close();
       }
-      tell('echo [dB of full scale]', levels);
+      printFigures('echo [dB of full scale]', levels);
       expect((levels.without ?? Number.NaN) - (levels.with ?? Number.NaN)).toBeGreaterThan(20);
     } finally {
       await loudspeaker.close();

@@ -7,7 +7,7 @@ import { checkedPlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
 import { answerModelWith } from 'threepoint-study/simulation/answer-model';
 import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
 import { simulatedPlan, simulateStudy } from 'threepoint-study/simulation/simulate-study';
-import { measured } from '../../tests/reliability/measured';
+import { reportFigures } from '../../tests/reliability/report-figures';
 import { expect, joinedRoom } from '../page-fixture';
 import { openResults, signIn, test } from '../study-participant';
 import { experimenter } from '../study-server';
@@ -48,7 +48,7 @@ async function showsText(page: Page, where: string): Promise<void> {
 }
 
 test.afterAll(() => {
-  if (shown > 0) measured('text', { 'places of the pages that show markup of others as text': shown });
+  if (shown > 0) reportFigures('text', { 'places of the pages that show markup of others as text': shown });
 });
 
 test('markup in a study is text to participants and experimenters @full', async ({ page, origin }) => {

@@ -1,5 +1,5 @@
 import { emulatedHeadset, frames } from '../emulated-headset';
-import { keepWritten, lookingAtMenu, pressBelow, pressInMenu, writtenAs } from '../hands-on-menu';
+import { lookingAtMenu, pressBelow, pressInMenu, recordCanvasText, waitForCanvasText } from '../hands-on-menu';
 import { enterVr, expect, freshTest, joinedRoom, keepPicture, open, probe, test } from '../page-fixture';
 import { serveStudies } from '../study-server';
 
@@ -80,13 +80,13 @@ freshTest(
       await other.bringToFront();
       await expect(bar(other).getByRole('button', { name: 'Rejoin' })).toBeVisible();
 
-      await other.addInitScript(keepWritten);
+      await other.addInitScript(recordCanvasText);
       await other.goto(`${link}&panel=off&quality=low&estimator=ik&emulate&actor=off`);
       await joinedRoom(other);
       await (await emulatedHeadset(other)).place({ head: lookingAtMenu });
       await enterVr(other, { stepMs: null });
       await pressInMenu(other, 'Invite');
-      await writtenAs(other, link.slice(link.indexOf('?')));
+      await waitForCanvasText(other, link.slice(link.indexOf('?')));
       await keepPicture(other, 'ball-invitation-vr');
       await other.close();
     } finally {
@@ -97,7 +97,7 @@ freshTest(
 
 freshTest('in the headset another player is hidden by the menu, and shown again @full', async ({ page }) => {
   test.setTimeout(240_000);
-  await page.addInitScript(keepWritten);
+  await page.addInitScript(recordCanvasText);
   await open(page, 'play=ball&panel=off&quality=low&estimator=ik&seed=5&emulate&actor=off');
   const drawn = async () =>
     (await probe(page)).players.map(({ name, drawnAs }) => `${name}: ${drawnAs === null ? 'hidden' : 'drawn'}`).sort();
@@ -133,7 +133,7 @@ test('between a room and the open controls the button that enters VR is read who
       }
     }
   }
-  // Where both leave it no room it waits for the controls to be closed, as below a sheet of controls.
+  // If both leave no space for the button, it is hidden until the controls are closed.
   await page.setViewportSize({ width: 780, height: 600 });
   await expect(page.locator('button.enter')).toBeHidden();
   await controls.click();

@@ -3,7 +3,7 @@ import { createHash, randomBytes } from 'node:crypto';
 import { once } from 'node:events';
 import { fileURLToPath } from 'node:url';
 import { changed, type GltfJson } from '../../tests/threepoint/avatar/glb';
-import { serveElsewhere } from '../elsewhere-server';
+import { serveCrossOrigin } from '../cross-origin-server';
 import type { GuestAnswer, GuestOrder } from '../guest-process';
 import { expect, freshTest, joinedRoom, joint, keepPicture, probe, test } from '../page-fixture';
 import { serveStudies } from '../study-server';
@@ -110,7 +110,7 @@ async function comes(origin: string, room: string, name: string) {
     return hash;
   };
   return {
-    /** Resolves to the file's hash, once the server has it and the room was told. */
+    /** Resolves to the file's hash, once the server has stored it and the room was notified. */
     putOn: (file: ArrayBuffer) => order(new Uint8Array(file)),
     kept: () => order(null),
     async stop() {
@@ -206,7 +206,7 @@ freshTest(
   async ({ browser }) => {
     test.setTimeout(240_000);
     const file = blue();
-    const elsewhere = await serveElsewhere(file, hashOf(file));
+    const elsewhere = await serveCrossOrigin(file, hashOf(file));
     const server = await serveStudies({ THREEPOINT_AVATARS_FROM: elsewhere.folder, THREEPOINT_AVATAR_MEGABYTES: '0' });
     const context = await browser.newContext({
       baseURL: server.origin,
@@ -263,7 +263,7 @@ freshTest(
       expect(await page.evaluate(() => 'attacked' in window)).toBe(false);
       await joint(page, 'hips');
 
-      // Another file than the one that was told of: on its way to Ben alone.
+      // Only Ben receives a file other than the announced one.
       const [swapped, good] = [blue(), blue()];
       await eve.stop();
       const last = await comes(server.origin, 'birch', 'Eve');

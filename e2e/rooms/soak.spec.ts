@@ -2,21 +2,24 @@ import { appendFileSync, mkdirSync, writeFileSync } from 'node:fs';
 import { dirname } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { type CDPSession, expect, type Page } from '@playwright/test';
-import { tell } from '../../tests/tell';
+import { printFigures } from '../../tests/print-figures';
 import { memoryOf } from '../browser-processes';
 import { freePort } from '../free-port';
-import { countsOf, type InspectedNode, inspectNode, megabytes } from '../kept-memory';
+import { countsOf, type InspectedNode, inspectNode, megabytes } from '../memory-usage';
 import { probe } from '../page-fixture';
-import { bar, heard, loudness, type Talker, test, voicesOf } from '../talkers';
+import { bar, expectVoices, loudness, type Talker, test, voicesOf } from '../talkers';
 
-/** Of talk and play; THREEPOINT_SOAK_MINUTES for more. Not for fewer: what is compiled in the first four minutes is 1 MB of a page's heap. */
+/**
+ * The duration of talk and play [min]; THREEPOINT_SOAK_MINUTES lengthens it. A shorter run would measure compilation: code
+ * compiled in the first four minutes takes 1 MB of a page's heap.
+ */
 const minutes = Number(process.env.THREEPOINT_SOAK_MINUTES ?? 10);
 /** One person mutes and unmutes so often, */
 const mutesAMinute = 5;
 /** and the other leaves the voices and joins them again this often [minutes]. */
 const rejoinEvery = 5;
 
-/** A line for each minute, so that a run that breaks has told what it saw. */
+/** The file with a line of figures for each minute, which remains if a run breaks. */
 const file = fileURLToPath(new URL('../../artifacts/soak.jsonl', import.meta.url));
 
 // A trace would keep each of the test's questions for hours, and film nothing that is looked at.
@@ -161,7 +164,7 @@ async function talkForAMinute(minute: number, until: number, [ann, ben]: readonl
     { link: 'connected', other: 'open' },
     { link: 'connected', other: 'open' },
   ]);
-  for (const page of both) await heard(page);
+  for (const page of both) await expectVoices(page);
 }
 
 /** How much more may be there in the last quarter of a run than in the second, where so much was, and one person has joined so often since. */
@@ -201,7 +204,7 @@ function judge(run: readonly Minute[]): void {
       compare(`${who}, ${name}`, (minute) => minute[who][name], more);
   compare('server, heap', ({ server }) => server.heap, allowed.heap);
   compare('server, all', ({ server }) => server.all, allowed.heap);
-  tell(`soak of ${minutes} minutes`, figures);
+  printFigures(`soak of ${minutes} minutes`, figures);
 }
 
 declare global {
@@ -225,7 +228,7 @@ test('two people talk and play with a bot, match after match: what pages and ser
   await countMatches(ann.page);
   const bots = async () => (await probe(ann.page)).players.map(({ bot }) => bot).sort();
   await expect.poll(bots, { timeout: 60_000 }).toEqual([false, true]);
-  for (const { page } of [ann, ben]) await heard(page);
+  for (const { page } of [ann, ben]) await expectVoices(page);
   const begun = Date.now();
   const server = await inspectNode(port);
   try {

@@ -1,6 +1,6 @@
 import { createHmac } from 'node:crypto';
 import { expect, type Page } from '@playwright/test';
-import { bar, connected, heard, joinVoices, silent, test } from '../talkers';
+import { bar, connected, expectSilence, expectVoices, joinVoices, test } from '../talkers';
 import { startTurn, turnProgram, turnSecret } from '../turn-server';
 
 declare global {
@@ -22,7 +22,7 @@ function keepConnections(): void {
   };
 }
 
-/** Kinds of all addresses that a page has found of itself or heard of the other, and the passes of its connections that are open. */
+/** Returns the kinds of all local and remote ICE candidates of a page, and the credentials of its open connections. */
 const found = (page: Page) =>
   page.evaluate(async () => {
     const kinds = new Set<string>();
@@ -78,23 +78,23 @@ test.describe(`voices by the relay only${turnProgram === null ? ' (coturn is not
       await connected(ann);
       await connected(ben);
       for (const page of [ann, ben]) await bar(page).getByRole('button', { name: 'Unmute me' }).click();
-      await heard(ann);
-      await heard(ben);
+      await expectVoices(ann);
+      await expectVoices(ben);
       for (const page of [ann, ben])
         expect((await found(page)).kinds).toEqual(['local-candidate relay', 'remote-candidate relay']);
 
       // Once more under passes of forty seconds: each page asks for another one after thirty.
       await bar(ann).getByRole('button', { name: 'Leave voice chat' }).click();
-      await silent(ben);
+      await expectSilence(ben);
       const server = await shortPasses(ann, turn.url, 40);
       await joinVoices(ann);
       await bar(ann).getByRole('button', { name: 'Unmute me' }).click();
-      await heard(ben);
+      await expectVoices(ben);
       const first = (await found(ann)).passes;
       await expect.poll(async () => (await found(ann)).passes, { timeout: 120_000 }).not.toEqual(first);
       expect(server.given).toBeGreaterThanOrEqual(2);
       await connected(ann);
-      await heard(ben);
+      await expectVoices(ben);
       // The call outlives its pass where the server gives no other.
       server.answers = false;
       await ann.waitForFunction((until) => Date.now() > until, Date.now() + 60_000, {
@@ -102,8 +102,8 @@ test.describe(`voices by the relay only${turnProgram === null ? ' (coturn is not
         timeout: 120_000,
       });
       await connected(ann);
-      await heard(ben);
-      await heard(ann);
+      await expectVoices(ben);
+      await expectVoices(ann);
       expect((await found(ann)).kinds).toEqual(['local-candidate relay', 'remote-candidate relay']);
     } finally {
       await turn.close();

@@ -2,9 +2,19 @@ import { expect } from '@playwright/test';
 import { serviceOf } from '../browser-processes';
 import { cutNetwork } from '../cut-network';
 import { emulatedHeadset, type Point } from '../emulated-headset';
-import { keepWritten, lookingAtMenu, pressBelow, pressInMenu } from '../hands-on-menu';
+import { lookingAtMenu, pressBelow, pressInMenu, recordCanvasText } from '../hands-on-menu';
 import { distance, enterVr, joinedRoom, keepPicture, probe } from '../page-fixture';
-import { attenuation, bar, connected, heard, joinVoices, otherOf, silent, test, voicesOf } from '../talkers';
+import {
+  attenuation,
+  bar,
+  connected,
+  expectSilence,
+  expectVoices,
+  joinVoices,
+  otherOf,
+  test,
+  voicesOf,
+} from '../talkers';
 
 test('two people hear each other: 6 dB less with twice the distance, nothing of who is muted, hidden or gone @realtime', async ({
   serve,
@@ -19,24 +29,24 @@ test('two people hear each other: 6 dB less with twice the distance, nothing of 
   await connected(ann);
   await connected(ben);
   expect(await voicesOf(ann)).toMatchObject({ muted: true, people: [{ voice: 'muted' }] });
-  await silent(ann);
+  await expectSilence(ann);
 
   await bar(ben).getByRole('button', { name: 'Unmute me' }).click();
-  await heard(ann);
+  await expectVoices(ann);
   await expect(bar(ann)).toContainText('can be heard');
-  await silent(ben);
+  await expectSilence(ben);
 
   await ben.getByRole('button', { name: 'Play as basket holder' }).click();
   await expect.poll(async () => (await otherOf(ann))?.seat).toBe(2);
   await connected(ann);
-  await heard(ann);
+  await expectVoices(ann);
   await keepPicture(ann, 'voices-desk');
 
   await ann.keyboard.press('t');
-  await heard(ben);
+  await expectVoices(ben);
   await expect(bar(ann).getByRole('button', { name: 'Mute me' })).toBeVisible();
   await ann.keyboard.press('t');
-  await silent(ben);
+  await expectSilence(ben);
 
   const headset = await emulatedHeadset(ann);
   await headset.place({ head: { position: [0, 1.6, 0] } });
@@ -74,19 +84,19 @@ test('two people hear each other: 6 dB less with twice the distance, nothing of 
   await headset.endSession();
 
   await bar(ann).getByRole('button', { name: 'Mute Ben' }).click();
-  await silent(ann);
+  await expectSilence(ann);
   await expect(bar(ann)).toContainText('muted by you');
   await bar(ann).getByRole('button', { name: 'Unmute Ben' }).click();
-  await heard(ann);
+  await expectVoices(ann);
   await bar(ann).getByRole('button', { name: 'Hide Ben' }).click();
-  await silent(ann);
+  await expectSilence(ann);
   await expect.poll(async () => (await probe(ann)).players[0]?.drawnAs).toBeNull();
   await bar(ann).getByRole('button', { name: 'Show Ben' }).click();
-  await heard(ann);
+  await expectVoices(ann);
   await expect.poll(async () => (await probe(ann)).players[0]?.drawnAs).toBe('mannequin');
 
   await bar(ben).getByRole('button', { name: 'Leave voice chat' }).click();
-  await silent(ann);
+  await expectSilence(ann);
   await expect.poll(async () => (await otherOf(ann))?.voice).toBe('none');
 });
 
@@ -98,10 +108,10 @@ test('in the headset one of two is muted, then hidden, by the menu; the list at 
   const { origin } = await serve();
   const { page: ann } = await talker(origin, 'Ann', {
     query: 'emulate&actor=off',
-    inPage: keepWritten,
+    inPage: recordCanvasText,
     viewport: { width: 800, height: 500 },
   });
-  // As long as names may be.
+  // The name has the maximum length.
   const long = 'Wilhelmina Montgomer';
   const { page: ben } = await talker(origin, 'Ben', { seldomDrawn: true });
   const { page: mina } = await talker(origin, long, { seldomDrawn: true });
@@ -111,7 +121,7 @@ test('in the headset one of two is muted, then hidden, by the menu; the list at 
   const drawnAs = async (seat: number) => (await probe(ann)).players.find((each) => each.seat === seat)?.drawnAs;
   await expect.poll(async () => (await person(1))?.link).toBe('connected');
   await expect.poll(async () => (await person(2))?.link).toBe('connected');
-  await heard(ann);
+  await expectVoices(ann);
 
   const headset = await emulatedHeadset(ann);
   await headset.place({ head: lookingAtMenu });
@@ -120,15 +130,15 @@ test('in the headset one of two is muted, then hidden, by the menu; the list at 
   await pressBelow(ann, 'Ben', 'Mute');
   await expect.poll(() => person(1)).toMatchObject({ silenced: true, hidden: false, level: 0 });
   // The one who is left.
-  await heard(ann);
+  await expectVoices(ann);
   await keepPicture(ann, 'voices-players-vr');
   await pressBelow(ann, long, 'Mute');
-  await silent(ann);
+  await expectSilence(ann);
   await pressBelow(ann, 'Ben', 'Unmute');
-  await heard(ann);
+  await expectVoices(ann);
 
   await pressBelow(ann, 'Ben', 'Hide');
-  await silent(ann);
+  await expectSilence(ann);
   await expect.poll(() => drawnAs(1)).toBeNull();
   expect(await drawnAs(2)).toBe('mannequin');
   await keepPicture(ann, 'voices-players-hidden-vr');
@@ -144,7 +154,7 @@ test('in the headset one of two is muted, then hidden, by the menu; the list at 
   await bar(ann)
     .getByRole('button', { name: `Unmute ${long}` })
     .click();
-  await heard(ann);
+  await expectVoices(ann);
   await bar(ann).getByRole('button', { name: 'Show Ben' }).click();
   await expect.poll(() => drawnAs(1)).toBe('mannequin');
 });
@@ -161,27 +171,27 @@ test('a voice comes back after the network was lost, and with the page after a r
   await joinVoices(ben);
   await connected(ann);
   await bar(ben).getByRole('button', { name: 'Unmute me' }).click();
-  await heard(ann);
+  await expectVoices(ann);
 
   const mend = cutNetwork(pid);
   try {
-    await silent(ann);
+    await expectSilence(ann);
     await expect.poll(async () => (await otherOf(ann))?.link, { timeout: 60_000 }).toBe('lost');
   } finally {
     mend();
   }
   const mended = performance.now();
-  await heard(ann);
+  await expectVoices(ann);
   console.log(`voices: heard again ${((performance.now() - mended) / 1000).toFixed(1)} s after the network came back`);
   await connected(ann);
 
   await ben.reload();
   await joinedRoom(ben);
-  await silent(ann);
+  await expectSilence(ann);
   await joinVoices(ben);
   await connected(ann);
   await bar(ben).getByRole('button', { name: 'Unmute me' }).click();
-  await heard(ann);
+  await expectVoices(ann);
 });
 
 /** In the page: a test can ask the microphones that it was given. */
@@ -210,27 +220,27 @@ test('a microphone that its device ends is taken again; refused then, a sentence
     await joinVoices(page);
     await bar(page).getByRole('button', { name: 'Unmute me' }).click();
   }
-  await heard(ann);
-  await heard(ben);
+  await expectVoices(ann);
+  await expectVoices(ben);
 
-  // All audio of this browser ends and begins anew, as in a headset that slept: tracks end by themselves, contexts are suspended.
+  // All audio of this browser restarts, as after a headset's sleep: tracks end by themselves, contexts are suspended.
   process.kill(serviceOf(pid, 'AudioService'), 'SIGKILL');
   await expect.poll(microphones).toEqual(['ended', 'live']);
-  await heard(ann);
-  await heard(ben);
+  await expectVoices(ann);
+  await expectVoices(ben);
   await expect(bar(ben).getByRole('button', { name: 'Mute me (T)', exact: true })).toBeVisible();
 
   // Taking the permission back ends the microphone too.
   await ben.context().clearPermissions();
   await expect(bar(ben)).toContainText('The browser blocks the microphone');
   await expect(bar(ben)).toContainText('You can still hear the others.');
-  await silent(ann);
+  await expectSilence(ann);
   await expect.poll(async () => (await otherOf(ann))?.voice).toBe('muted');
-  await heard(ben);
+  await expectVoices(ben);
 
   await ben.context().grantPermissions(['microphone'], { origin });
   await bar(ben).getByRole('button', { name: 'Find a microphone' }).click();
-  await heard(ann);
+  await expectVoices(ann);
   expect(await microphones()).toEqual(['ended', 'ended', 'live']);
 });
 
@@ -254,8 +264,8 @@ test('what keeps a person from talking is a sentence: refused, no microphone, no
   const { page: third } = await talker(origin, 'Cal', { seldomDrawn: true });
   await joinVoices(third);
   await bar(third).getByRole('button', { name: 'Unmute me' }).click();
-  await heard(refused);
-  await heard(without);
+  await expectVoices(refused);
+  await expectVoices(without);
 
   const { page: fourth } = await talker(origin, 'Dot');
   await joinVoices(fourth);

@@ -1,21 +1,21 @@
 import type { Page } from '@playwright/test';
-import { measured } from '../../tests/reliability/measured';
+import { reportFigures } from '../../tests/reliability/report-figures';
 import { enterVr, expect } from '../page-fixture';
 import {
   calibrate,
+  fillInDemographics,
   headsetOf,
   press,
   reaches,
   recordsOf,
   stretched,
   study,
-  tellOfOneself,
   tenHertz,
   test,
 } from '../study-participant';
 import { experimenter, shortStudy } from '../study-server';
 
-/** Chromium loads a page that has asked for WebXR anew, as the browsers of the tests do with every page. */
+/** Navigates back and forward. Chromium reloads a page that has used WebXR; the test browsers reload every page. */
 async function backAndForward(page: Page, origin: string): Promise<void> {
   await page.goBack();
   expect(page.url()).toBe(`${origin}/withdraw`);
@@ -52,7 +52,7 @@ test('the back button leads out of a study and the forward button back to where 
   await page.getByLabel(/Age/).fill('26');
   await returns();
   await expect(page.getByLabel(/Age/)).toBeVisible();
-  await tellOfOneself(page);
+  await fillInDemographics(page);
   await page.getByRole('button', { name: 'Continue' }).click();
 
   const wear = async () => {
@@ -94,7 +94,7 @@ test('the back button leads out of a study and the forward button back to where 
     ['trial', 2],
     ['interrupted', 1],
   ]);
-  measured('study-back', {
+  reportFigures('study-back', {
     'times back and forward': journeys,
     'records stored twice': records.length - new Set(records.map(({ id }) => id)).size,
   });

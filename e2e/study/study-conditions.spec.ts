@@ -3,7 +3,7 @@ import { parsePlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import type { Point } from '../emulated-headset';
 import { distance, enterVr, expect, keepPicture, probe } from '../page-fixture';
-import { agreeAndTell, calibrate, press, reaches, stretched, takePart, tenHertz, test } from '../study-participant';
+import { calibrate, consentAndFillIn, press, reaches, stretched, takePart, tenHertz, test } from '../study-participant';
 import { experimenter, shortStudy } from '../study-server';
 
 const conditions = [
@@ -41,7 +41,7 @@ function plan(): StudyPlan {
   return parsePlan(JSON.stringify({ ...short, conditions, tasks, questionnaires: [body] }), 'conditions.json');
 }
 
-/** Where a hand was tracked, and where it was drawn, in a frame. */
+/** The tracked and the drawn position of a hand in a frame. */
 interface Sample {
   readonly time: number;
   readonly tracked: Point;
@@ -66,7 +66,7 @@ const follow = (page: Page, frames: number, reach: number): Promise<readonly Sam
     [frames, reach] as const,
   );
 
-/** Where the hand was tracked at a time, on the way between two frames. */
+/** Returns the tracked position of the hand at a time, interpolated between two frames. */
 function trackedAt(samples: readonly Sample[], time: number): Point {
   const next = samples.findIndex((sample) => sample.time >= time);
   const [before, after] = [samples[next - 1], samples[next]];
@@ -103,7 +103,7 @@ test('every condition is done to the body: method, avatar, mirror, whole or uppe
   const study = plan();
   await experimenter(origin).begin(study, true);
   const headset = await takePart(page, origin, study.id, 'P01');
-  await agreeAndTell(page);
+  await consentAndFillIn(page);
   await enterVr(page, tenHertz);
   await headset.place(stretched);
   await calibrate(page);

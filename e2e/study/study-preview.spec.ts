@@ -205,7 +205,7 @@ async function unevenPixels(element: Locator): Promise<number> {
   }, picture);
 }
 
-/** Where a pixel of the sheet is on the drawn one, as Playwright wants it. */
+/** Returns the position of a pixel of the sheet on the drawn one, as an option of Playwright's click. */
 async function onSheet(page: Page, x: number, y: number) {
   const { width, height } = (await page.locator('canvas').boundingBox()) as { width: number; height: number };
   return { x: (x / 1200) * width, y: (y / 880) * height };

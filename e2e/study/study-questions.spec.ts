@@ -31,8 +31,8 @@ function shortExample(id: string) {
   };
 }
 
-/** Consents, notes the code and tells of oneself as a person who reads German. */
-async function agreeAndTellInGerman(page: Page): Promise<void> {
+/** Consents, confirms the code and submits the demographic questions, in German. */
+async function consentAndFillInInGerman(page: Page): Promise<void> {
   await expect(page.locator('.study-card')).toHaveAttribute('lang', 'de');
   await page.getByLabel(/Ich habe dies gelesen/).check();
   await page.getByRole('button', { name: 'Ich willige ein' }).click();
@@ -69,7 +69,7 @@ test('questions of every kind are answered alike in the headset and at the desk,
   await page.getByLabel('Language').selectOption('de');
   await expect(page.getByRole('heading', { name: 'Teilnahme' })).toBeVisible();
   await keepPicture(page, 'study-consent-language');
-  await agreeAndTellInGerman(page);
+  await consentAndFillInInGerman(page);
 
   await enterVr(page, tenHertz);
   await headset.place(stretched);
@@ -151,7 +151,7 @@ test('questions of every kind are answered alike in the headset and at the desk,
     ['body', 'de'],
     ['nasa-tlx-raw', 'de'],
   ]);
-  // What was told is recorded as values, the same in every language.
+  // Answers are recorded as values that do not depend on the language.
   const told = (await recordsOf(origin, 'every-kind')).find(({ kind }) => kind === 'demographics');
   expect(told?.body).toEqual({
     ...{ gender: 'not-said', age: 26, major: 'Informatik', vrExperience: 'once-or-twice', vrSystems: '' },

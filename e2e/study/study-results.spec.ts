@@ -101,12 +101,12 @@ test('cohorts of a mixed study are chosen on the results page, each participant 
   page,
   origin,
 }) => {
-  // Everything is computed and drawn anew at each choice.
+  // Each choice recomputes and redraws everything.
   test.setTimeout(180_000);
   const effects = { 'late-100': -0.4, 'late-200': -0.9, child: 0.6 };
   const { plan, participants } = await simulateOn(origin, mixedStudy(), effects);
   const cohortOf = cohortsByParticipant(plan);
-  /** Of the first question in a cohort under these conditions, added up by hand. */
+  /** Returns the mean answer to the first question in a cohort under these conditions, computed independently. */
   const meanOf = (cohort: string, conditions: readonly string[]) => {
     const given = participants
       .filter(({ participant }) => cohortOf.get(participant)?.id === cohort)

@@ -1,7 +1,17 @@
 import { checkedPlan } from 'threepoint-study/model/plan/plan';
 import type { PlacedPose } from '../emulated-headset';
 import { enterVr, expect, keepPicture } from '../page-fixture';
-import { agreeAndTell, press, reaches, signIn, stretched, study, takePart, tenHertz, test } from '../study-participant';
+import {
+  consentAndFillIn,
+  press,
+  reaches,
+  signIn,
+  stretched,
+  study,
+  takePart,
+  tenHertz,
+  test,
+} from '../study-participant';
 import { experimenter, shortStudy } from '../study-server';
 
 test('a participant with no one beside them is checked, asked whether to stop, and stops in the middle of a round by raising both hands, and the experimenter sees it @realtime', async ({
@@ -24,7 +34,7 @@ test('a participant with no one beside them is checked, asked whether to stop, a
   const plan = checkedPlan({ ...short, tasks, remote, questionnaires: [well], askToStop });
   await experimenter(origin).begin(plan, false);
   const headset = await takePart(page, origin, 'stopping', 'P01');
-  await agreeAndTell(page);
+  await consentAndFillIn(page);
   await enterVr(page, tenHertz);
   await headset.place(stretched);
   await reaches(page, 'calibration');

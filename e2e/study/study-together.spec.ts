@@ -2,8 +2,8 @@ import type { Page } from '@playwright/test';
 import { type EmulatedHeadset, emulatedHeadset, frames } from '../emulated-headset';
 import { enterVr, expect, keepPicture } from '../page-fixture';
 import {
-  agreeAndTell,
   calibrate,
+  consentAndFillIn,
   press,
   reaches,
   recordsOf,
@@ -19,7 +19,7 @@ const standsSeconds = 15;
 const standsPictures = 2 * standsSeconds + 1;
 /** For what takes each page some of its pictures. */
 const patience = { timeout: 180_000 };
-/** As long as the paper's: a command of the experimenter arrives within it on a machine that has much else to do [s]. */
+/** The duration of a match [s], as in the paper. It is long enough for an experimenter's command on a busy machine. */
 const matchSeconds = 90;
 
 // Three headsets in software rendering take minutes.
@@ -51,7 +51,7 @@ test('three participants play the ball game together, each in a headset of their
     await page.goto(await experimenter(origin).link('trio', people[index] as string, '&emulate&quality=low'));
     await page.waitForFunction(() => window.threepoint?.probe().ready === true, undefined, { timeout: 90_000 });
     headsets.push(await emulatedHeadset(page));
-    await agreeAndTell(page);
+    await consentAndFillIn(page);
     // Three clocks that one relay keeps together cannot be driven.
     await enterVr(page, { stepMs: null });
     await headsets[index]?.place(stretched);

@@ -4,6 +4,7 @@ import { promisify } from 'node:util';
 import { enterVr, expect, keepPicture } from '../page-fixture';
 import {
   calibrate,
+  fillInDemographics,
   headsetOf,
   openResults,
   press,
@@ -13,7 +14,6 @@ import {
   stretched,
   study,
   takePart,
-  tellOfOneself,
   tenHertz,
   test,
 } from '../study-participant';
@@ -42,7 +42,7 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
 
   await page.getByRole('button', { name: 'Continue' }).click();
   await expect(page.getByRole('alert').filter({ hasText: 'still need an answer' })).toBeVisible();
-  await tellOfOneself(page);
+  await fillInDemographics(page);
   await keepPicture(page, 'study-demographics');
   await page.getByRole('button', { name: 'Continue' }).click();
 
@@ -173,7 +173,7 @@ test('a link without its invitation asks for it, a wrong one is said, and the li
   await agree();
   await expect(page.getByText('This is not the invitation of P02.')).toBeVisible();
   const link = await experimenter(origin).link('invited', 'P02', '&quality=low');
-  // As a person would: the whole link into the address of the same tab.
+  // The whole link is entered as the address of the same tab.
   await page.evaluate((address) => location.assign(address), link);
   await agree();
   await expect(page.getByText('write this down')).toBeVisible();

@@ -5,11 +5,11 @@ import { buildExample, exampleNames, packLibrary } from '../../scripts/build-exa
 import { emulatedHeadset, type Point } from '../emulated-headset';
 import { wristByGrip, wristName } from '../hands-on-controllers';
 import { distance } from '../page-fixture';
-import { servePlainly } from '../plain-server';
+import { serveStatic } from '../static-server';
 
 const iwer = fileURLToPath(new URL('../../node_modules/iwer/build/iwer.min.js', import.meta.url));
 
-/** An object of three.js, as far as it tells whether it is drawn. */
+/** The part of a three.js object that decides whether it is drawn. */
 interface Drawn {
   readonly visible: boolean;
   readonly parent: Drawn | null;
@@ -27,7 +27,7 @@ interface SelfAvatar {
 declare global {
   interface Window {
     selfAvatar?: SelfAvatar;
-    /** Of iwer's script. */
+    /** The global of iwer's script. */
     IWER: {
       readonly metaQuest3: object;
       readonly XRDevice: new (config: object, options: object) => { installRuntime(options: object): void };
@@ -65,7 +65,7 @@ test.describe('examples of the package @realtime', () => {
   for (const name of exampleNames) {
     test(`${name}: the body is there, its hands on the controllers @realtime`, async ({ page }) => {
       test.setTimeout(300_000);
-      const server = await servePlainly(await buildExample(name, folder));
+      const server = await serveStatic(await buildExample(name, folder));
       const faults: string[] = [];
       page.on('pageerror', ({ message }) => faults.push(message));
       page.on('console', (message) => {

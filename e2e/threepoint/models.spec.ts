@@ -1,5 +1,5 @@
 import type { Page, Route } from '@playwright/test';
-import { measured } from '../../tests/reliability/measured';
+import { reportFigures } from '../../tests/reliability/report-figures';
 import { enterVr, expect, joint, openWithHeadset, probe, freshTest as test } from '../page-fixture';
 
 /** What can be wrong with a model file, and how the server would answer then. */
@@ -10,7 +10,7 @@ const faults: Readonly<Record<string, (route: Route) => Promise<void>>> = {
     await route.fulfill({ status: 200, body: body.subarray(0, Math.floor(body.length / 2)) });
   },
   'not a model': (route) => route.fulfill({ status: 200, body: '<!doctype html><title>Sign in to the Wi-Fi</title>' }),
-  // Same length, one bit wrong: only the checksum of the contract tells.
+  // The length is unchanged and one bit is wrong: only the contract's checksum detects it.
   'flipped in one bit': async (route) => {
     const body = await (await route.fetch()).body();
     const middle = Math.floor(body.length / 2);
@@ -27,7 +27,7 @@ const firstBody = (page: Page): Promise<number> =>
   });
 
 for (const [fault, fulfil] of Object.entries(faults)) {
-  // One by day: what tells the others apart is asked of load-regressor in unit tests.
+  // Only one fault runs by day: the unit tests of load-regressor cover the others.
   const suite = fault === 'missing' ? '' : ' @full';
   test(`a model that is ${fault}: IK takes over and the page says so${suite}`, async ({ page, complaints }) => {
     complaints.allow(/learned/, /404/);
@@ -56,7 +56,9 @@ test('without WebAssembly IK takes over and the page says so', async ({ page, co
   await page.waitForFunction(() => window.threepoint?.probe().loading.firstBody !== undefined);
   answer();
   await ready;
-  measured('no-wasm', { 'body drawn by IK': `${(await firstBody(page)).toFixed(2)} s after the page's script began` });
+  reportFigures('no-wasm', {
+    'body drawn by IK': `${(await firstBody(page)).toFixed(2)} s after the page's script began`,
+  });
   await expect.poll(async () => (await probe(page)).estimator).toBe('ik');
   await expect(page.getByRole('alert').filter({ hasText: /IK|inverse kinematics/i })).toBeVisible();
 });

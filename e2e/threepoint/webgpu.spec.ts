@@ -1,4 +1,4 @@
-import { measured } from '../../tests/reliability/measured';
+import { reportFigures } from '../../tests/reliability/report-figures';
 import { expect, joint, open, probe, freshTest as test } from '../page-fixture';
 
 // Chromium without a graphics card computes WebGPU in software, and only when asked to.
@@ -68,7 +68,7 @@ test('@nightly a WebGPU device that is lost: WASM takes over, the network stays,
       .filter({ hasText: /graphics device was lost/i })
       .first(),
   ).toBeVisible();
-  measured('webgpu-lost', {
+  reportFigures('webgpu-lost', {
     'WASM computes': `after ${Math.round(lost.ms)} ms, ${lost.frames} frames drawn meanwhile`,
   });
 });

@@ -14,7 +14,7 @@ import { startRegressor } from 'threepoint/onnx/load-regressor';
 import { parseContract } from 'threepoint/onnx/model-contract';
 import { writeWhole } from './write-whole';
 
-/** What was asked for on the command line, paths in full. */
+/** The options of the command line, with absolute paths. */
 export interface MotionRequest {
   readonly file: string;
   readonly to: string;
@@ -25,12 +25,12 @@ export interface MotionRequest {
   readonly avatar?: string;
 }
 
-/** A sentence for the person at the terminal, who needs no stack. */
+/** An error whose message is shown without a stack. */
 export class MotionError extends Error {}
 
 const root = join(import.meta.dirname, '../..');
 
-/** The page's networks, from their files: the learned one without a runtime, the paper's by onnxruntime-web. */
+/** Loads the page's networks from their files: the learned one without a runtime, the paper's by onnxruntime-web. */
 async function network(name: NetworkName): Promise<PoseRegressor> {
   const folder = join(root, 'public/models');
   const contract = parseContract(`${name}.json`, readFileSync(join(folder, `${name}.json`), 'utf8'));
@@ -75,8 +75,8 @@ function rateOf(rate: string | undefined): { rateHz?: number } {
 }
 
 /**
- * Reads a recording and writes what was asked for, whole or not at all; returns where. Rejects with a sentence where the recording, the avatar or an
- * option is wrong, and with the signal's reason where it is given up.
+ * Reads a recording and writes the exported file atomically; resolves to its path. Rejects with a message if the
+ * recording, the avatar or an option is wrong, and with the signal's reason if it is aborted.
  */
 export async function exportFile(request: MotionRequest, work: WorkOptions = {}): Promise<string> {
   const { file, unit = 'm', rate, estimator = 'learned' } = request;

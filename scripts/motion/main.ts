@@ -9,7 +9,7 @@ for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP'] as const) {
 
 const terminal = process.stderr.isTTY;
 
-/** One line that is written over again; where there is no terminal, none. */
+/** Overwrites one line of the terminal with the progress; writes nothing without a terminal. */
 function show({ share, secondsLeft }: WorkProgress): void {
   if (!terminal) return;
   const left = secondsLeft === null ? '' : `, ${secondsLeft.toFixed(0)} s left`;
@@ -23,7 +23,7 @@ try {
   console.log(path);
 } catch (error) {
   if (terminal) process.stderr.write('\r\u001b[K');
-  // A fault of ours has a stack that helps; what is told to the person is a sentence.
+  // An unexpected error is printed with its stack, an expected one as its message.
   console.error(reasonOf(error));
   process.exitCode = 1;
 }

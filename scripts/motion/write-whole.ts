@@ -1,9 +1,7 @@
 import { closeSync, fsyncSync, openSync, renameSync, rmSync, writeSync } from 'node:fs';
 import { basename, dirname, join } from 'node:path';
 
-/**
- * Writes a file whole or not at all: under a temporary name beside it, which becomes its own when all is written. Throws what the file system says.
- */
+/** Writes a file atomically: to a temporary file in the same folder, which is then renamed. Throws errors of the file system. */
 export function writeWhole(path: string, parts: Iterable<string | Uint8Array>): void {
   const temporary = join(dirname(path), `.${basename(path)}.${process.pid}.part`);
   const file = openSync(temporary, 'wx');

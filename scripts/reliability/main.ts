@@ -5,8 +5,8 @@ import { type RowName, rows } from '../../tests/reliability/rows';
 import { type Figures, merge, missingFigures, reliabilityPage } from './reliability-page';
 
 const root = fileURLToPath(new URL('../..', import.meta.url));
-const told = `${root}artifacts/reliability.jsonl`;
-const kept = `${root}docs/reliability.json`;
+const figuresFile = `${root}artifacts/reliability.jsonl`;
+const storedFile = `${root}docs/reliability.json`;
 const page = `${root}docs/reliability.md`;
 const [unitOnly, long, redraw] = ['--unit', '--long', '--redraw'].map((option) => process.argv.includes(option));
 
@@ -17,7 +17,7 @@ const suites = {
 };
 
 function runTests(script: string, args: readonly string[]): boolean {
-  const env = { ...process.env, RELIABILITY_FIGURES: told, THREEPOINT_NIGHTLY: '1', THREEPOINT_TESTS: 'all' };
+  const env = { ...process.env, RELIABILITY_FIGURES: figuresFile, THREEPOINT_NIGHTLY: '1', THREEPOINT_TESTS: 'all' };
   return (
     spawnSync(process.execPath, [`node_modules/${script}`, ...args], { cwd: root, env, stdio: 'inherit' }).status === 0
   );
@@ -26,7 +26,7 @@ function runTests(script: string, args: readonly string[]): boolean {
 let passed = true;
 if (!redraw) {
   mkdirSync(`${root}artifacts`, { recursive: true });
-  rmSync(told, { force: true });
+  rmSync(figuresFile, { force: true });
   passed = runTests('vitest/vitest.mjs', ['run', '--testTimeout=600000', ...suites.unit]);
   if (!unitOnly) {
     const skip = long ? [] : ['--grep-invert', '@long'];
@@ -34,13 +34,13 @@ if (!redraw) {
   }
 }
 
-const before = existsSync(kept) ? (JSON.parse(readFileSync(kept, 'utf8')) as Figures) : {};
-const lines = existsSync(told) ? readFileSync(told, 'utf8').trim().split('\n').filter(Boolean) : [];
+const before = existsSync(storedFile) ? (JSON.parse(readFileSync(storedFile, 'utf8')) as Figures) : {};
+const lines = existsSync(figuresFile) ? readFileSync(figuresFile, 'utf8').trim().split('\n').filter(Boolean) : [];
 const figures = merge(
   before,
   lines.map((line) => JSON.parse(line) as { row: RowName; figures: Record<string, string | number> }),
 );
-writeFileSync(kept, `${JSON.stringify(figures, null, 2)}\n`);
+writeFileSync(storedFile, `${JSON.stringify(figures, null, 2)}\n`);
 writeFileSync(page, reliabilityPage(figures));
 const missing = missingFigures(figures);
 if (missing.length > 0) console.error(`Nothing is measured yet for: ${missing.join(', ')}.`);

@@ -1,13 +1,13 @@
 import { attackRows, faultRows, promiseRows, type Row, type RowName, rows } from '../../tests/reliability/rows';
 
-/** What the tests measured, by row and by the name of the figure. */
+/** The measured figures, by row and by name. */
 export type Figures = Readonly<Partial<Record<RowName, Readonly<Record<string, string | number>>>>>;
 
-/** Rows for which nothing has been measured. */
+/** Returns the rows without figures. */
 export const missingFigures = (figures: Figures): RowName[] =>
   (Object.keys(rows) as RowName[]).filter((name) => Object.keys(figures[name] ?? {}).length === 0);
 
-/** Figures of a run over those of runs before it: a run of some tests leaves the others' figures. */
+/** Merges the figures of a run into those of earlier runs, so that a run of some tests keeps the figures of the others. */
 export function merge(
   before: Figures,
   lines: readonly { row: RowName; figures: Record<string, string | number> }[],
@@ -18,19 +18,19 @@ export function merge(
   return after;
 }
 
-const told = (value: string | number): string =>
+const formatted = (value: string | number): string =>
   typeof value === 'number' ? String(Number(value.toPrecision(3))) : value;
 const cell = (text: string): string => text.replaceAll('|', '\\|');
 
 function table(part: Readonly<Record<string, Row>>, figures: Figures): string {
   const lines = Object.entries(part).map(([name, { inject, sees, target }]) => {
-    const own = Object.entries(figures[name as RowName] ?? {}).map(([what, value]) => `${what}: ${told(value)}`);
+    const own = Object.entries(figures[name as RowName] ?? {}).map(([what, value]) => `${what}: ${formatted(value)}`);
     return `| ${[inject, sees, target, own.join('; ')].map(cell).join(' | ')} |`;
   });
   return ['| what is done | what must be seen | target | measured |', '| --- | --- | --- | --- |', ...lines].join('\n');
 }
 
-/** docs/reliability.md. */
+/** Returns the text of docs/reliability.md. */
 export function reliabilityPage(figures: Figures): string {
   const manual = Object.values(rows).flatMap((row) =>
     row.manual ? [`- **${row.inject}.** ${row.manual.join(' ')} Expected: ${row.sees.toLowerCase()}.`] : [],

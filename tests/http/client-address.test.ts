@@ -4,7 +4,7 @@ import fc from 'fast-check';
 import { parseClientAddress } from 'threepoint-http/client-address';
 import { createConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { afterAll, describe, expect, onTestFinished, test } from 'vitest';
-import { measured } from '../reliability/measured';
+import { reportFigures } from '../reliability/report-figures';
 import { startRelay } from '../rooms/server/running-relay';
 import { servedPaperStudy, servedStudies } from '../study/server/running-studies';
 
@@ -53,7 +53,7 @@ const passed = { joins: [] as number[], sockets: [] as number[], guesses: [] as 
 const tries = 40;
 const socketTries = 300;
 afterAll(() =>
-  measured('client-addresses', {
+  reportFigures('client-addresses', {
     clients: Object.keys(clients).join('; '),
     'joins, limit 5': `${passed.joins.join(', ')} of ${tries}`,
     'WebSockets, limit 256': `${passed.sockets.join(', ')} of ${socketTries}`,

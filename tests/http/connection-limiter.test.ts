@@ -8,7 +8,7 @@ import { describe, expect, onTestFinished, test } from 'vitest';
 import { certificateFor } from '../../server/certificate';
 import { createPageHandler } from '../../server/page';
 import { isNightly } from '../nightly';
-import { measured } from '../reliability/measured';
+import { reportFigures } from '../reliability/report-figures';
 import { type RunningRelay, startRelay } from '../rooms/server/running-relay';
 import { forkServer, probeHealth } from '../server/server-child';
 import { directoryWith } from '../temporary-directory';
@@ -79,7 +79,7 @@ describe('a body that is not wanted', () => {
     const most = Math.max(...Object.values(poured).map(({ bytes }) => bytes));
     // The buffers of the system on both sides, and the mebibyte that the server hears out.
     expect(most).toBeLessThan(32e6);
-    measured('unwanted-bodies', { 'most taken of 200 MB [MB]': most / 1e6 });
+    reportFigures('unwanted-bodies', { 'most taken of 200 MB [MB]': most / 1e6 });
   });
 
   test('ends nothing where it is short: the next request on the connection is answered', async () => {
@@ -133,7 +133,7 @@ describe('connections', () => {
     const metrics = await (await fetch(`${server.url}/metrics`)).text();
     expect(metrics).toContain('threepoint_sockets 0');
     expect(metrics).toContain(`threepoint_connections_refused_total ${refusedConnections}`);
-    measured('connections', {
+    reportFigures('connections', {
       'silent connections from one address': flood,
       [`open at once, at most (limit ${limit})`]: most.connections,
       'open after the deadline': silent.filter(({ closed }) => !closed).length,

@@ -17,7 +17,7 @@ type Hand = {
   readonly kind?: HandButtons['kind'];
 };
 
-/** A thrower whose hands are told frame by frame (arena frame; null: lost), in a match that is running. */
+/** Returns a thrower in a running match whose hands are set frame by frame (arena frame; null: tracking lost). */
 export function ballThrower(rateHz = 90) {
   const arenaFromFloor = stations[leftThrower]!;
   const floorFromArena = invertTransform(arenaFromFloor);
@@ -38,7 +38,7 @@ export function ballThrower(rateHz = 90) {
     ...(hand?.device !== undefined && { device: hand.device }),
   });
   const self = {
-    /** In the arena: ball 0 in its rack, and a place before the chest. */
+    /** The positions of ball 0 in its rack and of two places in front of the body, arena frame [m]. */
     ball: rackPosition(0, 20),
     chest: transformPoint(arenaFromFloor, vec3(0.2, 1.4, -0.3)),
     side: transformPoint(arenaFromFloor, vec3(-0.3, 1.2, -0.3)),
@@ -64,7 +64,7 @@ export function ballThrower(rateHz = 90) {
       for (let i = 0; i < seconds * rateHz; i++) self.frame(left, right, suspended);
       return self;
     },
-    /** Takes ball 0 with the right hand and carries it before the chest. */
+    /** Grabs ball 0 with the right hand and holds it in front of the chest for 0.3 s. */
     carry(device?: number) {
       const more = device === undefined ? {} : { device };
       const left = { fist: self.side, trigger: 0, ...(device === undefined ? {} : { device: device + 1 }) };

@@ -3,12 +3,12 @@ import { createArcheryGestures, defaultArcheryGestureSettings } from 'threepoint
 import { expect, test } from 'vitest';
 import { bowman, posed } from '../games/archery/bowman';
 import { ballThrower } from './ball-thrower';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
-/** A menu of the device for 10 s: no hand, no button, the head goes on. */
+/** The duration of the system menu [s]: hands and buttons are absent, the head stays tracked. */
 const menuSeconds = 10;
 
-/** An archer at full draw, behind the menu, and back with the trigger pressed so far. */
+/** Runs an archer at full draw through the system menu; afterwards the trigger has this value. */
 function archerBehindMenu(pressure: number) {
   const gestures = createArcheryGestures(() => defaultArcheryGestureSettings);
   const actions: string[] = [];
@@ -28,7 +28,7 @@ function archerBehindMenu(pressure: number) {
   for (let i = 1; i <= 60; i++) frame(i / 120, 1);
   let bow = frame(0.5, 1);
   for (let i = 0; i < menuSeconds * 72; i++) bow = frame(0.5, 0, true);
-  // The gestures overwrite the view with every frame.
+  // The gestures overwrite the view in every frame, so it is copied.
   const meanwhile = structuredClone(bow);
   for (let i = 0; i < 20; i++) bow = frame(0.5, pressure);
   return { bow, meanwhile, cues, shots: actions.filter((type) => type === 'release').length };
@@ -72,7 +72,7 @@ test('behind a menu a ball stays in its hand; let go there, it is not thrown', (
     expect(still.actions).toEqual(['grab']);
   }
   expect(thrown).toBe(0);
-  measured('blurred', {
+  reportFigures('blurred', {
     'balls thrown': thrown,
     'arrows shot': archerBehindMenu(0).shots,
     'still held': 'arrow and ball',

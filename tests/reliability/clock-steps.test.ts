@@ -16,10 +16,10 @@ import { Recorder } from 'threepoint-page/studio/recorder';
 import { type PlayedStep, playTrial } from 'threepoint-study/participant/study-trial';
 import { describe, expect, test } from 'vitest';
 import { studiedArcher } from '../study/participant/played-round';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
 const frameMs = 1000 / 72;
-/** Leaps of the page's time [s], each taken back again a while later; the shorter ones are of the full suite. */
+/** The steps of the page's clock [s], each reverted 4 s later; the short ones run in the full suite only. */
 const leaps = [-20, 20];
 const shorterLeaps = [-5, 5];
 
@@ -30,7 +30,7 @@ interface Part {
   render?(time: number, frame: TrackingFrame | null): void;
 }
 
-/** The page's frame loop at 72 Hz over a device whose time stamps leap as told. */
+/** Returns the page's frame loop at 72 Hz over a device whose timestamps a test can step. */
 function page(part: Part) {
   let stamp = 30_000;
   let buttons = nothingPressed;
@@ -107,7 +107,7 @@ function goesOn(step: number): void {
     until(() => play.newest?.state.phase === 'over');
     expect(play.newest?.state).toMatchObject({ end: 'targets', score: 50 });
     expect(faults).toEqual([]);
-    measured('clock-steps', {
+    reportFigures('clock-steps', {
       [`archery, ${step} s and back`]: `stands still ${Math.abs(standing).toFixed(2)} s, first frame ${leapt.toFixed(2)} s`,
     });
   });

@@ -30,7 +30,7 @@ test('the dark edges are before the eyes alone: a mirror shows no black ball for
     getReflectionCamera(eye: PerspectiveCamera): PerspectiveCamera;
   };
   for (const layer of [1, 2]) {
-    // As WebXRManager makes it: all see layer 0, one eye this one.
+    // The eye's camera sees layer 0 and its own layer, as in WebXRManager.
     const eye = new PerspectiveCamera();
     eye.layers.enable(layer);
     expect(object.layers.test(eye.layers)).toBe(true);

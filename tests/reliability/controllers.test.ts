@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import { bowman } from '../games/archery/bowman';
 import { ballThrower } from './ball-thrower';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
 test('a controller that holds a ball goes off: back to the rack; on again: the hand is empty', () => {
   const thrower = ballThrower().carry(1);
@@ -33,7 +33,7 @@ test('the two change sides while one holds a ball: it is let go of, never thrown
     for (const trigger of [0, 1]) {
       const thrower = ballThrower().carry(1);
       const there = { ...thrower.chest, x: thrower.chest.x + distance };
-      // Each side is another device at once, at the other's place, with the other's trigger.
+      // Both sides swap devices in one frame: each has the other's pose and trigger.
       thrower.hold({ fist: thrower.chest, trigger: 1, device: 4 }, { fist: there, trigger, device: 3 }, 0.5);
       thrown += thrower.actions.filter((action) => action === 'throw').length;
       stuck += thrower.held.right === null && thrower.held.left === null ? 0 : 1;
@@ -41,7 +41,7 @@ test('the two change sides while one holds a ball: it is let go of, never thrown
     }
   }
   expect({ thrown, stuck }).toEqual({ thrown: 0, stuck: 0 });
-  measured('controllers', { 'balls stuck': `${stuck} of 8`, 'balls thrown': `${thrown} of 8` });
+  reportFigures('controllers', { 'balls stuck': `${stuck} of 8`, 'balls thrown': `${thrown} of 8` });
 });
 
 test('a drawn bow: the string hand becomes another device, the arrow goes back, the bow stays by handedness', () => {
@@ -72,5 +72,5 @@ test('controllers become hands and controllers again, ten times while drawing: t
   const cancelled = archer.said.filter((type) => type === 'cancelled').length;
   expect(cancelled).toBe(10);
   expect(archer.releases).toEqual([]);
-  measured('changing-hands', { 'draws cancelled': `${cancelled} of 10`, shots: archer.releases.length });
+  reportFigures('changing-hands', { 'draws cancelled': `${cancelled} of 10`, shots: archer.releases.length });
 });

@@ -10,9 +10,9 @@ import { createThrower } from 'threepoint-games/ball/thrower-motion';
 import { expect, test } from 'vitest';
 import { shotWithOneHand } from '../games/archery/one-handed-round';
 import { playRound, steady } from '../games/archery/playing';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
-/** Eyes above the floor [m] of people of 1.10 to 2.20 m, and of the same people seated. */
+/** The body measures [m] of people of 1.10 to 2.20 m, standing and seated. */
 const people = [1.03, 1.4, 1.6, 1.8, 2.06].flatMap((eyeHeight) => [
   { eyeHeight, armLength: 0.355 * eyeHeight },
   { eyeHeight: 0.72 * eyeHeight, armLength: 0.355 * eyeHeight },
@@ -29,7 +29,7 @@ test('archery: each person finishes a round with 50 of 50, with either hand, sta
     }
   }
   expect(finished).toBe(played);
-  measured('flows', { archery: `${finished} of ${played} rounds won` });
+  reportFigures('flows', { archery: `${finished} of ${played} rounds won` });
 });
 
 test('archery with one hand: a round can be won from any height', () => {
@@ -43,10 +43,10 @@ test('archery with one hand: a round can be won from any height', () => {
     }
   }
   expect(won).toBe(played);
-  measured('flows', { 'archery with one hand': `${won} of ${played} rounds won` });
+  reportFigures('flows', { 'archery with one hand': `${won} of ${played} rounds won` });
 });
 
-/** Three built-in players; one of them has one hand alone. */
+/** Runs a match of three built-in players; one of them may have one hand only. */
 function ballMatch(eyeHeight: number, oneHanded: { readonly player: number; readonly side: Side } | null) {
   let state: BallState = ballRules.start(['ann', 'ben', 'cal'], 3, { balls: 8, seconds: 60 });
   const bots = stations.map((arenaFromFloor, player) =>
@@ -100,5 +100,5 @@ test('the ball game: each person throws and catches, seated too; with one hand i
     }
   }
   expect(oneHanded).toBe(6);
-  measured('flows', { ...figures, 'ball game with one hand': `${oneHanded} of 6 matches finished with a score` });
+  reportFigures('flows', { ...figures, 'ball game with one hand': `${oneHanded} of 6 matches finished with a score` });
 });

@@ -6,11 +6,11 @@ import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import { createBallPlay } from 'threepoint-page/ball/ball-play';
 import { expect, test } from 'vitest';
 import { poseOf } from '../threepoint/core/estimation/drawn';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
 const released = { left: allReleased, right: allReleased };
 
-/** One of two people in a room of this page; who wears a headset that is taken off draws no frames at all. */
+/** Returns a player in a local room. A player whose headset is off draws no frames. */
 function person(host: ReturnType<typeof createBallLoopbackHost>, name: string, seat: number) {
   const play = createBallPlay({
     connect: host.connect,
@@ -69,5 +69,5 @@ test('a headset taken off for 20 s: others see “away” at once when told, wit
     rows[told ? '“away” when the page says so' : '“away” when it does not say so'] =
       `after ${away.toFixed(2)} s, back after ${back.toFixed(2)} s`;
   }
-  measured('hidden', rows);
+  reportFigures('hidden', rows);
 });

@@ -5,7 +5,7 @@ import { expect, test } from 'vitest';
 import { collectGarbage } from '../collect-garbage';
 import { isNightly } from '../nightly';
 import { poseOf } from '../threepoint/core/estimation/drawn';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
 const heap = (): number => {
   collectGarbage();
@@ -40,7 +40,7 @@ test('what plays and estimates keeps nothing of the rounds that are over', { tag
   const last = heaps.at(-1) ?? Number.NaN;
   expect(heaps.length).toBeGreaterThan(3);
   expect(last).toBeLessThan(1.1 * first);
-  measured('long-run', {
+  reportFigures('long-run', {
     'without a page': `${minutes} min, ${heaps.length} rounds: heap ${first.toFixed(1)} MB after the first, ${last.toFixed(1)} MB after the last`,
   });
 });

@@ -11,11 +11,11 @@ import { expect, test } from 'vitest';
 import { isNightly } from '../nightly';
 import { poseOf, show } from '../threepoint/core/estimation/drawn';
 import { openShippedModel } from '../threepoint/core/estimation/shipped-models';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 
-/** A person who stands still, whose hands are lost or guessed for this long and then seen again. */
+/** Returns the tracking of a person who stands still and whose hands are lost or emulated for a while. */
 function spoiled(
   time: number,
   which: 'left' | 'right' | 'both',
@@ -40,7 +40,7 @@ test('a wrist goes to rest and comes back without a jump, whichever hand, howeve
   let cases = 0;
   for (const name of ['ik', 'learned', 'paper'] as const) {
     const network = name === 'ik' ? undefined : await openShippedModel(name);
-    // Networks cost a hundred times what IK costs, and the hands are not theirs: by night they do all of it too.
+    // Networks cost a hundred times as much as IK and share its handling of lost hands: they run all cases at night only.
     const thorough = name === 'ik' || isNightly;
     for (const which of thorough ? (['left', 'right', 'both'] as const) : (['both'] as const)) {
       for (const how of ['null', 'emulated'] as const) {
@@ -64,7 +64,7 @@ test('a wrist goes to rest and comes back without a jump, whichever hand, howeve
     }
   }
   expect(worst).toBeLessThan(0.05);
-  measured('hand-lost', {
+  reportFigures('hand-lost', {
     'longest step of a wrist': `${(100 * worst).toFixed(1)} cm in a frame of 60 Hz (${cases} cases)`,
   });
 });
@@ -79,5 +79,5 @@ test('others learn of it: null and emulated arrive as they are', () => {
     expect(arrived?.pose.leftHand?.tracking ?? null).toBe(how === 'null' ? null : 'emulated');
     expect(arrived?.pose.rightHand?.tracking).toBe('tracked');
   }
-  measured('hand-lost', { 'flags that reach others': 'null, emulated' });
+  reportFigures('hand-lost', { 'flags that reach others': 'null, emulated' });
 });

@@ -8,11 +8,11 @@ import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { expect, test } from 'vitest';
 import { show } from '../threepoint/core/estimation/drawn';
 import { openShippedModel } from '../threepoint/core/estimation/shipped-models';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 
-/** What a network may do from its twentieth run on. */
+/** The faults of a network, which start with its twentieth run. */
 const faults: Readonly<Record<string, (output: Float32Array) => Promise<Float32Array>>> = {
   'answers NaN': async (output) => output.map(() => Number.NaN),
   'answers one NaN': async (output) => output.map((value, i) => (i === 7 ? Number.NaN : value)),
@@ -42,7 +42,7 @@ test('a network that breaks while it runs: no bone is ever NaN, the fault is kno
       };
       const estimator = createEstimator(name, defaultCalibration, network);
       let known: number | null = null;
-      // The learned network is asked about every second of them.
+      // The learned network runs in every second frame.
       for (let i = 0; i < 80; i++) {
         const frame = actorFrame(3 + i / 72, defaultCalibration);
         const joints = forwardKinematics(skeleton, (await show(estimator, frame)).body!);
@@ -58,7 +58,7 @@ test('a network that breaks while it runs: no bone is ever NaN, the fault is kno
   }
   expect(broken).toBe(0);
   expect(latest).toBe(1);
-  measured('bad-model', {
+  reportFigures('bad-model', {
     'bones NaN': `${broken} of ${bones}`,
     'fault known after': `${latest} frame`,
     faults: Object.keys(faults).length,

@@ -17,7 +17,7 @@ import { startGuidedCalibration, stepGuidedCalibration } from 'threepoint/core/t
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { expect, test } from 'vitest';
 import { poseOf } from '../threepoint/core/estimation/drawn';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
 const statures = [1.1, 1.2, 1.35, 1.5, 1.7, 1.9, 2.1, 2.2];
 const bodyOf = (stature: number): Calibration => ({
@@ -32,7 +32,7 @@ const sunk = (frame: TrackingFrame, by: number): TrackingFrame => {
   return { ...frame, head: lower(frame.head), leftHand: lower(frame.leftHand), rightHand: lower(frame.rightHand) };
 };
 
-/** A person who stands straight and stretches both arms forward. */
+/** Returns the tracking of a person who stands straight and stretches both arms forward. */
 function stretched(body: Calibration, time: number): TrackingFrame {
   const skeleton = skeletonFromCalibration(body);
   const upright = Object.fromEntries(jointNames.map((joint) => [joint, identity])) as Record<
@@ -46,7 +46,7 @@ function stretched(body: Calibration, time: number): TrackingFrame {
   return { time, head: tracked(vec3(0, body.eyeHeight, 0)), leftHand: wrist('left'), rightHand: wrist('right') };
 }
 
-/** Two seconds of the guided calibration, as the page does it; a sentence: why it refused. */
+/** Runs two seconds of the page's guided calibration; returns the message if it is rejected. */
 function measuredInTwoSeconds(body: Calibration, lower: number): Calibration | string {
   let state = startGuidedCalibration;
   for (let i = 0; i <= 2.1 * 72; i++) state = stepGuidedCalibration(state, sunk(stretched(body, 50 + i / 72), lower));
@@ -54,7 +54,7 @@ function measuredInTwoSeconds(body: Calibration, lower: number): Calibration | s
   return state.kind === 'done' ? state.calibration : state.reason;
 }
 
-/** How far the drawn wrists are from the tracked ones, and how low the pelvis gets, while a person of this body plays about. */
+/** Measures the error of the drawn wrists and the lowest pelvis [m] while a person with this body plays. */
 function wear(body: Calibration, calibration: Calibration, lower: number) {
   const estimator = createEstimator('ik', calibration);
   const skeleton = skeletonFromCalibration(calibration);
@@ -72,7 +72,7 @@ function wear(body: Calibration, calibration: Calibration, lower: number) {
   return { off, pelvis };
 }
 
-/** A person of each stature wears the body that `calibrationOf` gives them; the worst of them. */
+/** Returns the worst errors over all statures, each with the calibration of `calibrationOf`. */
 function worn(lower: (body: Calibration) => number, calibrationOf: (body: Calibration) => Calibration) {
   const seen = statures.map(bodyOf).map((body) => wear(body, calibrationOf(body), lower(body)));
   return {
@@ -101,18 +101,18 @@ test.each([
     });
     expect(seen.pelvis).toBeGreaterThan(0);
     expect(seen.off).toBeLessThan(1e-3);
-    measured('people', { [posture]: figure(`measured in 2 s ${guided} of ${statures.length}`, seen) });
+    reportFigures('people', { [posture]: figure(`measured in 2 s ${guided} of ${statures.length}`, seen) });
   },
 );
 
 test('a floor half a metre too low: no one is measured wrongly; with the height typed, the body fits', () => {
   const lower = () => -0.5;
-  // Stretched arms under a head that is too high look like the bent ones of a taller person.
+  // Stretched arms below a head that is too high are indistinguishable from bent arms of a taller person.
   for (const body of statures.map(bodyOf)) expect(measuredInTwoSeconds(body, lower())).toMatch(/type your height/);
   const seen = worn(lower, (body) => body);
   expect(seen.pelvis).toBeGreaterThan(0);
   expect(seen.off).toBeLessThan(1e-3);
-  measured('people', {
+  reportFigures('people', {
     'a floor half a metre too low': figure(
       `asked to type the height ${statures.length} of ${statures.length}; with it typed`,
       seen,

@@ -17,10 +17,10 @@ import { createMatch } from 'threepoint-games/match';
 import { expect, test } from 'vitest';
 import { hold, inFront, leftThrower, stand, velocityTo } from '../games/ball/playing';
 import { poseOf } from '../threepoint/core/estimation/drawn';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
 const rates = [72, 80, 90, 120] as const;
-/** 30 % of the frames, in a pattern that drops up to two in a row. */
+/** Returns whether a frame is dropped: 30 % are, at most two in a row. */
 const dropped = (frame: number): boolean => (frame * 7) % 10 < 3;
 const never = (): boolean => false;
 const ways = rates.flatMap((rate) => [never, dropped].map((drop) => ({ rate, drop })));
@@ -52,7 +52,7 @@ test('arrows fly and land the same at every rate', () => {
     });
   }
   expect(worst).toBeLessThan(1e-3);
-  measured('rates', { arrows: `${(1000 * worst).toFixed(4)} mm apart` });
+  reportFigures('rates', { arrows: `${(1000 * worst).toFixed(4)} mm apart` });
 });
 
 test('balls fly the same at every rate', () => {
@@ -97,13 +97,13 @@ test('balls fly the same at every rate', () => {
   let worst = 0;
   for (const { rate, drop } of ways) {
     const flight = flightAt(rate, drop);
-    // After a second of flight, at the same time of the match.
+    // The positions are compared after a second of flight, at the same time of the match.
     const off = add(flight.position, addScaled(vec3(0, 0, 0), flight.velocity, reference.at + 1 - flight.at));
     const same = add(reference.position, reference.velocity);
     worst = Math.max(worst, distance(off, same));
   }
   expect(worst).toBeLessThan(1e-3);
-  measured('rates', { balls: `${(1000 * worst).toFixed(4)} mm apart after 1 s` });
+  reportFigures('rates', { balls: `${(1000 * worst).toFixed(4)} mm apart after 1 s` });
 });
 
 test('a hand throws equally fast at every rate', () => {
@@ -124,14 +124,14 @@ test('a hand throws equally fast at every rate', () => {
     worst = Math.max(worst, distance(speedBy(times), speedBy(fine)));
   }
   expect(worst).toBeLessThan(0.1);
-  measured('rates', { 'throws of a hand': `${(100 * worst).toFixed(1)} cm/s apart` });
+  reportFigures('rates', { 'throws of a hand': `${(100 * worst).toFixed(1)} cm/s apart` });
 });
 
 test('filters of the body come to the same joints at every rate', () => {
   const skeleton = skeletonFromCalibration(defaultCalibration);
   const bodyAt = (rate: number, drop: (frame: number) => boolean) => {
     const estimator = createEstimator('ik', defaultCalibration);
-    // The last frame is common to all rates, wherever the others lay.
+    // The last frame is at the same time for all rates.
     const times = [...framesOf(rate, drop, 2), 2].map((time) => 10 + time);
     const poses = times.map((time) => poseOf(estimator, actorFrame(time, defaultCalibration)));
     return forwardKinematics(skeleton, poses.at(-1)!.body!);
@@ -143,5 +143,5 @@ test('filters of the body come to the same joints at every rate', () => {
     worst = Math.max(worst, ...jointNames.map((joint) => distance(joints[joint].position, reference[joint].position)));
   }
   expect(worst).toBeLessThan(0.005);
-  measured('rates', { joints: `${(1000 * worst).toFixed(2)} mm apart` });
+  reportFigures('rates', { joints: `${(1000 * worst).toFixed(2)} mm apart` });
 });

@@ -1,7 +1,7 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { expect, test } from 'vitest';
 import { missingFigures } from '../../scripts/reliability/reliability-page';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 import { rows } from './rows';
 
 const root = new URL('../../', import.meta.url);
@@ -12,9 +12,9 @@ test.each(Object.entries(rows))('%s is tried by tests that exist', (_, { tests }
 });
 
 test('a figure comes from a test that the row names, and from no other', () => {
-  const told = () => measured('rates', { 'told by': 'a stranger' });
-  expect(told).toThrow(
-    /tests\/reliability\/rows\.test\.ts tells figures of "rates", whose tests are .*rates\.test\.ts/,
+  const report = () => reportFigures('rates', { 'reported by': 'another test' });
+  expect(report).toThrow(
+    /tests\/reliability\/rows\.test\.ts reports figures of "rates", whose tests are .*rates\.test\.ts/,
   );
 });
 

@@ -1,13 +1,13 @@
-/** What must survive, and what is promised: one row each of docs/reliability.md. */
+/** A row of docs/reliability.md: a fault, a promise or an attack, and the tests that measure it. */
 export interface Row {
-  /** What is done to the page, the headset or the server. */
+  /** The fault or attack on the page, the headset or the server. */
   readonly inject: string;
-  /** What the wearer, a player or a client must see then. */
+  /** The result that a user, player or client must see. */
   readonly sees: string;
   readonly target: string;
-  /** The tests that try it; each tells its figures to this row. */
+  /** The test files that measure it; each reports its figures to this row. */
   readonly tests: readonly string[];
-  /** What no test can see without a headset, step by step. */
+  /** The steps to check by hand with a headset. */
   readonly manual?: readonly string[];
 }
 
@@ -193,7 +193,7 @@ export const faultRows = {
   },
 } as const satisfies Readonly<Record<string, Row>>;
 
-/** Promises 4 to 8: of the page, of names, of avatars and of what is kept. */
+/** Promises 4 to 8, about the page, names, avatars and stored data. */
 export const promiseRows = {
   policy: {
     inject:
@@ -238,7 +238,7 @@ export const promiseRows = {
   },
 } as const satisfies Readonly<Record<string, Row>>;
 
-/** Attacks on the server, and what strangers try: on the network, or by a page of another site in the browser of a person who uses this one. */
+/** Attacks on the server: over the network, or by another site's page in a user's browser. */
 export const attackRows = {
   'raw-requests': {
     inject:

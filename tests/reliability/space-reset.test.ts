@@ -14,9 +14,9 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { expect, test } from 'vitest';
 import { show } from '../threepoint/core/estimation/drawn';
 import { openShippedModel } from '../threepoint/core/estimation/shipped-models';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
-/** A quarter turn and a metre: where the floor lies after the device has recentred. */
+/** The floor frame after the device has recentred: turned by a quarter turn and moved by 1 m. */
 const newFromOld: Transform<'floor', 'floor'> = {
   position: vec3(1, 0, 0),
   orientation: fromAxisAngle(up, Math.PI / 2),
@@ -29,7 +29,7 @@ const recentred = (frame: TrackingFrame): TrackingFrame => ({
   rightHand: frame.rightHand && moved(frame.rightHand),
 });
 
-/** Lets another body know how these hands are held: that alone outlasts a recentre. */
+/** Copies the tilts of the hands to another estimator: a recentre resets all other state. */
 function holdAlike(from: PoseEstimator, to: PoseEstimator): void {
   if (!(from instanceof Pipeline && to instanceof Pipeline)) return;
   const [known, told] = [from.state.tilts, to.state.tilts];
@@ -65,7 +65,7 @@ test('a space that is reset leaves no body on the way: the first frame is drawn 
     }
   }
   expect(between).toBe(0);
-  measured('space-reset', {
+  reportFigures('space-reset', {
     'bodies between the two places': `${between} of ${20 * (estimatorNames.length - 1)}`,
     'difference from a new body': `${(1000 * worst).toFixed(3)} mm`,
   });

@@ -2,7 +2,7 @@ import { readdirSync, readFileSync } from 'node:fs';
 import { cleanName } from 'threepoint-rooms/protocol/names';
 import { tidyCsv } from 'threepoint-study/model/tables/tidy-csv';
 import { expect, test } from 'vitest';
-import { measured } from './measured';
+import { reportFigures } from './report-figures';
 
 const source = new URL('../../src/', import.meta.url);
 
@@ -33,7 +33,7 @@ test('no code of the page turns text into markup', () => {
     /\.(innerHTML|outerHTML)\s*=|insertAdjacentHTML|document\.write|createContextualFragment|DOMParser|srcdoc/;
   const found = files.filter((file) => sinks.test(readFileSync(new URL(file, source), 'utf8')));
   expect(found).toEqual([]);
-  measured('text', { 'files that make markup of text': `${found.length} of ${files.length}` });
+  reportFigures('text', { 'files that make markup of text': `${found.length} of ${files.length}` });
 });
 
 test('an exported table carries no formula', () => {
@@ -46,5 +46,5 @@ test('an exported table carries no formula', () => {
   const formulas = cells.filter((cell) => /^"?[=+\-@\t\r]/.test(cell)).length;
   expect(cells.length).toBeGreaterThanOrEqual(names.length);
   expect(formulas).toBe(0);
-  measured('text', { 'formulas in a table': `${formulas} of ${names.length} attempts` });
+  reportFigures('text', { 'formulas in a table': `${formulas} of ${names.length} attempts` });
 });

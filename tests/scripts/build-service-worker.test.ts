@@ -54,7 +54,7 @@ test('each is known by its content, not by its name', () => {
   const changed = after.filter((file, i) => file.integrity !== before[i]?.integrity);
   expect(changed.map(({ url }) => url)).toEqual(['models/learned.onnx']);
   expect(changed[0]?.revision).not.toBe(before.find(({ url }) => url === 'models/learned.onnx')?.revision);
-  // A name that says the content needs no other mark.
+  // A name that contains a hash of the content needs no revision.
   expect(after.find(({ url }) => url === 'assets/main-1.js')?.revision).toBeNull();
 });
 
@@ -72,7 +72,7 @@ test('the manifest of the installed page speaks of its own folder, and its icons
   for (const [name, { side }] of Object.entries(icons)) expect(sizeOf(text(`icons/${name}`))).toBe(`${side}x${side}`);
 });
 
-/** Width and height of a PNG, which stand at the beginning of its header. */
+/** Returns the width and height in a PNG's header. */
 function sizeOf(png: Buffer): string {
   expect(png.subarray(1, 4).toString()).toBe('PNG');
   return `${png.readUInt32BE(16)}x${png.readUInt32BE(20)}`;

@@ -61,7 +61,7 @@ test('the lock file names every platform’s packages, or npm ci would refuse it
 test('what npm test loads before it installs asks for no package', () => {
   const directory = directoryWith({});
   cpSync('scripts', join(directory, 'scripts'), { recursive: true });
-  // Another sentence than that of a package that cannot be found shows that everything was loaded.
+  // Any message other than a missing package shows that everything was loaded.
   const { status, stderr } = spawnSync(process.execPath, ['scripts/test.mjs', 'no-such-stage'], {
     cwd: directory,
     encoding: 'utf8',

@@ -18,7 +18,7 @@ const recorded = (seconds: number): string =>
     frames: Array.from({ length: 60 * seconds }, (_, i) => actorFrame(i / 60, defaultCalibration)),
   });
 
-/** A folder with a recording in it. */
+/** Creates a folder with a recording. */
 function folderWith(seconds: number) {
   const folder = directoryWith({ 'mine.json': recorded(seconds) });
   return { folder, file: join(folder, 'mine.json') };

@@ -54,7 +54,7 @@ describe('the command line of each step', () => {
     expect(join(root, scripts[step.script]?.split(' ').at(-1) ?? '')).toBe(file);
   });
 
-  // Options are read in their order, and the first unknown one ends the script before it begins: that is the one put last.
+  // Options are parsed in order, and the first unknown one ends the script before it starts: here it is the last one.
   test.each(steps.filter(({ script }) => script !== 'train').map((step) => [step.name, step] as const))(
     '%s has options that its script accepts',
     (_, step) => {

@@ -3,7 +3,7 @@ import { readFileSync } from 'node:fs';
 import { expect, test } from 'vitest';
 import { directoryWith } from '../temporary-directory';
 
-/** The check as it runs with this Node in a project that asks for that one. */
+/** Runs the check with this Node in a project that requires the given range. */
 function checkAgainst(engine: string) {
   const directory = directoryWith({
     'package.json': JSON.stringify({ engines: { node: engine } }),

@@ -9,7 +9,7 @@ const text = (path: string) => readFileSync(new URL(`../../${path}`, import.meta
 
 describe('the suites', () => {
   const { scripts } = JSON.parse(text('package.json')) as { scripts: Record<string, string> };
-  /** The stages that an npm script runs. */
+  /** Returns the stages that an npm script runs. */
   const run = (script: string): string[] => {
     const named = scripts[script]?.split('scripts/test.mjs ')[1]?.split(' ') ?? ['day'];
     return named.flatMap((name) => (name in stages ? [name] : stagesOf(name)));
@@ -26,7 +26,7 @@ describe('the suites', () => {
       /^tsconfig\.\w+\.json$/.test(file),
     );
     expect(configurations.length).toBeGreaterThan(0);
-    // The stage of the library has its own, by the script that builds it.
+    // The stage of the library has its own entry, for the script that builds it.
     const compiled = [...commands, ...(text('scripts/build-library.mjs').match(/tsconfig\.\w+\.json/g) ?? [])];
     expect(compiled).toEqual(expect.arrayContaining(configurations));
   });
@@ -54,7 +54,7 @@ describe('unit tests', () => {
 
   test('look further by night: what asks for the night is told of it', async () => {
     for (const name of ['THREEPOINT_TESTS', 'PROPERTY_RUNS', 'THREEPOINT_NIGHTLY']) vi.stubEnv(name, undefined);
-    // The next file of this process is to load its modules by day.
+    // The next file in this process must load its modules with the default environment.
     onTestFinished(() => {
       vi.unstubAllEnvs();
       vi.resetModules();
@@ -74,7 +74,7 @@ describe('browser tests', () => {
     ...specs,
     ...suites.flatMap(specsOf),
   ];
-  /** What the runner lists when it is asked for these. */
+  /** Returns the tests that the runner lists for these arguments. */
   const chosen = (tests: string) => {
     const { status, stdout, stderr } = spawnSync(
       process.execPath,

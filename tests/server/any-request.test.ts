@@ -2,7 +2,7 @@ import { connect } from 'node:net';
 import fc from 'fast-check';
 import { expect, test } from 'vitest';
 import { isNightly } from '../nightly';
-import { measured } from '../reliability/measured';
+import { reportFigures } from '../reliability/report-figures';
 import { paperPlan } from '../study/model/studies';
 import { rawRequests } from './raw-requests';
 import { experimenterToken, forkServer, probeHealth } from './server-child';
@@ -77,7 +77,7 @@ test('every request line, method, header and body gets an answer from the server
       timeout: 30_000,
     })
     .toBeLessThanOrEqual(4);
-  measured('raw-requests', {
+  reportFigures('raw-requests', {
     requests: sent,
     'without an answer': sent - empty - [...statuses.values()].reduce((sum, count) => sum + count, 0),
     faults: faults.length,

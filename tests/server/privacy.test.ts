@@ -4,7 +4,7 @@ import { DatabaseSync } from '@photostructure/sqlite';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { openStudyStore } from 'threepoint-study/server/storage/store';
 import { expect, onTestFinished, test } from 'vitest';
-import { measured } from '../reliability/measured';
+import { reportFigures } from '../reliability/report-figures';
 import { fists, releaseOf } from '../rooms/client/people';
 import { createTestRoom, packetAt } from '../rooms/room/test-room';
 import { arrive, startRelay, until } from '../rooms/server/running-relay';
@@ -75,7 +75,7 @@ test('a match over sockets and a study without consent to motion leave no motion
   expect(rows).toBeGreaterThan(10);
   const motion = filesIn(directory).filter((bytes) => bytes.includes('0.1234567')).length;
   expect(motion).toBe(0);
-  measured('privacy', {
+  reportFigures('privacy', {
     'written while playing': '0 bytes',
     'files with motion refused consent': `${motion}`,
     'rows read': rows,
@@ -97,7 +97,7 @@ test('nothing that carries poses can write to a disk: relay, sockets, rooms and 
   // relay.ts keeps the key that signs tokens, once, and nothing else.
   expect(writers.map(({ pathname }) => pathname.split('/').at(-1))).toEqual(['relay.ts']);
   expect(readFileSync(new URL('server/relay.ts', rooms), 'utf8').match(/writeFileSync\(.*/g)).toHaveLength(1);
-  measured('privacy', {
+  reportFigures('privacy', {
     'modules with poses that know a disk': `${writers.length} of ${carriers.length}, for the key of the tokens`,
   });
 });
@@ -117,5 +117,5 @@ test('a room hands out no pose that is older than two seconds', () => {
   expect(testRoom.time).toBeGreaterThan(at + 7);
   const joined = testRoom.join('late');
   expect(JSON.stringify(joined)).not.toMatch(/"(localRotations|hipsPosition)"/);
-  measured('privacy', { 'poses handed out after 2 s': late });
+  reportFigures('privacy', { 'poses handed out after 2 s': late });
 });

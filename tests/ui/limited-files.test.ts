@@ -3,7 +3,7 @@ import { createServer } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import { nameOf, readLimited } from 'threepoint-ui/limited-files';
 import { afterEach, describe, expect, test } from 'vitest';
-import { measured } from '../reliability/measured';
+import { reportFigures } from '../reliability/report-figures';
 
 const recording = { what: 'a recording', megabytes: 1 };
 const closing: (() => void)[] = [];
@@ -46,7 +46,7 @@ describe('a file of this device', () => {
       'walk.json: larger than 100 MB, the limit for a recording',
     );
     expect(reads()).toBe(0);
-    measured('bad-input', { 'bytes read of 300 MB': 0 });
+    reportFigures('bad-input', { 'bytes read of 300 MB': 0 });
   });
 
   test('as large as it may be is read', async () => {

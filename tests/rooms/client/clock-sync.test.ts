@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import { createClockSync } from 'threepoint-rooms/client/clock-sync';
 import { describe, expect, test } from 'vitest';
-import { tell } from '../../tell';
+import { printFigures } from '../../print-figures';
 
 /** Asks for `seconds` from `start` on; one way takes `there()` and the other `back()` [s]. Returns when it was within 10 ms for good. */
 function follow(
@@ -37,7 +37,7 @@ const lan = () => {
 describe('clock sync', () => {
   test.each([0, 600, -600])('on a LAN, clocks %d s apart: within 10 ms in 3 s', (skew) => {
     const { error, settled } = follow(createClockSync(), 5, 10, skew, lan(), lan());
-    tell(`clock skew ${skew} s`, { 'error [ms]': error * 1000, 'within 10 ms after [s]': settled });
+    printFigures(`clock skew ${skew} s`, { 'error [ms]': error * 1000, 'within 10 ms after [s]': settled });
     expect(settled).toBeLessThan(3);
     expect(error).toBeLessThan(0.01);
   });
@@ -47,7 +47,9 @@ describe('clock sync', () => {
       const sync = createClockSync();
       follow(sync, 5, 10, 3, lan(), lan());
       const { settled } = follow(sync, 75 - stood, 10, 3 + stood, lan(), lan());
-      tell(`suspend of 60 s, clock ${stood ? 'stood still' : 'went on'}`, { 'within 10 ms after [s]': settled });
+      printFigures(`suspend of 60 s, clock ${stood ? 'stood still' : 'went on'}`, {
+        'within 10 ms after [s]': settled,
+      });
       expect(settled).toBeLessThan(3);
     }
   });

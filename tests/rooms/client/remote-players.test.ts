@@ -11,7 +11,7 @@ import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import type { PosePacket } from 'threepoint-rooms/protocol/pose-packet';
 import { describe, expect, test } from 'vitest';
 import { isNightly } from '../../nightly';
-import { tell } from '../../tell';
+import { printFigures } from '../../print-figures';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 
 /** A person whose head goes along x at 1 m/s, hands beside it. */
@@ -108,7 +108,7 @@ describe('playback of others', () => {
       });
       const freezes = players.report(1)!.freezes / minutes;
       const mean = late.reduce((sum, value) => sum + value, 0) / late.length;
-      tell(name, { minutes, 'freezes a minute': freezes, 'shown late by [ms]': mean * 1000 });
+      printFigures(name, { minutes, 'freezes a minute': freezes, 'shown late by [ms]': mean * 1000 });
       return freezes;
     };
     // A person on a bad line, seen by one on a good line, or the other way round; and, for the record, both on bad ones.
@@ -139,7 +139,7 @@ describe('playback of others', () => {
         };
       },
     );
-    tell('a circle of 30 cm once a second', {
+    printFigures('a circle of 30 cm once a second', {
       'off by at most [mm]': Math.max(...off),
       'head turned off by [°]': Math.max(...turned),
     });
@@ -166,7 +166,7 @@ describe('playback of others', () => {
         return { ...packet, pose: { ...pose, rightHand: { ...pose.head, position } } };
       },
     );
-    tell('a dead stop from 2 m/s', { 'beyond by [mm]': 1000 * furthest, 'rests after [s]': settled });
+    printFigures('a dead stop from 2 m/s', { 'beyond by [mm]': 1000 * furthest, 'rests after [s]': settled });
     expect(furthest).toBeLessThan(0.01);
     expect(settled).toBeLessThan(0.1);
   });
@@ -188,7 +188,7 @@ describe('playback of others', () => {
       },
     );
     const heard = silenceFrom - 1 / 30 + 0.02;
-    tell('silence', { 'ghost after [s]': ghostAt - heard, 'hidden after [s]': hiddenAt - heard });
+    printFigures('silence', { 'ghost after [s]': ghostAt - heard, 'hidden after [s]': hiddenAt - heard });
     expect(furthest - (silenceFrom - 1 / 30)).toBeLessThanOrEqual(longestExtrapolation + 1e-6);
     expect(ghostAt - heard).toBeGreaterThan(0.99);
     expect(ghostAt - heard).toBeLessThan(1.2);
@@ -295,7 +295,7 @@ describe('playback of others', () => {
       players.follow(time);
       spent += performance.now() - start;
     }
-    tell('playback', { 'ms for each avatar and frame': Number((spent / frames / 15).toFixed(4)) });
+    printFigures('playback', { 'ms for each avatar and frame': Number((spent / frames / 15).toFixed(4)) });
     expect(spent / frames / 15).toBeLessThan(1);
   });
 });

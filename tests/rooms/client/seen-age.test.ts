@@ -1,6 +1,6 @@
 import { describe, expect, test } from 'vitest';
 import { seenOver, type Way } from '../../../bench/relay/ages';
-import { tell } from '../../tell';
+import { printFigures } from '../../print-figures';
 
 const seconds = 60;
 
@@ -11,7 +11,7 @@ function seen(way: Way, seed: number) {
   const figures = seenOver(way, seconds, seed, steady);
   const { p50Ms, p95Ms, freezes, jerkRatio } = figures;
   const milliseconds = `${1000 * way.roundTrip} ± ${1000 * way.jitter} ms, ${100 * way.loss} % lost`;
-  tell(`seen over ${milliseconds}`, { p50Ms, p95Ms, 'freezes a minute': freezes, jerkRatio });
+  printFigures(`seen over ${milliseconds}`, { p50Ms, p95Ms, 'freezes a minute': freezes, jerkRatio });
   return { ...figures, beyondWayMs: p95Ms - 500 * way.roundTrip };
 }
 

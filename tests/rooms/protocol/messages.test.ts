@@ -17,7 +17,7 @@ import { poseVersion } from 'threepoint-rooms/protocol/pose-packet';
 import { pageParser, relayParser, type SocketPacket } from 'threepoint-rooms/protocol/socket-parsers';
 import { longestDescription, mostCandidates } from 'threepoint-rooms/protocol/voice-messages';
 import { describe, expect, test } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { noPackets } from './no-packets';
 
 const fileHash = createHash('sha256').update('a bear').digest('base64url');
@@ -137,7 +137,7 @@ describe('control messages', () => {
       refused += 1;
     }
     expect(ballRoomMessageFrom({ type: 'signal', from: 'bens-page', body: signal.body })).not.toBeNull();
-    measured('voice-signals', { 'signals refused': `${refused} of ${descriptions.length + addresses.length}` });
+    reportFigures('voice-signals', { 'signals refused': `${refused} of ${descriptions.length + addresses.length}` });
   });
 
   test('no value at all makes a reader throw', () => {

@@ -5,7 +5,7 @@ import { decodePoints } from 'threepoint-rooms/protocol/pose-codec';
 import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
 import { fastestHead } from 'threepoint-rooms/room/pose-validator';
 import { describe, expect, test } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { poseOf } from './posed-head';
 import { createTestRoom } from './test-room';
 
@@ -55,7 +55,7 @@ describe('a seated player who is everywhere at once', () => {
     ['a new anchor in every packet', (_, time) => ({ timeMs: time * 1000, jump: true })],
   ])('is seen to go no faster than a head does, with %s', (what, claim) => {
     const speed = seenSpeed(claim);
-    measured('hostile-player', { [`head, ${what} [m/s]`]: speed });
+    reportFigures('hostile-player', { [`head, ${what} [m/s]`]: speed });
     // A leap between the ends of the room is let through about once a second.
     expect(speed).toBeLessThan(fastestHead + 14 * 1.2);
   });
@@ -87,7 +87,9 @@ describe('a seated player who changes with every message', () => {
       testRoom.tick(1 / perSecond);
     }
     const sent = seatMessages(testRoom, 0).length;
-    measured('hostile-player', { [`${what} sent on, of ${attackSeconds * perSecond} in ${attackSeconds} s`]: sent });
+    reportFigures('hostile-player', {
+      [`${what} sent on, of ${attackSeconds * perSecond} in ${attackSeconds} s`]: sent,
+    });
     expect(sent).toBeLessThanOrEqual(8 + attackSeconds / 2 + 1);
     expect(testRoom.room.isIdle).toBe(false);
     testRoom.pass(2.1);
@@ -106,7 +108,7 @@ describe('a seated player who changes with every message', () => {
       testRoom.tick(1 / perSecond);
     }
     const moves = testRoom.sent.filter(({ message }) => message.type === 'seated').length;
-    measured('hostile-player', { [`moves of ${attempts} in ${attackSeconds} s`]: moves });
+    reportFigures('hostile-player', { [`moves of ${attempts} in ${attackSeconds} s`]: moves });
     expect(moves).toBeLessThanOrEqual(4 + attackSeconds / 2 + 1);
     expect(testRoom.refusals.filter(({ reason }) => reason === 'too-often').length).toBeGreaterThan(attempts / 3);
     expect(testRoom.room.census).toMatchObject({ players: 2, free: 1 });

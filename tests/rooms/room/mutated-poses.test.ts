@@ -9,7 +9,7 @@ import { decodePose, encodePose } from 'threepoint-rooms/protocol/pose-codec';
 import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
 import { expect, test } from 'vitest';
 import { isNightly } from '../../nightly';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { seed } from '../../threepoint/core/arbitraries';
 import { numbersIn } from '../../threepoint/core/numbers-in';
 import { packetOf, senders } from '../protocol/sent-bodies';
@@ -115,7 +115,7 @@ test('valid pose packets, changed, reach others whole or not at all, as bodies o
   readFrames();
   expect(seen).toBe(counts.taken);
   expect(numbersIn(testRoom.room.match).every(Number.isFinite)).toBe(true);
-  measured('mutated-poses', {
+  reportFigures('mutated-poses', {
     packets,
     'read as poses': counts.taken + counts.ignored,
     'passed on': seen,

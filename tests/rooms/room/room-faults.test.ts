@@ -10,7 +10,7 @@ import { relayParser } from 'threepoint-rooms/protocol/socket-parsers';
 import { Room } from 'threepoint-rooms/room/room';
 import { describe, expect, test } from 'vitest';
 import { isNightly } from '../../nightly';
-import { tell } from '../../tell';
+import { printFigures } from '../../print-figures';
 import { atRack, fists, holding, opening, releaseOf, velocityTo } from '../client/people';
 import { countingPolicy } from './counting-game';
 import { createTestRoom, joinRequest, packetAt } from './test-room';
@@ -99,7 +99,7 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
   for (const { head, left, right } of testRoom.room.match.players) {
     for (const place of [head, left, right]) expect(place === null || isFiniteVec3(place)).toBe(true);
   }
-  tell('fuzz', {
+  printFigures('fuzz', {
     packets,
     crashes: 0,
     'poses believed': taken,
@@ -155,7 +155,7 @@ test('actions sent twice, out of order and again later score once', { tags: ['fu
     doubles += catches.length - new Set(catches.map(({ ball }) => ball)).size;
     expect(testRoom.room.match.score).toBe(new Set(catches.map(({ ball }) => ball)).size);
   }
-  tell('replayed actions', { actions: sent, rounds, catches: caught, 'double scores': doubles });
+  printFigures('replayed actions', { actions: sent, rounds, catches: caught, 'double scores': doubles });
   expect(doubles).toBe(0);
   expect(caught).toBeGreaterThan(0);
 });
@@ -227,7 +227,11 @@ describe('latency', () => {
       const oneWay = 0.1 * ((seed * 0.618) % 1);
       if (verdict(seed, oneWay, 0.02) === truth) same += 1;
     }
-    tell('throws at round trips of 0 to 200 ms', { throws, ...counts, 'same verdict [%]': (100 * same) / throws });
+    printFigures('throws at round trips of 0 to 200 ms', {
+      throws,
+      ...counts,
+      'same verdict [%]': (100 * same) / throws,
+    });
     expect(same / throws).toBeGreaterThanOrEqual(0.99);
     expect(Math.min(counts.caught, counts.missed)).toBeGreaterThan(throws / 20);
   });
@@ -270,7 +274,7 @@ describe('a page that comes at t = 60 s', () => {
     expect(known.balls).toEqual(truth.balls);
     // JSON knows no −0.
     expect(known.basket).toEqual(JSON.parse(JSON.stringify(truth.basket)));
-    tell('join at 60 s', {
+    printFigures('join at 60 s', {
       'snapshot [B]': bytes,
       'balls on the floor': truth.balls.filter(({ on }) => on === 'floor').length,
     });
@@ -352,7 +356,7 @@ test('5 s and 29 s of silence cost nothing: same seat, same score, one snapshot'
     expect(back.match?.balls.map((place) => (place === 0 ? 'rack' : place[0]))).toEqual([4, ...Array(19).fill('rack')]);
     figures[`snapshots after ${silence} s`] = welcomes.length;
   }
-  tell('silence', figures);
+  printFigures('silence', figures);
 });
 
 test('rooms that live for hours keep nothing: the same answer, no growth', { tags: ['full'] }, () => {
@@ -375,7 +379,7 @@ test('rooms that live for hours keep nothing: the same answer, no growth', { tag
     testRoom.frames.length = 0;
     testRoom.log.length = 0;
   }
-  tell('soak of a Room', { hours, rounds, 'state at most [B]': Math.max(...sizes) });
+  printFigures('soak of a Room', { hours, rounds, 'state at most [B]': Math.max(...sizes) });
   expect(rounds).toBeGreaterThan(hours * 300);
   expect(Math.max(...sizes)).toBeLessThan(4000);
 });

@@ -8,7 +8,7 @@ import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { expect, onTestFinished, test } from 'vitest';
 import { WebSocket } from 'ws';
 import { isNightly } from '../../nightly';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { isAlive } from '../../server/child-process';
 import { noPackets } from '../protocol/no-packets';
 import { conversations, type WireFrame } from './packets';
@@ -106,7 +106,7 @@ test('the relay keeps running and answers the others, whatever a client sends ov
   }
   const census = async () => (await (await fetch(`${relay.url}/healthz`)).json()) as { readonly sockets: number };
   await expect.poll(async () => (await census()).sockets, { timeout: 30_000 }).toBe(1);
-  measured('any-packet', {
+  reportFigures('any-packet', {
     frames: sent,
     connections: talks,
     'processes ended': isAlive(relay.child) ? 0 : 1,

@@ -4,7 +4,7 @@ import { mostAvatarBytes } from 'threepoint/core/body/avatar-ref';
 import { createAvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
 import { createRoomPass } from 'threepoint-rooms/client/room-pass';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { paperPlan } from '../../study/model/studies';
 import { studySeats } from '../../study/server/running-studies';
 import { changed } from '../../threepoint/avatar/glb';
@@ -209,7 +209,7 @@ test('seats in many rooms fill no more than the share of their address: the othe
   expect(eves).toEqual([204, 204, crowded, crowded]);
   const anns = await upload('one', ann, large);
   expect(anns).toBe(204);
-  measured('avatar-store', {
+  reportFigures('avatar-store', {
     'stored of four files of 8 MB from one address, of 96 MB': eves.filter((status) => status === 204).length,
     'answer to another address afterwards': anns,
     'kept in all': `${Math.round(relay.relay.avatars.bytes / megabyte)} MB`,

@@ -3,7 +3,7 @@ import { fileURLToPath } from 'node:url';
 import { expect, onTestFinished, test } from 'vitest';
 import type { ClientAnswer, Load, Meeting, PoseLatencies } from '../../../bench/relay/conversation';
 import { isNightly } from '../../nightly';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { heardFrom, kill } from '../../server/child-process';
 import { forkRelay } from './relay-child';
 import { testSecret } from './running-relay';
@@ -66,7 +66,7 @@ test('rooms of three play on time, and are gone with all that they took when the
     after.push(await relay.measure());
   }
   const mb = (bytes: number) => bytes / 2 ** 20;
-  measured('crowd', {
+  reportFigures('crowd', {
     rooms: crowd.rooms,
     seconds: crowd.seconds,
     'poses delivered [%]': (100 * heard.delivered) / (2 * heard.sent),

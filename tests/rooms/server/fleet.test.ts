@@ -6,8 +6,8 @@ import { connect, createServer } from 'node:net';
 import { fileURLToPath } from 'node:url';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { isNightly } from '../../nightly';
+import { printFigures } from '../../print-figures';
 import { installed } from '../../server/installed';
-import { tell } from '../../tell';
 import { forkRelay } from './relay-child';
 import { arrive, pause, testSecret, until } from './running-relay';
 
@@ -126,7 +126,7 @@ describe.skipIf(missing)(
         ),
       );
       const carried = await Promise.all(relays.map(({ url }) => metric(url, 'threepoint_rooms')));
-      tell('fleet', { rooms: rooms.length, 'in the first process': carried[0]!, 'in the second': carried[1]! });
+      printFigures('fleet', { rooms: rooms.length, 'in the first process': carried[0]!, 'in the second': carried[1]! });
       expect(carried[0]! + carried[1]!).toBe(rooms.length);
       expect(Math.min(...carried)).toBeGreaterThan(0);
     });
@@ -202,7 +202,7 @@ describe.skipIf(missing)(
           .slice(0, 3 * rooms.length)
           .every(({ connection }) => connection.room?.seats.every((row) => row?.presence === 'here')),
       );
-      tell('one process killed', {
+      printFigures('one process killed', {
         'all back after [s]': took,
         rooms: await metric(relays[1]!.url, 'threepoint_rooms'),
       });

@@ -13,7 +13,7 @@ import { afterEach, describe, expect, test } from 'vitest';
 import { WebSocket } from 'ws';
 import { collectGarbage } from '../../collect-garbage';
 import { isNightly } from '../../nightly';
-import { percentile, tell } from '../../tell';
+import { percentile, printFigures } from '../../print-figures';
 import { fists, holding, opening, releaseOf, visitor } from '../client/people';
 import { forkRelay } from './relay-child';
 import { arrive, poseBytes, rawGuest, seconds, startRelay, testSecret, tokenFor, until } from './running-relay';
@@ -67,7 +67,7 @@ test('the relay is killed in the middle of a game and restarted when all have tr
     }),
   );
   await until('the news', () => people.every(({ news }) => news.includes('voided')));
-  tell('relay killed', { 'rejoined after [s]': percentile(back, 0.95), port: again.port });
+  printFigures('relay killed', { 'rejoined after [s]': percentile(back, 0.95), port: again.port });
   expect(percentile(back, 0.95)).toBeLessThan(5);
   expect(people.map(({ seat }) => seat)).toEqual(seats);
   expect(people.map(({ connection }) => connection.room?.voided)).toEqual([1, 1, 1]);
@@ -117,7 +117,7 @@ test('100 ms ± 30 ms with 2 % of losses: a thrower behind it plays on', async (
   const freezes = (watcher: number, watched: number) => frozen[watcher]?.get(seatOf(watched));
   const pairs = [freezes(behind, near), freezes(behind, nearToo), freezes(near, behind), freezes(nearToo, behind)];
   const busy = held.reduce((sum, now) => sum + now, 0) / held.length;
-  tell('100 ± 30 ms, 2 % lost, over sockets', {
+  printFigures('100 ± 30 ms, 2 % lost, over sockets', {
     seconds: lasting,
     'freezes through it': Math.max(...pairs.map((pair) => pair?.counted ?? Number.NaN)),
     'with those of a busy machine': Math.max(...pairs.map((pair) => pair?.freezes ?? Number.NaN)),
@@ -142,7 +142,7 @@ test('a connection that is gone until its player has left the match comes back t
   await until('being back', () => ann!.connection.status.phase === 'joined');
   const resync = performance.now() - (way.acceptedAt ?? 0);
   await until('the others to see it', () => ben!.connection.room?.seats[seat]?.presence === 'here');
-  tell('a while without connection', { 'resync [ms]': resync });
+  printFigures('a while without connection', { 'resync [ms]': resync });
   // The promise is a second; by day, where other tests share the cores, a reconnection may need its next attempt.
   expect(resync).toBeLessThan(isNightly ? 1000 : 5000);
   expect(ann!.seat).toBe(seat);
@@ -185,7 +185,7 @@ test('500 clients reconnect at once', async () => {
   await until('all back', () => joined() === clients, 60);
   const took = seconds() - start;
   const [{ lagP99Ms, lagMaxMs }, machine] = await Promise.all([again.measure(), idle.measure()]);
-  tell('500 reconnect', {
+  printFigures('500 reconnect', {
     'all in after [s]': took,
     'event loop p99 [ms]': lagP99Ms,
     'max [ms]': lagMaxMs,
@@ -262,7 +262,7 @@ test('a reader that stalls is kicked within 10 s, and the others do not notice',
   const after = await relay.measure();
   const gaps = movers.flatMap((moving) => moving.gaps);
   const grown = (after.heldBytes - before.heldBytes) / 2 ** 20;
-  tell('stalled reader', {
+  printFigures('stalled reader', {
     'kicked after [s]': kicked,
     'relay holds more by [MB]': grown,
     "its process's memory grew by [MB]": (after.rssBytes - before.rssBytes) / 2 ** 20,
@@ -321,7 +321,7 @@ describe('abuse', () => {
     }
     stormy.push(...watcher.gaps, ...other.gaps);
     const slower = percentile(stormy, 0.95) - percentile(calm, 0.95);
-    tell('abuse ended after', { ...figures, "others' p95 later by [ms]": slower });
+    printFigures('abuse ended after', { ...figures, "others' p95 later by [ms]": slower });
     for (const [attack, time] of Object.entries(figures)) expect(time, attack).toBeLessThan(1000);
     expect(slower).toBeLessThan(Math.max(40, percentile(calm, 0.95)));
     expect(watcher.closedAt).toBeNull();
@@ -384,7 +384,7 @@ test('twenty rooms that fill and empty again leave no timer, socket or listener 
   }
   await until('every room closed', () => server.relay.host.census.rooms === 0, 20);
   const engine = server.relay.host.io.engine as { readonly clientsCount: number };
-  tell('soak', {
+  printFigures('soak', {
     rounds,
     'handles first': counts[0] ?? 0,
     'handles last': counts.at(-1) ?? 0,

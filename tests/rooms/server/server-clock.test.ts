@@ -1,6 +1,6 @@
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { expect, onTestFinished, test } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { experimenterToken, forkServer } from '../../server/server-child';
 import { paperPlan, session } from '../../study/model/studies';
 import { fists, holding, opening, releaseOf } from '../client/people';
@@ -44,7 +44,7 @@ test('a match goes on when the server’s clock goes an hour ahead and an hour b
   expect(joined()).toBe(3);
   expect(people.map(({ match }) => match.phase)).toEqual(['running', 'running', 'running']);
   expect(ann.connection.room?.voided).toBe(0);
-  measured('server-clock', {
+  reportFigures('server-clock', {
     'players gone': people.length - joined(),
     'rounds void': ann.connection.room?.voided ?? 1,
   });
@@ -89,5 +89,5 @@ test('a study goes on when the server’s clock goes an hour ahead and an hour b
     'pause',
     'resume',
   ]);
-  measured('server-clock', { 'records refused': refused });
+  reportFigures('server-clock', { 'records refused': refused });
 });

@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { beforeTheRound, canStart, play } from './participant-steps';
 import type { Tab } from './study-browser';
 import { type StudyServer, studyServer } from './study-server';
@@ -57,7 +57,7 @@ describe.each(clocks)('a machine sleeps for an hour, of which $name has it', ({ 
     const [answers] = recordsOf(server, 'answers');
     expect(answers?.body).toMatchObject({ overtime: true });
     expect(tab.visit.state()).toMatchObject({ unsent: 0, unsaved: 0, online: true });
-    measured('asleep', { [`study, ${name}: records refused`]: tab.visit.state().unsent });
+    reportFigures('asleep', { [`study, ${name}: records refused`]: tab.visit.state().unsent });
   });
 
   test('with the headset off, and the commands of the experimenter arrive', async () => {

@@ -2,7 +2,7 @@ import { IDBFactory } from 'fake-indexeddb';
 import { openDB } from 'idb';
 import { openStudyVault } from 'threepoint-study/participant/study-vault';
 import { expect, onTestFinished, test, vi } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { aWomanOf26 } from '../model/studies';
 import { agree, beforeTheQuestions } from './participant-steps';
 import { browser, type Tab } from './study-browser';
@@ -53,7 +53,7 @@ test.each(Object.entries(blockedFactories))(
     await staysInTouch(server, tab);
     const kinds = server.store.records.all('paper').map(({ kind }) => kind);
     expect(kinds.filter((kind) => kind !== 'event')).toEqual(['consent', 'demographics']);
-    measured('storage-blocked', { [`IndexedDB ${how}`]: 'takes part' });
+    reportFigures('storage-blocked', { [`IndexedDB ${how}`]: 'takes part' });
   },
 );
 
@@ -95,7 +95,7 @@ test.each(Object.entries(failures))(
     if (field?.kind !== 'likert') throw new Error('expected a Likert scale');
     field.choose(4);
     await staysInTouch(server, tab);
-    measured('storage-blocked', { [`IndexedDB ${how} under way`]: 'goes on' });
+    reportFigures('storage-blocked', { [`IndexedDB ${how} under way`]: 'goes on' });
   },
 );
 

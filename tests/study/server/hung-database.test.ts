@@ -5,7 +5,7 @@ import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/
 import { openStudyStore } from 'threepoint-study/server/storage/store';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { isNightly } from '../../nightly';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { arrive, pause, until } from '../../rooms/server/running-relay';
 import { heardFrom, kill } from '../../server/child-process';
 import { installed } from '../../server/installed';
@@ -153,7 +153,7 @@ describe('a database that hangs', () => {
       locker.send('unlock');
       await heardFrom(locker);
     });
-    measured('study-lock', figures);
+    reportFigures('study-lock', figures);
   });
 
   const strace = installed('strace');
@@ -172,7 +172,7 @@ describe('a database that hangs', () => {
       const study = begunStudy();
       const server = await onStuckDisk(study);
       const figures = await observed(server, study, () => pause(hungSeconds - 1));
-      measured('study-disk', figures);
+      reportFigures('study-disk', figures);
     },
   );
 
@@ -188,7 +188,7 @@ describe('a database that hangs', () => {
       });
       const figures = await observed(server, study, () => pause(hungSeconds - 4));
       expect((await deleted).status).toBe(503);
-      measured('study-disk', {
+      reportFigures('study-disk', {
         'p99 while SQLite itself flushes [ms]': figures['p99 meanwhile [ms]'],
         'longest then [ms]': figures['longest meanwhile [ms]'],
       });

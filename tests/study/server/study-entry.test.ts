@@ -2,7 +2,7 @@ import { connect } from 'node:net';
 import { participantsOf } from 'threepoint-study/model/plan/plan';
 import { openPlacesPerHour } from 'threepoint-study/server/routes/guard';
 import { describe, expect, test } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { paperPlan } from '../model/studies';
 import { type Asked, experimenter, servedPaperStudy } from './running-studies';
 
@@ -54,7 +54,7 @@ describe('a place in a study', () => {
     }
     expect(refused).toBe(attempts.length);
     expect(taken(server)).toBe(0);
-    measured('other-sites', { 'claims of other sites refused': `${refused} of ${attempts.length}` });
+    reportFigures('other-sites', { 'claims of other sites refused': `${refused} of ${attempts.length}` });
   });
 
   test('is not taken by a loop over all of them', async () => {
@@ -65,7 +65,7 @@ describe('a place in a study', () => {
       }
     }
     expect(taken(server)).toBe(0);
-    measured('study-places', { 'places taken by 300 claims in a loop': `${taken(server)} of ${people.length}` });
+    reportFigures('study-places', { 'places taken by 300 claims in a loop': `${taken(server)} of ${people.length}` });
     // The invited are not kept out by it.
     const later = await server.ask('POST', claimPath('P07'), { json: server.invited('P07'), from: '198.51.100.7' });
     expect(later.status).toBe(201);
@@ -110,7 +110,7 @@ describe('a place in a study', () => {
     expect(statuses.filter((status) => status === 201)).toHaveLength(openPlacesPerHour);
     expect(new Set(statuses.slice(openPlacesPerHour))).toEqual(new Set([429]));
     expect(await claimed('P15', '203.0.113.8')).toBe(201);
-    measured('study-places', {
+    reportFigures('study-places', {
       'places of an open study taken from one address': `${openPlacesPerHour} of ${people.length} within an hour`,
     });
   });
@@ -151,7 +151,7 @@ describe('3000 guesses from one address', () => {
     expect(lookedAt).toBeLessThanOrEqual(mostLookedAt);
     expect(server.wrongGuesses).toHaveLength(lookedAt);
     expect(JSON.stringify(server.wrongGuesses)).not.toMatch(/ZZZZ|guess-/);
-    measured('guessing', { [what]: `${lookedAt} of ${guesses.length} looked at` });
+    reportFigures('guessing', { [what]: `${lookedAt} of ${guesses.length} looked at` });
     return statuses;
   }
 
@@ -202,6 +202,6 @@ describe('3000 guesses from one address', () => {
     expect(answers.filter((line) => line.endsWith('429')).length).toBeGreaterThanOrEqual(answers.length - 10);
     expect(server.wrongGuesses.length).toBeLessThanOrEqual(10);
     expect(taken(server)).toBe(0);
-    measured('guessing', { 'invitations in one packet': `${server.wrongGuesses.length} of 3000 looked at` });
+    reportFigures('guessing', { 'invitations in one packet': `${server.wrongGuesses.length} of 3000 looked at` });
   });
 });

@@ -6,7 +6,7 @@ import { serve } from 'threepoint-http/web-server';
 import { openStudyService } from 'threepoint-study/server/service';
 import { openStudyStore } from 'threepoint-study/server/storage/store';
 import { describe, expect, onTestFinished, test } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { testSecret } from '../../rooms/server/running-relay';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan } from '../model/studies';
@@ -71,7 +71,7 @@ describe('the folder of the studies', () => {
     ]);
     expect(modeOf(directory)).toBe(0o700);
     for (const file of [...files, 'experimenter-token']) expect(modeOf(join(directory, file)), file).toBe(0o600);
-    measured('study-folder', { 'files open to others after the start': 0 });
+    reportFigures('study-folder', { 'files open to others after the start': 0 });
   });
 
   test('that is deleted or replaced while the server runs is answered with 507 and a line of the log, until it is back', async () => {
@@ -90,7 +90,7 @@ describe('the folder of the studies', () => {
     rmSync(directory, { recursive: true });
     renameSync(`${directory}-moved`, directory);
     expect((await add('after')).status).toBe(201);
-    measured('study-folder', { 'writes acknowledged into a file that was deleted or replaced': '0 of 3' });
+    reportFigures('study-folder', { 'writes acknowledged into a file that was deleted or replaced': '0 of 3' });
   });
 
   test('whose log alone is deleted is answered with 507 too', async () => {

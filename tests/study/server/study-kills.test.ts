@@ -1,6 +1,6 @@
 // @module-tag full
 import { expect, test } from 'vitest';
-import { tell } from '../../tell';
+import { printFigures } from '../../print-figures';
 import { killedStudy } from './killed-study';
 
 /** By night a thousand (STUDY_KILLS). */
@@ -8,7 +8,7 @@ const kills = Number(process.env.STUDY_KILLS ?? 40);
 
 test(`a study whose server is killed ${kills} times while it writes loses nothing acknowledged, and no one is in two conditions`, async () => {
   const report = await killedStudy(kills, 22, (line) => console.log(line));
-  tell('a study whose server is killed', {
+  printFigures('a study whose server is killed', {
     kills: report.kills,
     'amid requests': report.amidRequests,
     'records acknowledged': report.acknowledged,

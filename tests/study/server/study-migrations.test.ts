@@ -6,7 +6,7 @@ import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { unpacked } from 'threepoint-study/server/storage/motion';
 import { openStudyStore } from 'threepoint-study/server/storage/store';
 import { describe, expect, onTestFinished, test } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { directoryWith } from '../../temporary-directory';
 import { latencyPlan, session } from '../model/studies';
 import { withoutInvitations, withoutPlanVersions } from './older-databases';
@@ -98,7 +98,9 @@ describe('a database that the first version of the program wrote', () => {
     expect(store.commands.after('paper', 'P02', 0)).toMatchObject([{ command: { type: 'pause' } }]);
     expect(store.motion.all('paper').map(unpacked)).toEqual([{ participant: 'P01', ...sent.motion }]);
     expect(store.deletion.receipts('paper')).toMatchObject([{ participant: 'P07', reason: 'withdrawn' }]);
-    measured('first-folder', { 'records kept': `${kept} of ${sent.P01.records.length + sent.P02.records.length}` });
+    reportFigures('first-folder', {
+      'records kept': `${kept} of ${sent.P01.records.length + sent.P02.records.length}`,
+    });
   });
 
   test('takes what its pages send once more, and goes on', async () => {
@@ -133,6 +135,6 @@ describe('a database that the first version of the program wrote', () => {
     const receipt = await ask('POST', `${pairs}/withdraw`, { json: { code: withdrawalCode } });
     expect([receipt.status, receipt.json.records]).toEqual([200, records.length]);
     expect(store.records.all('pairs')).toEqual([]);
-    measured('first-folder', { 'its studies that cannot be read': 0 });
+    reportFigures('first-folder', { 'its studies that cannot be read': 0 });
   });
 });

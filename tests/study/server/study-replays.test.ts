@@ -3,7 +3,7 @@ import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { begin, type Progress } from 'threepoint-study/model/progress/progress';
 import type { StudyRecord } from 'threepoint-study/model/records/study-record';
 import { describe, expect, test } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { paperPlan, session } from '../model/studies';
 import { experimenter, now, servedPaperStudy } from './running-studies';
 import { completed } from './stored-studies';
@@ -92,7 +92,7 @@ test('reports that arrive in any order, some twice, leave the latest', async () 
   const arrivals = [1, 0, 1, 3, 2, 5, 4, 0, 3].map((index) => reports[index]);
   for (const progress of arrivals) expect((await report(progress)).status).toBe(204);
   expect(store.places.progress('paper', 'P01')).toEqual(latest);
-  measured('study-replays', { 'reports out of order that led back': `0 of ${arrivals.length}` });
+  reportFigures('study-replays', { 'reports out of order that led back': `0 of ${arrivals.length}` });
 });
 
 test('records that arrive in any order, in batches that overlap, are stored once each', async () => {
@@ -109,7 +109,7 @@ test('records that arrive in any order, in batches that overlap, are stored once
     new Map(records.map((record) => [record.id, record])),
   );
   expect(stored).toHaveLength(records.length);
-  measured('study-replays', { 'records stored twice or lost': `0 of ${records.length}` });
+  reportFigures('study-replays', { 'records stored twice or lost': `0 of ${records.length}` });
 });
 
 test('a link that twenty people open at once gives the place to one of them; the others learn nothing', async () => {
@@ -124,7 +124,7 @@ test('a link that twenty people open at once gives the place to one of them; the
     expect([status, Object.keys(json)]).toEqual([409, ['error', 'field']]);
   }
   expect(store.places.holds('paper', 'P01', taken[0]?.json.token)).toBe(true);
-  measured('study-replays', { 'places that one link gave to twenty people': taken.length });
+  reportFigures('study-replays', { 'places that one link gave to twenty people': taken.length });
 });
 
 test('a participant’s page cannot take the names of the experimenter’s remarks, which would keep them out', async () => {

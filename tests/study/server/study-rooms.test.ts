@@ -5,7 +5,7 @@ import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { createStudySeats } from 'threepoint-study/server/routes/seats';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import {
   type RunningRelay,
   rawGuest,
@@ -81,7 +81,7 @@ describe('the room of a trial', () => {
     const matched = await (await post('/api/rooms/match', { kind: 'ball' })).text();
     expect(server.relay.host.room(room)?.census.players).toBe(1);
     for (const text of [told, listed, matched]) expect(text).not.toContain('study');
-    measured('study-rooms', { 'lists that show the room of a trial': '0 of 3' });
+    reportFigures('study-rooms', { 'lists that show the room of a trial': '0 of 3' });
     guest.socket.disconnect();
     stranger.socket.disconnect();
   });
@@ -127,7 +127,7 @@ describe('the room of a trial', () => {
     const elsewhere = await rawGuest(server.url, room, await tokenFor(server.url, 'meadow'));
     expect(elsewhere.heard.find((message) => message.type === 'welcome')).toMatchObject({ room: 'meadow' });
     expect(server.relay.host.room(room)?.census).toMatchObject({ players: 1, spectators: 0 });
-    measured('study-rooms', { 'seats that a stranger got': `0 of ${attempts.length + 2} attempts` });
+    reportFigures('study-rooms', { 'seats that a stranger got': `0 of ${attempts.length + 2} attempts` });
     for (const { socket } of [guest, elsewhere]) socket.disconnect();
   });
 

@@ -6,7 +6,7 @@ import type { StudyRecord } from 'threepoint-study/model/records/study-record';
 import { bodyLimits } from 'threepoint-study/server/routes/route';
 import { unpacked } from 'threepoint-study/server/storage/motion';
 import { describe, expect, test } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { paperPlan, session } from '../model/studies';
 import { experimenter, now, servedPaperStudy, servedStudies } from './running-studies';
 
@@ -327,7 +327,7 @@ describe('what is wrong', () => {
     expect(lost).toBe(0);
     expect((await ask('DELETE', own('P01'), { token: experimenter })).status).toBe(200);
     expect((await second()).status).toBe(200);
-    measured('full-disk', {
+    reportFigures('full-disk', {
       answers: refused.join(', '),
       'acknowledged and lost': lost,
       'stored once there is room': 'yes',

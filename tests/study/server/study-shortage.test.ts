@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/study-record';
 import { openStudyStore } from 'threepoint-study/server/storage/store';
 import { expect, onTestFinished, test } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { experimenterToken, forkServer } from '../../server/server-child';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan } from '../model/studies';
@@ -67,7 +67,7 @@ test('a heap of 64 MB refuses what does not fit with a sentence, and the server 
   expect((await ask(server, 'GET', '/participants/P07/export')).status).toBe(200);
   const { faults } = await server.inspect();
   expect(faults).toEqual([]);
-  measured('study-shortage', {
+  reportFigures('study-shortage', {
     'heap of 64 MB': `an export of 60 MB of records ${exported.status}, the same records as JSON ${records.status}`,
   });
 });
@@ -91,7 +91,7 @@ test('a limit of files that strangers’ connections use up leaves the studies w
   expect(exported.error).toMatch(/^The server may not have more files open\. Raise the limit: ulimit -n 1024\./);
   await expect.poll(async () => (await ask(server, 'GET', '/export')).status).toBe(200);
   expect((await server.inspect()).faults).toEqual([]);
-  measured('study-shortage', { '200 connections, 100 files': `writes 201, an export ${exported.status}` });
+  reportFigures('study-shortage', { '200 connections, 100 files': `writes 201, an export ${exported.status}` });
 });
 
 test('a disk that fills is no matter to an export: it needs none', async () => {
@@ -111,7 +111,7 @@ test('a disk that fills is no matter to an export: it needs none', async () => {
   const store = openStudyStore(file);
   onTestFinished(() => store.close());
   expect(store.records.all('paper')).toHaveLength(stored);
-  measured('study-shortage', {
+  reportFigures('study-shortage', {
     'disk full': `writes ${answer.status}, an export ${exported.status}, 0 acknowledged and lost`,
   });
 });

@@ -6,7 +6,7 @@ import { writeRecording } from 'threepoint/core/tracking/recording';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import type { StudyRecord } from 'threepoint-study/model/records/study-record';
 import { expect, test } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { experimenterToken, forkServer } from '../../server/server-child';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan, session } from '../model/studies';
@@ -149,7 +149,7 @@ test('a participant who is deleted leaves no byte in data, logs and temporary fi
   expect(['P01', 'P02'].flatMap((one) => exported(one, `sub-${one}`))).toEqual([]);
   expect(exported('P03', markOf('P03')).length).toBeGreaterThan(3);
   expect(exported('P03', 'sub-P03').length).toBeGreaterThan(3);
-  measured('study-traces', {
+  reportFigures('study-traces', {
     'traces of two participants in data, logs and temporary files': left.length,
     'files of the export of a study that show them': 0,
     'files searched': filesIn(directory).length + Object.keys(zip).length,

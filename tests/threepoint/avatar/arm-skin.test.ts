@@ -8,7 +8,7 @@ import { makePose } from 'threepoint/core/math/pose';
 import { copyQuat, fromAxisAngle, multiply, type Quat, quat } from 'threepoint/core/math/quat';
 import { down, forward, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { beforeAll, describe, expect, test } from 'vitest';
-import { tell } from '../../tell';
+import { printFigures } from '../../print-figures';
 import { mannequin } from './glb';
 
 const along = vec3(-1, 0, 0);
@@ -140,7 +140,7 @@ describe('our mannequin’s arm', () => {
       });
       const mean = Math.min(...found.map(({ mean }) => mean));
       const least = Math.min(...found.map(({ least }) => least));
-      tell(`sleeve at its thinnest, elbow at ${elbow}° [share of its radius]`, {
+      printFigures(`sleeve at its thinnest, elbow at ${elbow}° [share of its radius]`, {
         mean: mean.toFixed(3),
         least: least.toFixed(3),
       });
@@ -153,7 +153,7 @@ describe('our mannequin’s arm', () => {
     for (const upperRoll of [-80, -40, 40, 80]) {
       body.show({ upperRoll });
       const [arm, shoulder] = [body.thinnest(body.upperArm), body.thinnest(body.deltoid)];
-      tell(`upper arm turned by ${upperRoll}° [share of its radius]`, {
+      printFigures(`upper arm turned by ${upperRoll}° [share of its radius]`, {
         mean: arm.mean.toFixed(3),
         shoulder: shoulder.least.toFixed(3),
       });
@@ -170,7 +170,7 @@ describe('our mannequin’s arm', () => {
   ] as const)('keeps the roundness of its shoulder with the arm %s', (name, axis, angle) => {
     body.show({ swing: { axis, angle: -angle } });
     const { mean } = body.thinnest(body.deltoid);
-    tell(`shoulder, arm ${name} [share of its radius]`, { mean: mean.toFixed(3) });
+    printFigures(`shoulder, arm ${name} [share of its radius]`, { mean: mean.toFixed(3) });
     expect(mean).toBeGreaterThan(0.95);
   });
 

@@ -15,7 +15,7 @@ import type { Side } from 'threepoint/core/math/side';
 import { addScaled, distance, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { afterEach, describe, expect, test, vi } from 'vitest';
-import { tell } from '../../tell';
+import { printFigures } from '../../print-figures';
 import { fakeHeadset } from '../xr/fake-headset';
 import { jointAt, type RecordedHand, recordedHands, trackedHand } from '../xr/recorded-hands';
 import { changed, mannequin } from './glb';
@@ -119,7 +119,7 @@ describe('recorded hands on a rig of the wearer’s size', () => {
       const errors = sides.flatMap((side) =>
         fingerNames.map((finger) => 100 * distance(end(side, finger), trackedEnd(hand, side, finger))),
       );
-      tell(`fingertips of a hand ${name} [cm]`, { worst: Math.max(...errors).toFixed(2) });
+      printFigures(`fingertips of a hand ${name} [cm]`, { worst: Math.max(...errors).toFixed(2) });
       expect(Math.max(...errors)).toBeLessThanOrEqual(1.5);
     },
   );
@@ -129,7 +129,7 @@ describe('recorded hands on a rig of the wearer’s size', () => {
     show(seen(recordedHands.pinched!), 0.1);
     for (const side of sides) {
       const gap = 100 * distance(end(side, 'thumb'), end(side, 'index'));
-      tell(`tips of a pinching ${side} hand [cm]`, { worst: gap.toFixed(2) });
+      printFigures(`tips of a pinching ${side} hand [cm]`, { worst: gap.toFixed(2) });
       expect(gap).toBeLessThanOrEqual(1);
     }
   });

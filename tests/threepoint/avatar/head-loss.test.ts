@@ -1,6 +1,6 @@
 import { createHeadLoss } from 'threepoint/avatar/rig/head-loss';
 import { describe, expect, test } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 
 describe('a body whose head is lost', () => {
   test('stays solid for a moment, then fades to a quarter, and is whole in the first frame that sees it', () => {
@@ -16,7 +16,7 @@ describe('a body whose head is lost', () => {
       });
       expect(loss.follow(3 + 1 / rate, true)).toBe(1);
     }
-    measured('head-lost', { 'opacity after 3 s': 0.25, 'opacity in the first frame back': 1 });
+    reportFigures('head-lost', { 'opacity after 3 s': 0.25, 'opacity in the first frame back': 1 });
   });
 
   test('lost again it restarts', () => {

@@ -4,7 +4,7 @@ import { avatarLimits, inspectAvatar } from 'threepoint/avatar/file/inspect-avat
 import { gltfFaults } from 'threepoint/avatar/file/validate-gltf';
 import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
 import { afterAll, describe, expect, test } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { changed, type GltfJson, mannequin } from './glb';
 
 const look = (bytes: ArrayBuffer) => inspectAvatar(new Uint8Array(bytes), 'person.vrm');
@@ -189,7 +189,7 @@ const attempts: readonly (readonly [string, () => ArrayBuffer, RegExp])[] = [
 
 let refused = 0;
 afterAll(() =>
-  measured('avatars', {
+  reportFigures('avatars', {
     'files refused': `${refused} of ${attempts.length + compressions.length + broken.length}`,
     limits: `${avatarLimits.megabytes} MB, ${avatarLimits.triangles / 1000} k triangles, ${avatarLimits.textures} textures of ${avatarLimits.texturePixels} pixels, ${avatarLimits.bones} bones`,
   }),

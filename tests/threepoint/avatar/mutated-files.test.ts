@@ -5,7 +5,7 @@ import { parseChecked } from 'threepoint/avatar/load-avatar';
 import { randomNumbers } from 'threepoint/core/math/random';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { isNightly } from '../../nightly';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { builtRig } from './built-rig';
 import { changed, type GltfJson, glbOf, mannequin, partsOf } from './glb';
 import { vroid } from './rig-namings';
@@ -129,7 +129,7 @@ test('files of avatars, spoiled, are refused in a sentence or read as a body of 
     counts.read += 1;
     read.vrm.scene.traverse((node) => expect(isFinitePlace(node), `file ${i}: ${node.name}`).toBe(true));
   }
-  measured('mutated-avatars', { files, ...counts, 'longest check of one [ms]': longest });
+  reportFigures('mutated-avatars', { files, ...counts, 'longest check of one [ms]': longest });
   expect(counts.refused).toBeGreaterThan(files / 10);
   expect(counts.read).toBeGreaterThan(files / 50);
 });

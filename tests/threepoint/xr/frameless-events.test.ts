@@ -1,7 +1,7 @@
 import { WebXRController } from 'three/src/renderers/webxr/WebXRController.js';
 import { giveFramesToEvents } from 'threepoint/xr/frameless-events';
 import { expect, test } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 
 /** A session whose frames are called by hand; three's controller listens to it as three's manager of sessions has it listen. */
 function headset() {
@@ -47,5 +47,5 @@ test('a button event without its frame reaches three with the next one, once, in
   tell('squeezestart', frame);
   draw();
   expect(heard).toEqual(['selectstart of left', 'selectend of left', 'squeezestart of left']);
-  measured('bad-input', { 'events without a frame': '2 of 2 told again in the next frame' });
+  reportFigures('bad-input', { 'events without a frame': '2 of 2 told again in the next frame' });
 });

@@ -1,6 +1,6 @@
 import { describeXrSupport, requestVrSession } from 'threepoint/xr/session';
 import { afterEach, describe, expect, test, vi } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 
 /** A browser with this much of WebXR. */
 function browser({ secure = true, xr }: { secure?: boolean; xr?: Partial<XRSystem> }) {
@@ -28,7 +28,7 @@ describe('why there is no VR', () => {
   test('with a headset there is nothing to say', async () => {
     browser({ xr: { isSessionSupported: () => Promise.resolve(true) } });
     expect(await describeXrSupport()).toEqual({ kind: 'device', sentence: null });
-    measured('no-headset', { sentences: 'no HTTPS, no WebXR, no headset, policy, refused, no floor' });
+    reportFigures('no-headset', { sentences: 'no HTTPS, no WebXR, no headset, policy, refused, no floor' });
   });
 
   test.each([

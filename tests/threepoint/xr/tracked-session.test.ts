@@ -3,7 +3,7 @@ import { angleBetween, fromAxisAngle, identity } from 'threepoint/core/math/quat
 import { distance, up, vec3 } from 'threepoint/core/math/vec3';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { afterEach, describe, expect, test, vi } from 'vitest';
-import { measured } from '../../reliability/measured';
+import { reportFigures } from '../../reliability/report-figures';
 import { bareHand, controller, fakeHeadset } from './fake-headset';
 
 const at = (x: number, y: number, z: number): Pose<'floor'> => ({ position: vec3(x, y, z), orientation: identity });
@@ -151,7 +151,7 @@ describe('which hand it is', () => {
     expect(read()).toMatchObject({ leftHand: null, rightHand: null });
     expect(inputs.kinds).toEqual({ left: 'none', right: 'none' });
     expect(correct).toBe(20);
-    measured('changing-hands', { 'right kind': `${correct} of 20` });
+    reportFigures('changing-hands', { 'right kind': `${correct} of 20` });
   });
 });
 
@@ -251,7 +251,7 @@ describe('where the floor is', () => {
     source.gamepad.axes[2] = -0.9;
     read();
     expect(inputs.takeTurn()).toBe(1);
-    measured('comfort', { 'a turn moves the head by': `${off.toFixed(3)} mm` });
+    reportFigures('comfort', { 'a turn moves the head by': `${off.toFixed(3)} mm` });
   });
 
   test('when the device recentres, is where the device says: what was turned here before is forgotten', () => {

@@ -5,8 +5,8 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { certificateFor } from '../server/certificate';
 
-/** Serves one avatar by this name, from another origin than the page's, to pages of all origins; `asked` lists the requests. */
-export async function serveElsewhere(file: ArrayBuffer, name: string) {
+/** Serves one avatar under this name, from another origin than the page's, to all origins; `asked` lists the requests. */
+export async function serveCrossOrigin(file: ArrayBuffer, name: string) {
   const folder = mkdtempSync(join(tmpdir(), 'threepoint-elsewhere-'));
   const asked: string[] = [];
   const server = createServer(await certificateFor([], folder, new Date()), ({ method, url, headers }, response) => {

@@ -14,14 +14,14 @@ const types: Readonly<Record<string, string>> = {
   '.webmanifest': 'application/manifest+json',
 };
 
-export interface PlainServer {
-  /** Where the folder is served, with a slash at its end. */
+export interface StaticServer {
+  /** The URL of the folder, with a trailing slash. */
   readonly address: string;
   close(): Promise<void>;
 }
 
-/** Serves a folder's files and nothing else, as any host of static pages does: no headers of ours, no routes. */
-export async function servePlainly(folder: string, under = '/'): Promise<PlainServer> {
+/** Serves a folder's files and nothing else, like a static host: without the project's headers and routes. */
+export async function serveStatic(folder: string, under = '/'): Promise<StaticServer> {
   const server = createServer((request, response) => {
     const { pathname } = new URL(request.url ?? '/', 'http://localhost');
     const inside = pathname.startsWith(under) ? normalize(decodeURIComponent(pathname.slice(under.length))) : '..';

@@ -4,9 +4,12 @@ import { WebSocket } from 'ws';
 
 export const megabytes = (bytes: number) => bytes / 2 ** 20;
 
-/** What Chromium counts of a page after a collection, by its own names; of a name that it does not know: NaN. `Performance.enable` first. */
+/**
+ * Collects garbage and returns a lookup of Chromium's performance metrics of the page, by Chromium's names; NaN for an
+ * unknown name. Requires `Performance.enable`.
+ */
 export async function countsOf(cdp: CDPSession): Promise<(name: string) => number> {
-  // What a finalizer lets go of in the first is collected in the second.
+  // The second collection frees what finalizers of the first have released.
   await cdp.send('HeapProfiler.collectGarbage');
   await cdp.send('HeapProfiler.collectGarbage');
   const { metrics } = await cdp.send('Performance.getMetrics');
@@ -19,7 +22,7 @@ interface Answer {
   readonly error?: unknown;
 }
 
-/** The inspector of a Node process that was started with `--inspect` on this port of loopback. */
+/** Connects to the inspector of a Node process that was started with `--inspect` on this port of loopback. */
 export async function inspectNode(port: number) {
   const [target] = (await (await fetch(`http://127.0.0.1:${port}/json/list`)).json()) as {
     readonly webSocketDebuggerUrl: string;
@@ -46,7 +49,7 @@ export async function inspectNode(port: number) {
     return answer.result;
   };
   return {
-    /** What the process has after a collection [MB]: its heap, and all of it. */
+    /** Collects garbage and returns the memory of the process [MB]: its heap, and its resident set (`all`). */
     async memory(): Promise<{ readonly heap: number; readonly all: number }> {
       await ask('HeapProfiler.collectGarbage');
       const { result } = (await ask('Runtime.evaluate', {
