@@ -1,6 +1,6 @@
 // The rules of imports, as drawn in docs/architecture.md. A package imports the packages that its package.json names.
-// Inside a package the rules below apply. Type-only imports count too (tsPreCompilationDeps): a type from the wrong side
-// is the first step of the wrong dependency.
+// Inside a package the rules below apply. Type-only imports count too (tsPreCompilationDeps): a type from the wrong
+// side is the first step of the wrong dependency.
 import { readdirSync, readFileSync } from 'node:fs';
 
 const root = new URL('.', import.meta.url);

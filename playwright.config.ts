@@ -6,8 +6,8 @@ import { withSourceCondition } from './scripts/source-condition.mjs';
 process.env.NODE_OPTIONS = withSourceCondition(process.env.NODE_OPTIONS);
 
 /**
- * Which tests run: those of `npm test` carry no mark, those of `npm run test:full` @full or @realtime, those of `npm run nightly` @nightly.
- * Asked for without a word, a file runs all but the nightly ones.
+ * Which tests run: those of `npm test` carry no mark, those of `npm run test:full` @full or @realtime, those of `npm
+ * run nightly` @nightly. Asked for without a word, a file runs all but the nightly ones.
  */
 function chosenBy(word = 'day and full') {
   const choices: Readonly<Record<string, { readonly grep?: RegExp; readonly grepInvert?: RegExp }>> = {
@@ -28,8 +28,9 @@ const executablePath = (await findChromium()) ?? undefined;
 export default defineConfig({
   testDir: 'e2e',
   outputDir: process.env.E2E_OUTPUT ?? 'artifacts/e2e',
-  // By day and in full a page's clock is driven or does not matter, and two files run side by side. @realtime and @nightly play in real time,
-  // often with several pages: software rendering needs both cores for a steady frame rate there.
+  // By day and in full a page's clock is driven or does not matter, and two files run side by side. @realtime and
+  // @nightly play in real time, often with several pages: software rendering needs both cores for a steady frame rate
+  // there.
   workers: process.env.THREEPOINT_TESTS === 'day' || process.env.THREEPOINT_TESTS === 'full' ? 2 : 1,
   fullyParallel: false,
   forbidOnly: Boolean(process.env.CI),

@@ -3,15 +3,15 @@ import { defaultClientConditions, defineConfig, type Plugin } from 'vite';
 import { contentSecurityPolicy } from './src/http/security-headers.ts';
 
 /**
- * The sources from which the page may load files by address: those of `npm run build -- --files-from`, otherwise any over
- * https:. The project's server restricts them further by its header (THREEPOINT_FILES_FROM).
+ * The sources from which the page may load files by address: those of `npm run build -- --files-from`, otherwise any
+ * over https:. The project's server restricts them further by its header (THREEPOINT_FILES_FROM).
  */
 const filesFrom = process.env.THREEPOINT_BUILD_FILES_FROM?.split(',').filter(Boolean) ?? ['https:'];
 
 /**
  * Adds the server's content security policy to the pages themselves, for hosts that do not send its headers. It omits
- * frame-ancestors, which browsers only read in a header. Pages of the development server have no policy: that server's own
- * scripts would violate it.
+ * frame-ancestors, which browsers only read in a header. Pages of the development server have no policy: that server's
+ * own scripts would violate it.
  */
 const policyInPages: Plugin = {
   name: 'policy-in-pages',

@@ -7,7 +7,10 @@ import { driveTime, pass } from '../e2e/driven-time';
 import { createPageHandler } from '../server/page';
 import type { AllocationScene } from './page/allocations';
 
-/** Bytes that a frame leaves to the collector, collected or not, on the page's own thread; the network's worker is another heap. */
+/**
+ * Bytes that a frame leaves to the collector, collected or not, on the page's own thread; the network's worker is
+ * another heap.
+ */
 export interface AllocationBytes {
   /** One estimate of one body, nothing else. */
   readonly update: Readonly<Record<'ik' | 'paper' | 'learned', number>>;
@@ -23,7 +26,9 @@ export interface AllocationBytes {
   readonly hands: number;
   /** What three.js leaves for drawing an arena that nothing moves in. */
   readonly stillScene: number;
-  /** What of a frame is allocated below a call of three.js's renderer: its own, and what the browser makes of its calls. */
+  /**
+   * What of a frame is allocated below a call of three.js's renderer: its own, and what the browser makes of its calls.
+   */
   readonly threeAlone: Readonly<Record<'mirror' | 'archery' | 'ball3' | 'ball8' | 'hands', number>>;
 }
 
@@ -52,10 +57,16 @@ interface SampledNode {
   readonly children: readonly SampledNode[];
 }
 
-/** Every allocation is sampled with a chance that makes one in so many bytes: some thousand samples of these frames at 10 kB a frame. */
+/**
+ * Every allocation is sampled with a chance that makes one in so many bytes: some thousand samples of these frames at
+ * 10 kB a frame.
+ */
 const samplingInterval = 1024;
 const sampledFrames = 720;
-/** Before them: what runs in every frame is compiled by then, what is loaded is loaded. A headset draws them in 27 seconds. */
+/**
+ * Before them: what runs in every frame is compiled by then, what is loaded is loaded. A headset draws them in 27
+ * seconds.
+ */
 const warmUpFrames = 1920;
 /** A match of the ball game is over after 35 seconds: all balls are thrown. */
 const shortWarmUpFrames = 960;
@@ -120,7 +131,10 @@ interface Sample {
   readonly functions: readonly SampledFunction[];
 }
 
-/** What was allocated from the call of `during` until it is over, by function; objects that were collected meanwhile count too. */
+/**
+ * What was allocated from the call of `during` until it is over, by function; objects that were collected meanwhile
+ * count too.
+ */
 async function sample(session: CDPSession, sourceOf: SourceOf, during: () => Promise<number>): Promise<Sample> {
   await session.send('HeapProfiler.enable');
   await session.send('HeapProfiler.startSampling', {
@@ -186,7 +200,10 @@ async function runPage(page: Page, frames: number): Promise<number> {
   return frames;
 }
 
-/** Holds the page's time; frames that pass from now on follow each other at once, a headset's interval apart, and are given to no graphics device. */
+/**
+ * Holds the page's time; frames that pass from now on follow each other at once, a headset's interval apart, and are
+ * given to no graphics device.
+ */
 async function driveFrames(page: Page): Promise<void> {
   // tsx has functions keep their names by a function of its own, which the page does not have.
   await page.evaluate('globalThis.__name = (named) => named');

@@ -8,7 +8,10 @@ export interface AvatarLoading {
   readonly megabytes: number;
   /** From asking for it to its tenth picture [ms]. */
   readonly shownAfter: number;
-  /** Processor time of the longest tasks of the page's thread meanwhile [ms], the longest first. Time of the device and of other threads is not in it. */
+  /**
+   * Processor time of the longest tasks of the page's thread meanwhile [ms], the longest first. Time of the device and
+   * of other threads is not in it.
+   */
   readonly longestTasks: readonly number[];
   /** The longest tasks while ten frames are drawn without loading. */
   readonly longestWithout: readonly number[];
@@ -39,7 +42,10 @@ function longestTasksIn(trace: Buffer): readonly number[] {
     .slice(0, 10);
 }
 
-/** Opens a file of 30 MB, or the one at `path`, on the built page at `address`, and looks for tasks that hold the page's thread. */
+/**
+ * Opens a file of 30 MB, or the one at `path`, on the built page at `address`, and looks for tasks that hold the page's
+ * thread.
+ */
 export async function measureAvatarLoading(browser: Browser, address: string, path?: string): Promise<AvatarLoading> {
   const file = path
     ? readFileSync(path)

@@ -1,6 +1,8 @@
 import type { Browser } from '@playwright/test';
 
-/** Ways to run the learned network: our forward pass, onnxruntime-web's WebAssembly in the page's worker, its WebGPU. */
+/**
+ * Ways to run the learned network: our forward pass, onnxruntime-web's WebAssembly in the page's worker, its WebGPU.
+ */
 export const networkWays = ['plain', 'wasm', 'webgpu'] as const;
 export type NetworkWay = (typeof networkWays)[number];
 

@@ -11,8 +11,9 @@ export interface PairedRatio {
 }
 
 /**
- * The ratio of two costs that were measured side by side, pair by pair (each above 0; as many of either): what else the machine did then
- * was in both. By the t distribution of the ratios' logarithms, so that twice and half as much weigh alike. NaN below two pairs.
+ * The ratio of two costs that were measured side by side, pair by pair (each above 0; as many of either): what else the
+ * machine did then was in both. By the t distribution of the ratios' logarithms, so that twice and half as much weigh
+ * alike. NaN below two pairs.
  */
 export function pairedRatio(first: readonly number[], second: readonly number[]): PairedRatio {
   const pairs = first.length;

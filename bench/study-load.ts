@@ -1,5 +1,5 @@
-// npm run bench:study [-- --participants 200 --seconds 60 --flush-ms 25 --json FILE]: remote participants of one study at once on one server
-// process, each as the page behaves.
+// npm run bench:study [-- --participants 200 --seconds 60 --flush-ms 25 --json FILE]: remote participants of one study
+// at once on one server process, each as the page behaves.
 import { type ChildProcess, spawn } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -28,7 +28,10 @@ const { values: options } = parseArgs({
   options: {
     participants: { type: 'string', default: '200' },
     seconds: { type: 'string', default: '60' },
-    /** Flushes of the server's disk take so much longer [ms], by strace, which must be installed: those of virtual disks may cost nothing. */
+    /**
+     * Flushes of the server's disk take so much longer [ms], by strace, which must be installed: those of virtual disks
+     * may cost nothing.
+     */
     'flush-ms': { type: 'string' },
     json: { type: 'string' },
   },
@@ -47,7 +50,10 @@ function remotePlan(): StudyPlan {
   return { ...paper, id: 'remote', participants: count, tasks };
 }
 
-/** Requests on a connection that was closed while they were on their way: sent again, as the page does with its next exchange. */
+/**
+ * Requests on a connection that was closed while they were on their way: sent again, as the page does with its next
+ * exchange.
+ */
 let sentAgain = 0;
 
 async function answered(address: string, request: RequestInit): Promise<Response> {

@@ -67,7 +67,10 @@ export function printCosts(frames: PageResult): void {
 
 const compared = ['ik', 'paper', 'learned'] as const;
 
-/** What is promised of a frame, as ratios within this run, round by round: the machine's speed and its other work are in both. */
+/**
+ * What is promised of a frame, as ratios within this run, round by round: the machine's speed and its other work are in
+ * both.
+ */
 export function ratiosOf({ blocks: { inFrameMs, threadMs } }: PageResult) {
   const to = (costs: typeof inFrameMs, other: 'ccdik' | 'ik') =>
     Object.fromEntries(compared.map((name) => [name, pairedRatio(costs[name], costs[other])])) as Record<

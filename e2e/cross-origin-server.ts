@@ -5,7 +5,9 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { certificateFor } from '../server/certificate';
 
-/** Serves one avatar under this name, from another origin than the page's, to all origins; `asked` lists the requests. */
+/**
+ * Serves one avatar under this name, from another origin than the page's, to all origins; `asked` lists the requests.
+ */
 export async function serveCrossOrigin(file: ArrayBuffer, name: string) {
   const folder = mkdtempSync(join(tmpdir(), 'threepoint-elsewhere-'));
   const asked: string[] = [];

@@ -23,10 +23,10 @@ declare global {
 }
 
 /**
- * Drives the page's clock, for tests that play without looking at the picture. Each frame is `stepMs` later than the last,
- * regardless of how long the machine takes. It starts as soon as the last frame and its pending tasks are done. All of it
- * is computed except the draw calls, which are dropped. Minutes of play take seconds, and a slow machine adds no pauses.
- * Timers and the time of day are unchanged.
+ * Drives the page's clock, for tests that play without looking at the picture. Each frame is `stepMs` later than the
+ * last, regardless of how long the machine takes. It starts as soon as the last frame and its pending tasks are done.
+ * All of it is computed except the draw calls, which are dropped. Minutes of play take seconds, and a slow machine adds
+ * no pauses. Timers and the time of day are unchanged.
  */
 export const driveTime = (page: Page, stepMs = usualStepMs): Promise<void> =>
   page.evaluate((stepMs) => {

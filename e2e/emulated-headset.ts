@@ -10,7 +10,9 @@ export interface PlacedPose {
   readonly orientation: Rotation;
 }
 
-/** The poses to set on the emulated devices. A hand is placed by its target ray, as in iwer; absent poses are unchanged. */
+/**
+ * The poses to set on the emulated devices. A hand is placed by its target ray, as in iwer; absent poses are unchanged.
+ */
 export interface Placement {
   readonly head?: Partial<PlacedPose>;
   readonly left?: Partial<PlacedPose>;

@@ -39,7 +39,9 @@ export const lookingAtMenu = {
   orientation: [0, Math.sin(menuYaw / 2), 0, Math.cos(menuYaw / 2)],
 } as const;
 
-/** Pulls the right trigger while the controller points at this position of the menu's sheet from 40 cm in front of it. */
+/**
+ * Pulls the right trigger while the controller points at this position of the menu's sheet from 40 cm in front of it.
+ */
 async function pullAt(page: Page, { x, y }: Written): Promise<void> {
   const headset = await emulatedHeadset(page);
   const { sine, cosine } = { sine: Math.sin(menuYaw), cosine: Math.cos(menuYaw) };

@@ -143,8 +143,8 @@ async function resetToLoaded(page: Page): Promise<boolean> {
 }
 
 /**
- * Opens the page with this query and waits until a body is drawn. A studio already open with the same query is reset and
- * reused: only the estimator is set. Games and studies are always reloaded.
+ * Opens the page with this query and waits until a body is drawn. A studio already open with the same query is reset
+ * and reused: only the estimator is set. Games and studies are always reloaded.
  */
 export async function open(page: Page, query: string): Promise<void> {
   const wanted = new URLSearchParams(query);

@@ -1,4 +1,5 @@
-// A page that uses WebXR directly, without three.js: it requests WebXR Body Tracking on an emulated headset that lacks it.
+// A page that uses WebXR directly, without three.js: it requests WebXR Body Tracking on an emulated headset that lacks
+// it.
 import { metaQuest3, XRDevice } from 'iwer';
 import { installBodyTracking } from 'threepoint/api/polyfill';
 

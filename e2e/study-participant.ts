@@ -41,9 +41,9 @@ export const stretched = {
 } as const;
 
 /**
- * Points the right controller's ray at a target of the sheet, waits until it is highlighted and pulls the trigger. `leave`
- * returns the arms to the calibration pose before the trigger is released. It all runs inside the page, because on a slow
- * machine each call into the page costs a frame.
+ * Points the right controller's ray at a target of the sheet, waits until it is highlighted and pulls the trigger.
+ * `leave` returns the arms to the calibration pose before the trigger is released. It all runs inside the page, because
+ * on a slow machine each call into the page costs a frame.
  */
 export const press = (page: Page, id: string, leave = false): Promise<void> =>
   page.evaluate(

@@ -13,7 +13,9 @@ export const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 
 const atRoot = (path: string) => fileURLToPath(new URL(`../${path}`, import.meta.url));
 
-/** Starts the server as `npm start` does, with these settings, on a free port; its records are deleted when it closes. */
+/**
+ * Starts the server as `npm start` does, with these settings, on a free port; its records are deleted when it closes.
+ */
 export async function serveStudies(settings: Readonly<Record<string, string>> = {}) {
   const directory = mkdtempSync(join(tmpdir(), 'threepoint-studies-'));
   const child = spawn(process.execPath, ['--import', 'tsx', 'server/main.ts', '--port', '0', '--studies', directory], {

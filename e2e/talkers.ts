@@ -74,7 +74,9 @@ type Server = Awaited<ReturnType<typeof serveStudies>>;
 interface VoicesFixtures {
   /** Starts a server with these settings, which closes when the test ends. */
   serve(settings?: Readonly<Record<string, string>>): Promise<Server>;
-  /** Starts a browser whose page joins the room of the server at this origin, with a fake microphone that plays a voice. */
+  /**
+   * Starts a browser whose page joins the room of the server at this origin, with a fake microphone that plays a voice.
+   */
   talker(origin: string, name: string, options?: TalkerOptions): Promise<Talker>;
 }
 

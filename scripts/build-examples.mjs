@@ -22,7 +22,9 @@ export const exampleNames = readdirSync(join(root, 'examples'), { withFileTypes:
   .filter((file) => file.isDirectory())
   .map(({ name }) => name);
 
-/** Creates a folder outside the repository with the tarball, so that no import resolves to the repository's packages. */
+/**
+ * Creates a folder outside the repository with the tarball, so that no import resolves to the repository's packages.
+ */
 export async function packLibrary() {
   await buildLibrary();
   const folder = mkdtempSync(join(tmpdir(), 'threepoint-examples-'));

@@ -7,8 +7,8 @@ import { ensureChromium } from './chromium.mjs';
 import { main, root } from './run-command.mjs';
 
 /**
- * The icons: side [px], and the share of the side that the drawing takes. Systems crop a maskable icon to a circle of 0.8
- * of its side and fill the corners of a touch icon; both are drawn on a full square background.
+ * The icons: side [px], and the share of the side that the drawing takes. Systems crop a maskable icon to a circle of
+ * 0.8 of its side and fill the corners of a touch icon; both are drawn on a full square background.
  */
 export const icons = {
   'icon-192.png': { side: 192, share: 1, ground: 'transparent' },

@@ -28,7 +28,10 @@ const copied = {
   'README.md': 'src/threepoint/README.md',
 };
 
-/** Returns the manifest to publish: without sources and internal rooms. It has no dependencies: all but the peers is bundled. */
+/**
+ * Returns the manifest to publish: without sources and internal rooms. It has no dependencies: all but the peers is
+ * bundled.
+ */
 function published() {
   const { private: _, devDependencies: __, dependencies: ___, exports, ...rest } = own;
   const outside = Object.entries(exports).flatMap(([name, target]) => {
@@ -99,7 +102,9 @@ async function writeCode() {
   await build.close();
 }
 
-/** Writes the compiler's declarations, a file for each module, with the full file names that Node's resolution requires. */
+/**
+ * Writes the compiler's declarations, a file for each module, with the full file names that Node's resolution requires.
+ */
 async function writeTypes() {
   const { code } = await run(process.execPath, ['node_modules/typescript/bin/tsc', '-p', 'tsconfig.library.json']);
   if (code !== 0) throw new SetupError(`The library's types could not be written: exit code ${code}.`);
@@ -131,7 +136,9 @@ const trackerAlone = {
   },
 };
 
-/** Returns the bytes of minified code with its static imports, plain and by brotli; without dynamic imports and peers. */
+/**
+ * Returns the bytes of minified code with its static imports, plain and by brotli; without dynamic imports and peers.
+ */
 async function weigh(input, plugins = [weightsInModule]) {
   const build = await bundle({ entry: input }, plugins);
   const { output: files } = await build.generate({ ...output, minify: true });

@@ -28,7 +28,9 @@ function reached(manifest, pages) {
   return files;
 }
 
-/** Returns the files of a built page that a browser caches, relative to its folder, each with a revision of its content. */
+/**
+ * Returns the files of a built page that a browser caches, relative to its folder, each with a revision of its content.
+ */
 export function keptFiles(directory, manifest) {
   const ours = reached(manifest, ['index.html']);
   const others = reached(manifest, otherPages);

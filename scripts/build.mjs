@@ -25,8 +25,8 @@ const sources = [
 const stampFile = '.source-hash';
 
 /**
- * The defaults of the build: the base path (relative, so that any folder works), the output folder, and the origins from
- * which the page may load files (null: the host's header decides).
+ * The defaults of the build: the base path (relative, so that any folder works), the output folder, and the origins
+ * from which the page may load files (null: the host's header decides).
  */
 const usual = { base: './', out: join(root, 'dist'), filesFrom: null };
 
@@ -66,7 +66,9 @@ export function buildOptions(args) {
   return { base, out: out === undefined ? usual.out : emptied(out), filesFrom };
 }
 
-/** Returns the full path of a directory that is missing, empty, or an earlier build. Throws if it holds anything else. */
+/**
+ * Returns the full path of a directory that is missing, empty, or an earlier build. Throws if it holds anything else.
+ */
 function emptied(out) {
   if (out === '') throw new SetupError('--out "": expected a directory for the built page.');
   const directory = resolve(root, out);

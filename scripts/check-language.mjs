@@ -1,6 +1,6 @@
-// node scripts/check-language.mjs [PATH …]: lists comments and documents that are not in plain technical English, by file
-// and line. The rules are few and mechanical: they find habits, not style. tests/language.test.ts asserts that none is
-// left.
+// node scripts/check-language.mjs [PATH …]: lists comments and documents that are not in plain technical English, by
+// file and line. The rules are few and mechanical: they find habits, not style. tests/language.test.ts asserts that
+// none is left.
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -20,7 +20,9 @@ const allowed = {
   'docs/study.md': /\btold\b/,
 };
 
-/** Returns the comments of a TypeScript or JavaScript file: the line of the first character, and the text without marks. */
+/**
+ * Returns the comments of a TypeScript or JavaScript file: the line of the first character, and the text without marks.
+ */
 function commentsOfScript(text) {
   const found = [];
   const add = (start, raw) => {

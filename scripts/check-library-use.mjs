@@ -33,7 +33,9 @@ async function unpack() {
     throw new SetupError(`${tarball} could not be unpacked:\n${unpacked?.output ?? 'tar is not there'}`);
 }
 
-/** Errors in three-vrm's declarations, which are ignored: they import without the extensions Node's resolution requires. */
+/**
+ * Errors in three-vrm's declarations, which are ignored: they import without the extensions Node's resolution requires.
+ */
 const foreign = /^[^(]*\bnode_modules[\\/]@pixiv[\\/]/;
 
 /** Returns the compiler's errors in the package and in the consumer. */
@@ -72,7 +74,9 @@ async function runExample() {
   if (code !== 0) throw new SetupError(`A program of Node that uses the package ends with code ${code}:\n${output}`);
 }
 
-/** Checks that bundlers which ignore URLs in code keep the weights; a page without them stays with inverse kinematics. */
+/**
+ * Checks that bundlers which ignore URLs in code keep the weights; a page without them stays with inverse kinematics.
+ */
 async function bundleWeights() {
   const program = join(folder, 'weights.mjs');
   writeFileSync(

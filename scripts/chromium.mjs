@@ -29,7 +29,9 @@ async function playwrightsOwn() {
   return existsSync(path) && (await starts(path)) ? path : null;
 }
 
-/** Returns the path of the Chromium to test with: CHROMIUM_PATH, the system's, or Playwright's own; null if none exists. */
+/**
+ * Returns the path of the Chromium to test with: CHROMIUM_PATH, the system's, or Playwright's own; null if none exists.
+ */
 export async function findChromium() {
   const named = process.env.CHROMIUM_PATH;
   if (named) {

@@ -53,7 +53,9 @@ function recordingsKey(mocap) {
   return hash.digest('hex').slice(0, 16);
 }
 
-/** Returns the folder of recordings with ground truth, prepared by Python and cached in .cache; an exit code on failure. */
+/**
+ * Returns the folder of recordings with ground truth, prepared by Python and cached in .cache; an exit code on failure.
+ */
 async function prepareRecordings(mocap) {
   if (!existsSync(mocap)) throw new SetupError(`goldens: ${mocap}: no such folder\n${usage}`);
   const folder = join(root, '.cache/goldens', `recordings-${recordingsKey(mocap)}`);

@@ -22,7 +22,9 @@ export function missingInstallation(directory = root) {
   return null;
 }
 
-/** Installs the packages of package-lock.json if they are missing or outdated, but never into another clone's folder. */
+/**
+ * Installs the packages of package-lock.json if they are missing or outdated, but never into another clone's folder.
+ */
 export async function ensureInstalled(directory = root) {
   const reason = missingInstallation(directory);
   if (reason === null) return;

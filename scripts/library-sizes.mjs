@@ -7,8 +7,8 @@ const isTrue = (kB, bytes) =>
   Math.abs(1000 * kB - bytes) <= tolerance * bytes || kilobytes(bytes, digitsOf(kB)) === `${kB} kB`;
 
 /**
- * Returns a message for each size in a document that is no longer true. A claim states that `what` has this many `bytes`;
- * its pattern `says` finds the kilobytes in the text.
+ * Returns a message for each size in a document that is no longer true. A claim states that `what` has this many
+ * `bytes`; its pattern `says` finds the kilobytes in the text.
  */
 export function staleSizes(file, text, claims) {
   return claims.flatMap(({ what, says, bytes }) => {

@@ -1,5 +1,5 @@
-// npm run motion -- FILE --to bvh|csv|vrma|glb [--estimator NAME] [--out FILE] [--unit m|cm] [--rate HZ] [--avatar FILE]:
-// converts a recording of the page for other programs (docs/motion.md).
+// npm run motion -- FILE --to bvh|csv|vrma|glb [--estimator NAME] [--out FILE] [--unit m|cm] [--rate HZ] [--avatar
+// FILE]: converts a recording of the page for other programs (docs/motion.md).
 import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';

@@ -57,8 +57,8 @@ for requirement in project.get('dependencies', []) + [r for extra in sys.argv[2:
 }
 
 /**
- * Installs with uv, which takes a quarter of pip's time. Falls back to pip if uv cannot be installed or finds no registry,
- * because pip's configuration may name one.
+ * Installs with uv, which takes a quarter of pip's time. Falls back to pip if uv cannot be installed or finds no
+ * registry, because pip's configuration may name one.
  */
 async function installPackages(python, wanted) {
   const pip = ['-m', 'pip', 'install', '--no-input', '--disable-pip-version-check', '--prefer-binary'];

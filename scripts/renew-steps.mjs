@@ -5,8 +5,9 @@ import { root, SetupError } from './run-command.mjs';
 const fp32 = join(root, '.cache/fp32');
 
 /**
- * The steps that renew the networks and the tables and figures of docs/accuracy.md, in the order of their dependencies: a name, the npm
- * script and its options beside --mocap, what is renewed, and about how long it takes on twenty-nine people and one core.
+ * The steps that renew the networks and the tables and figures of docs/accuracy.md, in the order of their dependencies:
+ * a name, the npm script and its options beside --mocap, what is renewed, and about how long it takes on twenty-nine
+ * people and one core.
  */
 export const steps = [
   {

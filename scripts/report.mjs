@@ -1,7 +1,6 @@
 // npm run report -- --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]: measures the
-// shipping code path with the cross-validation networks of npm run train, each on people it was not trained on, and renews
-// the tables and figures of docs/accuracy.md.
-// npm run report -- --redraw: renews them from the last measurement.
+// shipping code path with the cross-validation networks of npm run train, each on people it was not trained on, and
+// renews the tables and figures of docs/accuracy.md. npm run report -- --redraw: renews them from the last measurement.
 // npm run report -- --legs --mocap DIR: renews the table of legs alone, with the page's network for the body and the
 // cross-validation networks of npm run train:gait.
 import { existsSync, mkdirSync, rmSync } from 'node:fs';
@@ -65,7 +64,10 @@ async function reportLegs(given) {
   return (await run(await pythonEnvironment(), renew, { cwd: root, env, limitSeconds: 600 })).code;
 }
 
-/** The measurements of the table of both laboratories: held-out people and another laboratory's, hands as recorded and measured. */
+/**
+ * The measurements of the table of both laboratories: held-out people and another laboratory's, hands as recorded and
+ * measured.
+ */
 const laboratories = Object.fromEntries(
   ['home', 'elsewhere'].map((group) => [
     group,

@@ -5,7 +5,9 @@ const { join } = require('path');
 const needed = JSON.parse(readFileSync(join(__dirname, '..', 'package.json'), 'utf8')).engines.node;
 const found = process.versions.node;
 
-/** Returns whether a version satisfies a range in package.json's form, caret or lower bound: '^20.19.0 || >=22.12.0'. */
+/**
+ * Returns whether a version satisfies a range in package.json's form, caret or lower bound: '^20.19.0 || >=22.12.0'.
+ */
 function satisfies(version, range) {
   const numbers = version.split('.').map(Number);
   return range.split('||').some((alternative) => {

@@ -1,5 +1,5 @@
-// npm run study:power -- --effect 0.5 [--design paired|between] [--power 0.8] [--alpha 0.05] [--studies 10000] [--seed 1]:
-// prints how many participants a study needs.
+// npm run study:power -- --effect 0.5 [--design paired|between] [--power 0.8] [--alpha 0.05] [--studies 10000] [--seed
+// 1]: prints how many participants a study needs.
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';
 import { main, run, SetupError } from './run-command.mjs';

@@ -1,6 +1,6 @@
 // npm run study:simulate -- STUDY.json [--out DIR] [--participants 15] [--seed 7] [--effect late-200=-0.8 …]
-// [--score-effect late-200=-0.1 …]: simulates a whole study, with simulated participants in the real sessions, store and
-// exports. docs/study.md describes their model.
+// [--score-effect late-200=-0.1 …]: simulates a whole study, with simulated participants in the real sessions, store
+// and exports. docs/study.md describes their model.
 import { basename, join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';

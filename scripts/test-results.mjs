@@ -5,7 +5,10 @@ import { relative } from 'node:path';
 const specsOf = ({ specs = [], suites = [] }) => [...specs, ...suites.flatMap(specsOf)];
 
 const readers = {
-  /** Reads Vitest's report. `chosen`: whether tests of these tags were selected; the runner counts all others as skipped. */
+  /**
+   * Reads Vitest's report. `chosen`: whether tests of these tags were selected; the runner counts all others as
+   * skipped.
+   */
   vitest(text, chosen = () => true) {
     const report = JSON.parse(text);
     const tests = report.testResults.flatMap((file) =>

@@ -14,7 +14,10 @@ const vitest = (report, ...args) => [
   node('vitest/vitest.mjs', 'run', ...args, '--reporter=default', '--reporter=json', `--outputFile.json=${report}`),
 ];
 
-/** Returns the commands of browser tests: 'day' runs untagged tests, the others those with that tag (playwright.config.ts). */
+/**
+ * Returns the commands of browser tests: 'day' runs untagged tests, the others those with that tag
+ * (playwright.config.ts).
+ */
 const playwright = (tests) => async (report) => {
   process.env.CHROMIUM_PATH = await ensureChromium();
   process.env.PLAYWRIGHT_JSON_OUTPUT_NAME = report;
@@ -25,8 +28,8 @@ const playwright = (tests) => async (report) => {
 
 /**
  * The stages: commands (`report`: the file for the runner's results), runner, time limit, and suite: 'day' (npm test),
- * 'full' (npm run test:full), 'training' or 'nightly'. `singleCore`: uses one core, so that another such stage can run at
- * the same time. `waits`: uses all cores but waits for servers and sockets, so that another stage can use one core.
+ * 'full' (npm run test:full), 'training' or 'nightly'. `singleCore`: uses one core, so that another such stage can run
+ * at the same time. `waits`: uses all cores but waits for servers and sockets, so that another stage can use one core.
  * `chosen`: the unit tests it runs, by tag.
  */
 export const stages = {
@@ -61,8 +64,8 @@ export const stages = {
       return [];
     },
   },
-  // Core is compiled without the browser's types and without ambient ones: window, performance and console are undefined.
-  // The service worker is compiled with a worker's types.
+  // Core is compiled without the browser's types and without ambient ones: window, performance and console are
+  // undefined. The service worker is compiled with a worker's types.
   'core-types': {
     suite: 'day',
     singleCore: true,

@@ -47,8 +47,8 @@ async function runStage(name, { quiet = false } = {}) {
 }
 
 /**
- * Runs the stages in order. Consecutive single-core stages run at the same time, one per core. Any other stage runs alone,
- * except one with `waits`, which runs together with the stages before it.
+ * Runs the stages in order. Consecutive single-core stages run at the same time, one per core. Any other stage runs
+ * alone, except one with `waits`, which runs together with the stages before it.
  */
 async function runStages(names) {
   const outcomes = [];

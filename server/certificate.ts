@@ -16,8 +16,9 @@ function stillServes(cert: string, addresses: readonly string[], now: Date): boo
 }
 
 /**
- * Returns a self-signed certificate for these IPv4 addresses, localhost and this machine's name. It is stored in the directory, so that a
- * headset has to trust it only once. It is replaced when an address is new or when it expires within a week.
+ * Returns a self-signed certificate for these IPv4 addresses, localhost and this machine's name. It is stored in the
+ * directory, so that a headset has to trust it only once. It is replaced when an address is new or when it expires
+ * within a week.
  */
 export async function certificateFor(addresses: readonly string[], directory: string, now: Date): Promise<Credentials> {
   const keyFile = join(directory, 'lan.key.pem');

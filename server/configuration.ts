@@ -30,7 +30,10 @@ function portFrom(text: string, source: string): number {
   return port;
 }
 
-/** Reads the arguments after the script's name, and the environment. Returns 'help' for --help. Throws a ConfigurationError. */
+/**
+ * Reads the arguments after the script's name, and the environment. Returns 'help' for --help. Throws a
+ * ConfigurationError.
+ */
 export function configurationFrom(
   args: readonly string[],
   environment: Readonly<Record<string, string | undefined>>,

@@ -107,8 +107,8 @@ function accepts(header: string | undefined, encoding: string): boolean {
 }
 
 /**
- * Creates a handler that serves a built page from memory. Files are read once: a request touches no disk, no path leads out of the directory,
- * and a rebuild breaks no download. Throws if there is no index.html.
+ * Creates a handler that serves a built page from memory. Files are read once: a request touches no disk, no path leads
+ * out of the directory, and a rebuild breaks no download. Throws if there is no index.html.
  */
 export function createPageHandler(directory: string, options: PageOptions = {}): RequestListener {
   if (!existsSync(join(directory, 'index.html'))) {

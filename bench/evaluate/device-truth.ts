@@ -35,7 +35,9 @@ export interface MeasuredRecording {
   readonly estimators: Record<MeasuredMethod, Report>;
 }
 
-/** Every method against the device's body. Throws a sentence where the recording has none, or no measures of its person. */
+/**
+ * Every method against the device's body. Throws a sentence where the recording has none, or no measures of its person.
+ */
 export async function measureRecording(
   recording: Recording,
   regressors: ReadonlyMap<MeasuredMethod, PoseRegressor>,

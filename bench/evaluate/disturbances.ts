@@ -76,8 +76,9 @@ export const trackers = ['headset', 'grips'] as const;
 export type Tracker = (typeof trackers)[number];
 
 /**
- * Returns the frames with the headset or both grips mounted `offset` [m] away, along the device's own axes (+x right, +y up or out of
- * the back of the hand, −z forward); the left hand's x is mirrored, so that +x is one side of the body for neither.
+ * Returns the frames with the headset or both grips mounted `offset` [m] away, along the device's own axes (+x right,
+ * +y up or out of the back of the hand, −z forward); the left hand's x is mirrored, so that +x is one side of the body
+ * for neither.
  */
 export function offsetTrackers(frames: readonly RecordedFrame[], tracker: Tracker, offset: Vec3): RecordedFrame[] {
   const moved = <P extends TrackedPose | null>(pose: P, by: Vec3): P =>
@@ -158,7 +159,10 @@ function rowsAtRate(rows: number, fromHz: number, toHz: number): { before: numbe
 const lerpTruth = (a: RecordedFrame['truth'], b: RecordedFrame['truth'], share: number): RecordedFrame['truth'] =>
   Object.fromEntries(truthJoints.map((joint) => [joint, lerp(a[joint], b[joint], share)])) as Record<TruthJoint, Vec3>;
 
-/** The recording as a device of another rate would have it: positions linear, rotations along the shorter arc; a hand seen on both sides only. */
+/**
+ * The recording as a device of another rate would have it: positions linear, rotations along the shorter arc; a hand
+ * seen on both sides only.
+ */
 export function resampleFrames(frames: readonly RecordedFrame[], fromHz: number, toHz: number): RecordedFrame[] {
   const pose = <P extends TrackedPose | null>(a: P, b: P, share: number): P | null =>
     a &&
@@ -180,7 +184,10 @@ export function resampleFrames(frames: readonly RecordedFrame[], fromHz: number,
   });
 }
 
-/** Estimates at another rate, joints and truth alike, so that their jerk compares; what the network alone said is left out. */
+/**
+ * Estimates at another rate, joints and truth alike, so that their jerk compares; what the network alone said is left
+ * out.
+ */
 export function resampleEstimates(frames: readonly MeasuredFrame[], fromHz: number, toHz: number): MeasuredFrame[] {
   return rowsAtRate(frames.length, fromHz, toHz).map(({ before, after, share }) => {
     const [a, b] = [frames[before] as MeasuredFrame, frames[after] as MeasuredFrame];

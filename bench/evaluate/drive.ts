@@ -20,15 +20,17 @@ export interface DrawnFrame {
   readonly raw: JointPositions | null;
 }
 
-/** One estimator behind the only calls that the evaluation makes of it: frames in order of time, and the page's reset. */
+/**
+ * One estimator behind the only calls that the evaluation makes of it: frames in order of time, and the page's reset.
+ */
 export interface Driver {
   draw(frame: TrackingFrame): Promise<DrawnFrame>;
   reset(): void;
 }
 
 /**
- * The shipping path of one estimator, or (frameByFrame) the same without filters and limits of speed; `draw` rejects where it reports a fault
- * or draws no body.
+ * The shipping path of one estimator, or (frameByFrame) the same without filters and limits of speed; `draw` rejects
+ * where it reports a fault or draws no body.
  */
 export function createDriver(
   name: MeasuredMethod,
@@ -41,7 +43,8 @@ export function createDriver(
   const skeleton = skeletonFromCalibration(calibration);
   return {
     async draw(frame) {
-      // The network is asked when the picture is drawn and answers from a worker: what a frame draws was computed from the one before.
+      // The network is asked when the picture is drawn and answers from a worker: what a frame draws was computed from
+      // the one before.
       const { pose, request } = estimator.update(frame);
       await request?.ask();
       if (estimator.fault()) throw new Error(`${name}: ${estimator.fault()}`);

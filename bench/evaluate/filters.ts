@@ -1,5 +1,6 @@
-// node --import tsx bench/evaluate/filters.ts: what the temporal filters of each estimator cost and bring, without recordings: how late and
-// how far joints follow a wave of the head or a hand, and how much they tremble with the trackers' noise.
+// node --import tsx bench/evaluate/filters.ts: what the temporal filters of each estimator cost and bring, without
+// recordings: how late and how far joints follow a wave of the head or a hand, and how much they tremble with the
+// trackers' noise.
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { createDriver, measuredMethods } from './drive';

@@ -1,4 +1,5 @@
-// What training/threepoint_training/train_gait.py reads: the inputs of a gait network as the page makes them, and the true feet, frame by frame.
+// What training/threepoint_training/train_gait.py reads: the inputs of a gait network as the page makes them, and the
+// true feet, frame by frame.
 import { appendFileSync, mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { parseArgs } from 'node:util';

@@ -31,7 +31,10 @@ export const emptyGoldenTally = (): GoldenTally => ({
   places: { stepCm: '', excessCm: '' },
 });
 
-/** One driven piece: what was staged, what came of it, and the same frames with nothing done to them where hands were lost. */
+/**
+ * One driven piece: what was staged, what came of it, and the same frames with nothing done to them where hands were
+ * lost.
+ */
 export interface DrivenPiece {
   readonly name: string;
   /** The rate of the frames, and that of the recording. */

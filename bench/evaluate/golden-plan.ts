@@ -9,8 +9,8 @@ import { type Piece, situations, undisturbed } from './situations';
 const otherLaboratory: ReadonlySet<string> = new Set(['901', '902', '903']);
 
 /**
- * Minutes of recordings that a row covers: by group of people, and of all groups for each disturbance; the paper's network, which takes
- * four times as long, gets a share of them. Pieces of clips are at most so long [s].
+ * Minutes of recordings that a row covers: by group of people, and of all groups for each disturbance; the paper's
+ * network, which takes four times as long, gets a share of them. Pieces of clips are at most so long [s].
  */
 const extents = {
   full: {
@@ -62,7 +62,10 @@ function pieceOf(clip: RecordingIndex['clips'][number], longest: number): Listed
   return { name: clip.name, clip, first, frames };
 }
 
-/** Lists all rows of the goldens; `trainedOn`: people that a network was trained on. Longest first, so that workers end together. */
+/**
+ * Lists all rows of the goldens; `trainedOn`: people that a network was trained on. Longest first, so that workers end
+ * together.
+ */
 export function planGoldens(index: RecordingIndex, trainedOn: ReadonlySet<string>, extent: Extent): GoldenJob[] {
   const { groups, disturbed, paperShare, longestSeconds } = extents[extent];
   const groupOf = (person: string): Group => {

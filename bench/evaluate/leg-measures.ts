@@ -20,7 +20,10 @@ export interface LegMeasures {
   pelvis: number;
   knee: number;
   ankle: number;
-  /** Frames of feet that truly stand, the drawn and the true foot's speed [m/s] and the height of the drawn sole [m] in them. */
+  /**
+   * Frames of feet that truly stand, the drawn and the true foot's speed [m/s] and the height of the drawn sole [m] in
+   * them.
+   */
   standing: number;
   skate: number;
   trueSkate: number;

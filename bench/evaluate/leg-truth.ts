@@ -6,7 +6,9 @@ import { openClip, type RecordingIndex } from './recordings';
 
 const legJointNames = ['UpperLeg', 'LowerLeg', 'Foot', 'Toes'] as const;
 
-/** One true leg, floor frame [m]: joints as the corpus has them; toes are where the toes begin, the ball of the foot. */
+/**
+ * One true leg, floor frame [m]: joints as the corpus has them; toes are where the toes begin, the ball of the foot.
+ */
 export interface TrueLeg {
   readonly hip: Vec3;
   readonly knee: Vec3;
@@ -55,7 +57,10 @@ export interface Contact {
   readonly right: boolean;
 }
 
-/** A joint of a foot that stands is no higher than this over where that person's usually is [m], and slower than this [m/s]. */
+/**
+ * A joint of a foot that stands is no higher than this over where that person's usually is [m], and slower than this
+ * [m/s].
+ */
 const standingHeight = 0.03;
 const standingSpeed = 0.25;
 

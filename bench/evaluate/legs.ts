@@ -23,7 +23,10 @@ function print(title: string, reports: readonly (readonly [string, LegReport])[]
   }
 }
 
-/** The network of each person: the page's where it has not seen them; else one of the folder that has not, where there is one. */
+/**
+ * The network of each person: the page's where it has not seen them; else one of the folder that has not, where there
+ * is one.
+ */
 function gaitsOf(folder: string | undefined): (person: string) => GaitNetwork {
   const held = folder
     ? readdirSync(folder)

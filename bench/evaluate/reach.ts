@@ -7,7 +7,10 @@ import type { RecordedFrame } from './recordings';
 /** Simulated wrists lie up to this far beside the true ones [m]: nearer than that, no wrist counts as out of reach. */
 const tolerance = 0.01;
 
-/** Wrists that a body of this calibration cannot reach with its true shoulders: where many are, calibration or recording is wrong. */
+/**
+ * Wrists that a body of this calibration cannot reach with its true shoulders: where many are, calibration or recording
+ * is wrong.
+ */
 export interface Reach {
   wrists: number;
   beyond: number;

@@ -55,7 +55,10 @@ export interface RecordedFrame {
 
 /** What a calibration knows beside height and span. */
 export interface KnownMeasures {
-  /** How the hands stand to their forearms, as the guided calibration measures it: by what the person's other clips show. */
+  /**
+   * How the hands stand to their forearms, as the guided calibration measures it: by what the person's other clips
+   * show.
+   */
   readonly hands?: boolean | undefined;
   /** How long the forearm is, as its owner types it. */
   readonly forearm?: boolean | undefined;

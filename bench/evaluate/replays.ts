@@ -1,6 +1,7 @@
-// node --import tsx bench/evaluate/replays.ts FILE...: how the estimators follow recordings of real headsets, Beat Saber's .bsor files and
-// recordings of aframe-motion-capture (.json). Nobody's body is known: the eye height is a quantile of the head's height, the span its usual
-// share. Public files: MetaGuard/xror test/data/bsor, dmarcos/aframe-motion-capture-components examples.
+// node --import tsx bench/evaluate/replays.ts FILE...: how the estimators follow recordings of real headsets, Beat
+// Saber's .bsor files and recordings of aframe-motion-capture (.json). Nobody's body is known: the eye height is a
+// quantile of the head's height, the span its usual share. Public files: MetaGuard/xror test/data/bsor,
+// dmarcos/aframe-motion-capture-components examples.
 import { readFileSync } from 'node:fs';
 import { basename } from 'node:path';
 import { reasonOf } from 'threepoint/core/errors/reasons';
@@ -86,7 +87,10 @@ function readAframe(text: string): Replay {
 const read = (file: string): Replay =>
   file.endsWith('.bsor') ? readBsor(readFileSync(file)) : readAframe(readFileSync(file, 'utf8'));
 
-/** A row of the table: the share of frames that move too far, the longest step beyond what is allowed, and hands off their trackers. */
+/**
+ * A row of the table: the share of frames that move too far, the longest step beyond what is allowed, and hands off
+ * their trackers.
+ */
 async function measure(replay: Replay, draw: (frame: TrackingFrame) => Promise<Readonly<Record<string, Vec3>>>) {
   let before: { readonly points: Replay[number]; readonly joints: Readonly<Record<string, Vec3>> } | null = null;
   const sums = { frames: 0, tooFar: 0, longest: 0, off: 0 };

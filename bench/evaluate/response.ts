@@ -107,7 +107,10 @@ function responseOf(slow: Fundamental, quick: Fundamental, hz: number): Response
   return { lagMs, gain: Math.hypot(inPhase, ahead) };
 }
 
-/** Root mean square [mm] of what joints move from frame to frame while the wearer stands still and the trackers are noisy. */
+/**
+ * Root mean square [mm] of what joints move from frame to frame while the wearer stands still and the trackers are
+ * noisy.
+ */
 export async function measureTremble(
   driver: Driver,
   joints: readonly string[],

@@ -77,7 +77,9 @@ export interface RobustnessReport<Method extends MeasuredMethod = MeasuredMethod
   readonly estimators: Readonly<Record<Method, MethodRobustness>>;
 }
 
-/** Clips in a seeded order as long as they fit into `limit` frames, one at least: the same choice for the same corpus. */
+/**
+ * Clips in a seeded order as long as they fit into `limit` frames, one at least: the same choice for the same corpus.
+ */
 export function chooseClips<Clip extends { readonly name: string; readonly frames: number }>(
   clips: readonly Clip[],
   limit: number,
@@ -156,8 +158,8 @@ interface RobustnessOptions<Method, Listed> {
 }
 
 /**
- * How each method bears what devices and people do: hands that vanish, trackers mounted elsewhere, a wrong height or span, other
- * rates.
+ * How each method bears what devices and people do: hands that vanish, trackers mounted elsewhere, a wrong height or
+ * span, other rates.
  */
 export async function measureRobustness<
   Method extends MeasuredMethod,

@@ -128,7 +128,10 @@ const atRate =
 /** Numbers in [0, 1) of a text. */
 const randomOf = (text: string): (() => number) => randomNumbers(seedOf(text));
 
-/** The wearer resets the reference space every three to five seconds: the floor turns and moves, and the page forgets the past. */
+/**
+ * The wearer resets the reference space every three to five seconds: the floor turns and moves, and the page forgets
+ * the past.
+ */
 const recentred: Stage = (piece, rateHz, number) => {
   const random = randomOf(`${piece.name} recentred`);
   const wait = () => Math.round((3 + 2 * random()) * rateHz);
@@ -159,7 +162,9 @@ const pauses = [
   { seconds: 2, missing: true },
 ] as const;
 
-/** In turn: a hitch, a while in the device's own menu (head alone, hands are for no one), frames that stop for longer. */
+/**
+ * In turn: a hitch, a while in the device's own menu (head alone, hands are for no one), frames that stop for longer.
+ */
 const paused: Stage = (piece, rateHz, number) => {
   const random = randomOf(`${piece.name} paused`);
   const frames: StagedFrame[] = [];

@@ -6,7 +6,10 @@ import { Court } from './court';
 import { type FrameTimes, frameTimes, nextFrame } from './frame-times';
 import { createSenders } from './senders';
 
-/** Avatars in all, one's own among them, and what each of the others costs on the page's thread: median and p95 [ms per frame]. */
+/**
+ * Avatars in all, one's own among them, and what each of the others costs on the page's thread: median and p95 [ms per
+ * frame].
+ */
 export interface CourtTimes extends FrameTimes {
   readonly avatars: number;
   /** Packets decoded, played back and bent into a body; null where no one else is there. */

@@ -37,7 +37,10 @@ function withoutDevice(gl: WebGLRenderingContext | WebGL2RenderingContext): void
     Object.assign(gl, { [name]: () => undefined });
 }
 
-/** Frames with everyone and with the own body alone, block by block in turns, so that what else the machine does meets both. */
+/**
+ * Frames with everyone and with the own body alone, block by block in turns, so that what else the machine does meets
+ * both.
+ */
 export async function measureSixteen(
   {
     renderer,

@@ -32,9 +32,9 @@ const crowdRounds = 30;
 const settleFrames = 10;
 
 /**
- * first: the first ten seconds of every method, while the engine still compiles it. settled: after them. In both the canvas is drawn on
- * and not shown, as in a headset. shown: settled, and the browser copies the canvas into its window, which without a GPU takes the cores
- * away from the next frame.
+ * first: the first ten seconds of every method, while the engine still compiles it. settled: after them. In both the
+ * canvas is drawn on and not shown, as in a headset. shown: settled, and the browser copies the canvas into its window,
+ * which without a GPU takes the cores away from the next frame.
  */
 const conditions = ['first', 'settled', 'shown'] as const;
 type Condition = (typeof conditions)[number];

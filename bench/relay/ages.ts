@@ -35,11 +35,17 @@ export interface Seen {
   readonly freezes: number;
   /** Mean jerk of head, hands and elbows as they are drawn, to that in the other's own mirror. */
   readonly jerkRatio: number;
-  /** How far from where the other's mirror had them at the time that is shown these joints are drawn [mm]: 95 of 100 are nearer. */
+  /**
+   * How far from where the other's mirror had them at the time that is shown these joints are drawn [mm]: 95 of 100 are
+   * nearer.
+   */
   readonly offP95Mm: number;
 }
 
-/** Standard deviations of what a headset says of a place, along each axis [m]: assumptions, which jerk depends on (src/rooms/README.md). */
+/**
+ * Standard deviations of what a headset says of a place, along each axis [m]: assumptions, which jerk depends on
+ * (src/rooms/README.md).
+ */
 export const tremors = [1e-4, 3e-5, 0] as const;
 const displayHz = 72;
 const posesPerSecond = 30;
@@ -83,7 +89,10 @@ class Jerk {
   }
 }
 
-/** When each packet arrives [s], by when it leaves: over TCP, so in order, and what is lost holds up all behind it until it is sent again. */
+/**
+ * When each packet arrives [s], by when it leaves: over TCP, so in order, and what is lost holds up all behind it until
+ * it is sent again.
+ */
 function arrivals(leaving: readonly number[], { roundTrip, jitter, loss }: Way, seed: number): readonly number[] {
   const chance = randomNumbers(seed);
   let last = 0;
@@ -154,7 +163,10 @@ function packetOf({ time, pose }: SentFrame): PosePacket {
   return packet;
 }
 
-/** Simulates one person seen by another through the page's codec and playback; `seed`: of the network; `tremor`: of `tremors`. */
+/**
+ * Simulates one person seen by another through the page's codec and playback; `seed`: of the network; `tremor`: of
+ * `tremors`.
+ */
 export function seenOver(way: Way, seconds: number, seed: number, tremor: number = tremors[0]): Seen {
   const frames = performed(seconds, tremor);
   const sent = sentOf(frames);

@@ -1,4 +1,5 @@
-// The load, in a process of its own: lean clients that speak WebSocket without socket.io's client, so that the relay is what is measured.
+// The load, in a process of its own: lean clients that speak WebSocket without socket.io's client, so that the relay is
+// what is measured.
 
 import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
@@ -143,7 +144,9 @@ class Client {
   #seat: number;
   /** The offset of the relay's clock to the local clock [ms]. */
   #ahead = 0;
-  /** For the plain relay: the sender of the next binary message, and the length of the text that announced it [bytes]. */
+  /**
+   * For the plain relay: the sender of the next binary message, and the length of the text that announced it [bytes].
+   */
   #from = 0;
   #announced = 0;
 

@@ -16,7 +16,10 @@ export interface Meeting {
   readonly plays?: boolean;
 }
 
-/** To the clients, again and again: play in this many rooms, others who have come before are silent, and say how it went. */
+/**
+ * To the clients, again and again: play in this many rooms, others who have come before are silent, and say how it
+ * went.
+ */
 export interface Load {
   readonly rooms: number;
   readonly warmUpSeconds: number;

@@ -151,7 +151,10 @@ export interface Found {
   readonly most: Trial;
 }
 
-/** How many times as many clients may bring the busier process to three quarters of a core; a third more at least, three times at most. */
+/**
+ * How many times as many clients may bring the busier process to three quarters of a core; a third more at least, three
+ * times at most.
+ */
 const growth = ({ cpu, clientLoad }: Trial): number => Math.min(3, Math.max(1.33, 0.75 / Math.max(cpu, clientLoad)));
 
 /** Up until the bound breaks, then halfway between what held and what broke. */

@@ -140,7 +140,10 @@ async function join(browser: Browser, port: number, room: string, query: string)
   return page;
 }
 
-/** Resolves once this page has seen a player's elbow go this far in all [m], floor frame; rejects with the way it has seen. */
+/**
+ * Resolves once this page has seen a player's elbow go this far in all [m], floor frame; rejects with the way it has
+ * seen.
+ */
 function elbowTravels(page: Page, seat: number, least = 0.2): Promise<unknown> {
   return page.waitForFunction(
     ([seat, least]) => {

@@ -117,7 +117,8 @@ test('a taller calibration makes a longer body under the same head @full', async
   await expect.poll(trunk).toBeGreaterThan(short + 0.03);
 });
 
-// The emulator's panel begins a session with the head where it was when the panel came: in pages of their own, where the test puts it.
+// The emulator's panel begins a session with the head where it was when the panel came: in pages of their own, where
+// the test puts it.
 freshTest(
   'worn: a person who never calibrated and then stands up straight grows, and the page says why @full',
   async ({ page }) => {

@@ -17,7 +17,9 @@ async function polyfill(): Promise<string> {
   return output[0].code;
 }
 
-/** The page with the measures of a person, on an emulated headset that tracks bodies as inverse kinematics draws them. */
+/**
+ * The page with the measures of a person, on an emulated headset that tracks bodies as inverse kinematics draws them.
+ */
 async function openOnTrackingHeadset(page: Page): Promise<void> {
   await open(page, 'emulate&quality=low&estimator=ik');
   await emulatedHeadset(page);

@@ -11,7 +11,10 @@ test.use({ viewport: { width: 640, height: 400 } });
 
 const patience = { timeout: 60_000 };
 
-/** Takes the graphics device away for 300 ms; resolves to the time [ms] from its return to a picture that is not one colour. */
+/**
+ * Takes the graphics device away for 300 ms; resolves to the time [ms] from its return to a picture that is not one
+ * colour.
+ */
 function loseGraphics(page: Page): Promise<number> {
   return page.evaluate(
     () =>

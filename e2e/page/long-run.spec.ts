@@ -21,7 +21,10 @@ interface Holdings {
   readonly heap: number;
 }
 
-/** Returns a page's heap after a garbage collection [MB], from a heap snapshot: objects, and code compiled by the engine. */
+/**
+ * Returns a page's heap after a garbage collection [MB], from a heap snapshot: objects, and code compiled by the
+ * engine.
+ */
 async function kept(cdp: CDPSession): Promise<{ readonly objects: number; readonly code: number }> {
   const parts: string[] = [];
   const hear = ({ chunk }: { chunk: string }) => void parts.push(chunk);

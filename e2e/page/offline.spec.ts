@@ -79,7 +79,9 @@ interface KeptFile {
   integrity: string;
 }
 
-/** Puts another version of the page where it is served from: another title, and its archery in a file of another name. */
+/**
+ * Puts another version of the page where it is served from: another title, and its archery in a file of another name.
+ */
 function publishNewer(folder: string): { readonly oldArchery: string } {
   const script = readFileSync(join(folder, 'sw.js'), 'utf8');
   const end = script.indexOf(';\n');

@@ -4,9 +4,9 @@ import { card, choose, errors } from '../mocap-card';
 import { expect, joint, keepPicture, open, test } from '../page-fixture';
 import { downloaded, recordTheActor } from '../recorded-actor';
 
-// The pictures of README.md as the page shows them now: what is kept in artifacts/screenshots goes to docs/images as JPEG when it was
-// looked at. That of the ball game is taken from `npm start`: tests are served by a host without rooms, and the page says so. That of our
-// bodies is all.png of `npm run avatars:try -- public/avatars`.
+// The pictures of README.md as the page shows them now: what is kept in artifacts/screenshots goes to docs/images as
+// JPEG when it was looked at. That of the ball game is taken from `npm start`: tests are served by a host without
+// rooms, and the page says so. That of our bodies is all.png of `npm run avatars:try -- public/avatars`.
 test.use({ viewport: { width: 1280, height: 720 } });
 
 const patience = { timeout: 240_000, intervals: [0] };
@@ -50,7 +50,8 @@ test('motion in: our own actor as a file, a moment of it by two methods with the
   await card(page).getByRole('button', { name: 'Pause' }).click(patience);
   await card(page).getByLabel('Time of the clip').fill('1.5');
   await card(page).getByLabel('On its right').selectOption('paper');
-  // Until its network has answered for this moment and the seconds before, a method draws inverse kinematics: then its figures stay.
+  // Until its network has answered for this moment and the seconds before, a method draws inverse kinematics: then its
+  // figures stay.
   let last = '';
   let stayed = 0;
   await expect

@@ -12,7 +12,10 @@ import { serveStatic } from '../static-server';
 
 const dist = fileURLToPath(new URL('../../dist', import.meta.url));
 
-/** The page from a host that serves files out of a folder and nothing else. It may ask for nothing beyond that folder, nor complain. */
+/**
+ * The page from a host that serves files out of a folder and nothing else. It may ask for nothing beyond that folder,
+ * nor complain.
+ */
 const test = base.extend<{ built: string; address: string; complaints: readonly string[] }>({
   built: [dist, { option: true }],
   address: async ({ built }, use) => {

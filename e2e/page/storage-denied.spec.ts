@@ -7,7 +7,10 @@ import { collectErrors, expect, joinedRoom, probe } from '../page-fixture';
 import { fillInDemographics, reaches, recordsOf, test } from '../study-participant';
 import { experimenter, shortStudy } from '../study-server';
 
-/** A page of a browser whose user lets no site store anything: localStorage throws, IndexedDB and service workers are refused. */
+/**
+ * A page of a browser whose user lets no site store anything: localStorage throws, IndexedDB and service workers are
+ * refused.
+ */
 async function inClosedBrowser(origin: string, launch: object, body: (page: Page) => Promise<void>): Promise<void> {
   const profile = mkdtempSync(join(tmpdir(), 'threepoint-profile-'));
   mkdirSync(join(profile, 'Default'));

@@ -10,8 +10,8 @@ import { probe } from '../page-fixture';
 import { bar, expectVoices, loudness, type Talker, test, voicesOf } from '../talkers';
 
 /**
- * The duration of talk and play [min]; THREEPOINT_SOAK_MINUTES lengthens it. A shorter run would measure compilation: code
- * compiled in the first four minutes takes 1 MB of a page's heap.
+ * The duration of talk and play [min]; THREEPOINT_SOAK_MINUTES lengthens it. A shorter run would measure compilation:
+ * code compiled in the first four minutes takes 1 MB of a page's heap.
  */
 const minutes = Number(process.env.THREEPOINT_SOAK_MINUTES ?? 10);
 /** One person mutes and unmutes so often, */
@@ -109,7 +109,10 @@ const countMatches = (page: Page) =>
 const median = (values: readonly number[]): number =>
   [...values].sort((a, b) => a - b)[values.length >> 1] ?? Number.NaN;
 
-/** How a figure stood in the second quarter of a run, and in the last: what was warming up is over, and one odd minute does not count. */
+/**
+ * How a figure stood in the second quarter of a run, and in the last: what was warming up is over, and one odd minute
+ * does not count.
+ */
 function quarters(run: readonly Minute[], of: (minute: Minute) => number): readonly [second: number, last: number] {
   const quarter = Math.ceil(run.length / 4);
   return [median(run.slice(quarter, 2 * quarter).map(of)), median(run.slice(-quarter).map(of))];
@@ -167,7 +170,10 @@ async function talkForAMinute(minute: number, until: number, [ann, ben]: readonl
   for (const page of both) await expectVoices(page);
 }
 
-/** How much more may be there in the last quarter of a run than in the second, where so much was, and one person has joined so often since. */
+/**
+ * How much more may be there in the last quarter of a run than in the second, where so much was, and one person has
+ * joined so often since.
+ */
 const allowed: Readonly<Record<keyof PageHolds, (was: number, joins: number) => number>> = {
   // What is compiled as it goes is part of it; a kilobyte a frame would be a megabyte in four minutes.
   heap: (was) => 0.05 * was,
@@ -178,7 +184,8 @@ const allowed: Readonly<Record<keyof PageHolds, (was: number, joins: number) => 
   // Some wait for one event.
   listeners: () => 5,
   connections: () => 0,
-  // Sounds of the game that are in the air; and Chromium keeps the source of a stream until its context is closed: the own voice's, and the other's.
+  // Sounds of the game that are in the air; and Chromium keeps the source of a stream until its context is closed: the
+  // own voice's, and the other's.
   audioNodes: (_, joins) => 12 + 2 * joins,
   geometries: () => 0,
   // Made when what has them is drawn for the first time: of one frame a minute that may be late.

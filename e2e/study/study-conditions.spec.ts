@@ -79,7 +79,8 @@ function trackedAt(samples: readonly Sample[], time: number): Point {
 /** The drawn hand is where the tracked one was 100 ms before, and clearly not where it is. */
 async function expectLate(page: Page): Promise<void> {
   const samples = await follow(page, 60, 0.25);
-  // The way between two frames is taken for straight, by the page and here; the first tenth of a second is before the movement.
+  // The way between two frames is taken for straight, by the page and here; the first tenth of a second is before the
+  // movement.
   const moving = samples.slice(12);
   for (const { time, drawn } of moving) expect(distance(drawn, trackedAt(samples, time - 0.1))).toBeLessThan(0.004);
   const behind = moving.map(({ tracked, drawn }) => distance(tracked, drawn));

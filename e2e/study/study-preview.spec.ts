@@ -120,7 +120,10 @@ async function readCanvases(page: Page): Promise<void> {
   });
 }
 
-/** Adds what stands on the screen at hand: words, what screen readers say, and what is drawn, in one line and line by line. */
+/**
+ * Adds what stands on the screen at hand: words, what screen readers say, and what is drawn, in one line and line by
+ * line.
+ */
 async function readScreen(page: Page, said: Set<string>): Promise<void> {
   const view = page.locator('#view');
   await expect(view.locator('.study-card:visible, canvas:visible, .playing:visible')).toHaveCount(1);

@@ -11,7 +11,10 @@ import { experimenter } from '../study-server';
 
 const shipped = (file: string) => JSON.parse(readFileSync(`public/studies/${file}`, 'utf8')) as Record<string, unknown>;
 
-/** A whole simulated study on the server, as `npm run study:simulate` makes it, with these effects on answers [points of 1 to 5]. */
+/**
+ * A whole simulated study on the server, as `npm run study:simulate` makes it, with these effects on answers [points of
+ * 1 to 5].
+ */
 async function simulateOn(origin: string, file: unknown, effects: Readonly<Record<string, number>>) {
   const plan = simulatedPlan(checkedPlan(file));
   const experimenting = experimenter(origin);
@@ -87,7 +90,9 @@ test('results of fifteen simulated participants; export, delete, export', async 
   expect(recordsIn(Buffer.from(await after.arrayBuffer()))).toBe(0);
 });
 
-/** Three avatars between participants, each with three latencies within; the work load is what the avatars differ in. */
+/**
+ * Three avatars between participants, each with three latencies within; the work load is what the avatars differ in.
+ */
 function mixedStudy() {
   const file = shipped('latency.json');
   const avatars = ['woman', 'stout', 'child'] as const;

@@ -14,7 +14,10 @@ import {
 } from '../study-participant';
 import { experimenter, shortBallStudy } from '../study-server';
 
-/** The match stands longer than any page takes to draw what has happened [s]: for so many pictures, of which each takes half a second. */
+/**
+ * The match stands longer than any page takes to draw what has happened [s]: for so many pictures, of which each takes
+ * half a second.
+ */
 const standsSeconds = 15;
 const standsPictures = 2 * standsSeconds + 1;
 /** For what takes each page some of its pictures. */
@@ -33,7 +36,8 @@ test('three participants play the ball game together, each in a headset of their
   const pages = await Promise.all(
     people.map(async () => (await browser.newContext({ viewport: { width: 320, height: 220 } })).newPage()),
   );
-  // Real headsets compute each for themselves: those that wait here draw seldom meanwhile, so that the others draw often enough.
+  // Real headsets compute each for themselves: those that wait here draw seldom meanwhile, so that the others draw
+  // often enough.
   for (const page of pages) {
     await page.addInitScript(() => {
       const next = window.requestAnimationFrame.bind(window);
@@ -96,7 +100,8 @@ test('three participants play the ball game together, each in a headset of their
   for (const { body } of trials) {
     expect(body.outcome.maximum).toBe(20);
     expect(body.outcome.ended).toBe('time');
-    // All of the match, to what a page knows of the room's clock, and no second of the pause: had it counted, the outcome would be as much longer, however late a page draws the end.
+    // All of the match, to what a page knows of the room's clock, and no second of the pause: had it counted, the
+    // outcome would be as much longer, however late a page draws the end.
     expect(body.outcome.seconds).toBeGreaterThan(matchSeconds - 1);
     expect(body.outcome.clock?.pauses).toHaveLength(1);
     expect(body.outcome.clock?.pauses[0]?.seconds).toBeGreaterThan(standsSeconds);

@@ -1,7 +1,10 @@
 import { closeSync, fsyncSync, openSync, renameSync, rmSync, writeSync } from 'node:fs';
 import { basename, dirname, join } from 'node:path';
 
-/** Writes a file atomically: to a temporary file in the same folder, which is then renamed. Throws errors of the file system. */
+/**
+ * Writes a file atomically: to a temporary file in the same folder, which is then renamed. Throws errors of the file
+ * system.
+ */
 export function writeWhole(path: string, parts: Iterable<string | Uint8Array>): void {
   const temporary = join(dirname(path), `.${basename(path)}.${process.pid}.part`);
   const file = openSync(temporary, 'wx');

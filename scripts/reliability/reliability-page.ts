@@ -7,7 +7,9 @@ export type Figures = Readonly<Partial<Record<RowName, Readonly<Record<string, s
 export const missingFigures = (figures: Figures): RowName[] =>
   (Object.keys(rows) as RowName[]).filter((name) => Object.keys(figures[name] ?? {}).length === 0);
 
-/** Merges the figures of a run into those of earlier runs, so that a run of some tests keeps the figures of the others. */
+/**
+ * Merges the figures of a run into those of earlier runs, so that a run of some tests keeps the figures of the others.
+ */
 export function merge(
   before: Figures,
   lines: readonly { row: RowName; figures: Record<string, string | number> }[],

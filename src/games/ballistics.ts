@@ -25,8 +25,8 @@ export const velocityAt = ({ velocity }: Launch, seconds: number, target: Mutabl
   setVec3(target, velocity.x, velocity.y - gravity * seconds, velocity.z);
 
 /**
- * Writes the real roots of a·t² + b·t + c into `target`, ascending and without cancellation. With a near 0 the equation is linear; without real roots
- * the list is empty.
+ * Writes the real roots of a·t² + b·t + c into `target`, ascending and without cancellation. With a near 0 the equation
+ * is linear; without real roots the list is empty.
  */
 export function roots(a: number, b: number, c: number, target: number[] = []): readonly number[] {
   target.length = 0;
@@ -41,7 +41,10 @@ export function roots(a: number, b: number, c: number, target: number[] = []): r
 
 const ascending = (first: number, second: number): number => first - second;
 
-/** Returns the seconds until the flight comes down through a height [m]; 0 if it starts below, or at the height without rising. */
+/**
+ * Returns the seconds until the flight comes down through a height [m]; 0 if it starts below, or at the height without
+ * rising.
+ */
 export function fallsTo({ position, velocity }: Launch, height: number): number {
   const above = position.y - height;
   if (above < 0 || (above === 0 && velocity.y <= 0)) return 0;
@@ -52,8 +55,8 @@ export function fallsTo({ position, velocity }: Launch, height: number): number 
 const offset = vec3(0, 0, 0);
 
 /**
- * Writes into `direction` the unit direction of a launch at `from` with `speed` [m/s] through `target`, the flatter of two parabolas. Returns null if the
- * target is out of reach.
+ * Writes into `direction` the unit direction of a launch at `from` with `speed` [m/s] through `target`, the flatter of
+ * two parabolas. Returns null if the target is out of reach.
  */
 export function launchTowards(
   target: Vec3,

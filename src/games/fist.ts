@@ -41,7 +41,10 @@ const wristX = vec3(0, 0, 0);
 const wristY = vec3(0, 0, 0);
 const wristZ = vec3(0, 0, 0);
 
-/** Writes the wrist whose fist is at `fist`. The knuckles point in their direction; the thumb is as near to its own as a right angle permits. */
+/**
+ * Writes the wrist whose fist is at `fist`. The knuckles point in their direction; the thumb is as near to its own as a
+ * right angle permits.
+ */
 export function wristAround<F extends Frame>(
   side: Side,
   fist: Vec3,

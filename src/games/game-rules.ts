@@ -1,6 +1,6 @@
 /**
- * The rules of a game as a reducer with a fixed tick, without clock or outside randomness. The host decides when to step; the same actions in the same
- * ticks always give the same states.
+ * The rules of a game as a reducer with a fixed tick, without clock or outside randomness. The host decides when to
+ * step; the same actions in the same ticks always give the same states.
  */
 export interface GameRules<State, Action, Event, Options> {
   /** Length of a tick [s]. */

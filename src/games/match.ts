@@ -6,8 +6,8 @@ export interface Match<State, Action, Event> {
   /** Seconds from the end of the last tick to the newest frame, usually negative; drawing extrapolates by it. */
   readonly lead: number;
   /**
-   * Steps every tick that has begun by `time` [s, any monotonic clock; the first call starts tick 0], and returns the events. The actions belong to the
-   * tick in which the frame lies, or to the next one if that has been stepped.
+   * Steps every tick that has begun by `time` [s, any monotonic clock; the first call starts tick 0], and returns the
+   * events. The actions belong to the tick in which the frame lies, or to the next one if that has been stepped.
    */
   advance(time: number, actions: readonly Action[]): readonly Event[];
 }

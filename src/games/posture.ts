@@ -2,10 +2,15 @@ import type { MutablePose } from 'threepoint/core/math/pose';
 import { fromAxes, type MutableQuat, quat } from 'threepoint/core/math/quat';
 import { cross, type MutableVec3, normalise, scale, setVec3, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 
-/** Arm length (shoulder to wrist) and half the shoulder width, as shares of the standing eye height (averages of the body model). */
+/**
+ * Arm length (shoulder to wrist) and half the shoulder width, as shares of the standing eye height (averages of the
+ * body model).
+ */
 export const armShare = 0.36;
 export const shoulderShare = 0.114;
-/** Distances of the shoulders below the eyes and behind them, as shares of the arm length, for a gaze along the trunk. */
+/**
+ * Distances of the shoulders below the eyes and behind them, as shares of the arm length, for a gaze along the trunk.
+ */
 export const shoulderDrop = 0.35;
 export const shoulderBehind = 0.19;
 

@@ -36,8 +36,9 @@ export class TooManyGuesses extends Error {
 /** Limits how often secrets may be tried: the delay grows with the number of wrong guesses. */
 export interface AuthThrottle {
   /**
-   * Calls `isRight` where this address and this study have a guess left; throws TooManyGuesses otherwise. `isRight` is synchronous; where it
-   * throws, no guess is counted. A repeated wrong secret counts once. A secret that was right before is never delayed.
+   * Calls `isRight` where this address and this study have a guess left; throws TooManyGuesses otherwise. `isRight` is
+   * synchronous; where it throws, no guess is counted. A repeated wrong secret counts once. A secret that was right
+   * before is never delayed.
    */
   attempt(guess: Guess, isRight: () => boolean): Promise<boolean>;
 }

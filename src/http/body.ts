@@ -1,7 +1,9 @@
 import type { IncomingMessage } from 'node:http';
 import { HttpError } from './answer';
 
-/** Passes the body to `onChunk` as it arrives. Throws an HttpError if it is longer than the limit [bytes] or is cut off. */
+/**
+ * Passes the body to `onChunk` as it arrives. Throws an HttpError if it is longer than the limit [bytes] or is cut off.
+ */
 export async function readBody(
   request: IncomingMessage,
   limit: number,

@@ -41,8 +41,9 @@ export function parseClientAddress(text: string): ClientAddress | null {
 }
 
 /**
- * Returns the address of the client behind a request: with a trusted proxy in front the last entry of X-Forwarded-For, which that proxy
- * wrote, else the other end of the connection. Null where that is no address, or where the connection is closed.
+ * Returns the address of the client behind a request: with a trusted proxy in front the last entry of X-Forwarded-For,
+ * which that proxy wrote, else the other end of the connection. Null where that is no address, or where the connection
+ * is closed.
  */
 export function findClientAddress({ headers, socket }: IncomingMessage, trustProxy: boolean): ClientAddress | null {
   const forwarded = trustProxy ? headers['x-forwarded-for'] : undefined;
@@ -59,6 +60,9 @@ export function requiredAddress(address: ClientAddress | null): ClientAddress {
   );
 }
 
-/** Returns the address of the client behind a request, for a limit that counts it. Throws an HttpError 400 where there is none. */
+/**
+ * Returns the address of the client behind a request, for a limit that counts it. Throws an HttpError 400 where there
+ * is none.
+ */
 export const clientAddressOf = (request: IncomingMessage, trustProxy: boolean): ClientAddress =>
   requiredAddress(findClientAddress(request, trustProxy));

@@ -10,8 +10,9 @@ export class GroupCommit {
   }
 
   /**
-   * Resolves when a flush has ended that began after this call: one under way may have missed what the caller has just written. Rejects
-   * when it fails, and every time after that: the system drops the pages that it could not write, and a later flush does not report them.
+   * Resolves when a flush has ended that began after this call: one under way may have missed what the caller has just
+   * written. Rejects when it fails, and every time after that: the system drops the pages that it could not write, and
+   * a later flush does not report them.
    */
   flushed(): Promise<void> {
     this.#next ??= this.#last.then(() => {

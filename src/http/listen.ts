@@ -6,8 +6,8 @@ import { ConfigurationError } from './configuration-error';
 const attempts = 20;
 
 /**
- * Listens on the port, or on the next free one of twenty, and resolves to that port; 0: any. Rejects with a ConfigurationError if none is free
- * or the system refuses.
+ * Listens on the port, or on the next free one of twenty, and resolves to that port; 0: any. Rejects with a
+ * ConfigurationError if none is free or the system refuses.
  */
 export async function listenOnFreePort(server: Server, host: string, port: number): Promise<number> {
   for (let candidate = port; candidate < port + attempts && candidate <= 65535; candidate++) {

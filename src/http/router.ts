@@ -101,8 +101,9 @@ function matcherOf<Access extends string>(service: Service<Access>, route: Route
 const api = /^\/api(\/|$)/;
 
 /**
- * Creates the listener for all requests: it dispatches to the routes, and passes other paths to `page`. It never throws. Statuses: 400 for a
- * malformed target, 403 and 421 for other sites (`site`), 404, 405, 413, 415, and 500 for internal errors.
+ * Creates the listener for all requests: it dispatches to the routes, and passes other paths to `page`. It never
+ * throws. Statuses: 400 for a malformed target, 403 and 421 for other sites (`site`), 404, 405, 413, 415, and 500 for
+ * internal errors.
  */
 export function createRouter(
   services: readonly Service[],

@@ -38,8 +38,8 @@ function withoutRepeats(text: string): { readonly kept: string; readonly repeats
 }
 
 /**
- * Returns an upper bound of a secret's entropy [bits] from its length and alphabet; words and repetitions count little. It cannot prove that a
- * secret is random, but finds those that plainly are not.
+ * Returns an upper bound of a secret's entropy [bits] from its length and alphabet; words and repetitions count little.
+ * It cannot prove that a secret is random, but finds those that plainly are not.
  */
 export function secretBits(secret: string): number {
   const { kept, repeats } = withoutRepeats(secret);

@@ -1,5 +1,6 @@
 /**
- * Whether the page's host is a threepoint server: not known yet, asked, here, none (a host of static files answered), or silent (no answer).
+ * Whether the page's host is a threepoint server: not known yet, asked, here, none (a host of static files answered),
+ * or silent (no answer).
  */
 export type ServerState = 'unknown' | 'asked' | 'here' | 'none' | 'silent';
 
@@ -25,8 +26,8 @@ async function stateFrom(response: Response): Promise<ServerState> {
 }
 
 /**
- * Finds out by a request whether the page's host has rooms and studies. The built page includes a file public/api/rooms, which a static host
- * serves; a threepoint server never serves files below /api.
+ * Finds out by a request whether the page's host has rooms and studies. The built page includes a file
+ * public/api/rooms, which a static host serves; a threepoint server never serves files below /api.
  */
 export class ServerPresence {
   readonly #server: string;

@@ -11,11 +11,14 @@ export interface SiteRefusal {
 /** Checks the host and the origin of requests. */
 export interface SitePolicy {
   /**
-   * Returns why the request's Host is not a name of this server; null: it is. This blocks DNS rebinding, in which another site's name points at
-   * this machine. IP addresses are allowed, because they cannot be rebound.
+   * Returns why the request's Host is not a name of this server; null: it is. This blocks DNS rebinding, in which
+   * another site's name points at this machine. IP addresses are allowed, because they cannot be rebound.
    */
   refusalOfHost(request: IncomingMessage): SiteRefusal | null;
-  /** Returns why the request's origin may not use the server; null: it may. Programs other than browsers send no origin; they need a secret. */
+  /**
+   * Returns why the request's origin may not use the server; null: it may. Programs other than browsers send no origin;
+   * they need a secret.
+   */
   refusalOfOrigin(request: IncomingMessage): SiteRefusal | null;
 }
 

@@ -30,8 +30,8 @@ export function targetOf(url: string | undefined): Target | null {
 }
 
 /**
- * Returns what is wrong with the host of a request, or null. A request has one Host header (HTTP/1.0: at most one), and an absolute target names
- * the same authority. With two names a proxy and a server could route differently.
+ * Returns what is wrong with the host of a request, or null. A request has one Host header (HTTP/1.0: at most one), and
+ * an absolute target names the same authority. With two names a proxy and a server could route differently.
  */
 export function complaintAboutHost({ url = '', headersDistinct, httpVersion }: IncomingMessage): string | null {
   const { host: hosts = [] } = headersDistinct;

@@ -14,7 +14,10 @@ export interface ThreadLimits {
 
 /** A call has no result, because the thread is busy or has ended. */
 export class ThreadUnavailable extends Error {
-  /** full: the call was not made. late: the call timed out, and may still run. ended: the thread ended, perhaps after the call. */
+  /**
+   * full: the call was not made. late: the call timed out, and may still run. ended: the thread ended, perhaps after
+   * the call.
+   */
   readonly reason: 'full' | 'late' | 'ended';
 
   constructor(reason: ThreadUnavailable['reason']) {
@@ -57,7 +60,10 @@ function bytesIn(values: readonly unknown[]): readonly Uint8Array<ArrayBuffer>[]
 const buffersIn = (values: readonly unknown[]): ArrayBuffer[] =>
   bytesIn(values).flatMap(({ byteLength, buffer }) => (byteLength === buffer.byteLength ? [buffer] : []));
 
-/** Starts a thread with this JavaScript file: NAME-worker.mjs, which loads NAME-work.ts and is itself that work in the built server. */
+/**
+ * Starts a thread with this JavaScript file: NAME-worker.mjs, which loads NAME-work.ts and is itself that work in the
+ * built server.
+ */
 export const startThread = (script: URL, workerData?: object): Worker =>
   new Worker(script, { workerData, execArgv: [] });
 
@@ -89,7 +95,10 @@ export class ThreadCalls<Api extends ThreadApi> {
     });
   }
 
-  /** Calls a function. Rejects with ThreadUnavailable if the thread is full or late, and with the text of an error that the function throws. */
+  /**
+   * Calls a function. Rejects with ThreadUnavailable if the thread is full or late, and with the text of an error that
+   * the function throws.
+   */
   call<Name extends keyof Api & string>(
     name: Name,
     args: Parameters<Api[Name]>,

@@ -36,7 +36,10 @@ export interface ServeOptions {
   readonly upgrade?: UpgradeListener;
   /** Limits the connections of each address; every connection is accepted without it. */
   readonly connectionLimiter?: ConnectionLimiter;
-  /** Idle timeout of a connection [ms], also while a client does not read; WebSockets have their own pings. Default: 30,000. */
+  /**
+   * Idle timeout of a connection [ms], also while a client does not read; WebSockets have their own pings. Default:
+   * 30,000.
+   */
   readonly silenceMs?: number;
 }
 

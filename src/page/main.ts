@@ -38,7 +38,10 @@ async function showFirstBody({ avatarShown, frame }: Page, loading: PageLoading)
   loading.bodyShown();
 }
 
-/** Goes to the place in the address, and then opens what the address asks for: arriving in a game ends a replay and closes the controls. */
+/**
+ * Goes to the place in the address, and then opens what the address asks for: arriving in a game ends a replay and
+ * closes the controls.
+ */
 async function openFromAddress(
   { activities, controls, mocap, recorder }: Page,
   { switches }: PageContext,
@@ -60,7 +63,10 @@ async function joinStudyOfAddress(page: Page, context: PageContext): Promise<voi
   page.stage.studio.scene.add(joined.run.object);
 }
 
-/** Keeps the page for a visit without a network, now that this one has all it needs. A study runs on what its server serves. */
+/**
+ * Keeps the page for a visit without a network, now that this one has all it needs. A study runs on what its server
+ * serves.
+ */
 function storeOfflineCopy({ kept }: Page, { switches }: PageContext): void {
   // Only what has been built for good can be kept.
   if (import.meta.env.PROD && !switches.study) void kept.keep(navigator.serviceWorker);

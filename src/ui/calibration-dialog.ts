@@ -7,7 +7,10 @@ export interface CalibrationDialog {
   hide(): void;
 }
 
-/** countdown: seconds left until measuring. measuring: part of it done, 0 to 1. done, failed: a closing sentence, in English. */
+/**
+ * countdown: seconds left until measuring. measuring: part of it done, 0 to 1. done, failed: a closing sentence, in
+ * English.
+ */
 export type CalibrationStep =
   | { readonly kind: 'countdown'; readonly secondsLeft: number }
   | { readonly kind: 'measuring'; readonly part: number }

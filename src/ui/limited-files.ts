@@ -21,8 +21,9 @@ export interface ReadOptions {
 }
 
 /**
- * The bytes of a file of this device or of what an address answers. What is larger than its kind may be is refused before it is read, or as
- * soon as that shows. Rejects with a sentence that names the file; with a PassingFault where the network or the server is to blame.
+ * The bytes of a file of this device or of what an address answers. What is larger than its kind may be is refused
+ * before it is read, or as soon as that shows. Rejects with a sentence that names the file; with a PassingFault where
+ * the network or the server is to blame.
  */
 export async function readLimited(
   source: string | File,

@@ -9,7 +9,10 @@ export interface Notice {
 }
 
 export interface Notices {
-  /** Shows a sentence. The same sentence twice is shown once; information leaves by itself, trouble stays until closed or over. */
+  /**
+   * Shows a sentence. The same sentence twice is shown once; information leaves by itself, trouble stays until closed
+   * or over.
+   */
   show(level: NoticeLevel, text: string): void;
   /** Removes a notice that is no longer true. */
   withdraw(text: string): void;

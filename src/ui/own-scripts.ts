@@ -11,8 +11,9 @@ export function ownScript(address: string, folder: string): string | null {
 }
 
 /**
- * Lets workers and the service worker be made from the page's own files. Under the server's policy (require-trusted-types-for) a browser refuses
- * every other address of a script, and any text as markup or code. Browsers without Trusted Types have the rest of the policy.
+ * Lets workers and the service worker be made from the page's own files. Under the server's policy
+ * (require-trusted-types-for) a browser refuses every other address of a script, and any text as markup or code.
+ * Browsers without Trusted Types have the rest of the policy.
  */
 export function allowOwnScripts(): void {
   const { trustedTypes } = globalThis as { readonly trustedTypes?: TrustedTypes };

@@ -37,8 +37,8 @@ export function qrPicture({ side, isDark }: QrCode): SVGSVGElement {
 }
 
 /**
- * On a canvas, black on white, in the middle of this square [pixels]. Each module is a whole number of pixels wide: the code is as large as that
- * lets it be.
+ * On a canvas, black on white, in the middle of this square [pixels]. Each module is a whole number of pixels wide: the
+ * code is as large as that lets it be.
  */
 export function drawQrCode(
   context: CanvasRenderingContext2D,

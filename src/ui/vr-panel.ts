@@ -8,7 +8,10 @@ import {
   Vector3,
 } from 'three';
 
-/** A flat panel in the world that is drawn on a 2D canvas; visible from its front (+Z) only, so that a mirror shows no back. */
+/**
+ * A flat panel in the world that is drawn on a 2D canvas; visible from its front (+Z) only, so that a mirror shows no
+ * back.
+ */
 export interface VrPanel {
   readonly mesh: Mesh;
   readonly width: number;

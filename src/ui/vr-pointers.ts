@@ -12,8 +12,8 @@ import {
 } from 'three';
 
 /**
- * What one input source points with: a ray (origin, direction, world) and, where there is one, a finger tip. The same object in every frame
- * while its source is there, as of the last `take`.
+ * What one input source points with: a ray (origin, direction, world) and, where there is one, a finger tip. The same
+ * object in every frame while its source is there, as of the last `take`.
  */
 export interface Pointer {
   readonly origin: Vector3;
@@ -32,7 +32,10 @@ export interface VrPointers {
   take(): readonly Pointer[];
 }
 
-/** Two hands, and a pinch of each: where eyes aim, hands themselves select nothing, and a pinch is an input source beside them. */
+/**
+ * Two hands, and a pinch of each: where eyes aim, hands themselves select nothing, and a pinch is an input source
+ * beside them.
+ */
 const mostSources = 4;
 
 /** Reads target rays, triggers and index fingers through three; poses themselves belong to xr/input-reader. */

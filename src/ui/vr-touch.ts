@@ -15,7 +15,9 @@ export interface PanelTarget {
 
 /** Rays and finger tips on one panel. */
 export interface PanelTouch {
-  /** What the hands point at and press in this frame; a target pressed by both hands is pressed once. Shows the rays. */
+  /**
+   * What the hands point at and press in this frame; a target pressed by both hands is pressed once. Shows the rays.
+   */
   follow<Target extends PanelTarget>(
     pointers: readonly Pointer[],
     targets: readonly Target[],

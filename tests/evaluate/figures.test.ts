@@ -8,7 +8,10 @@ import { person, recordedMotion } from './recorded-motion';
 
 type Truth = MeasuredFrame['truth'];
 
-/** A person upright with the wrists right, up and forward of the shoulders' middle [m], turned by yaw and standing anywhere. */
+/**
+ * A person upright with the wrists right, up and forward of the shoulders' middle [m], turned by yaw and standing
+ * anywhere.
+ */
 function standing(left: Vec3, right: Vec3, yaw = 0, leanSideways = 0): Truth {
   const shoulders = vec3(leanSideways, 1.4, 0);
   const hand = ({ x, y, z }: Vec3) => add(shoulders, vec3(x, y, -z));

@@ -9,7 +9,9 @@ import { movingPerson } from '../threepoint/core/estimation/moving-person';
 
 export const person: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
 
-/** Generated motion with a truth that a body could have: where IK for another body of nearly this size puts the joints. */
+/**
+ * Generated motion with a truth that a body could have: where IK for another body of nearly this size puts the joints.
+ */
 export function recordedMotion(seed: number, frames: number, rateHz = 60): RecordedFrame[] {
   const other: Calibration = { eyeHeight: person.eyeHeight * 0.98, armSpan: person.armSpan * 1.03 };
   const at = movingPerson(seed, person, { x: 0.3, z: -0.2, yaw: 2 });

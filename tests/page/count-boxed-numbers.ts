@@ -1,5 +1,5 @@
-// Prints, as JSON, how many bytes on the heap each call of an operation leaves once it is compiled: a program of its own, because
-// the records of property tests have x, y and z too (see `Vec3`).
+// Prints, as JSON, how many bytes on the heap each call of an operation leaves once it is compiled: a program of its
+// own, because the records of property tests have x, y and z too (see `Vec3`).
 import { Session } from 'node:inspector/promises';
 import 'threepoint-page/archery/archery-play';
 import 'threepoint-page/ball/ball-play';

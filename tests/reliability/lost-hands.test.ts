@@ -40,7 +40,8 @@ test('a wrist goes to rest and comes back without a jump, whichever hand, howeve
   let cases = 0;
   for (const name of ['ik', 'learned', 'paper'] as const) {
     const network = name === 'ik' ? undefined : await openShippedModel(name);
-    // Networks cost a hundred times as much as IK and share its handling of lost hands: they run all cases at night only.
+    // Networks cost a hundred times as much as IK and share its handling of lost hands: they run all cases at night
+    // only.
     const thorough = name === 'ik' || isNightly;
     for (const which of thorough ? (['left', 'right', 'both'] as const) : (['both'] as const)) {
       for (const how of ['null', 'emulated'] as const) {

@@ -9,7 +9,10 @@ function callingTest(): string {
   return path;
 }
 
-/** Prints a test's figures for a row of docs/reliability.md, and appends them to the file of `npm run reliability` if set. */
+/**
+ * Prints a test's figures for a row of docs/reliability.md, and appends them to the file of `npm run reliability` if
+ * set.
+ */
 export function reportFigures(row: RowName, figures: Readonly<Record<string, string | number>>): void {
   printFigures(`reliability, ${row}`, figures);
   const test = callingTest();

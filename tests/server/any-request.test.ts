@@ -12,7 +12,10 @@ const batches = isNightly ? 5000 : 50;
 const patienceMs = 20_000;
 let sent = 0;
 
-/** Sends the bytes and no more on a connection of their own, and resolves to the first bytes that come back; empty: none came. */
+/**
+ * Sends the bytes and no more on a connection of their own, and resolves to the first bytes that come back; empty: none
+ * came.
+ */
 async function answerTo(port: number, bytes: Buffer): Promise<string> {
   sent += 1;
   // Every address of this machine in turn: what one may do is limited.

@@ -1,4 +1,5 @@
-// Asks a server for its health again and again, in a process of its own: what keeps the tests busy does not count. The argument is its address.
+// Asks a server for its health again and again, in a process of its own: what keeps the tests busy does not count. The
+// argument is its address.
 import { percentile } from '../print-figures';
 
 const url = process.argv[2] as string;

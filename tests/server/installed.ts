@@ -2,8 +2,8 @@ import { existsSync } from 'node:fs';
 import { join } from 'node:path';
 
 /**
- * Where a program of the distribution is; null: it is not installed, and its tests are left out. With THREEPOINT_PROGRAMS=required none may
- * be left out: then a program that is missing throws.
+ * Where a program of the distribution is; null: it is not installed, and its tests are left out. With
+ * THREEPOINT_PROGRAMS=required none may be left out: then a program that is missing throws.
  */
 export function installed(name: string): string | null {
   const folders = [...(process.env.PATH ?? '').split(':'), '/usr/sbin', '/usr/local/sbin'];

@@ -3,8 +3,8 @@ import fc from 'fast-check';
 import type { Route } from 'threepoint-http/router';
 import { experimenterToken } from './server-child';
 
-// Requests as bytes, by a grammar of what is right and what is not: each part is right more often than not, so that what is wrong is
-// met behind every check, and not only at the first.
+// Requests as bytes, by a grammar of what is right and what is not: each part is right more often than not, so that
+// what is wrong is met behind every check, and not only at the first.
 
 type RouteLine = Pick<Route, 'method' | 'path' | 'bodyLimit'>;
 

@@ -74,7 +74,10 @@ export interface Health {
   readonly p95Ms: number;
 }
 
-/** Asks a server for its health until the test is over; tells of what was since the last question, once it has asked so often. */
+/**
+ * Asks a server for its health until the test is over; tells of what was since the last question, once it has asked so
+ * often.
+ */
 export function probeHealth(url: string): (atLeast?: number) => Promise<Health> {
   const script = fileURLToPath(new URL('./health-prober.ts', import.meta.url));
   const child = spawn(process.execPath, ['--import', 'tsx', script, url], {

@@ -1,4 +1,5 @@
-// All that `npm start` serves in a process of its own, so that requests can try to end it. The argument is a directory for its files.
+// All that `npm start` serves in a process of its own, so that requests can try to end it. The argument is a directory
+// for its files.
 import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { monitorEventLoopDelay } from 'node:perf_hooks';

@@ -1,4 +1,5 @@
-// A server whose ports are all taken, in a process of its own as `npm start` is. The argument is a directory for its files.
+// A server whose ports are all taken, in a process of its own as `npm start` is. The argument is a directory for its
+// files.
 import { once } from 'node:events';
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:net';

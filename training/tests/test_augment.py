@@ -33,7 +33,9 @@ STILL = np.array([0.0, 0.0, 0.0, 1.0])
 
 
 def corpus_rows(corpus=CORPUS, tilts_of=None):
-    """Inputs and targets of every frame of the corpus with exact trackers, as it is and mirrored; hands turned by these tilts, else the own."""
+    """Inputs and targets of every frame of the corpus with exact trackers, as it is and mirrored; hands turned by these
+    tilts, else the own.
+    """
     tilts_of = tilts_of or hand_tilt.ForearmMeans(corpus, tuple(corpus.people)).of
     wearer = Wearer(EYES_FROM_HEAD_JOINT, STILL, np.zeros((2, 3)), np.stack([STILL, STILL]))
     rows = []
@@ -221,7 +223,8 @@ def test_trackers_jitter_in_position_and_rotation_at_every_frame_of_the_window_a
     for frame in moved:
         # In eye heights; generated people's are 1.4 to 1.8 m.
         assert 0.5e-3 < frame[:, HEADSET_HEIGHT].std() < 0.75e-3
-        # An axis is moved by the rotations about the two others, and by those of the head that the heading frame follows.
+        # An axis is moved by the rotations about the two others, and by those of the head that the heading frame
+        # follows.
         assert np.linalg.norm(frame[:, HANDS[0]][:, 3:6], axis=1).mean() == pytest.approx(
             1e-2 * np.sqrt(2 / 3), rel=0.25
         )
@@ -246,7 +249,8 @@ def test_seated_people_are_lower_and_shaped_the_same():
 
 
 def test_hands_continue_their_forearms_on_average():
-    """The hand's −Z lies along the forearm, except for the bend of the wrist, for every person, side and mirror image."""
+    """The hand's −Z lies along the forearm, except for the bend of the wrist, for every person, side and mirror image.
+    """
 
     def bends(corpus):
         batch = draw_batch(

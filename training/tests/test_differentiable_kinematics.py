@@ -1,4 +1,6 @@
-"""Facts about torso and arm fitting as the loss has it; tests/threepoint/core/estimation/fitted-joints.test.ts holds it to the page's own."""
+"""Facts about torso and arm fitting as the loss has it; tests/threepoint/core/estimation/fitted-joints.test.ts holds it
+to the page's own.
+"""
 
 import numpy as np
 import pytest

@@ -1,4 +1,6 @@
-"""Facts about skeletons of other programs: lost bones are put back, a rest that is no T-pose is refused or mapped, links are followed."""
+"""Facts about skeletons of other programs: lost bones are put back, a rest that is no T-pose is refused or mapped,
+links are followed.
+"""
 
 import json
 from pathlib import Path
@@ -47,7 +49,8 @@ def test_a_bvh_of_cmuconvert_has_the_joints_of_its_original(tmp_path: Path) -> N
     converted = folder(tmp_path, "bvh")
     write_cmuconvert_bvh(converted / "01_01.bvh", angles)
     a, b = prepared(original), prepared(converted)
-    # Lost: 11 cm of the trunk and 10 cm of the forearm. The thorax is an estimate, which this skeleton is near to; nothing else is.
+    # Lost: 11 cm of the trunk and 10 cm of the forearm. The thorax is an estimate, which this skeleton is near to;
+    # nothing else is.
     for joint in ("head", "neck", "leftUpperArm", "rightLowerArm", "leftHand", "rightHand"):
         assert furthest(a, b, joint) < 0.005, joint
     for joint in ("hips", "spine", "chest"):

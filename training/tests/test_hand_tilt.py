@@ -78,7 +78,8 @@ def test_the_calibration_errs_by_its_standard_deviation():
 
 
 def test_ik_of_turned_hands_is_fitted_beside_that_of_hands_as_they_come():
-    """Towards bodies that IK itself posed, every other frame with turned hands: each pole is found by its own frames."""
+    """Towards bodies that IK itself posed, every other frame with turned hands: each pole is found by its own frames.
+    """
     tracked = CORPUS.positions[::3, [4, 7, 10]].astype(np.float64), CORPUS.rotations[::3].astype(np.float64)
     positions, rotations, _, _ = solve_ik.to_heading(*tracked)
     are_turned = np.broadcast_to(np.arange(len(positions))[:, None] % 2 == 1, (len(positions), 2))

@@ -1,4 +1,5 @@
-"""Facts about the table of legs: people alike, with long clips and short ones; another laboratory in rows of its own."""
+"""Facts about the table of legs: people alike, with long clips and short ones; another laboratory in rows of its own.
+"""
 
 from pathlib import Path
 

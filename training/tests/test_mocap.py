@@ -91,7 +91,8 @@ def test_a_bone_turns_about_its_own_axes(tmp_path: Path) -> None:
     # At rest: two up, three along X.
     np.testing.assert_allclose(at["upper:end"][0], [1, 4, 3], atol=1e-9)
     np.testing.assert_allclose(at["lower:end"][0], [4, 4, 3], atol=1e-9)
-    # The root a quarter about Y; upper a quarter about its Z, which its axis leaves where it is: up becomes −X, which the root takes to +Z.
+    # The root a quarter about Y; upper a quarter about its Z, which its axis leaves where it is: up becomes −X, which
+    # the root takes to +Z.
     np.testing.assert_allclose(at["upper:end"][1], [0, 0, 2], atol=1e-9)
 
 

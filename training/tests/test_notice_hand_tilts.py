@@ -120,7 +120,9 @@ def test_a_calibrated_tilt_is_kept_longer_than_the_usual_tilt():
 
 @pytest.mark.parametrize(("off", "way"), [(0.2, 0.5), (0.7, 0.8)])
 def test_a_calibrated_tilt_is_doubted_where_hands_are_held_far_from_it(off, way):
-    """After a travel that weighs as much as the measured tilt: half of the way to where hands are held, most of it where that is 40° away."""
+    """After a travel that weighs as much as the measured tilt: half of the way to where hands are held, most of it
+    where that is 40° away.
+    """
     held = CALIBRATED + [0.0, off]
     metres = np.full((round(60 * HAND_TILTS["calibratedMetres"]) + 1, 2), 1 / 60)
     tilts = noticed(

@@ -1,4 +1,6 @@
-"""Facts about how far above its usual place a headset is noticed to sit; tests/threepoint/core/estimation/headset-rise.test.ts holds the page to it."""
+"""Facts about how far above its usual place a headset is noticed to sit;
+tests/threepoint/core/estimation/headset-rise.test.ts holds the page to it.
+"""
 
 from dataclasses import replace
 

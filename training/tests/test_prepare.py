@@ -13,7 +13,8 @@ from threepoint_training.skeleton_map import read_skeleton_map
 
 
 def person_bvh(frames: list[tuple[float, float, float, float]], frame_time: float = 1 / 60) -> str:
-    """A person in centimetres, T-pose at rest, facing +Z, left = +X. A frame: the hips' x, y, z [cm] and yaw [degrees]."""
+    """A person in centimetres, T-pose at rest, facing +Z, left = +X. A frame: the hips' x, y, z [cm] and yaw [degrees].
+    """
 
     def joint(name: str, offset: tuple[float, float, float], *children: str) -> str:
         body = "".join(children) or "End Site\n{\nOFFSET 0 1 0\n}\n"

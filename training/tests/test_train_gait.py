@@ -1,4 +1,6 @@
-"""Facts about the training of the gait network, on feet made of the inputs: it learns, the same from the same seed, and on no evaluation-only subject."""
+"""Facts about the training of the gait network, on feet made of the inputs: it learns, the same from the same seed, and
+on no evaluation-only subject.
+"""
 
 import json
 from pathlib import Path
@@ -12,7 +14,9 @@ MIRROR_OF_INPUTS = np.array([1, 0, 2])
 
 
 def write_frames(folder: Path, people: dict[str, int]) -> None:
-    """Three inputs: one of each side and one of both. A foot stands where its input is above 0, and lies aside by as much."""
+    """Three inputs: one of each side and one of both. A foot stands where its input is above 0, and lies aside by as
+    much.
+    """
     folder.mkdir()
     for number, (person, rows) in enumerate(people.items()):
         random = np.random.default_rng(number)

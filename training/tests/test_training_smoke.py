@@ -1,4 +1,6 @@
-"""The whole pipeline on generated motion: npm run test:training. Needs PyTorch, so the module imports it only within tests."""
+"""The whole pipeline on generated motion: npm run test:training. Needs PyTorch, so the module imports it only within
+tests.
+"""
 
 import hashlib
 import io
@@ -17,7 +19,9 @@ SEED = 5
 
 @pytest.fixture(scope="module", autouse=True)
 def one_thread():
-    """Limits torch to one thread, as the pipeline does: on a busy machine several threads take minutes for seconds of work."""
+    """Limits torch to one thread, as the pipeline does: on a busy machine several threads take minutes for seconds of
+    work.
+    """
     import torch
 
     before = torch.get_num_threads()

@@ -1,22 +1,17 @@
 """Renews the tables of docs/accuracy.md between its marks, and its figures. `npm run report` calls this."""
 
-import argparse
-import json
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+import argparse import json from dataclasses import dataclass from pathlib import Path from typing import Any
 
 from . import accuracy_tables as tables
 
 REPOSITORY = Path(__file__).parents[2]
 
 
-@dataclass(frozen=True)
-class AccuracyPageConfig:
+@dataclass(frozen=True) class AccuracyPageConfig:
     """Files of the evaluation, of its figures, of the models evaluated and of the page.
 
     home, elsewhere: evaluations of the held-out people and of evaluation-only subjects, each without hand tilts and with measured ones.
-    """
+"""
 
     evaluation: Path
     figures: Path
@@ -54,7 +49,9 @@ def sections(
 
 
 def laboratories(config: AccuracyPageConfig) -> tuple[tables.ByHands, tables.ByHands] | None:
-    """Returns the evaluations for the table of both laboratories, or prints a message and returns None if one is missing."""
+    """Returns the evaluations for the table of both laboratories, or prints a message and returns None if one is
+    missing.
+    """
     missing = [path for path in (*config.home, *config.elsewhere) if not path.exists()]
     if missing:
         print(f"{', '.join(map(str, missing))}: not measured, so the table of both laboratories stays as it is")

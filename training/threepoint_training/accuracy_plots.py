@@ -1,4 +1,6 @@
-"""The figures of docs/accuracy.md: drawn from what `npm run evaluate` measured, the same bytes for the same measurements."""
+"""The figures of docs/accuracy.md: drawn from what `npm run evaluate` measured, the same bytes for the same
+measurements.
+"""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,5 @@
-"""Recombined bodies: one person's torso with the arms of two others, put together in the chest frame, as trackers would report them.
+"""Recombined bodies: one person's torso with the arms of two others, put together in the chest frame, as trackers would
+report them.
 
 Some dozen people are too few to learn how arms and torsos go together; their recombinations are many.
 """
@@ -30,7 +31,9 @@ FRAME_RATE = 60
 
 @dataclass(frozen=True)
 class BalanceConfig:
-    """How often a frame is drawn: in proportion to (frames of its person)^-people · (frames of its posture's cluster)^-postures."""
+    """How often a frame is drawn: in proportion to (frames of its person)^-people · (frames of its posture's
+    cluster)^-postures.
+    """
 
     people: float = 0.25
     postures: float = 0.7
@@ -46,7 +49,8 @@ class AugmentConfig:
     lost_hand: float = 0.06
     # Lost hands were seen last up to this long ago [frames].
     lost_frames: int = 180
-    # Share of lost hands that are seen again: since one frame, or up to one more than the window is long. They were seen last so long before that.
+    # Share of lost hands that are seen again: since one frame, or up to one more than the window is long. They were
+    # seen last so long before that.
     returned: float = 0.15
     # Share of windows whose trackers report the frame before.
     late: float = 0.3
@@ -73,8 +77,8 @@ class Batch:
 class BodyParts:
     """The frames [F] of some people taken apart.
 
-    Torsos are in the floor frame [m]. Arms hang from the neck, in the frame of the chest by the true joints, `chest` [F, 4]; left arms are kept
-    as their mirror images, so that each arm is a right one.
+    Torsos are in the floor frame [m]. Arms hang from the neck, in the frame of the chest by the true joints, `chest`
+    [F, 4]; left arms are kept as their mirror images, so that each arm is a right one.
     """
 
     def __init__(
@@ -134,8 +138,9 @@ class BodyParts:
         )
 
     def _postures(self) -> Array:
-        """The posture [F, 16] of each frame, numbers of about equal spread: elbows and wrists from the neck in the chest frame, in arm lengths; the
-        room's up in the chest frame; the head's height, in half eye heights."""
+        """The posture [F, 16] of each frame, numbers of about equal spread: elbows and wrists from the neck in the
+        chest frame, in arm lengths; the room's up in the chest frame; the head's height, in half eye heights.
+        """
         arms = [arm[:, 1:] / length[:, None, None] for arm, length in zip(self.arms, self.arm_length, strict=True)]
         up = np.broadcast_to([0.0, 1.0, 0.0], (len(self.chest), 3))
         lean = quaternion.rotate(quaternion.conjugate(self.chest), up)
@@ -176,7 +181,9 @@ class _Bodies:
         return self.parts.torso[frames] - np.array([0.0, 1.0, 0.0]) * self.drop[:, None, None], frames
 
     def arm_at(self, side: int, ago: NDArray[np.int64]) -> tuple[Array, Array]:
-        """Shoulder, elbow and wrist [N, 3, 3] of the body, and the wrist's rotation, that many frames before the newest."""
+        """Shoulder, elbow and wrist [N, 3, 3] of the body, and the wrist's rotation, that many frames before the
+        newest.
+        """
         parts, which = self.parts, self.arm_sides[side]
         torso, frames = self.torso_at(ago)
         chest = parts.chest[frames]
@@ -253,7 +260,9 @@ def _draw_bodies(parts: BodyParts, count: int, config: AugmentConfig, random: np
 
 
 def _draw_worn(count: int, trackers: TrackerConfig, random: np.random.Generator) -> tuple[Array, Array]:
-    """How trackers of N wearers sit: offsets [N, 3, 3] in the frames of head and hands [m], and rotations [N, 3, 4] against those."""
+    """How trackers of N wearers sit: offsets [N, 3, 3] in the frames of head and hands [m], and rotations [N, 3, 4]
+    against those.
+    """
     hands = draw_turns(trackers.hand_turn, (count, 2), random)
     head = quaternion.from_rotation_vector(
         np.stack([random.normal(size=count) * trackers.headset_pitch, np.zeros(count), np.zeros(count)], -1)
@@ -277,7 +286,8 @@ class _Tracking:
     worn: Array
     # Which bodies are seen in a mirror; their left and right hands are those of the image.
     mirrored: NDArray[np.bool_]
-    # For how many frames the left and the right hand are lost [N, 2], 0: never; and for how many they have been seen again, 0: they are still lost.
+    # For how many frames the left and the right hand are lost [N, 2], 0: never; and for how many they have been seen
+    # again, 0: they are still lost.
     lost: NDArray[np.int64]
     returned: NDArray[np.int64]
     # By how many frames what is reported is late [N].
@@ -288,7 +298,9 @@ class _Tracking:
         return _Tracking(*(getattr(self, each.name)[chosen] for each in fields(self)))
 
     def unseen_at(self, age: int) -> NDArray[np.int64]:
-        """For how many frames the left and the right hand had not been seen [N, 2], that many frames before the newest; 0: it was seen."""
+        """For how many frames the left and the right hand had not been seen [N, 2], that many frames before the newest;
+        0: it was seen.
+        """
         return np.where(age < self.returned, 0, np.maximum(self.lost + self.returned - age, 0))
 
     def images(self, own: Array, mirrored: Array) -> Array:
@@ -307,7 +319,9 @@ def _draw_tracking(count: int, config: AugmentConfig, random: np.random.Generato
 
 
 def _calibrated(bodies: _Bodies, tracking: _Tracking, config: AugmentConfig, random: np.random.Generator) -> Body:
-    """What calibrations find of these bodies, as they are seen: sizes with errors, tilts of hands, and forearms where they are typed."""
+    """What calibrations find of these bodies, as they are seen: sizes with errors, tilts of hands, and forearms where
+    they are typed.
+    """
     count, sizes = len(bodies.newest), bodies.sizes
     body = body_from_calibration(
         sizes[:, 0] * (1 + random.normal(size=count) * config.eye_height_error),
@@ -325,7 +339,9 @@ def _calibrated(bodies: _Bodies, tracking: _Tracking, config: AugmentConfig, ran
 
 @dataclass(frozen=True)
 class _Reported:
-    """One frame of every window as estimators get it, floor frame: points [N, 3, 3], rotations [N, 3, 4]; and its features [N, 46]."""
+    """One frame of every window as estimators get it, floor frame: points [N, 3, 3], rotations [N, 3, 4]; and its
+    features [N, 46].
+    """
 
     positions: Array
     rotations: Array
@@ -333,7 +349,9 @@ class _Reported:
 
 
 def _trackers_at(ago: NDArray[np.int64], bodies: _Bodies, tracking: _Tracking) -> tuple[Array, Array]:
-    """Headset and hands [N, 3, 3] and their rotations [N, 3, 4] as they were that many frames before the newest, seen or not, without noise."""
+    """Headset and hands [N, 3, 3] and their rotations [N, 3, 4] as they were that many frames before the newest, seen
+    or not, without noise.
+    """
     own = bodies.tracked_at(ago)
     positions, rotations = (tracking.images(*each) for each in zip(own, mirror.trackers(*own), strict=True))
     return positions + quaternion.rotate(rotations, tracking.offsets), quaternion.multiply(rotations, tracking.worn)

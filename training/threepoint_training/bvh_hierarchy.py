@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 @dataclass
 class BvhHierarchy:
-    """Joints in the file's order, parents before children (−1: none); offsets in the file's units, channels by joint."""
+    """Joints in the file's order, parents before children (−1: none); offsets in the file's units, channels by joint.
+    """
 
     names: list[str] = field(default_factory=list)
     parents: list[int] = field(default_factory=list)

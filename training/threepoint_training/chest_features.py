@@ -22,7 +22,9 @@ CHEST_FEATURES = 38
 
 
 def chest_axes(vector: Array) -> Array:
-    """The axes of IK's chest as rows [F, 3, 3], heading frame, from features [F, 46]: x from shoulder to shoulder, y up the spine, z backward."""
+    """The axes of IK's chest as rows [F, 3, 3], heading frame, from features [F, 46]: x from shoulder to shoulder, y up
+    the spine, z backward.
+    """
     _, _, left, right, chest, _ = _ik_joints(vector)
     x = normalise(right - left)
     up = (left + right) / 2 - chest
@@ -33,8 +35,9 @@ def chest_axes(vector: Array) -> Array:
 def chest_features(vector: Array) -> Array:
     """The chest-frame features [F, 38] of a frame, from its features [F, 46].
 
-    Left, then right arm: reach from IK's shoulder to the wrist in arm lengths, x and y axes of the hand, IK's elbow from its shoulder; x and y
-    axes of the head, the chest joint from the headset; the room's up; the lengths of both reaches. Joints in eye heights.
+    Left, then right arm: reach from IK's shoulder to the wrist in arm lengths, x and y axes of the hand, IK's elbow
+    from its shoulder; x and y axes of the head, the chest joint from the headset; the room's up; the lengths of both
+    reaches. Joints in eye heights.
     """
     axes, arm = chest_axes(vector), vector[:, ARM_LENGTH, None]
     joints = _ik_joints(vector)

@@ -13,8 +13,9 @@ from .bvh_hierarchy import BvhHierarchy
 from .mocap_rules import RULES
 
 _LOST = RULES["cmuconvert"]
-# The thorax bone by those of lower and upper back, each axis by itself: least squares on the skeletons of 26 people of the database. With
-# each person left out in turn its end is 0.4 cm off on average, 1.1 cm at most; the upper back's own bone once more would be 0.9 and 2.5 cm off.
+# The thorax bone by those of lower and upper back, each axis by itself: least squares on the skeletons of 26 people of
+# the database. With each person left out in turn its end is 0.4 cm off on average, 1.1 cm at most; the upper back's own
+# bone once more would be 0.9 and 2.5 cm off.
 _FROM_LOWER_BACK = np.array(_LOST["thoraxFromLowerBack"])
 _FROM_UPPER_BACK = np.array(_LOST["thoraxFromUpperBack"])
 # In every skeleton of the database the wrist bone is half as long as the radius, and lies along it in rest.
@@ -29,7 +30,9 @@ def _lost(offset: NDArray[np.float64], beside: NDArray[np.float64]) -> bool:
 
 
 def put_back_lost_bones(hierarchy: BvhHierarchy) -> tuple[str, ...]:
-    """Gives a skeleton of cmuconvert its lost bones, in place; others stay as they are. Returns what was done, a sentence each."""
+    """Gives a skeleton of cmuconvert its lost bones, in place; others stay as they are. Returns what was done, a
+    sentence each.
+    """
     notes = []
     if all(name in hierarchy.names for name in _TRUNK):
         lower, upper = hierarchy.offset("Spine"), hierarchy.offset("Spine1")

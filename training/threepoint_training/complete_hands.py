@@ -16,7 +16,9 @@ Array = NDArray[np.float64]
 def carry_with_head(
     hand: Array, turn: Array, head: tuple[Array, Array], head_now: tuple[Array, Array]
 ) -> tuple[Array, Array]:
-    """A hand [F, 3] and its rotation, seen last under a head (position [F, 3], rotation [F, 4]), carried along to where that head is now."""
+    """A hand [F, 3] and its rotation, seen last under a head (position [F, 3], rotation [F, 4]), carried along to where
+    that head is now.
+    """
     (place, way), (place_now, way_now) = head, head_now
     turned = quaternion.multiply(quaternion.heading(way_now), quaternion.conjugate(quaternion.heading(way)))
     return place_now + quaternion.rotate(turned, hand - place), quaternion.multiply(turned, turn)
@@ -25,7 +27,9 @@ def carry_with_head(
 def complete_hands(
     positions: Array, rotations: Array, unseen: Array, eye_height: Array, arm: Array
 ) -> tuple[Array, Array]:
-    """Headset and hands [F, 3, 3] as estimators get them; hands come carried along, unseen for so long [F, 2] in seconds (0: seen)."""
+    """Headset and hands [F, 3, 3] as estimators get them; hands come carried along, unseen for so long [F, 2] in
+    seconds (0: seen).
+    """
     share = _trapezoidal_easing((unseen - LOST_HAND["holdSeconds"]) / LOST_HAND["restSeconds"])
     positions, rotations = positions.copy(), rotations.copy()
     for hand, (place, turn) in enumerate(_rest(positions[:, 0], rotations[:, 0], eye_height, arm)):
@@ -38,7 +42,9 @@ def complete_hands(
 
 
 def _trapezoidal_easing(share: Array) -> Array:
-    """From 0 to 1: constant acceleration for a fifth of the time, constant speed, constant deceleration (src/threepoint/core/math/damper.ts)."""
+    """From 0 to 1: constant acceleration for a fifth of the time, constant speed, constant deceleration
+    (src/threepoint/core/math/damper.ts).
+    """
     ramp, t = TRAPEZOIDAL_RAMP, np.clip(share, 0.0, 1.0)
     slow, fast = 2 * ramp * (1 - ramp), (t - ramp / 2) / (1 - ramp)
     return np.where(t < ramp, t**2 / slow, np.where(t > 1 - ramp, 1 - (1 - t) ** 2 / slow, fast))

@@ -1,4 +1,6 @@
-"""Cross-validation: trains networks without the people of each fold, reports errors on these, and runs the paper's protocol."""
+"""Cross-validation: trains networks without the people of each fold, reports errors on these, and runs the paper's
+protocol.
+"""
 
 import json
 import re
@@ -54,7 +56,8 @@ def _cross_validate(
 ) -> tuple[dict[str, torch.nn.Module], train_paper.LearningCurve | None]:
     """Trains one fold's networks; returns them and the learning curve of the paper's.
 
-    They are evaluated on the fold's held-out people and, in rows of their own, on evaluation-only subjects (never trained on).
+    They are evaluated on the fold's held-out people and, in rows of their own, on evaluation-only subjects (never
+    trained on).
     """
     config, corpus, found = run.config, run.corpus, run.report.found
     subjects = tuple(corpus.people)
@@ -92,7 +95,9 @@ def _cross_validate(
 
 @contextmanager
 def _kinematics(run: TrainingRun, training: tuple[str, ...], fold: str, is_shipped: bool) -> Iterator[None]:
-    """A context with proportions and IK fitted on this fold's training people; for the shipped fold they are the page's own, refitted or as they are."""
+    """A context with proportions and IK fitted on this fold's training people; for the shipped fold they are the page's
+    own, refitted or as they are.
+    """
     if is_shipped and not run.config.refit_kinematics:
         yield
         return
@@ -136,7 +141,9 @@ def _contract_of_this_motion(run: TrainingRun, name: str) -> dict[str, Any] | No
 
 
 def earlier_errors(run: TrainingRun, name: str) -> tuple[dict[str, dict[str, float]], dict[str, list[float]] | None]:
-    """Errors [cm] and learning curve from the contract that cross-validation wrote; empty without one. One of another corpus raises MocapError."""
+    """Errors [cm] and learning curve from the contract that cross-validation wrote; empty without one. One of another
+    corpus raises MocapError.
+    """
     file, contract = run.config.cross_validation / f"{name}.json", _contract(run, name)
     if contract is None:
         return {}, None

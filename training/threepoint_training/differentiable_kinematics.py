@@ -1,8 +1,8 @@
 """Torso and arm fitting as a layer that gradients pass: where joints come to lie on bones of constant length.
 
-The twin of src/threepoint/core/estimation/fit-torso.ts and fit-arms.ts for a frame that none came before. All in the frame of IK's chest, in eye
-heights, from the headset. What is left out moves no estimated joint of a person who stands or sits: the floor under hips, and the rotations
-of vertebrae, forearms and hands.
+The twin of src/threepoint/core/estimation/fit-torso.ts and fit-arms.ts for a frame that none came before. All in the
+frame of IK's chest, in eye heights, from the headset. What is left out moves no estimated joint of a person who stands
+or sits: the floor under hips, and the rotations of vertebrae, forearms and hands.
 """
 
 from dataclasses import dataclass, fields
@@ -20,14 +20,19 @@ from .swivel_limiter import ElbowCircles, Trunk, limit_swivel
 
 @dataclass(frozen=True)
 class FittingConfig:
-    """How closely fitting follows the page. The defaults are the loss's: as little as gradients need, and far from where they grow."""
+    """How closely fitting follows the page. The defaults are the loss's: as little as gradients need, and far from
+    where they grow.
+    """
 
-    # The trunk leans after hands so many times; beyond anatomicalPasses only after those out of reach, its joints going to their extremes.
+    # The trunk leans after hands so many times; beyond anatomicalPasses only after those out of reach, its joints going
+    # to their extremes.
     reach_passes: int = 1
-    # Hands further away than this are out of reach [arm lengths]; nearer to it than that they count as reached [eye heights].
+    # Hands further away than this are out of reach [arm lengths]; nearer to it than that they count as reached [eye
+    # heights].
     reach: float = 1.0
     least_missing: float = 0.0
-    # Shoulder to wrist of the straightest arm [arm lengths] and, beyond the difference of its bones, of the most bent one [eye heights].
+    # Shoulder to wrist of the straightest arm [arm lengths] and, beyond the difference of its bones, of the most bent
+    # one [eye heights].
     straightest: float = 0.999
     most_bent: float = 1e-3
     swivel_limiter: bool = False
@@ -37,8 +42,7 @@ LOSS = FittingConfig()
 
 
 def as_the_page_fits(eye_height: float) -> FittingConfig:
-    """All that the page does, for a body of this eye height [m]."""
-    return FittingConfig(
+    """All that the page does, for a body of this eye height [m].""" return FittingConfig(
         reach_passes=REACH["anatomicalPasses"] + REACH["extremePasses"],
         reach=LIMB["straightest"],
         least_missing=1e-5 / eye_height,
@@ -48,10 +52,10 @@ def as_the_page_fits(eye_height: float) -> FittingConfig:
     )
 
 
-@dataclass(frozen=True)
-class _FittingInput:
-    """What fitting starts from, frame and unit as above: estimated joints [N, 6, 3], wrists [N, 2, 3], head joint [N, 3], the heading's right axis
-    [N, 3], and the lengths of the arm [N, 1, 1] and of the upper arms [N, 2, 1]."""
+    @dataclass(frozen=True) class _FittingInput: """What fitting starts from, frame and unit as above: estimated joints
+    [N, 6, 3], wrists [N, 2, 3], head joint [N, 3], the heading's right axis [N, 3], and the lengths of the arm [N, 1,
+    1] and of the upper arms [N, 2, 1].
+    """
 
     estimated: Tensor
     wrists: Tensor
@@ -63,8 +67,10 @@ class _FittingInput:
 
 @dataclass(frozen=True)
 class _Unleaned:
-    """What leans start from, frame and unit as above: the shoulder line and the thorax's up direction [N, 3], unit, the neck's base to the head joint
-    [N, 3], and what chest joint and hips follow of the neck's way onto its bone's length from the head [N, 3]."""
+    """What leans start from, frame and unit as above: the shoulder line and the thorax's up direction [N, 3], unit, the
+    neck's base to the head joint [N, 3], and what chest joint and hips follow of the neck's way onto its bone's length
+    from the head [N, 3].
+    """
 
     line: Tensor
     up: Tensor
@@ -87,7 +93,9 @@ class DifferentiableKinematics:
         self.shoulder_width = (right - left)[0]
 
     def __call__(self, corrections: Tensor, inputs: Tensor, config: FittingConfig = LOSS) -> Tensor:
-        """The corrections [N, 6, 3] of IK's joints that remain after torso and arm fitting; inputs [N, T·46 + 38]: of the network."""
+        """The corrections [N, 6, 3] of IK's joints that remain after torso and arm fitting; inputs [N, T·46 + 38]: of
+        the network.
+        """
         return self.fit(corrections, inputs, config)[0]
 
     def fit(self, corrections: Tensor, inputs: Tensor, config: FittingConfig) -> tuple[Tensor, Tensor]:
@@ -114,7 +122,9 @@ class DifferentiableKinematics:
         return -head @ self.rest["eyesInHead"]
 
     def fit_torso(self, given: _FittingInput, config: FittingConfig) -> tuple[Trunk, Tensor]:
-        """The trunk and the shoulders [N, 2, 3], leaning after hands that the arms alone do not reach, or would have to be straight to."""
+        """The trunk and the shoulders [N, 2, 3], leaning after hands that the arms alone do not reach, or would have to
+        be straight to.
+        """
         leans = torch.zeros_like(given.estimated[:, 2:4])
         # How far clavicles and neck go beyond anatomy [share of the way to their extremes].
         extremity = torch.zeros_like(leans[..., :1])
@@ -138,28 +148,22 @@ class DifferentiableKinematics:
         return trunk, shoulders
 
     def _place_upright_neck(self, given: _FittingInput) -> _Unleaned:
-        """The neck below the head and the thorax below it as they are estimated, before any lean."""
-        estimated, head_joint = given.estimated, given.head_joint
-        middle = estimated[:, 2:4].mean(1)
-        line = _unit(estimated[:, 3] - estimated[:, 2])
-        up = _unit(middle - estimated[:, 4])
-        chest = self._aligned(self.thorax, up, line)
-        implied_neck = middle - chest @ self.shoulders_from_neck
-        neck_bone = self.rest["head"]
-        anatomical = _limit("neckBend", torch.zeros_like(up[:, :1]))
-        neck_to_head = _swung(chest @ neck_bone, head_joint - implied_neck, anatomical)
-        # Chest joint and hips follow a share of what the neck is moved by.
-        shift = head_joint - neck_to_head - implied_neck
-        moved = shift * TORSO["neckShiftShare"] * (neck_bone.norm() / _length(shift)).clamp_max(1.0)
-        return _Unleaned(line, up, neck_to_head, moved)
+        """The neck below the head and the thorax below it as they are estimated, before any lean.""" estimated,
+        head_joint = given.estimated, given.head_joint middle = estimated[:, 2:4].mean(1) line = _unit(estimated[:, 3] -
+        estimated[:, 2]) up = _unit(middle - estimated[:, 4]) chest = self._aligned(self.thorax, up, line) implied_neck
+        = middle - chest @ self.shoulders_from_neck neck_bone = self.rest["head"] anatomical = _limit("neckBend",
+        torch.zeros_like(up[:, :1])) neck_to_head = _swung(chest @ neck_bone, head_joint - implied_neck, anatomical) #
+        Chest joint and hips follow a share of what the neck is moved by. shift = head_joint - neck_to_head -
+        implied_neck moved = shift * TORSO["neckShiftShare"] * (neck_bone.norm() / _length(shift)).clamp_max(1.0) return
+        _Unleaned(line, up, neck_to_head, moved)
 
-    def _place_trunk(
-        self, given: _FittingInput, upright: _Unleaned, leans: Tensor, extremity: Tensor
-    ) -> tuple[Trunk, Tensor]:
-        """Chest joint, hips and shoulders on their bones below the head, for estimated shoulders that lean by these offsets [N, 2, 3].
+        def _place_trunk( self, given: _FittingInput, upright: _Unleaned, leans: Tensor, extremity: Tensor ) ->
+        tuple[Trunk, Tensor]: """Chest joint, hips and shoulders on their bones below the head, for estimated shoulders
+        that lean by these offsets [N, 2, 3].
 
-        A lean turns neck, thorax and shoulder line by less than a right angle each; what it asks back along them is left to the clavicles.
-        extremity: of each side, how far on the way from anatomical limits to extreme ones [N, 2, 1].
+        A lean turns neck, thorax and shoulder line by less than a right angle each; what it asks back along them is
+        left to the clavicles. extremity: of each side, how far on the way from anatomical limits to extreme ones [N, 2,
+        1].
         """
         estimated, head_joint = given.estimated, given.head_joint
         targets, mean = estimated[:, 2:4] + leans, leans.mean(1)
@@ -186,7 +190,8 @@ class DifferentiableKinematics:
     def fit_arms(
         self, given: _FittingInput, trunk: Trunk, shoulders: Tensor, config: FittingConfig
     ) -> tuple[Tensor, Tensor]:
-        """Elbows [N, 2, 3] where upper arm and forearm let them be, on the side where they are estimated, from the estimated shoulders.
+        """Elbows [N, 2, 3] where upper arm and forearm let them be, on the side where they are estimated, from the
+        estimated shoulders.
 
         Also which of them the swivel limiter moved [N, 2].
         """
@@ -207,12 +212,16 @@ class DifferentiableKinematics:
         return centre + radius * pole, limited
 
     def _aligned(self, main: Tensor, to_main: Tensor, to_x: Tensor) -> Tensor:
-        """The rotations [N, 3, 3] that take `main` [3] to the directions `to_main` [N, 3], and x as nearly as that allows to `to_x` [N, 3]."""
+        """The rotations [N, 3, 3] that take `main` [3] to the directions `to_main` [N, 3], and x as nearly as that
+        allows to `to_x` [N, 3].
+        """
         return _frame(to_main, to_x) @ _frame(main, self.x).T
 
 
 def _leaned(direction: Tensor, length: Tensor, offset: Tensor) -> Tensor:
-    """Returns the direction [N, 3] of a bone after its end moves by an offset, without the offset's part against the bone."""
+    """Returns the direction [N, 3] of a bone after its end moves by an offset, without the offset's part against the
+    bone.
+    """
     return _unit(offset + direction * (length - _dot(offset, direction).clamp_max(0.0)))
 
 
@@ -237,12 +246,16 @@ def _in_chest_frame(inputs: Tensor) -> tuple[Tensor, Tensor]:
 
 
 def _limit(joint: str, extremity: Tensor) -> Tensor:
-    """How far this joint swings from rest against the thorax [rad], so far on the way from anatomy to the extreme [0 to 1]."""
+    """How far this joint swings from rest against the thorax [rad], so far on the way from anatomy to the extreme [0 to
+    1].
+    """
     return TORSO[joint] + extremity * (TORSO_EXTREME[joint] - TORSO[joint])
 
 
 def _softened(far: Tensor, reach: Tensor) -> Tensor:
-    """How far arms that reach `reach` stretch after hands `far` away, in one unit; the twin of softenedReach in src/threepoint/core/body/two-bone-ik.ts."""
+    """How far arms that reach `reach` stretch after hands `far` away, in one unit; the twin of softenedReach in
+    src/threepoint/core/body/two-bone-ik.ts.
+    """
     near = LIMB["softReach"] * reach
     # Clamped, for what is not chosen has a gradient as well.
     straightening = reach - (reach - near) * torch.exp((near - far).clamp_max(0.0) / (reach - near))

@@ -84,8 +84,9 @@ def git_commit() -> str:
 
 @dataclass(frozen=True)
 class ExportConfig:
-    """name: paper or learned; window_seconds: ages of the frames in its input. fp32_out: the same network goes there with 32-bit weights, so
-    that the evaluation can compare the two; None: it does not."""
+    """name: paper or learned; window_seconds: ages of the frames in its input. fp32_out: the same network goes there
+    with 32-bit weights, so that the evaluation can compare the two; None: it does not.
+    """
 
     name: str
     version: str
@@ -96,7 +97,9 @@ class ExportConfig:
 
 
 def main(config: ExportConfig, network: torch.nn.Module, examples: NDArray[np.float32]) -> dict[str, Any]:
-    """Writes NAME.onnx, NAME.json and, of the learned network, NAME.bin; returns the contract. examples, real inputs, measure what the 8 bits cost."""
+    """Writes NAME.onnx, NAME.json and, of the learned network, NAME.bin; returns the contract. examples, real inputs,
+    measure what the 8 bits cost.
+    """
     input_name, output_name = ("three_points", "joints") if config.name == "paper" else ("features", "corrections")
     exact = to_onnx(network, examples[:1], input_name, output_name)
     quantised = quantise_weights(exact)

@@ -1,4 +1,5 @@
-"""One frame's features for the learned network, and their window in time; the twin of src/threepoint/core/estimation/features.ts.
+"""One frame's features for the learned network, and their window in time; the twin of
+src/threepoint/core/estimation/features.ts.
 
 The one function for training and for golden vectors; docs/estimation.md lists the columns.
 """
@@ -23,7 +24,8 @@ FEATURES = 46
 
 
 def frame_features(positions: Array, rotations: Array, body: Body, seen: Array | None = None) -> tuple[Array, Array]:
-    """Features [F, 46] of tracked points in the floor frame ([F, 3, 3], [F, 3, 4]) and the IK joints [F, 6, 3], heading frame [m].
+    """Features [F, 46] of tracked points in the floor frame ([F, 3, 3], [F, 3, 4]) and the IK joints [F, 6, 3], heading
+    frame [m].
 
     seen [F, 2]: whether each hand is seen in this frame; all, when None.
     """
@@ -46,7 +48,9 @@ def _two_columns(matrix: Array) -> tuple[Array, Array]:
 
 
 def windowed(features: Array, times: Array, window: tuple[float, ...]) -> Array:
-    """The input [F, T·46]: the features at each frame's time minus each age [s]; the oldest frame stands in before the start."""
+    """The input [F, T·46]: the features at each frame's time minus each age [s]; the oldest frame stands in before the
+    start.
+    """
     parts = []
     for age in window:
         wanted = np.maximum(times - age, times[0])

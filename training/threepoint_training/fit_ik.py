@@ -1,4 +1,6 @@
-"""The parameters of inverse kinematics, fitted by damped least squares: the tuned competitor every network is measured against."""
+"""The parameters of inverse kinematics, fitted by damped least squares: the tuned competitor every network is measured
+against.
+"""
 
 import copy
 from collections.abc import Callable
@@ -15,7 +17,8 @@ from .skeleton import Body, body_from_calibration
 
 Array = NDArray[np.float64]
 
-# The initial parameters, which are the target of the ridge penalty: an upright trunk, elbows down, back and a little outward.
+# The initial parameters, which are the target of the ridge penalty: an upright trunk, elbows down, back and a little
+# outward.
 PRIOR: dict[str, Any] = {
     "yaw": [0.3, 0.2],
     "upper": {"forward": [0, 0.25, 0.3, 0.1, 0, 0], "sideways": [0.2, 0.1, 0]},
@@ -85,7 +88,8 @@ def sample(
     *,
     mirrored: bool = True,
 ) -> Sample:
-    """Frames of these people as trackers would see them, the same number of each (None: all), mirrored ones beside them.
+    """Frames of these people as trackers would see them, the same number of each (None: all), mirrored ones beside
+    them.
 
     In every other frame hands are turned by their tilts, so that both of IK's poles are fitted.
     """

@@ -77,7 +77,9 @@ def learned(run: TrainingRun, training: tuple[str, ...], label: str) -> torch.nn
 
 
 def _frame_random_split(run: TrainingRun, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """The paper's protocol: frames to train on, and 20 % of all frames, drawn at random, to test on; their neighbours are trained on."""
+    """The paper's protocol: frames to train on, and 20 % of all frames, drawn at random, to test on; their neighbours
+    are trained on.
+    """
     test = np.sort(np.random.default_rng(run.config.seed).choice(count, count // 5, replace=False))
     return np.setdiff1d(np.arange(count), test), test
 
@@ -142,7 +144,9 @@ def provenance(
     errors: dict[str, dict[str, float]],
     curve: train_paper.LearningCurve | dict[str, list[float]] | None,
 ) -> export.Provenance:
-    """What a contract states of a network of this run: corpus, seed, errors [cm] and the subset of `training` that it trained on."""
+    """What a contract states of a network of this run: corpus, seed, errors [cm] and the subset of `training` that it
+    trained on.
+    """
     source = (
         "generated motion" if run.config.mocap is None else "CMU Graphics Lab Motion Capture Database and like files"
     )

@@ -76,7 +76,9 @@ def fit(corpus: PreparedCorpus, people: tuple[str, ...]) -> dict[str, Any]:
 
 
 def _standing_tilts(corpus: PreparedCorpus, name: str) -> tuple[float, float]:
-    """How far [rad] thorax and lower back lean forward when this person stands upright: the shape of the spine, not a posture."""
+    """How far [rad] thorax and lower back lean forward when this person stands upright: the shape of the spine, not a
+    posture.
+    """
     frames = corpus.frames_of({name})
     positions = corpus.positions[frames].astype(np.float64)
     head_height = positions[:, JOINTS.index("head"), 1] + EYES_FROM_HEAD_JOINT[1]

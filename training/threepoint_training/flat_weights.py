@@ -1,8 +1,9 @@
 """The learned network's numbers as one flat file, for a forward pass that needs no runtime.
 
-The file is what the ONNX graph beside it has: weights (levels of 8 bits with a scale per output channel, or 32-bit numbers), biases,
-normalisation, and the columns that make a mirror image and an arm's inputs. Little-endian, tensors one after the other, in the order of
-the contract's list: widest numbers first, so that each starts where a typed array may.
+The file is what the ONNX graph beside it has: weights (levels of 8 bits with a scale per output channel, or 32-bit
+numbers), biases, normalisation, and the columns that make a mirror image and an arm's inputs. Little-endian, tensors
+one after the other, in the order of the contract's list: widest numbers first, so that each starts where a typed array
+may.
 
     python -m threepoint_training.flat_weights    writes learned.bin for the learned.onnx of public/models, and names it in learned.json
 """
@@ -25,7 +26,9 @@ PERCEPTRONS = ("trunk", "arm")
 
 
 def flat_tensors(model: onnx.ModelProto) -> dict[str, NDArray[Any]]:
-    """Every number of the learned network's graph by name, widest numbers first. Raises where the graph is another network's."""
+    """Every number of the learned network's graph by name, widest numbers first. Raises where the graph is another
+    network's.
+    """
     nodes = model.graph.node
     known = {tensor.name: numpy_helper.to_array(tensor) for tensor in model.graph.initializer}
     known |= {
@@ -69,7 +72,9 @@ def _narrowed(values: NDArray[Any], type_name: str) -> NDArray[Any]:
 
 
 def flat_file(model: onnx.ModelProto, file: str) -> tuple[bytes, dict[str, Any]]:
-    """The file's content and what the contract says of it: each tensor's type and shape, in the order in which they lie."""
+    """The file's content and what the contract says of it: each tensor's type and shape, in the order in which they
+    lie.
+    """
     tensors = {name: values.astype(values.dtype.newbyteorder("<")) for name, values in flat_tensors(model).items()}
     content = b"".join(values.tobytes() for values in tensors.values())
     listed = {name: " ".join([TYPES[values.dtype], *map(str, values.shape)]) for name, values in tensors.items()}

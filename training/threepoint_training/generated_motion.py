@@ -1,4 +1,6 @@
-"""Motion made of sines: seeded three-point frames with a plausible body, for golden vectors and the smoke test. No mocap."""
+"""Motion made of sines: seeded three-point frames with a plausible body, for golden vectors and the smoke test. No
+mocap.
+"""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +20,9 @@ def _wave(random: np.random.Generator, times: Array, dimensions: int, amplitude:
 
 
 def generate_clip(random: np.random.Generator, frames: int, person: Person) -> tuple[Array, Array]:
-    """Joints [F, 11, 3] and rotations [F, 3, 4] (head, hands) of a person wandering, turning, bending and moving the arms."""
+    """Joints [F, 11, 3] and rotations [F, 3, 4] (head, hands) of a person wandering, turning, bending and moving the
+    arms.
+    """
     times = np.arange(frames) / RATE_HZ
     e = person.eye_height
     arm = (person.arm_span - 0.24 * e) / 2
@@ -67,7 +71,9 @@ def generate_clip(random: np.random.Generator, frames: int, person: Person) -> t
 
 
 def generate_corpus(people: int, clips: int, frames: int, seed: int) -> PreparedCorpus:
-    """A small corpus of that many generated people, clips of each and frames of each clip; named from 002, for 001 is in the lockbox."""
+    """A small corpus of that many generated people, clips of each and frames of each clip; named from 002, for 001 is
+    in the lockbox.
+    """
     random = np.random.default_rng(seed)
     crowd = {}
     positions, rotations, names, owners, starts = [], [], [], [], [0]

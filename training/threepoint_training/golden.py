@@ -141,7 +141,9 @@ def headset_rise_vectors() -> dict[str, Any]:
 
 
 def _hands_before_the_trunk(positions: Array, ik_joints: Array, body: Body, random: np.random.Generator) -> Array:
-    """Wrists close to the chest joint, so that elbows estimated beside IK's lie in the trunk now and then; heading frame."""
+    """Wrists close to the chest joint, so that elbows estimated beside IK's lie in the trunk now and then; heading
+    frame.
+    """
     moved = positions.copy()
     place = np.array([[-0.1, -0.05, -0.16], [0.1, -0.05, -0.16]]) + random.normal(
         scale=0.05, size=(len(positions), 2, 3)
@@ -151,8 +153,9 @@ def _hands_before_the_trunk(positions: Array, ik_joints: Array, body: Body, rand
 
 
 def _hands_out_of_reach(positions: Array, ik_joints: Array, body: Body, random: np.random.Generator) -> Array:
-    """Wrists at 0.99 to 1.25 arm lengths from IK's shoulders: straight arms and a leaning trunk. Both hands further away have no solution, and what
-    the passes end with then amplifies the last digits of its input."""
+    """Wrists at 0.99 to 1.25 arm lengths from IK's shoulders: straight arms and a leaning trunk. Both hands further
+    away have no solution, and what the passes end with then amplifies the last digits of its input.
+    """
     moved = positions.copy()
     reach = moved[:, 1:] - ik_joints[:, 2:4]
     reach *= (
@@ -171,7 +174,8 @@ SITUATIONS: dict[str, tuple[Callable[[Array, Array, Body, np.random.Generator], 
 
 
 def fitted_vectors() -> list[dict[str, Any]]:
-    """People in three sizes, joints estimated about where IK has them, and where torso and arm fitting put those on the skeleton.
+    """People in three sizes, joints estimated about where IK has them, and where torso and arm fitting put those on the
+    skeleton.
 
     `limited` says of each elbow whether the swivel limiter keeps it out of the trunk.
     """
@@ -266,7 +270,9 @@ class GoldenConfig:
 
 
 def main(config: GoldenConfig) -> None:
-    """Writes features.json, fitted-joints.json, headset-rise.json, bvh.json and mocap.json in tests/golden, and models.json where there are models."""
+    """Writes features.json, fitted-joints.json, headset-rise.json, bvh.json and mocap.json in tests/golden, and
+    models.json where there are models.
+    """
     GOLDEN.mkdir(parents=True, exist_ok=True)
     (GOLDEN / "features.json").write_text(json.dumps(plain(feature_vectors())) + "\n")
     (GOLDEN / "fitted-joints.json").write_text(json.dumps(plain(fitted_vectors())) + "\n")

@@ -1,4 +1,5 @@
-"""BVH files of skeletons that no one has, with where their joints are: the page's reader is held against ours by them."""
+"""BVH files of skeletons that no one has, with where their joints are: the page's reader is held against ours by them.
+"""
 
 import tempfile
 from pathlib import Path
@@ -8,7 +9,8 @@ import numpy as np
 
 from .mocap_bvh import parse_bvh
 
-# Parent, words for position and rotation channels: every order of axes, positions on inner joints, joints that do not move.
+# Parent, words for position and rotation channels: every order of axes, positions on inner joints, joints that do not
+# move.
 JOINTS: tuple[tuple[int, str, str], ...] = (
     (-1, "XYZ", "ZXY"),
     (0, "", "YXZ"),
@@ -50,7 +52,8 @@ def _text(random: np.random.Generator) -> str:
 
 
 def bvh_vectors() -> list[dict[str, Any]]:
-    """Some files, each with names, rate and every joint's position and rotation in every frame as our reader has them."""
+    """Some files, each with names, rate and every joint's position and rotation in every frame as our reader has them.
+    """
     random = np.random.default_rng(2460)
     cases = []
     for _ in range(3):

@@ -1,4 +1,6 @@
-"""Files of generated people, with what the evaluation makes of them: the page reads them and simulates their trackers alike."""
+"""Files of generated people, with what the evaluation makes of them: the page reads them and simulates their trackers
+alike.
+"""
 
 import json
 import tempfile

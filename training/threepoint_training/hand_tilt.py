@@ -1,8 +1,9 @@
-"""How a hand's frame is turned against its forearm, as a calibration measures it once: arms stretched ahead, wrists straight.
+"""How a hand's frame is turned against its forearm, as a calibration measures it once: arms stretched ahead, wrists
+straight.
 
-A tilt is two numbers [rad]: how far up (pitch) and to the left (yaw) of the hand's −Z its forearm points, elbow to wrist, as the rotation
-vector (pitch, yaw, 0). A hand whose tilt is known is turned by it, so that its −Z continues the forearm; the twin of
-src/threepoint/core/body/hand-tilt.ts.
+A tilt is two numbers [rad]: how far up (pitch) and to the left (yaw) of the hand's −Z its forearm points, elbow to
+wrist, as the rotation vector (pitch, yaw, 0). A hand whose tilt is known is turned by it, so that its −Z continues the
+forearm; the twin of src/threepoint/core/body/hand-tilt.ts.
 """
 
 import numpy as np
@@ -47,7 +48,9 @@ def turned(tilts: Array, worn: Array) -> Array:
 
 
 def normalised(rotations: Array, tilts: Array | None) -> Array:
-    """Head and hands [F, 3, 4], the hands turned so that their −Z continues forearms of these tilts [..., 2, 2]; None: as they are."""
+    """Head and hands [F, 3, 4], the hands turned so that their −Z continues forearms of these tilts [..., 2, 2]; None:
+    as they are.
+    """
     if tilts is None:
         return rotations
     hands = rotations[:, 1:]
@@ -57,7 +60,9 @@ def normalised(rotations: Array, tilts: Array | None) -> Array:
 
 
 def plausible(tilts: Array) -> NDArray[np.bool_]:
-    """Which measured tilts [..., 2] are plausible [...]: no steeper than hands are held; beyond that the wrist was bent."""
+    """Which measured tilts [..., 2] are plausible [...]: no steeper than hands are held; beyond that the wrist was
+    bent.
+    """
     return np.linalg.norm(tilts, axis=-1) <= LIMB["steepestHandTilt"]
 
 

@@ -1,6 +1,7 @@
 """Evaluates the page's learned network for a release, on the lockbox people, who were not used in any choice.
 
-`npm run train -- --mocap DIR --lockbox` calls this. Each evaluation is logged, so that nobody can choose by repeating it.
+`npm run train -- --mocap DIR --lockbox` calls this. Each evaluation is logged, so that nobody can choose by repeating
+it.
 """
 
 import json
@@ -27,7 +28,9 @@ class LockboxConfig:
 
 
 def main(corpus: PreparedCorpus, config: LockboxConfig) -> dict[str, Any]:
-    """Evaluates the network frame by frame, hands not measured, on the lockbox people of the corpus; appends a row to the log and returns it."""
+    """Evaluates the network frame by frame, hands not measured, on the lockbox people of the corpus; appends a row to
+    the log and returns it.
+    """
     contract = json.loads((config.models / "learned.json").read_text())
     people = splits.in_lockbox(tuple(corpus.people))
     if not people:

@@ -1,15 +1,19 @@
-"""Left and right exchanged, in any frame whose x axis points to one side of the body: what is true of a person is true of their mirror image."""
+"""Left and right exchanged, in any frame whose x axis points to one side of the body: what is true of a person is true
+of their mirror image.
+"""
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# What a mirror multiplies: the components of a position or direction (x, y, z), of a quaternion (x, y, z, w) and of a hand's tilt (pitch, yaw).
+# What a mirror multiplies: the components of a position or direction (x, y, z), of a quaternion (x, y, z, w) and of a
+# hand's tilt (pitch, yaw).
 POSITION = np.array([-1.0, 1.0, 1.0])
 ROTATION = np.array([1.0, -1.0, -1.0, 1.0])
 TILT = np.array([1.0, -1.0])
-# Which of the tracked points (head, left hand, right hand), and which of ESTIMATED_JOINTS, a mirror shows in the place of each.
+# Which of the tracked points (head, left hand, right hand), and which of ESTIMATED_JOINTS, a mirror shows in the place
+# of each.
 TRACKED = [0, 2, 1]
 JOINTS = [1, 0, 3, 2, 4, 5]
 

@@ -1,7 +1,8 @@
 """Acclaim skeletons (.asf) and motions (.amc).
 
 Joints are named by their bones: "lhumerus" is where the bone starts, "lhumerus:end" where it ends. The root is "root".
-A bone's rotation in its parent is C·M·C⁻¹ with the bone's `axis` C and the motion's angles M, both R = Rz·Ry·Rx for order XYZ.
+A bone's rotation in its parent is C·M·C⁻¹ with the bone's `axis` C and the motion's angles M, both R = Rz·Ry·Rx for
+order XYZ.
 """
 
 from dataclasses import dataclass, field
@@ -31,7 +32,9 @@ class Bone:
 
 @dataclass(frozen=True)
 class AsfSkeleton:
-    """Bones in parent-before-child order, the root's channel order, the factor to radians of its angles and of a motion's that names no unit."""
+    """Bones in parent-before-child order, the root's channel order, the factor to radians of its angles and of a
+    motion's that names no unit.
+    """
 
     path: Path
     bones: tuple[Bone, ...]
@@ -180,7 +183,9 @@ def _ordered_bones(path: Path, sections: _Sections) -> tuple[Bone, ...]:
 
 
 def _read_channels(path: Path, skeleton: AsfSkeleton) -> tuple[NDArray[np.float64], float]:
-    """All channels of a motion, [frames, channels], in the order root, then bones with freedom; and its angles' factor to radians."""
+    """All channels of a motion, [frames, channels], in the order root, then bones with freedom; and its angles' factor
+    to radians.
+    """
     expected = {"root": len(skeleton.root_order)} | {bone.name: len(bone.dof) for bone in skeleton.bones if bone.dof}
     offsets: dict[str, int] = {}
     total = 0

@@ -125,12 +125,11 @@ def _read_frames(path: Path, lines: list[str], motion_line: int, width: int) -> 
 def _channels_of(
     path: Path, hierarchy: BvhHierarchy, rest_pose: Mapping[str, tuple[float, ...]]
 ) -> NDArray[np.float64]:
-    """One frame [1, channels] of these angles, the root at the origin, every other joint at its offset."""
-    for name in rest_pose:
+    """One frame [1, channels] of these angles, the root at the origin, every other joint at its offset.""" for name in
+    rest_pose:
         if name not in hierarchy.names:
             raise MocapError(f"{path.name}: no joint “{name}”, which the map's restPose turns")
-    row: list[float] = []
-    for joint, channels in enumerate(hierarchy.channels):
+    row: list[float] = [] for joint, channels in enumerate(hierarchy.channels):
         angles = rest_pose.get(hierarchy.names[joint], ())
         turning = sum(channel.lower().endswith("rotation") for channel in channels)
         if angles and len(angles) != turning:
@@ -145,10 +144,10 @@ def _channels_of(
     return np.array([row])
 
 
-def _pose(
-    path: Path, hierarchy: BvhHierarchy, values: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Forward kinematics of the channels: positions [frames, joints, 3] and global rotations [frames, joints, 4]."""
+    def _pose( path: Path, hierarchy: BvhHierarchy, values: NDArray[np.float64] ) -> tuple[NDArray[np.float64],
+    NDArray[np.float64]]: """Forward kinematics of the channels: positions [frames, joints, 3] and global rotations
+    [frames, joints, 4].
+    """
     frames, count = len(values), len(hierarchy.names)
     positions = np.zeros((frames, count, 3))
     rotations = np.zeros((frames, count, 4))
@@ -159,7 +158,8 @@ def _pose(
         for channel in hierarchy.channels[joint]:
             axis, kind = channel[0].upper(), channel[1:].lower()
             if kind == "position" and axis in _AXES:
-                # A root's position replaces its offset; the same channel on other joints does too in files that carry them.
+                # A root's position replaces its offset; the same channel on other joints does too in files that carry
+                # them.
                 local[:, "XYZ".index(axis)] = values[:, column]
             elif kind == "rotation" and axis in _AXES:
                 step = quaternion.from_axis_angle(

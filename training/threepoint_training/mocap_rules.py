@@ -1,4 +1,5 @@
-"""What the page and the evaluation hold true of motion capture alike: known skeletons, units, cuts, and how trackers err.
+"""What the page and the evaluation hold true of motion capture alike: known skeletons, units, cuts, and how trackers
+err.
 
 The CMU database measures in units of 1/0.45 inch (the ASF header's `length 0.45`).
 """

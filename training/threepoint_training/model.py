@@ -1,19 +1,14 @@
 """The two networks. Normalisation lives inside both: SI units or ratios go in and come out."""
 
-import numpy as np
-import torch
-from torch import Tensor, nn
-from torch.nn import functional
+import numpy as np import torch from torch import Tensor, nn from torch.nn import functional
 
-from . import mirror
-from .chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, CHEST_HEAD_AXES, CHEST_JOINT, REACH_LENGTHS, UP
-from .features import ARM_LENGTH, FEATURES, HANDS, HEAD_AXES, IK_JOINTS, SEEN
-from .residual import OUTPUTS
+from . import mirror from .chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, CHEST_HEAD_AXES, CHEST_JOINT,
+REACH_LENGTHS, UP from .features import ARM_LENGTH, FEATURES, HANDS, HEAD_AXES, IK_JOINTS, SEEN from .residual import
+OUTPUTS
 
 
-# Inputs of the people trained on lie within so many standard deviations of their mean; what lies beyond is held there, here as in the page's
-# Perceptron.
-MOST_DEVIATIONS = 4.0
+# Inputs of the people trained on lie within so many standard deviations of their mean; what lies beyond is held there,
+# here as in the page's Perceptron. MOST_DEVIATIONS = 4.0
 
 
 class PaperNetwork(nn.Module):
@@ -21,7 +16,7 @@ class PaperNetwork(nn.Module):
 
     Four 3×3 convolutions of 2^(4+layer) channels (32, 64, 128, 256), stride 1, zero padding, ReLU; dropout 0.3 after the first
     convolution and the first fully connected layer. Its width, 512, is the one that gives the 1.58 million parameters of a 6 MB file.
-    """
+"""
 
     def __init__(self) -> None:
         super().__init__()
@@ -61,9 +56,9 @@ class PaperNetwork(nn.Module):
 class CorrectionNetwork(nn.Module):
     """[N, T·46 + 38] features -> [N, 18]: the residual to add to IK's six joints, chest frame, in eye heights.
 
-    In the chest frame an arm looks the same however its body turns and leans. A trunk network corrects shoulders, chest joint and
-    hips; an arm network, the same for both sides, then corrects an elbow, given nothing but its own hand and shoulder. A body and its mirror
-    image get mirrored corrections.
+    In the chest frame an arm looks the same however its body turns and leans. A trunk network corrects shoulders, chest
+    joint and hips; an arm network, the same for both sides, then corrects an elbow, given nothing but its own hand and
+    shoulder. A body and its mirror image get mirrored corrections.
 
     In a browser a node of the graph costs more than its arithmetic, so linear steps are merged into one matrix.
     """
@@ -123,7 +118,9 @@ class CorrectionNetwork(nn.Module):
         return (inputs[:, self.mirror_column] * self.mirror_sign).view(-1, self.inputs)
 
     def _right_arm(self, bodies: Tensor, shift: Tensor) -> Tensor:
-        """The inputs of the arm network [N, ARM_FEATURES] for the right arm, whose shoulder was corrected by `shift` [N, 3]."""
+        """The inputs of the arm network [N, ARM_FEATURES] for the right arm, whose shoulder was corrected by `shift`
+        [N, 3].
+        """
         reach, others, arm = bodies[:, self.arm_columns].split([3, 13, 1], dim=1)
         # Inputs of zeros, with which a page tries the network out, must not divide by zero.
         reach = reach - shift / arm.clamp_min(1e-3)
@@ -131,7 +128,8 @@ class CorrectionNetwork(nn.Module):
 
 
 class ByteDropout(nn.Module):
-    """Dropout whose share is a multiple of 1/256: a random byte for each number, where PyTorch's draws a double on one thread.
+    """Dropout whose share is a multiple of 1/256: a random byte for each number, where PyTorch's draws a double on one
+    thread.
 
     Masks follow PyTorch's seed. A layer of 2048 × 192 numbers takes 2 ms there and back instead of 16.
     """
@@ -156,7 +154,8 @@ ARM_FEATURES = 17
 
 # What a mirror multiplies the components of a position by.
 FLIP = torch.tensor(mirror.POSITION, dtype=torch.float32)
-# Mirrors the chest-frame features of an arm (reach, two axes of the hand, IK's elbow); a mirrored rotation's x axis changes its sign too.
+# Mirrors the chest-frame features of an arm (reach, two axes of the hand, IK's elbow); a mirrored rotation's x axis
+# changes its sign too.
 ARM_FLIP = torch.cat([FLIP, -FLIP, FLIP, FLIP])
 
 
@@ -168,7 +167,9 @@ def _perceptron(inputs: int, width: int, hidden_layers: int, dropout: float, out
 
 
 def _from_trunk() -> Tensor:
-    """[24, 18 + 6]: from the trunk's outputs for a body and its image to corrections of the six joints (elbows with their shoulders) and of both right shoulders."""
+    """[24, 18 + 6]: from the trunk's outputs for a body and its image to corrections of the six joints (elbows with
+    their shoulders) and of both right shoulders.
+    """
     body, image = torch.eye(24).view(2, 4, 3, 24)
     left, right, chest, hips = (
         (body[joint] + FLIP[:, None] * image[twin]) / 2 for joint, twin in enumerate([1, 0, 2, 3])
@@ -183,14 +184,18 @@ def _from_arms() -> Tensor:
 
 
 def _arm_columns(taps: int) -> Tensor:
-    """Columns of a body's inputs: reach, hand and elbow of the right arm, up, whether the right hand is seen, the arm's length."""
+    """Columns of a body's inputs: reach, hand and elbow of the right arm, up, whether the right hand is seen, the arm's
+    length.
+    """
     chest = taps * FEATURES
     right_arm = range(chest + ARMS.start + ARM_COLUMNS, chest + ARMS.stop)
     return torch.tensor([*right_arm, *range(chest + UP.start, chest + UP.stop), SEEN.stop - 1, ARM_LENGTH])
 
 
 def _mirror_image(taps: int) -> tuple[Tensor, Tensor]:
-    """Column and sign of each feature of a body [2 · (T·46 + 38)] and of its mirror image, over all frames of the window."""
+    """Column and sign of each feature of a body [2 · (T·46 + 38)] and of its mirror image, over all frames of the
+    window.
+    """
     frame, frame_sign = torch.arange(FEATURES), torch.ones(FEATURES)
     left, right = HANDS
     frame[left], frame[right] = frame[right].clone(), frame[left].clone()

@@ -1,7 +1,7 @@
 """Hand tilts (hand_tilt) noticed while hands move; the twin of src/threepoint/core/estimation/notice-hand-tilts.ts.
 
-Inverse kinematics without tilts estimates where forearms point. The mean of these directions in the frames of their hands is the tilt, for errors
-of single postures average out.
+Inverse kinematics without tilts estimates where forearms point. The mean of these directions in the frames of their
+hands is the tilt, for errors of single postures average out.
 """
 
 from dataclasses import dataclass, replace
@@ -28,7 +28,9 @@ NO_CALIBRATED_TILTS = CalibratedTilts(np.zeros((2, 2)), np.zeros(2, bool))
 
 
 def ik_forearms(positions: Array, rotations: Array, body: Body) -> Array:
-    """Returns IK's forearm directions [F, 2, 3], elbow to wrist, in the hands' frames, from tracked points in the floor frame."""
+    """Returns IK's forearm directions [F, 2, 3], elbow to wrist, in the hands' frames, from tracked points in the floor
+    frame.
+    """
     local, turns, _, _ = solve_ik.to_heading(positions, rotations)
     joints = solve_ik.solve(local, turns, replace(body, hand_tilts=None, hands_turned=None))
     forearms = solve_ik.normalise(local[:, 1:] - joints[:, :2])
@@ -36,7 +38,9 @@ def ik_forearms(positions: Array, rotations: Array, body: Body) -> Array:
 
 
 def travel(positions: Array) -> Array:
-    """How far each hand moves about the head [F, 2] since the frame before [m], of tracked points [F, 3, 3]; 0 in the first."""
+    """How far each hand moves about the head [F, 2] since the frame before [m], of tracked points [F, 3, 3]; 0 in the
+    first.
+    """
     from_head = positions[:, 1:] - positions[:, :1]
     return np.linalg.norm(np.diff(from_head, axis=0, prepend=from_head[:1]), axis=-1)
 
@@ -49,7 +53,8 @@ def noticed(
 ) -> Array:
     """The tilts [F, 2, 2] by which hands are turned in each frame, by what was noticed before it.
 
-    forearms [F, 2, 3] in the frames of the hands; metres [F, 2] that each hand travelled since the frame before (`travel`); seen [F, 2]: which hands are, all when None.
+    forearms [F, 2, 3] in the frames of the hands; metres [F, 2] that each hand travelled since the frame before
+    (`travel`); seen [F, 2]: which hands are, all when None.
     """
     prior = hand_tilt.direction_of(np.where(calibrated.known[:, None], calibrated.tilts, hand_tilt.usual()))
     total = np.zeros_like(prior)
@@ -86,6 +91,7 @@ def with_noticed_hands(
 ) -> Body:
     """Returns the body with the estimated hand tilts of each frame, for one clip from its start.
 
-    positions [F, 3, 3] and rotations [F, 3, 4] of the tracked points, floor frame; metres, calibrated and seen as for `noticed`.
+    positions [F, 3, 3] and rotations [F, 3, 4] of the tracked points, floor frame; metres, calibrated and seen as for
+    `noticed`.
     """
     return body.with_hands(noticed(ik_forearms(positions, rotations, body), metres, calibrated, seen))

@@ -1,4 +1,6 @@
-"""How far above its usual place a headset sits, noticed by arms that hang; the twin of src/threepoint/core/estimation/notice-headset-rise.ts."""
+"""How far above its usual place a headset sits, noticed by arms that hang; the twin of
+src/threepoint/core/estimation/notice-headset-rise.ts.
+"""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +13,8 @@ Array = NDArray[np.float64]
 
 
 def reaches(positions: Array, rotations: Array, body: Body) -> Array:
-    """From IK's shoulders to the wrists [F, 2, 3], heading frame, in arm lengths, by tracked points in the floor frame."""
+    """From IK's shoulders to the wrists [F, 2, 3], heading frame, in arm lengths, by tracked points in the floor frame.
+    """
     local, turns, _, _ = solve_ik.to_heading(positions, rotations)
     joints = solve_ik.solve(local, turns, body)
     return (local[:, 1:] - joints[:, 2:4]) / body.arm[..., None, None]
@@ -20,10 +23,11 @@ def reaches(positions: Array, rotations: Array, body: Body) -> Array:
 def hanging_reach(
     reach: Array, seconds: Array, usual: float = HEADSET_RISE["usualReach"], seen: NDArray[np.bool_] | None = None
 ) -> Array:
-    """How far wrists get from their shoulders while the arm hangs [F, 2], in arm lengths, by what was noticed until each frame.
+    """How far wrists get from their shoulders while the arm hangs [F, 2], in arm lengths, by what was noticed until
+    each frame.
 
-    reach [F, 2, 3]; seconds [F] since the frame before; seen [F, 2]: which hands are, all when None. A quantile, followed by stochastic
-    approximation (Robbins and Monro, Annals of Mathematical Statistics 22(3), 1951).
+    reach [F, 2, 3]; seconds [F] since the frame before; seen [F, 2]: which hands are, all when None. A quantile,
+    followed by stochastic approximation (Robbins and Monro, Annals of Mathematical Statistics 22(3), 1951).
     """
     far = np.linalg.norm(reach, axis=-1)
     hangs = (-reach[..., 1] > HEADSET_RISE["hanging"] * far) & (True if seen is None else seen)
@@ -37,7 +41,9 @@ def hanging_reach(
 
 
 def rise(followed: Array, arm: Array, usual: float = HEADSET_RISE["usualReach"]) -> Array:
-    """How far above its usual place the headset sits [F] in metres, by what was noticed of both arms [F, 2] of this length [m]."""
+    """How far above its usual place the headset sits [F] in metres, by what was noticed of both arms [F, 2] of this
+    length [m].
+    """
     further = followed.mean(axis=-1) - usual
     beyond = np.sign(further) * np.maximum(np.abs(further) - HEADSET_RISE["unremarkable"], 0.0)
     return np.clip(arm * beyond, -HEADSET_RISE["furthest"], HEADSET_RISE["furthest"])

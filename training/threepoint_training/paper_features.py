@@ -21,6 +21,8 @@ def floor_under_head(positions: Array) -> Array:
 
 
 def paper_features(positions: Array, rotations: Array) -> Array:
-    """The paper's input [F, 2, 3, 3]: depth (local position [m], Euler angles [rad]), row (x, y, z), column (head, left, right)."""
+    """The paper's input [F, 2, 3, 3]: depth (local position [m], Euler angles [rad]), row (x, y, z), column (head,
+    left, right).
+    """
     local = positions - floor_under_head(positions)
     return np.stack([np.swapaxes(local, 1, 2), np.swapaxes(euler_yxz(rotations), 1, 2)], axis=1)

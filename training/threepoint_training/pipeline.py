@@ -1,4 +1,5 @@
-"""From mocap files to public/models, in one run: prepare, proportions and IK, the paper's network, ours, export, the table.
+"""From mocap files to public/models, in one run: prepare, proportions and IK, the paper's network, ours, export, the
+table.
 
 A run is seeded: the same data and options write the same weights on the same machine.
 """
@@ -35,7 +36,9 @@ Rows = dict[str, dict[str, float]]
 
 
 def main(config: TrainConfig, console: Console | None = None) -> Rows:
-    """Does the configured task, prints its table and returns it: MPJPE [cm] by row and column; nothing where the table has other figures."""
+    """Does the configured task, prints its table and returns it: MPJPE [cm] by row and column; nothing where the table
+    has other figures.
+    """
     torch.set_num_threads(config.threads)
     report = TrainingReport(console or Console())
     with report.progress:
@@ -44,22 +47,20 @@ def main(config: TrainConfig, console: Console | None = None) -> Rows:
 
 def _train(run: TrainingRun) -> Rows:
     """Trains the networks of each fold, then those of the page, and renews the golden vectors with the latter."""
-    config = run.config
-    folds = cross_validate.usable_folds(run)
-    if "cross-validation" in config.stages and folds:
+    config = run.config folds = cross_validate.usable_folds(run) if "cross-validation" in config.stages and folds:
         cross_validate.main(run, folds)
     if "all-subjects" in config.stages:
         _train_on_all_subjects(run)
         if config.out.resolve() == (REPOSITORY / "public/models").resolve():
             golden.main(golden.GoldenConfig(config.out))
-    run.report.table(TITLE, ("mean", *LABELS), run.report.rows)
-    return run.report.rows
+    run.report.table(TITLE, ("mean", *LABELS), run.report.rows) return run.report.rows
 
 
-def _train_on_all_subjects(run: TrainingRun) -> None:
-    """Trains and writes the page's networks, each on its subset of all trainable people (`splits.trained_on`).
+    def _train_on_all_subjects(run: TrainingRun) -> None: """Trains and writes the page's networks, each on its subset
+    of all trainable people (`splits.trained_on`).
 
-    Their contracts carry the errors of cross-validation: on held-out people, of networks trained in the same way without them.
+    Their contracts carry the errors of cross-validation: on held-out people, of networks trained in the same way
+    without them.
     """
     subjects = trainable(tuple(run.corpus.people))
     for name in run.config.networks:
@@ -80,7 +81,9 @@ def _train_on_all_subjects(run: TrainingRun) -> None:
 
 
 def _select(run: TrainingRun) -> Rows:
-    """Judges the recipe by the selection metric, and compares it with the recipes judged earlier on the same people and seeds."""
+    """Judges the recipe by the selection metric, and compares it with the recipes judged earlier on the same people and
+    seeds.
+    """
     config = selection.SelectionConfig(run.config.groups)
     found = selection.main(run.corpus, run.config.learned, config, run.report.console.print)
     for frames in selection.FRAMES:
@@ -129,7 +132,9 @@ _TASKS: dict[Task, Callable[[TrainingRun], Rows]] = {
 
 
 def _corpus(config: TrainConfig, report: TrainingReport) -> PreparedCorpus:
-    """The motion to train with; the run says where it is from, what was put right or left out, and how much of it there is."""
+    """The motion to train with; the run says where it is from, what was put right or left out, and how much of it there
+    is.
+    """
     corpus = (
         generate_corpus(people=6, clips=4, frames=600, seed=config.seed)
         if config.mocap is None

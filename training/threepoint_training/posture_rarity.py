@@ -1,4 +1,6 @@
-"""How rare each frame's posture is, so that walking, which most recordings show, does not crowd out everything else in a batch."""
+"""How rare each frame's posture is, so that walking, which most recordings show, does not crowd out everything else in
+a batch.
+"""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -1,4 +1,6 @@
-"""Motion capture files to one corpus: 60 frames a second, our joints in metres, floor frame, people facing −Z in T-pose."""
+"""Motion capture files to one corpus: 60 frames a second, our joints in metres, floor frame, people facing −Z in
+T-pose.
+"""
 
 import hashlib
 from collections.abc import Callable, Iterable, Mapping
@@ -27,7 +29,8 @@ SHORTEST_SEGMENT_SECONDS: float = RULES["shortestPieceSeconds"]
 # The headset's origin (between the eyes) relative to the head joint, in the head's frame: up and forward [m].
 EYES_FROM_HEAD_JOINT = np.array(RULES["eyesFromHeadJoint"])
 
-# The wrist's −Z points to the knuckles, +Y out of the back of the hand; in T-pose the knuckles point sideways, palms down.
+# The wrist's −Z points to the knuckles, +Y out of the back of the hand; in T-pose the knuckles point sideways, palms
+# down.
 _HAND_REST = {
     "leftHand": quaternion.from_axis_angle(np.array([0.0, 1.0, 0.0]), np.array(np.pi / 2)),
     "rightHand": quaternion.from_axis_angle(np.array([0.0, 1.0, 0.0]), np.array(-np.pi / 2)),
@@ -47,7 +50,9 @@ class PrepareConfig:
 
 @dataclass(frozen=True)
 class _Clip:
-    """One clip in our joints and axes, still at its own rate; legs [frames, 8, 3] (LEG_JOINTS, NaN: not in the map); rest is the rest pose."""
+    """One clip in our joints and axes, still at its own rate; legs [frames, 8, 3] (LEG_JOINTS, NaN: not in the map);
+    rest is the rest pose.
+    """
 
     positions: NDArray[np.float64]
     rotations: NDArray[np.float64]
@@ -68,7 +73,8 @@ def _scale(motion: Motion, skeleton: SkeletonMap, file_name: str) -> float:
     arm = sum(
         np.linalg.norm(rest[a] - rest[b]) for a, b in (("leftUpperArm", "leftLowerArm"), ("leftLowerArm", "leftHand"))
     )
-    # Shoulder to wrist of 5th-percentile women to 95th-percentile men is 0.46–0.62 m; children and odd definitions widen it.
+    # Shoulder to wrist of 5th-percentile women to 95th-percentile men is 0.46–0.62 m; children and odd definitions
+    # widen it.
     shortest, longest = RULES["armLength"]
     for scale in RULES["units"]:
         if shortest < arm * scale < longest:
@@ -174,7 +180,8 @@ def _standing_eye_height(clip: _Clip) -> float | None:
             thigh, knee, ankle = (rest[f"{side}{part}"] for part in ("UpperLeg", "LowerLeg", "Foot"))
             legs.append(np.linalg.norm(thigh - knee) + np.linalg.norm(knee - ankle))
     hip = np.mean([rest[joint][1] for joint in ("leftUpperLeg", "rightUpperLeg") if joint in rest])
-    # The ankle's height above the sole, about 4.5 % of the leg's 0.53 share of stature (Winter, Biomechanics: 0.039 of stature).
+    # The ankle's height above the sole, about 4.5 % of the leg's 0.53 share of stature (Winter, Biomechanics: 0.039 of
+    # stature).
     leg = float(np.mean(legs))
     sole = leg * 0.039 / 0.491
     return leg + sole + float(rest["head"][1] - hip) + EYES_FROM_HEAD_JOINT[1]
@@ -221,7 +228,9 @@ def _neutral_head(clips: list[tuple[str, _Clip]]) -> NDArray[np.float64]:
 
 
 def _floor_height(clips: list[tuple[str, _Clip]]) -> float:
-    """How far the lowest foot joint's usual height differs from a joint 2.5 cm above the floor; 0 where there are no feet."""
+    """How far the lowest foot joint's usual height differs from a joint 2.5 cm above the floor; 0 where there are no
+    feet.
+    """
     feet = [LEG_JOINTS.index(f"{side}{part}") for side in ("left", "right") for part in ("Foot", "Toes")]
     # Infinity where the map has no such joint.
     heights = [np.nan_to_num(clip.legs[:, feet, 1], nan=np.inf).min(axis=1) for _, clip in clips]
@@ -257,7 +266,9 @@ def _motion(
 
 
 class _Reader:
-    """Reads the files of one corpus with one map; what was put right is counted in `notes`, by the sentence that says it."""
+    """Reads the files of one corpus with one map; what was put right is counted in `notes`, by the sentence that says
+    it.
+    """
 
     def __init__(self, config: PrepareConfig) -> None:
         self.given = read_skeleton_map(config.skeleton_map) if config.skeleton_map else None
@@ -297,7 +308,8 @@ class _Reader:
 
 
 def main(config: PrepareConfig, progress: Callable[[str], None] = lambda _: None) -> PreparedCorpus:
-    """Prepares every clip it can; what it cannot is in `problems`, a sentence each. Nothing usable raises MocapError."""
+    """Prepares every clip it can; what it cannot is in `problems`, a sentence each. Nothing usable raises MocapError.
+    """
     sources = motion_files(config.mocap, config.people)
     hashed = [path for source in sources for path in (source.path, source.asf) if path is not None]
     reader = _Reader(config)

@@ -34,7 +34,9 @@ def joints_of(positions: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
 def chest_axes_of(
     joints: dict[str, NDArray[np.float64]],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """The axes [F, 3] of the chest by true joints, unit, in the joints' frame: x from the left to the right shoulder, y up the thorax, z backward."""
+    """The axes [F, 3] of the chest by true joints, unit, in the joints' frame: x from the left to the right shoulder, y
+    up the thorax, z backward.
+    """
     x = joints["rightUpperArm"] - joints["leftUpperArm"]
     x = x / np.linalg.norm(x, axis=-1, keepdims=True)
     up = joints["neck"] - joints["chest"]
@@ -86,7 +88,9 @@ class PreparedCorpus:
         return [clip for clip, person in enumerate(self.clip_people) if person in people]
 
     def frames_of(self, people: People, stride: int = 1) -> NDArray[np.int64]:
-        """The frames of these people's clips, one clip after the other: of each clip the first and every `stride`-th after it."""
+        """The frames of these people's clips, one clip after the other: of each clip the first and every `stride`-th
+        after it.
+        """
         slices = [self.clip_slice(clip) for clip in self.clips_of(people)]
         return np.concatenate([np.arange(each.start, each.stop, stride) for each in slices])
 

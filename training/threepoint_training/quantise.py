@@ -1,7 +1,8 @@
 """8-bit weights for ONNX graphs.
 
-Weights are stored as int8 per output channel with a DequantizeLinear before the layer; activations stay in floating point. Eight-bit
-activations make the same mean error but two to five times the jerk, because their steps show between frames.
+Weights are stored as int8 per output channel with a DequantizeLinear before the layer; activations stay in floating
+point. Eight-bit activations make the same mean error but two to five times the jerk, because their steps show between
+frames.
 """
 
 import numpy as np

@@ -115,7 +115,8 @@ def to_matrix(q: Array) -> Array:
 
 
 def rotation_between(a: Array, b: Array) -> Array:
-    """The smallest rotation that takes the direction of a to that of b; half a turn about any normal when they oppose."""
+    """The smallest rotation that takes the direction of a to that of b; half a turn about any normal when they oppose.
+    """
     a = a / np.linalg.norm(a, axis=-1, keepdims=True)
     b = b / np.linalg.norm(b, axis=-1, keepdims=True)
     w = 1.0 + np.sum(a * b, axis=-1, keepdims=True)

@@ -34,7 +34,9 @@ class RecordingsConfig:
 
 
 def write(corpus: PreparedCorpus, config: RecordingsConfig) -> Path:
-    """One little-endian float32 file [frames, COLUMNS] (NaN: joints that the motion lacks) per clip and index.json; same seed, same bytes."""
+    """One little-endian float32 file [frames, COLUMNS] (NaN: joints that the motion lacks) per clip and index.json;
+    same seed, same bytes.
+    """
     config.out.mkdir(parents=True, exist_ok=True)
     clips = []
     forearms = hand_tilt.ForearmMeans(corpus, tuple(corpus.people))

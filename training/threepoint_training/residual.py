@@ -20,8 +20,9 @@ def network_input(vector: Array, times: Array, window: tuple[float, ...]) -> Arr
 
 
 def residual(truth: Array, positions: Array, rotations: Array, body: Body, vector: Array) -> Array:
-    """The target [F, 18]: the six true joints [F, 6, 3] (floor frame) minus those of IK that the features `vector` [F, 46] carry, chest frame, in
-    eye heights."""
+    """The target [F, 18]: the six true joints [F, 6, 3] (floor frame) minus those of IK that the features `vector` [F,
+    46] carry, chest frame, in eye heights.
+    """
     yaw = quaternion.heading(rotations[:, 0])
     inverse = np.broadcast_to(quaternion.conjugate(yaw)[:, None], (*truth.shape[:-1], 4))
     joints = quaternion.rotate(inverse, truth - positions[:, :1]) / body.eye_height[..., None]

@@ -1,4 +1,6 @@
-"""The pose that rotations are counted from: taken from a frame, brought to face forward, and refused where it is no T-pose."""
+"""The pose that rotations are counted from: taken from a frame, brought to face forward, and refused where it is no
+T-pose.
+"""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -21,7 +23,9 @@ _HOW = (
 
 
 def take_as_rest(motion: Motion, positions: NDArray[np.float64], rotations: NDArray[np.float64]) -> Motion:
-    """Returns the motion relative to a rest pose: its joints [joints, 3] and global rotations [joints, 4] in the file's axes."""
+    """Returns the motion relative to a rest pose: its joints [joints, 3] and global rotations [joints, 4] in the file's
+    axes.
+    """
     back = np.broadcast_to(quaternion.conjugate(rotations), motion.rotations.shape)
     return replace(
         motion, rest_positions=positions - positions[0], rotations=quaternion.multiply(motion.rotations, back)

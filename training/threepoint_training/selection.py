@@ -1,6 +1,8 @@
-"""The figures by which recipes of the learned network are chosen: errors of people held out in turn, in active frames, hands not measured.
+"""The figures by which recipes of the learned network are chosen: errors of people held out in turn, in active frames,
+hands not measured.
 
-`npm run train -- --mocap DIR --select` calls this for the recipe of the code as it is, and compares it with those of earlier calls.
+`npm run train -- --mocap DIR --select` calls this for the recipe of the code as it is, and compares it with those of
+earlier calls.
 """
 
 import json
@@ -42,8 +44,9 @@ People = Mapping[str, PersonErrors]
 
 
 def errors_by_person(corrections: NDArray[np.float32], people: HeldOut) -> dict[str, dict[str, PersonErrors]]:
-    """Errors of a network with these corrections [F, 18] after torso and arm fitting, by FRAMES and by name; a person without active frames is
-    missing from those."""
+    """Errors of a network with these corrections [F, 18] after torso and arm fitting, by FRAMES and by name; a person
+    without active frames is missing from those.
+    """
     ours, of_ik = train_learned.fitted_errors_cm(corrections, people), train_learned.ik_errors_cm(people)
     chosen = {"all": np.ones(len(ours), bool), "active": postures.active(people.inputs)}
     return {
@@ -70,7 +73,9 @@ def main(
     config: SelectionConfig = SelectionConfig(),
     report: Callable[[str], None] = lambda _: None,
 ) -> list[dict[str, People]]:
-    """By seed and by FRAMES: errors on each trainable person, of a network trained on everyone outside the person's group; IK keeps its constants."""
+    """By seed and by FRAMES: errors on each trainable person, of a network trained on everyone outside the person's
+    group; IK keeps its constants.
+    """
     everyone = splits.trainable(tuple(corpus.people))
     found: list[dict[str, dict[str, PersonErrors]]] = [{frames: {} for frames in FRAMES} for _ in range(config.seeds)]
     for group in splits.groups_in_turn(everyone, config.groups):
@@ -118,7 +123,9 @@ def worse_half(*recipes: People) -> tuple[str, ...]:
 
 
 def figures(people: People) -> dict[str, float]:
-    """Errors relative to IK, each person weighing the same: of all people and of the worse half, of all joints and of elbows."""
+    """Errors relative to IK, each person weighing the same: of all people and of the worse half, of all joints and of
+    elbows.
+    """
     found = {}
     for group, names in (("all people", tuple(people)), ("worse half", worse_half(people))):
         for joints, columns in JOINTS.items():
@@ -145,7 +152,8 @@ class Difference:
 def compare(a: list[People], b: list[People]) -> dict[str, Difference]:
     """Differences a − b of two recipes over the same seeds and people, by the names that `figures` gives them.
 
-    Differences are paired by person and seed; their variance is that between people plus that between seeds, for both are samples.
+    Differences are paired by person and seed; their variance is that between people plus that between seeds, for both
+    are samples.
     """
     seeds = len(a)
     # Each person's mean over seeds, for who is in the worse half.

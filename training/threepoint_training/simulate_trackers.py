@@ -28,7 +28,8 @@ FOREARM_ERROR = 0.01
 
 @dataclass(frozen=True)
 class TrackerConfig:
-    """Standard deviations. Offsets are constant for a wearer: how this headset sits, what the grip table does not know."""
+    """Standard deviations. Offsets are constant for a wearer: how this headset sits, what the grip table does not know.
+    """
 
     headset_offset: float = _TRACKERS["headsetOffset"]  # [m] per axis
     headset_pitch: float = np.radians(_TRACKERS["headsetPitchDegrees"])  # [rad]
@@ -44,7 +45,8 @@ class TrackerConfig:
 
 @dataclass(frozen=True)
 class Wearer:
-    """How trackers sit on one person: offsets [m] in the frames of head and hands, and rotations (xyzw) against those."""
+    """How trackers sit on one person: offsets [m] in the frames of head and hands, and rotations (xyzw) against those.
+    """
 
     eyes_in_head: Array
     head_turn: Array
@@ -70,14 +72,18 @@ def draw_wearer(config: TrackerConfig, random: NormalSource) -> Wearer:
 
 
 def measured_tilts(tilts: Array, worn: Array, config: TrackerConfig, random: NormalSource) -> Array:
-    """What a calibration measures of hands with these tilts [..., 2], through trackers that are turned by `worn` [..., 4] against them."""
+    """What a calibration measures of hands with these tilts [..., 2], through trackers that are turned by `worn` [...,
+    4] against them.
+    """
     return hand_tilt.turned(tilts, worn) + random.normal(size=tilts.shape) * config.hand_tilt_error / np.sqrt(2)
 
 
 def simulate(
     positions: Array, rotations: Array, wearer: Wearer, config: TrackerConfig, random: NormalSource
 ) -> tuple[Array, Array]:
-    """Tracked positions [F, 3, 3] and rotations [F, 3, 4] of headset, left and right wrist, from JOINTS and ROTATIONS arrays."""
+    """Tracked positions [F, 3, 3] and rotations [F, 3, 4] of headset, left and right wrist, from JOINTS and ROTATIONS
+    arrays.
+    """
     positions = np.asarray(positions, np.float64)
     rotations = np.asarray(rotations, np.float64)
     frames = len(positions)

@@ -22,7 +22,9 @@ def load_proportions() -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Body:
-    """What kinematics needs of the skeleton, each [..., 1] or [..., 3] over bodies [m]; arms and shoulders for the right side."""
+    """What kinematics needs of the skeleton, each [..., 1] or [..., 3] over bodies [m]; arms and shoulders for the
+    right side.
+    """
 
     eye_height: Array
     arm: Array
@@ -34,7 +36,8 @@ class Body:
     lower_back: Array  # hips to chest
     clavicle_root: Array  # from the neck's base
     shoulder: Array  # from the neck's base
-    # Tilts of the left and the right hand (hand_tilt) [..., 2, 2], and whether each is applied [..., 2]; None: no tilts.
+    # Tilts of the left and the right hand (hand_tilt) [..., 2, 2], and whether each is applied [..., 2]; None: no
+    # tilts.
     hand_tilts: Array | None = None
     hands_turned: NDArray[np.bool_] | None = None
 
@@ -74,7 +77,8 @@ def body_from_calibration(eye_height: Array, arm_span: Array, proportions: dict[
 
 
 def rest_offsets(body: Body) -> dict[str, list[float]]:
-    """Every joint's offset from its parent and `eyesInHead` of one body, as `skeletonFromCalibration` must give them."""
+    """Every joint's offset from its parent and `eyesInHead` of one body, as `skeletonFromCalibration` must give them.
+    """
     p = load_proportions()
     e = body.eye_height.item()
 

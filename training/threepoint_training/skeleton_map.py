@@ -1,4 +1,5 @@
-"""Maps the joints of a file to the project's joints: built in for CMU's ASF and common BVH skeletons, else from JSON."""
+"""Maps the joints of a file to the project's joints: built in for CMU's ASF and common BVH skeletons, else from JSON.
+"""
 
 import json
 from dataclasses import dataclass, field, replace

@@ -1,4 +1,6 @@
-"""Inverse kinematics as docs/estimation.md states it, vectorised over frames; the twin of src/threepoint/core/estimation/solve-ik.ts."""
+"""Inverse kinematics as docs/estimation.md states it, vectorised over frames; the twin of
+src/threepoint/core/estimation/solve-ik.ts.
+"""
 
 import json
 from dataclasses import dataclass
@@ -47,7 +49,9 @@ def _apply(m: Array, v: Array) -> Array:
 
 
 def to_heading(positions: Array, rotations: Array) -> tuple[Array, Array, Array, Array]:
-    """Tracked points [F, 3, 3] and rotations [F, 3, 4] in the heading frame, with the heading's yaw (xyzw) and floor origin."""
+    """Tracked points [F, 3, 3] and rotations [F, 3, 4] in the heading frame, with the heading's yaw (xyzw) and floor
+    origin.
+    """
     yaw = quaternion.heading(rotations[:, 0])
     origin = positions[:, 0] * np.array([1.0, 0.0, 1.0])
     inverse = np.broadcast_to(quaternion.conjugate(yaw)[:, None], rotations.shape)
@@ -73,15 +77,15 @@ class _Points:
 
     @property
     def across(self) -> Array:
-        """From the left to the right hand [F, 3]."""
-        return self.right - self.left
+        """From the left to the right hand [F, 3].""" return self.right - self.left
 
 
-def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, Any] | None = None) -> Array:
-    """The six estimated joints [F, 6, 3] from tracked points in the heading frame, hands turned by their tilts; body: one for all, or one per frame.
+        def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, Any] | None = None) -> Array:
+        """The six estimated joints [F, 6, 3] from tracked points in the heading frame, hands turned by their tilts;
+        body: one for all, or one per frame.
 
-    The numbered steps are those of docs/estimation.md.
-    """
+        The numbered steps are those of docs/estimation.md.
+        """
     k = parameters or load_parameters()
     points = _points(positions, rotations, body)
     turn = _turn_chest(points, k)
@@ -155,7 +159,9 @@ def _place_trunk(neck: Array, thorax_up: Array, lower_back_up: Array, body: Body
 
 
 def _side_sign(side: int) -> Array:
-    """What takes an arm of this side (0: left) to a right one and back: the components of its vectors in the thorax frame are multiplied by it."""
+    """What takes an arm of this side (0: left) to a right one and back: the components of its vectors in the thorax
+    frame are multiplied by it.
+    """
     return np.array([1.0 if side else -1.0, 1.0, 1.0])
 
 
@@ -192,7 +198,9 @@ def _place_elbow(side: int, points: _Points, arm: tuple[Array, Array], body: Bod
 def two_bone_elbow(
     shoulder: Array, wrist: Array, upper_arm: Array, forearm: Array, pole: Array, *, thorax: Array
 ) -> Array:
-    """The elbow [F, 3] on the side of `pole`, or where that is along the arm, below or behind the thorax's axes; out of reach: on the straight arm."""
+    """The elbow [F, 3] on the side of `pole`, or where that is along the arm, below or behind the thorax's axes; out of
+    reach: on the straight arm.
+    """
     axis = wrist - shoulder
     distance = np.linalg.norm(axis, axis=-1, keepdims=True)
     axis = np.where(distance > 1e-9, axis / np.maximum(distance, 1e-9), -thorax[..., :, 1])

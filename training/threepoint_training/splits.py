@@ -1,9 +1,12 @@
-"""Which subjects train, which are held out and which are evaluation-only (never trained on): the splits that reported figures name."""
+"""Which subjects train, which are held out and which are evaluation-only (never trained on): the splits that reported
+figures name.
+"""
 
 import numpy as np
 
-# Evaluation-only subjects (never trained on): another laboratory's people (HDM05, Universität Bonn), by the names of that database or as the
-# numbers that a CMU-like copy gives three of them. Its licence, CC BY-SA 3.0, asks more than the page's weights can give.
+# Evaluation-only subjects (never trained on): another laboratory's people (HDM05, Universität Bonn), by the names of
+# that database or as the numbers that a CMU-like copy gives three of them. Its licence, CC BY-SA 3.0, asks more than
+# the page's weights can give.
 EVALUATION_ONLY = ("901", "902", "903", "bd", "bk", "dg", "mm", "tr")
 
 # Fold A is the shipped models' own hold-out; fold B exists because one fold is noisy.
@@ -12,8 +15,8 @@ FOLDS: dict[str, tuple[str, ...]] = {"A": ("005",), "B": ("014", "127", "002")}
 # The first eleven: people who were asked for many things; the others mostly walk and run.
 VARIED = ("001", "002", "003", "005", "009", "014", "016", "017", "049", "127", "135")
 
-# The lockbox: four of VARIED, drawn once by `draw_lockbox`. They are never trained on, and no recipe, constant or filter is chosen by them;
-# a release is evaluated on them, and each evaluation is recorded in lockbox-log.json.
+# The lockbox: four of VARIED, drawn once by `draw_lockbox`. They are never trained on, and no recipe, constant or
+# filter is chosen by them; a release is evaluated on them, and each evaluation is recorded in lockbox-log.json.
 LOCKBOX = ("001", "009", "049", "135")
 _LOCKBOX_SEED = 2460
 
@@ -22,14 +25,13 @@ _PARTNERS = {"019": "018", "061": "060"}
 
 
 def draw_lockbox() -> tuple[str, ...]:
-    """Draws LOCKBOX again."""
-    return tuple(
+    """Draws LOCKBOX again.""" return tuple(
         sorted(str(person) for person in np.random.default_rng(_LOCKBOX_SEED).choice(sorted(VARIED), 4, replace=False))
     )
 
 
-def groups_in_turn(people: tuple[str, ...], count: int | None = None) -> list[tuple[str, ...]]:
-    """`count` groups of nearly equal size that are held out in turn; neighbours in the list are in different ones, partners in the same.
+    def groups_in_turn(people: tuple[str, ...], count: int | None = None) -> list[tuple[str, ...]]: """`count` groups of
+    nearly equal size that are held out in turn; neighbours in the list are in different ones, partners in the same.
 
     None, or more than there are people: each person alone, but for partners.
     """
@@ -60,7 +62,8 @@ def training_people(fold: str, subjects: tuple[str, ...] | list[str]) -> tuple[s
 
 
 def trained_on(network: str, people: tuple[str, ...]) -> tuple[str, ...]:
-    """Which of `people` a network trains on: `learned` on all; `paper` on the VARIED subjects only, which lowers its error.
+    """Which of `people` a network trains on: `learned` on all; `paper` on the VARIED subjects only, which lowers its
+    error.
 
     Without any VARIED subject among them, as in other corpora, `paper` trains on all too.
     """

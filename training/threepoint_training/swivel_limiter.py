@@ -1,6 +1,8 @@
-"""Keeps elbows out of the trunk: the twin of src/threepoint/core/estimation/swivel-limiter.ts for one frame without a frame before it.
+"""Keeps elbows out of the trunk: the twin of src/threepoint/core/estimation/swivel-limiter.ts for one frame without a
+frame before it.
 
-Vectorised over bodies [N] and their two arms; any frame and unit of length that the trunk shares. No gradients go through its choice.
+Vectorised over bodies [N] and their two arms; any frame and unit of length that the trunk shares. No gradients go
+through its choice.
 """
 
 import math
@@ -18,8 +20,9 @@ _STEP, _STEPS, _HALVINGS = math.pi / 18, 18, 6
 
 @dataclass(frozen=True)
 class ElbowCircles:
-    """The circles on which the elbows of arms can lie, about the lines from shoulder to wrist: centre and axis (unit, towards the wrist) [N, 2, 3],
-    radius [N, 2, 1]."""
+    """The circles on which the elbows of arms can lie, about the lines from shoulder to wrist: centre and axis (unit,
+    towards the wrist) [N, 2, 3], radius [N, 2, 1].
+    """
 
     centre: Tensor
     axis: Tensor
@@ -37,7 +40,9 @@ class Trunk:
 
 
 def limit_swivel(circles: ElbowCircles, poles: Tensor, trunk: Trunk) -> tuple[Tensor, Tensor]:
-    """The poles [N, 2, 3] nearest to these at which elbows are clear of the trunk, and which of them had to move [N, 2]."""
+    """The poles [N, 2, 3] nearest to these at which elbows are clear of the trunk, and which of them had to move [N,
+    2].
+    """
     sides = torch.stack([-trunk.upper_chest[:, :, 0], trunk.upper_chest[:, :, 0]], dim=1)
     outside = _across(sides, circles.axis)
     short = outside.norm(dim=-1, keepdim=True) <= 1e-3
@@ -54,7 +59,9 @@ def limit_swivel(circles: ElbowCircles, poles: Tensor, trunk: Trunk) -> tuple[Te
 
 
 def _inside(circles: ElbowCircles, zero: Tensor, quarter: Tensor, trunk: Trunk) -> Callable[[Tensor], Tensor]:
-    """Returns a predicate of swivel angles [N, 2], from `zero` towards `quarter` [rad]: whether the elbows are in the trunk capsule [N, 2]."""
+    """Returns a predicate of swivel angles [N, 2], from `zero` towards `quarter` [rad]: whether the elbows are in the
+    trunk capsule [N, 2].
+    """
     unit = (trunk.neck - trunk.chest).norm(dim=-1)[:, None]
     spine = trunk.neck - trunk.hips
     up = _unit(spine)

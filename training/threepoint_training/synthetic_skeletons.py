@@ -1,4 +1,6 @@
-"""One generated person as other programs would write them: ASF/AMC, BVH with bones lost as cmuconvert loses them, BVH folded along an axis."""
+"""One generated person as other programs would write them: ASF/AMC, BVH with bones lost as cmuconvert loses them, BVH
+folded along an axis.
+"""
 
 from pathlib import Path
 
@@ -9,7 +11,8 @@ from . import quaternion
 Array = NDArray[np.float64]
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 
-# ASF bones in units of 1/0.45 inch, facing +Z with the left on +X: name, parent, from start to end in rest, degrees of freedom.
+# ASF bones in units of 1/0.45 inch, facing +Z with the left on +X: name, parent, from start to end in rest, degrees of
+# freedom.
 _TRUNK = [
     ("lowerback", "root", (0.0, 2.0, -0.15)), ("upperback", "lowerback", (0.0, 2.0, 0.0)), ("thorax", "upperback", (0.0, 2.0, 0.12)),
     ("lowerneck", "thorax", (0.0, 1.7, 0.1)), ("upperneck", "lowerneck", (0.0, 1.7, -0.1)), ("head", "upperneck", (0.0, 1.7, 0.0)),
@@ -53,7 +56,8 @@ MOVING = [
     "rtibia",
 ]
 
-# cmuconvert's joints: name, ASF bone whose start and rotation it is (None: only rotation zero), parent, bone whose vector is its offset.
+# cmuconvert's joints: name, ASF bone whose start and rotation it is (None: only rotation zero), parent, bone whose
+# vector is its offset.
 _CMUCONVERT = [
     ("Hips", "root", None, None),
     ("LHipJoint", "lhipjoint", "Hips", None), ("LeftUpLeg", "lfemur", "LHipJoint", "lhipjoint"), ("LeftLeg", "ltibia", "LeftUpLeg", "lfemur"),
@@ -126,7 +130,9 @@ def write_cmuconvert_bvh(path: Path, angles: dict[str, Array], lost: bool = True
 
 
 def bvh_text(joints: list[tuple[str, str | None, Array]], rows: list[Array], frame_time: float) -> str:
-    """A BVH of joints (name, parent, offset), parents before children in depth-first order, with Z, Y, X rotation channels."""
+    """A BVH of joints (name, parent, offset), parents before children in depth-first order, with Z, Y, X rotation
+    channels.
+    """
 
     def block(name: str) -> str:
         _, parent, offset = next(joint for joint in joints if joint[0] == name)
@@ -163,7 +169,9 @@ def zyx_degrees(q: Array) -> Array:
 
 
 def along(axis: Array) -> dict[str, Array]:
-    """For each joint of GAME the rotation in T-pose of a skeleton whose bones all lie along this axis when nothing is turned."""
+    """For each joint of GAME the rotation in T-pose of a skeleton whose bones all lie along this axis when nothing is
+    turned.
+    """
     rest = {}
     for name, _, offset in GAME:
         below = [np.array(way, float) for _, parent, way in GAME if parent == name]

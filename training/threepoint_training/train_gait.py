@@ -30,7 +30,9 @@ _OTHERS = [0, 1, 2, 3, 6, 7, 8, 9]
 
 @dataclass(frozen=True)
 class GaitConfig:
-    """frames: the folder that gait-frames wrote. out: the page's network. held_out: the folder for networks trained without each group of people."""
+    """frames: the folder that gait-frames wrote. out: the page's network. held_out: the folder for networks trained
+    without each group of people.
+    """
 
     frames: Path
     out: Path = REPOSITORY / "src/threepoint/core/estimation/gait-network.json"
@@ -47,7 +49,9 @@ class GaitConfig:
 
 @dataclass(frozen=True)
 class _Data:
-    """Inputs [R, …] and targets [R, 10] of people and of their mirror images; drawn [R]: the cumulative probability of drawing rows, its last 1."""
+    """Inputs [R, …] and targets [R, 10] of people and of their mirror images; drawn [R]: the cumulative probability of
+    drawing rows, its last 1.
+    """
 
     inputs: Array
     targets: Array
@@ -69,7 +73,9 @@ def _load(config: GaitConfig, index: dict[str, Any], people: tuple[str, ...]) ->
 
 @dataclass(frozen=True)
 class GaitWeights:
-    """Normalisation of the inputs, and each layer's weights [rows, inputs] and bias; outputs in the units of the targets."""
+    """Normalisation of the inputs, and each layer's weights [rows, inputs] and bias; outputs in the units of the
+    targets.
+    """
 
     mean: Array
     scale: Array
@@ -115,7 +121,8 @@ def train(config: GaitConfig, data: _Data) -> GaitWeights:
 
 
 def tensors_of(weights: GaitWeights) -> dict[str, dict[str, Any]]:
-    """Weights as the page reads them: matrices as 8-bit levels with a scale for each row, other numbers to six digits."""
+    """Weights as the page reads them: matrices as 8-bit levels with a scale for each row, other numbers to six digits.
+    """
 
     def tensor(values: Array) -> dict[str, Any]:
         return {"shape": list(values.shape), "numbers": [float(f"{value:.6g}") for value in values.ravel()]}

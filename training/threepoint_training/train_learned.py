@@ -1,4 +1,6 @@
-"""Trains our network, which predicts the residual of IK's joints, on recombined bodies; its weights are averaged over steps, then shrunk."""
+"""Trains our network, which predicts the residual of IK's joints, on recombined bodies; its weights are averaged over
+steps, then shrunk.
+"""
 
 import functools
 import zlib
@@ -36,9 +38,11 @@ class TrainLearnedConfig:
     learning_rate: float = 5e-3
     weight_decay: float = 1e-2
     average_half_life_steps: float = 300.0
-    # The trunk's correction is multiplied by this after training: part of what is learned of some people does not hold for others.
+    # The trunk's correction is multiplied by this after training: part of what is learned of some people does not hold
+    # for others.
     shrinkage: float = 0.92
-    # The weight of the raw joints' errors, which keeps small what fitting would undo, relative to that of errors after torso and arm fitting.
+    # The weight of the raw joints' errors, which keeps small what fitting would undo, relative to that of errors after
+    # torso and arm fitting.
     auxiliary_loss_weight: float = 0.1
     # The elbows' share of both losses; a third would be every joint alike.
     elbow_share: float = 1 / 2
@@ -53,8 +57,8 @@ class TrainLearnedConfig:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """Frames of people as trackers report them, one clip after the other: inputs [F, T·46 + 38] and targets [F, 18] of the network, targets in
-    eye heights (times `eye_height` [F] they are metres), and each frame's person and clip [F].
+    """Frames of people as trackers report them, one clip after the other: inputs [F, T·46 + 38] and targets [F, 18] of
+    the network, targets in eye heights (times `eye_height` [F] they are metres), and each frame's person and clip [F].
     """
 
     inputs: NDArray[np.float32]
@@ -64,22 +68,20 @@ class HeldOut:
     clips: NDArray[np.int64]
 
     def subset(self, frames: NDArray[np.int64]) -> "HeldOut":
-        """These frames alone."""
-        return HeldOut(*(getattr(self, each.name)[frames] for each in fields(self)))
+        """These frames alone.""" return HeldOut(*(getattr(self, each.name)[frames] for each in fields(self)))
 
 
-# One for all evaluations, so that errors of different networks are compared on the same wearers and noise.
-_HELD_OUT_SEED = 1
-_TRACKERS = TrackerConfig()
+        # One for all evaluations, so that errors of different networks are compared on the same wearers and noise.
+        _HELD_OUT_SEED = 1 _TRACKERS = TrackerConfig()
 
 
-def held_out(
-    corpus: PreparedCorpus, people: tuple[str, ...], window_seconds: tuple[float, ...], hands_measured: bool = True
-) -> HeldOut:
-    """All frames of these people as trackers report them, with the calibration that they would have; without hands_measured no hand tilt is in it.
+        def held_out( corpus: PreparedCorpus, people: tuple[str, ...], window_seconds: tuple[float, ...],
+        hands_measured: bool = True ) -> HeldOut: """All frames of these people as trackers report them, with the
+        calibration that they would have; without hands_measured no hand tilt is in it.
 
-    Hand tilts are measured on the true forearms of the same person's other clips (of a single clip: on its own), with the calibration's error.
-    """
+        Hand tilts are measured on the true forearms of the same person's other clips (of a single clip: on its own),
+        with the calibration's error.
+        """
     forearms = hand_tilt.ForearmMeans(corpus, people)
     rows = []
     for name in people:
@@ -110,7 +112,9 @@ def _random_of(name: str, *stream: int) -> np.random.Generator:
 
 
 def _measured(tilts: Array, wearer: Wearer, name: str) -> CalibratedTilts:
-    """The calibration's measurement of hands with these tilts [2, 2], where it is plausible; one error for all clips of a person."""
+    """The calibration's measurement of hands with these tilts [2, 2], where it is plausible; one error for all clips of
+    a person.
+    """
     measured = measured_tilts(tilts, wearer.hand_turns, _TRACKERS, _random_of(name, 2))
     return CalibratedTilts(measured, hand_tilt.plausible(measured))
 
@@ -181,7 +185,9 @@ def train(
 
 @dataclass(frozen=True)
 class TrainFrameRandomConfig:
-    """Our network under the paper's protocol, which trains on the neighbours of every test frame: wider, trained longer, without augmentation."""
+    """Our network under the paper's protocol, which trains on the neighbours of every test frame: wider, trained
+    longer, without augmentation.
+    """
 
     width: int = 512
     hidden_layers: int = 3
@@ -198,17 +204,13 @@ def train_frame_random(
     config: TrainFrameRandomConfig,
     report: Callable[[int, float], None] = lambda *_: None,
 ) -> CorrectionNetwork:
-    """Trains on the chosen frames as they are; report(step, loss)."""
-    torch.manual_seed(config.seed)
-    x, y = torch.from_numpy(frames.inputs[chosen]), torch.from_numpy(frames.targets[chosen])
-    network = CorrectionNetwork((x.shape[1] - CHEST_FEATURES) // FEATURES, config.width, 0.0, config.hidden_layers)
-    network.normalise(x, y)
-    optimiser = torch.optim.AdamW(network.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(
+    """Trains on the chosen frames as they are; report(step, loss).""" torch.manual_seed(config.seed) x, y =
+    torch.from_numpy(frames.inputs[chosen]), torch.from_numpy(frames.targets[chosen]) network =
+    CorrectionNetwork((x.shape[1] - CHEST_FEATURES) // FEATURES, config.width, 0.0, config.hidden_layers)
+    network.normalise(x, y) optimiser = torch.optim.AdamW(network.parameters(), lr=config.learning_rate,
+    weight_decay=config.weight_decay) schedule = torch.optim.lr_scheduler.OneCycleLR(
         optimiser, config.learning_rate, total_steps=config.steps, pct_start=0.1
-    )
-    network.train()
-    for step in range(config.steps):
+    ) network.train() for step in range(config.steps):
         batch = torch.randint(len(x), (config.batch,))
         loss = mean_distances(network(x[batch]).view(-1, 6, 3), y[batch].view(-1, 6, 3)).mean() / _RESIDUAL
         optimiser.zero_grad()
@@ -219,14 +221,15 @@ def train_frame_random(
     return network.eval()
 
 
-# A typical residual [eye heights]; divides the loss, which so stays near one.
-_RESIDUAL = 0.025
+    # A typical residual [eye heights]; divides the loss, which so stays near one. _RESIDUAL = 0.025
 
 
-def mean_distances(corrections: torch.Tensor, truth: torch.Tensor, elbow_share: float = 1 / 3) -> torch.Tensor:
-    """Mean distance [N] of the joints [N, 6, 3] (ESTIMATED_JOINTS), both elbows together counting for so much; a third: every joint alike.
+    def mean_distances(corrections: torch.Tensor, truth: torch.Tensor, elbow_share: float = 1 / 3) -> torch.Tensor:
+    """Mean distance [N] of the joints [N, 6, 3] (ESTIMATED_JOINTS), both elbows together counting for so much; a third:
+    every joint alike.
 
-    Not its square: MPJPE counts distances, and the large errors of people who climb and tumble would outweigh all others.
+    Not its square: MPJPE counts distances, and the large errors of people who climb and tumble would outweigh all
+    others.
     """
     distance = (corrections - truth).norm(dim=-1)
     return elbow_share * distance[:, :2].mean(dim=-1) + (1 - elbow_share) * distance[:, 2:].mean(dim=-1)

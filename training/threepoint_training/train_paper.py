@@ -109,7 +109,8 @@ def train(
 def follow_learning(
     train: PaperFrames, test: PaperFrames, every: int = 16
 ) -> tuple[LearningCurve, Callable[[float, PaperNetwork], None]]:
-    """A curve and the watch that fills it, from one frame in `every` of each side; it changes nothing of the training."""
+    """A curve and the watch that fills it, from one frame in `every` of each side; it changes nothing of the training.
+    """
     curve = LearningCurve()
 
     def error(network: PaperNetwork, frames: PaperFrames) -> float:

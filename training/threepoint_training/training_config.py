@@ -1,30 +1,29 @@
 """The configuration of one run of `npm run train`."""
 
-from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Literal
+from dataclasses import dataclass, replace from pathlib import Path from typing import Literal
 
 from . import fit_ik, train_learned, train_paper
 
 REPOSITORY = Path(__file__).parents[2]
 
-# What a run does: trains the networks, or instead makes the tables of one study, or evaluates the lockbox.
-Task = Literal["train", "selection", "noticed wear", "lockbox"]
+# What a run does: trains the networks, or instead makes the tables of one study, or evaluates the lockbox. Task =
+Literal["train", "selection", "noticed wear", "lockbox"]
 
 
-@dataclass(frozen=True)
-class TrainConfig:
+@dataclass(frozen=True) class TrainConfig:
     """mocap None: generated motion, for trying the pipeline out. refit_kinematics also replaces the page's proportions and IK.
 
     First the folds, whose errors are what is claimed; then the networks of the page, trained on all subjects, which carry those errors.
-    """
+"""
 
     mocap: Path | None
     out: Path = REPOSITORY / "public/models"
-    # The networks of the first fold and the errors of all go there: what `npm run evaluate -- --models` measures on people held out.
+    # The networks of the first fold and the errors of all go there: what `npm run evaluate -- --models` measures on
+    # people held out.
     cross_validation: Path = REPOSITORY / ".cache/cross-validation"
     stages: tuple[str, ...] = ("cross-validation", "all-subjects")
-    # The networks of the first fold with 32-bit weights go there, for the evaluation to compare with; None: they are not written.
+    # The networks of the first fold with 32-bit weights go there, for the evaluation to compare with; None: they are
+    # not written.
     fp32_out: Path | None = None
     # Errors of the recipes that were judged, by commit and steps.
     selections: Path = REPOSITORY / ".cache/selection"

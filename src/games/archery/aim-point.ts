@@ -5,7 +5,8 @@ import type { Target } from './archery-state';
 const farthest = 14;
 
 /**
- * Returns the point at which a ray (unit direction, arena frame) aims: on the nearest target, else on the ground, else as far away as the range is long.
+ * Returns the point at which a ray (unit direction, arena frame) aims: on the nearest target, else on the ground, else
+ * as far away as the range is long.
  */
 export function aimPoint(origin: Vec3, direction: Vec3, targets: readonly Target[]): Vec3 {
   let nearest = farthest;

@@ -23,7 +23,9 @@ export interface Archer {
   follow(time: number, state: ArcheryState): { readonly frame: TrackingFrame; readonly buttons: Buttons };
 }
 
-/** Returns the next target: the nearest one that has not scored; if all have and every hit counts, the one worth most. */
+/**
+ * Returns the next target: the nearest one that has not scored; if all have and every hit counts, the one worth most.
+ */
 function nextTarget(state: ArcheryState): Target | null {
   if (state.phase === 'over' || state.arrowsLeft === 0) return null;
   const scored = (index: number) => state.arrows.some(({ landing }) => landing?.target === index);
@@ -32,7 +34,10 @@ function nextTarget(state: ArcheryState): Target | null {
   return open[0] ?? (state.options.everyHitCounts ? (best[0] ?? null) : null);
 }
 
-/** Creates an archer that stands at the centre of the zone, shoots at every target, nearest first, and then rests. Deterministic. */
+/**
+ * Creates an archer that stands at the centre of the zone, shoots at every target, nearest first, and then rests.
+ * Deterministic.
+ */
 export function createArcher(body: ArcherBody): Archer {
   const postures = createArcherPostures(body);
   const { eyes } = postures;

@@ -111,8 +111,8 @@ export interface ArcherPostures {
   /** Returns the posture just after the release. */
   followedThrough(shot: Posture): Posture;
   /**
-   * Returns head, hands (floor frame) and buttons of a posture at a time [s]. `pressure`: on the string hand's button, 0 to 1. `swing`: outward offset of
-   * that hand [m].
+   * Returns head, hands (floor frame) and buttons of a posture at a time [s]. `pressure`: on the string hand's button,
+   * 0 to 1. `swing`: outward offset of that hand [m].
    */
   seen(posture: Posture, time: number, pressure: number, swing: number): ArcherInput;
 }
@@ -255,7 +255,9 @@ class BodyPostures implements ArcherPostures {
     return this.#facing(yawOf(direction), -Math.sin(elbowLift), Math.cos(elbowLift), 0);
   }
 
-  /** Returns a shoulder relative to the eyes. The neck lies behind the eyes along the gaze; the trunk turns about it. */
+  /**
+   * Returns a shoulder relative to the eyes. The neck lies behind the eyes along the gaze; the trunk turns about it.
+   */
   #shoulderOf(side: Side, gaze: Quat, trunkYaw: number): Vec3 {
     const arm = this.#arm;
     const half = this.#halfShoulders;

@@ -9,7 +9,9 @@ export interface ArcheryOptions {
   readonly seconds: number;
   /** true: a target scores with every hit; false: only once. */
   readonly everyHitCounts: boolean;
-  /** What starts the clock: the first arrow or the start signal, or the signal alone. No arrow flies before the start. */
+  /**
+   * What starts the clock: the first arrow or the start signal, or the signal alone. No arrow flies before the start.
+   */
   readonly startedBy: 'arrow' | 'signal';
   /** Eye height of the archer above the floor [m], by which the targets are placed. */
   readonly eyeHeight: number;

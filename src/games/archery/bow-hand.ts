@@ -40,7 +40,10 @@ export function bowInHand(
   return target;
 }
 
-/** Writes the bow turned to the unit `direction` (−Z), with its upper limb as near as possible to its previous direction. */
+/**
+ * Writes the bow turned to the unit `direction` (−Z), with its upper limb as near as possible to its previous
+ * direction.
+ */
 export function turnBow(
   bow: Pose<'floor'>,
   direction: Vec3,

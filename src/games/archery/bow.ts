@@ -20,8 +20,8 @@ export const arrowMass = 0.025;
 export const efficiency = 0.72;
 
 /**
- * Returns the speed [m/s] of an arrow after this draw [m]: ½·m·v² = η·½·k·x², a linear spring, so v is proportional to the draw (75.9 /s).
- * The draw is clamped to [0, maximumDraw].
+ * Returns the speed [m/s] of an arrow after this draw [m]: ½·m·v² = η·½·k·x², a linear spring, so v is proportional to
+ * the draw (75.9 /s). The draw is clamped to [0, maximumDraw].
  */
 export const arrowSpeed = (draw: number): number =>
   clamp(draw, 0, maximumDraw) * Math.sqrt((efficiency * stiffness) / arrowMass);

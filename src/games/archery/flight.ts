@@ -64,8 +64,8 @@ export function firstHit(launch: Launch, targets: readonly Target[], walls: read
 }
 
 /**
- * Writes into `result` the unit direction in which an arrow with its nock at `nock` and this draw [m] hits `target`; the tip is an arrow's length ahead.
- * Returns null if the target is out of reach.
+ * Writes into `result` the unit direction in which an arrow with its nock at `nock` and this draw [m] hits `target`;
+ * the tip is an arrow's length ahead. Returns null if the target is out of reach.
  */
 export function releaseTowards(
   target: Vec3,

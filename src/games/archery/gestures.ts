@@ -58,8 +58,9 @@ export interface HapticPulse {
 }
 
 /**
- * A cue for sounds, captions and logs. taken: `side` has the bow now. near-string: a press here would nock. creak: another few centimetres of draw. lost,
- * resumed: a hand was lost and tracked again at a drawn bow. cancelled: the arrow is back in the quiver.
+ * A cue for sounds, captions and logs. taken: `side` has the bow now. near-string: a press here would nock. creak:
+ * another few centimetres of draw. lost, resumed: a hand was lost and tracked again at a drawn bow. cancelled: the
+ * arrow is back in the quiver.
  */
 export interface BowCue {
   readonly type:
@@ -80,7 +81,8 @@ export interface BowCue {
 }
 
 /**
- * The gestures of one frame. The frame, its lists and the view of the bow are reused by the next frame; actions, pulses and cues are new objects.
+ * The gestures of one frame. The frame, its lists and the view of the bow are reused by the next frame; actions, pulses
+ * and cues are new objects.
  */
 export interface GestureFrame {
   /** The bow; null: no hand holds it, or its hand has been lost for long. */

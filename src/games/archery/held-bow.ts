@@ -4,7 +4,10 @@ import type { Side } from 'threepoint/core/math/side';
 import { distance, dot, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { bowInHand, forwardOf, stringAtRest, turnBow, turnTowards } from './bow-hand';
 
-/** A press takes the bow within these distances of the fist: from its grip in the other hand, or from the bow on its rest [m]. */
+/**
+ * A press takes the bow within these distances of the fist: from its grip in the other hand, or from the bow on its
+ * rest [m].
+ */
 export const takeReach = 0.1;
 export const restReach = 0.25;
 /** Half-life of the bow's return to the hand's orientation after a shot [s]. */
@@ -46,14 +49,20 @@ export class HeldBow {
     return distance(fist, rest) <= restReach;
   }
 
-  /** Returns whether a fist can take the bow from the other hand: it is within reach, and nearer to the grip than to the string. */
+  /**
+   * Returns whether a fist can take the bow from the other hand: it is within reach, and nearer to the grip than to the
+   * string.
+   */
   isInHandAt(fist: Vec3, side: Side, giver: Pose<'floor'>): boolean {
     const bow = bowInHand(side, giver, this.#turned);
     const toGrip = distance(fist, bow.position);
     return toGrip <= takeReach && toGrip <= distance(fist, stringAtRest(bow, string));
   }
 
-  /** Moves the bow with its hand. Without a tracked hand it stays: while an arrow is nocked, otherwise for `holdSeconds`. */
+  /**
+   * Moves the bow with its hand. Without a tracked hand it stays: while an arrow is nocked, otherwise for
+   * `holdSeconds`.
+   */
   follow(side: Side, hand: Pose<'floor'> | null, time: number, nocked: boolean): void {
     if (hand) {
       bowInHand(side, hand, this.inHand);

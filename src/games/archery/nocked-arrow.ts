@@ -30,7 +30,10 @@ const handAims = 0.03;
 const lineAims = 0.15;
 /** Draw [m] at which the stage `nocked` ends. */
 const drawingFrom = 0.05;
-/** The draw is anchored from this length [m], if it changes more slowly than this [m/s] for this time [s], until it changes by this much [m]. */
+/**
+ * The draw is anchored from this length [m], if it changes more slowly than this [m/s] for this time [s], until it
+ * changes by this much [m].
+ */
 const anchorDraw = 0.25;
 const anchorSpeed = 0.12;
 const anchorSeconds = 0.15;
@@ -56,7 +59,10 @@ export class NockedArrow {
   readonly direction: MutableVec3;
   /** Time of the first frame without a hand [s]; null: both are tracked. */
   lostAt: number | null = null;
-  /** Whether a pinch has opened. It counts in the next frame with a tracked hand, because fingers also seem to open when tracking is lost. */
+  /**
+   * Whether a pinch has opened. It counts in the next frame with a tracked hand, because fingers also seem to open when
+   * tracking is lost.
+   */
   opened = false;
   /** Whether `direction` dates from before a jump of the floor frame. */
   #jumped = false;

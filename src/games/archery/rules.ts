@@ -46,8 +46,8 @@ export const targetRadius = 0.45;
 const radians = (degrees: number): number => (degrees * Math.PI) / 180;
 
 /**
- * The layout of the range. Bearing: from −Z to the right, seen from the origin. Elevation: that of the centre, seen by eyes above the origin. With these
- * bearings every target is visible from everywhere in the zone.
+ * The layout of the range. Bearing: from −Z to the right, seen from the origin. Elevation: that of the centre, seen by
+ * eyes above the origin. With these bearings every target is visible from everywhere in the zone.
  */
 const layout = [
   { distance: 4.5, points: 5, bearing: radians(-25), elevation: radians(-4.5) },
@@ -270,8 +270,9 @@ function roundEnd(state: ArcheryState, time: number): RoundEnd | null {
 }
 
 /**
- * The rules of one archer's round (src/games/README.md): four targets, some arrows and a bell. Tick 1/90 s, arena frame. `startedBy` decides what starts
- * the clock. With `everyHitCounts` the round ends only when no arrow is left or the bell rings.
+ * The rules of one archer's round (src/games/README.md): four targets, some arrows and a bell. Tick 1/90 s, arena
+ * frame. `startedBy` decides what starts the clock. With `everyHitCounts` the round ends only when no arrow is left or
+ * the bell rings.
  */
 export const archeryRules: GameRules<ArcheryState, ArcheryAction, ArcheryEvent, ArcheryOptions> = {
   tickSeconds,

@@ -13,7 +13,9 @@ export const slowestThrow = 0.8;
 export const grabReach = 0.35;
 /** The largest distance of a hand from the head [m]. */
 export const armReach = 1.4;
-/** The largest distance of a release from the last position of the hand [m]: at 10 m/s a hand moves that far in 70 ms. */
+/**
+ * The largest distance of a release from the last position of the hand [m]: at 10 m/s a hand moves that far in 70 ms.
+ */
 export const releaseReach = 0.7;
 /** The largest delay of an action [s]; older ones are moved to this age. */
 export const longestDelay = 0.5;

@@ -9,7 +9,10 @@ const player = v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(2));
 /** Schema of a launch: time, position, velocity. */
 const launch = v.tuple([finite, finite, finite, finite, finite, finite, finite]);
 
-/** Schema of a ball. rack · hand: player, right? · air: thrower, missed?, launch · floor: thrower, launch · basket: thrower. */
+/**
+ * Schema of a ball. rack · hand: player, right? · air: thrower, missed?, launch · floor: thrower, launch · basket:
+ * thrower.
+ */
 const place = v.union([
   v.literal(0),
   v.tuple([v.literal(1), player, v.boolean()]),
@@ -96,7 +99,10 @@ export const packBall = (state: BallState): PackedBall => ({
   basket: packLaunch({ time: state.basket.at, position: state.basket.position, velocity: state.basket.normal }),
 });
 
-/** Unpacks a state; heads and hands are unknown, and actions count from 0. Returns null if the parts contradict each other. */
+/**
+ * Unpacks a state; heads and hands are unknown, and actions count from 0. Returns null if the parts contradict each
+ * other.
+ */
 export function unpackBall(packed: PackedBall): BallState | null {
   const [balls, seconds, rotation] = packed.o;
   if (balls < 1 || balls > 20 || packed.balls.length !== balls || !(seconds > 0 && seconds <= 3600)) return null;

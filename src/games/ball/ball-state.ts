@@ -12,7 +12,10 @@ export interface BallOptions {
   readonly seconds: number;
   /** Seats by which roles have moved on; 0: the first two throw, the third holds the basket. */
   readonly rotation: number;
-  /** Whether a round needs a ready player on every seat; otherwise a thrower and the holder suffice. Only the Room uses it. */
+  /**
+   * Whether a round needs a ready player on every seat; otherwise a thrower and the holder suffice. Only the Room uses
+   * it.
+   */
   readonly everySeat: boolean;
 }
 
@@ -85,7 +88,10 @@ export interface BallState {
 /** An input of the rules: from the Room, or a player's action with the seat. */
 export type BallInput = SeatAction | (BallAction & { readonly player: number });
 
-/** An action of a player with a ball. The player's page numbers them from 1; a number counts once, even if it arrives twice or out of order. */
+/**
+ * An action of a player with a ball. The player's page numbers them from 1; a number counts once, even if it arrives
+ * twice or out of order.
+ */
 export type BallAction =
   | { readonly type: 'grab'; readonly sequence: number; readonly side: Side; readonly ball: number }
   /** Returns the ball to the rack. */

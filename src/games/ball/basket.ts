@@ -52,8 +52,8 @@ function openingInHand(side: Side, hand: Pose<Frame>, { position, normal }: Muta
 }
 
 /**
- * Writes the opening of a basket that is held by its rim with one or both hands, palms inward and thumbs up, in the frame of the hands. It opens where
- * the thumbs point. Returns null if no hand is tracked.
+ * Writes the opening of a basket that is held by its rim with one or both hands, palms inward and thumbs up, in the
+ * frame of the hands. It opens where the thumbs point. Returns null if no hand is tracked.
  */
 export function basketInHands(
   left: Pose<Frame> | null,

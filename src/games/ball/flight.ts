@@ -82,7 +82,9 @@ function basketAt(from: Basket, to: Basket, time: number, target: MutableOpening
 
 /** The position of a ball relative to the basket. */
 interface Nearness {
-  /** Distance of the ball's surface from the basket, or of its centre from the opening above it [m]; negative: inside. */
+  /**
+   * Distance of the ball's surface from the basket, or of its centre from the opening above it [m]; negative: inside.
+   */
   far: number;
   /** Distance that the ball can move at least before it meets the basket or its opening [m]. */
   free: number;
@@ -160,8 +162,9 @@ function closingSpeed(launch: TimedLaunch, from: Basket, to: Basket, start: numb
 }
 
 /**
- * Returns the first meeting of a flying ball and the moving basket; null: none. It is a catch if the ball's centre descends through the opening; rim,
- * walls and bottom bounce. Steps are as long as the distance permits at the closing speed (conservative advancement), so that nothing tunnels.
+ * Returns the first meeting of a flying ball and the moving basket; null: none. It is a catch if the ball's centre
+ * descends through the opening; rim, walls and bottom bounce. Steps are as long as the distance permits at the closing
+ * speed (conservative advancement), so that nothing tunnels.
  */
 export function meetsBasket(launch: TimedLaunch, from: Basket, to: Basket): BasketMeeting | null {
   const start = Math.max(launch.time, from.at);

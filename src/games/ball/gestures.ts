@@ -75,8 +75,8 @@ export interface BallGestures {
   /** Announces that the floor frame jumps: velocities start over. */
   jumped(): void;
   /**
-   * Announces a new state of the match, which may lack actions of these hands. From the next frame on the hands release balls that it has elsewhere, and
-   * return balls that only it has in them.
+   * Announces a new state of the match, which may lack actions of these hands. From the next frame on the hands release
+   * balls that it has elsewhere, and return balls that only it has in them.
    */
   resume(): void;
 }
@@ -101,7 +101,10 @@ interface Holding {
   readonly sequence: number;
   /** Time of the first frame without the hand [s]; null: tracked. */
   lostAt: number | null;
-  /** An opened pinch. It counts in the next frame with a tracked hand, because fingers also seem to open when tracking is lost. */
+  /**
+   * An opened pinch. It counts in the next frame with a tracked hand, because fingers also seem to open when tracking
+   * is lost.
+   */
   opened: Opened | null;
 }
 
@@ -111,7 +114,9 @@ interface HandMemory {
   holding: Holding | null;
   /** The newest throw, until it is refused: then the match still has the ball in the hand. */
   thrown: { readonly sequence: number; readonly ball: number } | null;
-  /** Whether the match has a ball in this hand that the hand does not hold, as after a refused throw; it is returned. */
+  /**
+   * Whether the match has a ball in this hand that the hand does not hold, as after a refused throw; it is returned.
+   */
   unthrown: boolean;
   /** The centre of the fist in this frame, arena frame. */
   readonly fist: MutableVec3;
@@ -220,7 +225,10 @@ class PlayerGestures implements BallGestures {
     }
   }
 
-  /** Marks balls for return that only the match has in a hand for `holdSeconds`; by then the seat's previous player has lost theirs. */
+  /**
+   * Marks balls for return that only the match has in a hand for `holdSeconds`; by then the seat's previous player has
+   * lost theirs.
+   */
   private findStrays(state: BallState, player: number): void {
     if (this.strayedAt === null || this.time - this.strayedAt < holdSeconds) return;
     this.strayedAt = null;

@@ -36,7 +36,8 @@ interface Place {
 const makePlace = (): Place => ({ time: 0, position: vec3(0, 0, 0) });
 
 /**
- * Computes the slope of a least-squares line through the path, which is linear between frames; a dropped frame therefore changes little.
+ * Computes the slope of a least-squares line through the path, which is linear between frames; a dropped frame
+ * therefore changes little.
  */
 class PathSpeed implements HandSpeed {
   /** Oldest first. */

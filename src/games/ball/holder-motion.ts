@@ -174,7 +174,7 @@ class Holder implements BallBot {
 }
 
 /**
- * Creates a holder that carries the basket to where the next ball comes down, with steps aside if needed. `goalOf`: the position of the opening
- * instead.
+ * Creates a holder that carries the basket to where the next ball comes down, with steps aside if needed. `goalOf`: the
+ * position of the opening instead.
  */
 export const createHolder = (body: PlayerBody, goalOf?: HolderGoal): BallBot => new Holder(body, goalOf);

@@ -6,8 +6,8 @@ const throwerOf = (place: BallPlace | undefined): number =>
   place?.on === 'air' || place?.on === 'floor' ? place.thrower : 0;
 
 /**
- * Returns the state after an event of the Room: balls, score, phase and presence. The tick, heads, hands and the basket do not follow from events; a page
- * has the clock and poses for them. An event that arrives twice changes nothing.
+ * Returns the state after an event of the Room: balls, score, phase and presence. The tick, heads, hands and the basket
+ * do not follow from events; a page has the clock and poses for them. An event that arrives twice changes nothing.
  */
 export function followBallEvent(state: BallState, event: BallEvent): BallState {
   switch (event.type) {

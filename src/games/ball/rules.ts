@@ -82,7 +82,10 @@ function setReady(state: BallState, index: number, ready: boolean): Step {
   return { state: withPlayer(state, index, { ready }), events: [{ type: 'ready', player: index, ready }] };
 }
 
-/** Returns whether a round can start: all present players are ready, with a thrower and the holder; with `everySeat` all are present. */
+/**
+ * Returns whether a round can start: all present players are ready, with a thrower and the holder; with `everySeat` all
+ * are present.
+ */
 function canStart({ players, phase, options }: BallState): boolean {
   if (phase !== 'ready') return false;
   let throwers = 0;
@@ -192,8 +195,9 @@ function roundEnd(state: BallState): BallEnd | null {
 }
 
 /**
- * The rules for two throwers and a basket holder 5 m away, with a point for every catch (section 5.3 of the paper). Tick 1/60 s, arena frame. Actions and
- * poses carry their own times, so that flights and the basket are compared as the holder saw them, despite delays.
+ * The rules for two throwers and a basket holder 5 m away, with a point for every catch (section 5.3 of the paper).
+ * Tick 1/60 s, arena frame. Actions and poses carry their own times, so that flights and the basket are compared as the
+ * holder saw them, despite delays.
  */
 export const ballRules: GameRules<BallState, BallInput, BallEvent, BallOptions> = {
   tickSeconds,

@@ -36,8 +36,8 @@ export function ballInHand({ balls }: BallState, player: number, side: Side): nu
 }
 
 /**
- * Writes the drawn position of a ball at a match time [s] into `target`. Returns null for a ball in a hand, which moves with the hand; a caught ball is at
- * the bottom of the basket.
+ * Writes the drawn position of a ball at a match time [s] into `target`. Returns null for a ball in a hand, which moves
+ * with the hand; a caught ball is at the bottom of the basket.
  */
 export function ballPosition(
   state: BallState,

@@ -17,7 +17,10 @@ export const stations: readonly Transform<'arena', 'floor'>[] = [
   { position: vec3(0, 0, -ahead), orientation: fromAxisAngle(up, Math.PI) },
 ];
 
-/** Returns the transform from a seat's floor to the arena, by its station in the match; without a match (null) by its number. */
+/**
+ * Returns the transform from a seat's floor to the arena, by its station in the match; without a match (null) by its
+ * number.
+ */
 export function arenaFromSeatFloor(seat: number, match: BallState | null): Transform<'arena', 'floor'> {
   return stations[match?.players[seat]?.station ?? seat] ?? stations[0]!;
 }
@@ -26,8 +29,8 @@ export function arenaFromSeatFloor(seat: number, match: BallState | null): Trans
 export const holderStation = 2;
 
 /**
- * Returns by how many stations the players move on for another round, which needs a thrower and the holder: with `rotate` by one if possible, so that
- * everybody has every role in turn. null: no move permits a round.
+ * Returns by how many stations the players move on for another round, which needs a thrower and the holder: with
+ * `rotate` by one if possible, so that everybody has every role in turn. null: no move permits a round.
  */
 export function rotationForRound(taken: readonly number[], rotate: boolean): number | null {
   const gives = (by: number): boolean =>
@@ -52,8 +55,8 @@ const columns = 2;
 export const ballsPerRack = (balls: number): number => Math.ceil(balls / 2);
 
 /**
- * Writes the position of a ball in its rack, arena frame. The rack is next to its thrower, on the side of the other one, so that both reach the nearer
- * balls of both racks.
+ * Writes the position of a ball in its rack, arena frame. The rack is next to its thrower, on the side of the other
+ * one, so that both reach the nearer balls of both racks.
  */
 export function rackPosition(ball: number, balls: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
   const perRack = ballsPerRack(balls);

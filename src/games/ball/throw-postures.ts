@@ -19,7 +19,10 @@ import { ballInPalm, wristAround } from '../fist';
 import { ballRadius } from './flight';
 import { type MutablePosture, makePosture, type PlayerPosture, type PlayerPostures } from './player-postures';
 
-/** Length of the acceleration [m], then a time at constant speed: the window in which a throw is measured, plus a slow frame [s]; then the deceleration [m]. */
+/**
+ * Length of the acceleration [m], then a time at constant speed: the window in which a throw is measured, plus a slow
+ * frame [s]; then the deceleration [m].
+ */
 const runUp = 0.24;
 const measuredSeconds = 0.095;
 const evenSeconds = measuredSeconds + 0.02;
@@ -77,7 +80,8 @@ export class SwungThrow {
   }
 
   /**
-   * Writes the position of the fist after `elapsed` seconds: it accelerates, moves at constant speed until the ball has left, and decelerates.
+   * Writes the position of the fist after `elapsed` seconds: it accelerates, moves at constant speed until the ball has
+   * left, and decelerates.
    */
   swing(elapsed: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
     const running = clamp(elapsed, 0, this.#runSeconds);

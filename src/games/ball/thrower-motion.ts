@@ -181,7 +181,10 @@ class Thrower implements BallBot {
     return 2 * next.value - 1;
   }
 
-  /** Returns the movements of a throw: take the ball, bring it before the chest, wait for the turn, swing back, throw, follow through. */
+  /**
+   * Returns the movements of a throw: take the ball, bring it before the chest, wait for the turn, swing back, throw,
+   * follow through.
+   */
   #throwOf(at: Vec3): Movement[] {
     const moves = this.#moves;
     const basket = copyVec3(this.#basket);
@@ -210,5 +213,8 @@ class Thrower implements BallBot {
   }
 }
 
-/** Creates a thrower that throws the balls of the racks underarm at the basket, and then rests. `seed` is that of the scatter. */
+/**
+ * Creates a thrower that throws the balls of the racks underarm at the basket, and then rests. `seed` is that of the
+ * scatter.
+ */
 export const createThrower = (body: PlayerBody, seed: number): BallBot => new Thrower(body, seed);

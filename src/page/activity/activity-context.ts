@@ -97,7 +97,10 @@ export interface ActivityServices {
   fetchOwnAvatar(name: OwnBody): Promise<ArrayBuffer>;
   readonly server: Pick<ServerPresence, 'state' | 'known' | 'ask'>;
   readonly notices: Pick<Notices, 'show'>;
-  /** The study that the user takes part in. `run`: null without a study; `idle`: no trial is played now; `paused`: a trial is paused. */
+  /**
+   * The study that the user takes part in. `run`: null without a study; `idle`: no trial is played now; `paused`: a
+   * trial is paused.
+   */
   readonly study: { readonly run: object | null; readonly idle: boolean; readonly paused: boolean };
   /** Shows a caption of a sound. */
   onCaption(text: string): void;

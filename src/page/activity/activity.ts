@@ -56,8 +56,9 @@ export interface PlayerProbe {
 }
 
 /**
- * An activity that has been loaded and entered. The shell calls it once per frame in this order: `begin`, `act` if no person is tracked, `update`,
- * `grasp` for each hand, `send`, `show`. The optional members are for activities that need them.
+ * An activity that has been loaded and entered. The shell calls it once per frame in this order: `begin`, `act` if no
+ * person is tracked, `update`, `grasp` for each hand, `send`, `show`. The optional members are for activities that need
+ * them.
  */
 export interface OpenActivity {
   readonly sound?: ActivitySound;
@@ -113,7 +114,9 @@ export interface StudyHost<Opened> {
   readonly writer: ActivitySettingsWriter;
   /** The activity if the user is there now, else null. */
   opened(): Opened | null;
-  /** Leaves and re-enters the activity at this place. Returns null if it could not be opened; a notice gives the reason. */
+  /**
+   * Leaves and re-enters the activity at this place. Returns null if it could not be opened; a notice gives the reason.
+   */
   open(place: TaskPlace): Promise<Opened | null>;
   /** Returns to the mirror. */
   leave(): void;

@@ -177,7 +177,9 @@ export class ArcheryActivity implements OpenActivity {
     onChange();
   }
 
-  /** Changes hands or rules. The current round continues unless the change affects its score or its simulated archer. */
+  /**
+   * Changes hands or rules. The current round continues unless the change affects its score or its simulated archer.
+   */
   setRules(rules: ArcheryRules): void {
     const { writer, settings } = this.#context;
     writer.keep(rules);

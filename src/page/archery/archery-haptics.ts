@@ -1,7 +1,10 @@
 import type { ArcheryEvent } from 'threepoint-games/archery/archery-state';
 import type { HapticPulse } from 'threepoint-games/archery/gestures';
 
-/** Pulses of what happens away from the hands: a hit is felt in the bow, stronger for more points, a warning and the bell in both hands. Draw and release are the gestures' own. */
+/**
+ * Pulses of what happens away from the hands: a hit is felt in the bow, stronger for more points, a warning and the
+ * bell in both hands. Draw and release are the gestures' own.
+ */
 export function eventHaptics(events: readonly ArcheryEvent[], bowSide: HapticPulse['side']): readonly HapticPulse[] {
   const both = (strength: number, seconds: number): HapticPulse[] => [
     { side: 'left', strength, seconds },

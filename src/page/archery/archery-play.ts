@@ -52,7 +52,9 @@ export interface ArcheryPlay {
   act(time: number): PlayerInput;
   /** Returns the input of an archer who is steered by a mouse: aims along a ray (arena frame, unit direction). */
   steer(time: number, ray: Ray, wish: { readonly pressed: boolean; readonly cancelled: boolean }): PlayerInput;
-  /** Starts another round for a person with this calibration, whose eyes are at this height now [m], standing or seated. */
+  /**
+   * Starts another round for a person with this calibration, whose eyes are at this height now [m], standing or seated.
+   */
   restart(calibration: Calibration, eyeHeight?: number): void;
   /** The user's floor frame changes with the next frame. */
   jumped(): void;

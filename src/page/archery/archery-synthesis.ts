@@ -1,7 +1,10 @@
 import { clamp } from 'threepoint/core/math/damper';
 import { finished, lowPass, noiseFrom, render, resonator, type Samples, tau } from '../scene/sound/sound-synthesis';
 
-/** Wood under strain: stick and slip, higher, denser and louder the further it is drawn; draw as a share of the most, in [0, 1]. */
+/**
+ * Wood under strain: stick and slip, higher, denser and louder the further it is drawn; draw as a share of the most, in
+ * [0, 1].
+ */
 export function creak(rate: number, draw: number): Samples {
   const strain = clamp(draw, 0, 1);
   const noise = noiseFrom(101 + Math.round(strain * 16));

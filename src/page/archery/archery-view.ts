@@ -25,7 +25,10 @@ export interface ArcheryView {
   /** The bow in its hand, floor frame; to be added to the scene next to the avatar. */
   readonly bow: Group;
   readonly result: Pick<ResultPanel, 'restartAt' | 'setHovered'>;
-  /** Draws a state at a time of the match [s]; the bow and head as tracked now, floor frame. No bow is seen where it is null. */
+  /**
+   * Draws a state at a time of the match [s]; the bow and head as tracked now, floor frame. No bow is seen where it is
+   * null.
+   */
   show(state: ArcheryState, bow: BowView | null, matchTime: number, head: Pose<'floor'>): void;
   /** Plays and captions what happened since the last frame; cues of the bow are in the floor frame. */
   playEvents(events: readonly ArcheryEvent[], cues: readonly BowCue[]): void;

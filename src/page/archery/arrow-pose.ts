@@ -36,8 +36,8 @@ const side = vec3(0, 0, 0);
 const rise = vec3(0, 0, 0);
 
 /**
- * The arrow's pose at a time of the match, written into `target`: on its parabola until it lands, then stuck where it landed, trembling for
- * a moment.
+ * The arrow's pose at a time of the match, written into `target`: on its parabola until it lands, then stuck where it
+ * landed, trembling for a moment.
  */
 export function arrowPose(
   { id, release, landing }: Arrow,

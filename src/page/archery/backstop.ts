@@ -42,7 +42,10 @@ function netTexture(quality: Quality): DataTexture {
 /** The distance between two cords [m]. */
 const cordSpacing = 0.11;
 
-/** A net from the ground up; arrows that miss end in it. Its ends, width and height are those of the wall that the rules know. */
+/**
+ * A net from the ground up; arrows that miss end in it. Its ends, width and height are those of the wall that the rules
+ * know.
+ */
 function createNets(quality: Quality): Group {
   const texture = netTexture(quality);
   const nets = new Group();

@@ -26,7 +26,10 @@ export interface Bow {
   show(view: BowView | null): void;
   /** How far the limbs are bent now [rad]; grows with the draw. */
   readonly bend: number;
-  /** The string from the upper tip over the nock point to the lower tip, in the frame of the BowView; the same objects in every frame. */
+  /**
+   * The string from the upper tip over the nock point to the lower tip, in the frame of the BowView; the same objects
+   * in every frame.
+   */
   readonly stringPoints: readonly [Vec3, Vec3, Vec3];
   dispose(): void;
 }

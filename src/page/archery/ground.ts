@@ -2,7 +2,10 @@ import { Color, type Mesh, type MeshLambertMaterial, type PlaneGeometry, type Te
 import { createPaintedGround } from '../scene/outdoors/painted-ground';
 import { field } from './field';
 
-/** Mown stripes on the field, a chalk line across it at each distance [m], a rougher meadow around it; y = 0 of the arena frame. */
+/**
+ * Mown stripes on the field, a chalk line across it at each distance [m], a rougher meadow around it; y = 0 of the
+ * arena frame.
+ */
 export function createGround(noise: Texture, distances: readonly number[]): Mesh<PlaneGeometry, MeshLambertMaterial> {
   const colors = {
     lightStripe: new Color('#80a548'),

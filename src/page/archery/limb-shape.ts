@@ -2,8 +2,9 @@ import { bisect } from 'threepoint/core/math/bisection';
 import { distance, type MutableVec3, setVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 
 /**
- * The shape of a recurve bow in its own frame: grip at the origin, +Y along the upper limb, −Z to the target, so that the string
- * runs on the side of +Z. A limb lies in the plane x = 0: a point of its centre line and its direction there.
+ * The shape of a recurve bow in its own frame: grip at the origin, +Y along the upper limb, −Z to the target, so that
+ * the string runs on the side of +Z. A limb lies in the plane x = 0: a point of its centre line and its direction
+ * there.
  */
 export interface LimbPoint {
   readonly y: number;
@@ -27,8 +28,8 @@ const smooth = (from: number, to: number, value: number): number => {
 };
 
 /**
- * The centre line of the upper limb, written into `limbPoints` points; `bend` [rad] is how much its tip has turned towards the archer.
- * The lower limb is its mirror image.
+ * The centre line of the upper limb, written into `limbPoints` points; `bend` [rad] is how much its tip has turned
+ * towards the archer. The lower limb is its mirror image.
  */
 export function bendLimb(bend: number, points: readonly MutableLimbPoint[]): void {
   let y = limbRoot;
@@ -72,7 +73,10 @@ const mostBend = 2.2;
 export interface StrungBow {
   /** The length of the whole string [m]. */
   readonly stringLength: number;
-  /** Bend [rad] at which the string of this length reaches from tip to `nock` to tip; a string too short even for the most bend: the most bend. */
+  /**
+   * Bend [rad] at which the string of this length reaches from tip to `nock` to tip; a string too short even for the
+   * most bend: the most bend.
+   */
   bendFor(nock: Vec3): number;
   /** The tips at a bend: the same objects in every call. */
   tips(bend: number): Tips;

@@ -13,7 +13,10 @@ import { createGround } from './ground';
 import { createTufts } from './tufts';
 import { createZone } from './zone';
 
-/** The place where archery is played, instead of the studio. Its object is in the arena frame, placed in the floor frame. */
+/**
+ * The place where archery is played, instead of the studio. Its object is in the arena frame, placed in the floor
+ * frame.
+ */
 export interface Range extends Surroundings {
   readonly object: Group;
   setZoneWarning(on: boolean): void;
@@ -22,10 +25,14 @@ export interface Range extends Surroundings {
   dispose(): void;
 }
 
-/** Towards the sun, arena frame: behind the archer's right shoulder, so that the targets are lit and shadows fall ahead. */
+/**
+ * Towards the sun, arena frame: behind the archer's right shoulder, so that the targets are lit and shadows fall ahead.
+ */
 const towardsSun = new Vector3(8.5, 11, 7.5);
 
-/** Builds the range: floorFromArena puts its zone and its direction into the room; signs stand at these distances [m]. */
+/**
+ * Builds the range: floorFromArena puts its zone and its direction into the room; signs stand at these distances [m].
+ */
 export function createRange(
   quality: Quality,
   floorFromArena: Transform<'floor', 'arena'>,

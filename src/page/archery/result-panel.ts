@@ -16,7 +16,10 @@ export interface ResultPanel {
   readonly object: Group;
   /** Shows the result of a round that is over; hides itself otherwise. `time`: of the match [s]. */
   show(state: ArcheryState, time: number): void;
-  /** Distance along a ray [m, floor frame; unit direction] to the restart button; null: it misses, or there is no panel now. */
+  /**
+   * Distance along a ray [m, floor frame; unit direction] to the restart button; null: it misses, or there is no panel
+   * now.
+   */
   restartAt(origin: Point, direction: Point): number | null;
   /** Lights the button while something points at it. */
   setHovered(on: boolean): void;

@@ -2,7 +2,10 @@ import { Color, type DataTexture, SRGBColorSpace } from 'three';
 import { createPixelTexture } from '../scene/pixel-texture';
 import type { Quality } from '../scene/renderer';
 
-/** The rings of a target from the outside in, each as a share of its radius. Neighbours differ in brightness as well as hue, and a thin line separates them, so that they remain distinct with any colour blindness and in greyscale. */
+/**
+ * The rings of a target from the outside in, each as a share of its radius. Neighbours differ in brightness as well as
+ * hue, and a thin line separates them, so that they remain distinct with any colour blindness and in greyscale.
+ */
 export const rings = [
   { from: 0.8, color: '#f6f2e6' },
   { from: 0.6, color: '#1b2836' },

@@ -30,7 +30,10 @@ import { createRingTexture } from './target-rings';
 /** Four discs on wooden legs, each with a plate that shows its points; arena frame. */
 export interface TargetStands {
   readonly object: Group;
-  /** Stands and plates for a state at a time of the match [s]: what has scored is lit, ticked and marked with its points. */
+  /**
+   * Stands and plates for a state at a time of the match [s]: what has scored is lit, ticked and marked with its
+   * points.
+   */
   show(state: ArcheryState, time: number): void;
   dispose(): void;
 }
@@ -304,7 +307,9 @@ class Stands implements TargetStands {
     if (targets.length > 0) this.#build(targets);
   }
 
-  /** Removes the stands. Their materials are kept for the next ones, except those of the shadows, which have a texture. */
+  /**
+   * Removes the stands. Their materials are kept for the next ones, except those of the shadows, which have a texture.
+   */
   #clear(): void {
     if (this.#shadows) disposeTree(this.#shadows);
     for (const child of [...this.object.children]) {

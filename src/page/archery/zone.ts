@@ -16,7 +16,9 @@ import { field } from './field';
 /** The mark on the floor where the archer stands. */
 export interface Zone {
   readonly object: Group;
-  /** Warns that the archer has left the zone: the border turns orange and thicker, and a striped fence rises along it. */
+  /**
+   * Warns that the archer has left the zone: the border turns orange and thicker, and a striped fence rises along it.
+   */
   setWarning(on: boolean): void;
   /** Lets the warning pulse; time [s]. */
   animate(time: number): void;

@@ -18,7 +18,9 @@ import { disposeTree } from '../scene/dispose-tree';
 /** The way that a ball would go if it were thrown now, and where it would come down; arena frame. */
 export interface AimArc {
   readonly object: Group;
-  /** null: nothing is aimed. The ring is as high and as wide as the basket's opening; green: the ball's middle goes in. */
+  /**
+   * null: nothing is aimed. The ring is as high and as wide as the basket's opening; green: the ball's middle goes in.
+   */
   show(launch: Launch | null, opening: Pick<Opening, 'position'>): void;
   dispose(): void;
 }

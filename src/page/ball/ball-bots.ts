@@ -163,7 +163,10 @@ export class BallBots {
     private readonly sight: CourtSight,
   ) {}
 
-  /** Seats bots in the free seats of the room of `connection`. Removes them when they are not wanted or a person takes the seat. */
+  /**
+   * Seats bots in the free seats of the room of `connection`. Removes them when they are not wanted or a person takes
+   * the seat.
+   */
   seat(connection: BallConnection, time: number): void {
     const { options } = this;
     const wanted = options.bots();

@@ -28,7 +28,10 @@ export interface BallPlace {
   readonly voiceTerms: (() => Promise<VoiceSettings>) | null;
 }
 
-/** Connects to the seat that a server assigns by a signed pass. An expired pass is requested again. All players wear the same avatar there. */
+/**
+ * Connects to the seat that a server assigns by a signed pass. An expired pass is requested again. All players wear the
+ * same avatar there.
+ */
 export async function assignedSeat(seat: () => Promise<SignedSeat>, clock: LocalClock): Promise<BallPlace> {
   const [{ createSocketConnection }, first] = await Promise.all([
     import('threepoint-rooms/client/socket-connection'),
@@ -41,8 +44,8 @@ export async function assignedSeat(seat: () => Promise<SignedSeat>, clock: Local
 }
 
 /**
- * Places in a room of this name on the server that the page came from; null: in a Room of this page's own. `terms`: of the match, on a
- * server those of the first page in the room; a room of one's own may be paused in any case.
+ * Places in a room of this name on the server that the page came from; null: in a Room of this page's own. `terms`: of
+ * the match, on a server those of the first page in the room; a room of one's own may be paused in any case.
  */
 export async function connectionsFor(
   room: string | null,

@@ -29,7 +29,9 @@ import type { RemotePlayer } from 'threepoint-rooms/client/remote-players';
 import { seatLooks } from './court-plan';
 import { proximityFade } from './personal-space';
 
-/** A person or bot at the court in one frame. Heads and palms are the same objects in every frame: copy what must stay. */
+/**
+ * A person or bot at the court in one frame. Heads and palms are the same objects in every frame: copy what must stay.
+ */
 export interface PlayerFrame {
   readonly name: string;
   readonly bot: boolean;
@@ -173,7 +175,10 @@ interface Place {
 export class CourtPeople {
   readonly players: (PlayerFrame | null)[] = [];
   readonly bodies: BodyFrame[] = [];
-  /** The opening of the basket at the last tracked pose of its holder's hands, arena frame; null: not tracked since the room last moved the basket. */
+  /**
+   * The opening of the basket at the last tracked pose of its holder's hands, arena frame; null: not tracked since the
+   * room last moved the basket.
+   */
   opening: Opening | null = null;
   /** The basket in the newest state of the room. */
   private basket: BallState['basket'] | null = null;
@@ -182,7 +187,10 @@ export class CourtPeople {
   private readonly right = makePose<'arena'>();
   private readonly head = vec3(0, 0, 0);
 
-  /** Updates all people. `frame`: the user's hands, null if nothing is tracked. `floorFromArena`: the arena in the user's floor frame. */
+  /**
+   * Updates all people. `frame`: the user's hands, null if nothing is tracked. `floorFromArena`: the arena in the
+   * user's floor frame.
+   */
   look(
     line: BallConnection,
     seen: BallRoomView,

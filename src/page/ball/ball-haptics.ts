@@ -1,7 +1,10 @@
 import type { BallEvent, BallRole } from 'threepoint-games/ball/ball-state';
 import type { BallPulse } from 'threepoint-games/ball/gestures';
 
-/** Haptic pulses of events away from the user's hands. The holder feels a catch in both hands, the thrower lightly; the rim gives a knock; all feel start and bell. The gestures give the pulses of grabbing and throwing. */
+/**
+ * Haptic pulses of events away from the user's hands. The holder feels a catch in both hands, the thrower lightly; the
+ * rim gives a knock; all feel start and bell. The gestures give the pulses of grabbing and throwing.
+ */
 export function eventHaptics(events: readonly BallEvent[], me: number, role: BallRole): readonly BallPulse[] {
   const both = (strength: number, seconds: number): BallPulse[] => [
     { side: 'left', strength, seconds },

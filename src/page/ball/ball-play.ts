@@ -25,18 +25,27 @@ export interface BallPlay {
   readonly room: BallRoomView | null;
   /** How this page sets up voices with the others; null: not connected yet. */
   readonly voices: VoiceChannel | null;
-  /** The arena in the user's floor frame, by the user's seat. A spectator's floor frame is the arena frame. Every change yields another object. */
+  /**
+   * The arena in the user's floor frame, by the user's seat. A spectator's floor frame is the arena frame. Every change
+   * yields another object.
+   */
   readonly floorFromArena: Transform<'floor', 'arena'>;
   readonly newest: BallFrame | null;
   /** Receives messages from the room and moves the bots. Call it first in every frame. */
   begin(time: number): void;
-  /** Returns the input of the simulated player on the user's seat at a time [s], or null without a seat. `catchUp`: also plays the moments between two slow frames, which no device could. */
+  /**
+   * Returns the input of the simulated player on the user's seat at a time [s], or null without a seat. `catchUp`: also
+   * plays the moments between two slow frames, which no device could.
+   */
   act(time: number, catchUp?: boolean): PlayerInput | null;
   /** The tracked frame and its buttons become play; null frame: no one is seen, or a spectator. */
   follow(time: number, frame: TrackingFrame | null, buttons: Buttons): BallFrame | null;
   /** The solved body of this frame, for the others. */
   send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void;
-  /** The user's floor frame changes with the next frame: others see a jump without interpolation, and hands throw nothing. */
+  /**
+   * The user's floor frame changes with the next frame: others see a jump without interpolation, and hands throw
+   * nothing.
+   */
   jumped(): void;
   ready(on: boolean): void;
   rotate(on: boolean): void;

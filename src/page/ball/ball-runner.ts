@@ -21,7 +21,10 @@ function taskEvents(event: BallFrame['events'][number], me: number | null, at: n
   return [];
 }
 
-/** One participant's trial: which part of the match on the page counts for it, what happens to them there, and how it ends. */
+/**
+ * One participant's trial: which part of the match on the page counts for it, what happens to them there, and how it
+ * ends.
+ */
 class BallTrial {
   /** Second of the match at which it began; null: not yet. */
   #from: number | null = null;
@@ -36,8 +39,8 @@ class BallTrial {
   interrupted = false;
 
   /**
-   * members: of the participant's group. joinsLate: the match ran before this trial was started: they were in it before, and it is the rest
-   * of it that counts.
+   * members: of the participant's group. joinsLate: the match ran before this trial was started: they were in it
+   * before, and it is the rest of it that counts.
    */
   constructor(
     private readonly seconds: number,

@@ -58,7 +58,9 @@ function geometryOf(look: (typeof looks)[number], quality: Quality) {
   });
 }
 
-/** In the basket balls lie in layers of five about the first one [m, in the basket's frame: outward on two axes, up]. */
+/**
+ * In the basket balls lie in layers of five about the first one [m, in the basket's frame: outward on two axes, up].
+ */
 function placeInBasket(index: number): readonly [number, number, number] {
   const layer = Math.floor(index / 5);
   const slot = index % 5;
@@ -71,7 +73,10 @@ function placeInBasket(index: number): readonly [number, number, number] {
 interface Approach {
   /** The start of its flight [s of the match]. */
   launchedAt: number;
-  /** The last drawn position relative to the middle of the opening, with its height above it [m]; NaN: not drawn in this flight yet. */
+  /**
+   * The last drawn position relative to the middle of the opening, with its height above it [m]; NaN: not drawn in this
+   * flight yet.
+   */
   readonly from: MutableVec3;
   height: number;
   /** It has gone down through the opening. */

@@ -9,7 +9,10 @@ interface SeatedPlayer {
 
 const blocks: readonly Block[] = ['silenced', 'hidden'];
 
-/** The players that the user has muted or hidden, by seat. A room identifies players by seat and name only, so a block moves with the name to another seat, and is kept while its player is away. */
+/**
+ * The players that the user has muted or hidden, by seat. A room identifies players by seat and name only, so a block
+ * moves with the name to another seat, and is kept while its player is away.
+ */
 export class BlockList {
   readonly #seats: Readonly<Record<Block, Set<number>>> = { silenced: new Set(), hidden: new Set() };
   readonly #players: (SeatedPlayer | null)[] = [];

@@ -6,7 +6,9 @@ import type { Quality } from '../scene/renderer';
 import { boardSize, paintBoard, type Standing } from './board-drawing';
 import { court } from './court-plan';
 
-/** Two equal boards: one behind the holder, for the throwers, and one behind the throwers, for the holder; arena frame. */
+/**
+ * Two equal boards: one behind the holder, for the throwers, and one behind the throwers, for the holder; arena frame.
+ */
 export interface Boards {
   readonly object: Group;
   show(standing: Standing, line: string): void;

@@ -26,7 +26,9 @@ export class CatchPops {
     }
   }
 
-  /** Shows a catch at a position, at a time on the page's clock [s]: the clock of a match restarts with the next one. */
+  /**
+   * Shows a catch at a position, at a time on the page's clock [s]: the clock of a match restarts with the next one.
+   */
   add(at: Vec3, time: number): void {
     const caught = this.#catches[this.#next % this.#catches.length]!;
     this.#next += 1;

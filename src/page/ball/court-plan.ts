@@ -12,7 +12,10 @@ export const court = {
   /** The radius of each player's mark. */
   padRadius: 0.46,
   holderZ: stations[holderStation]?.position.z ?? -throwingDistance,
-  /** One board for the throwers, one for the holder, who is further away from it. They hang high enough that no name label hides a line. */
+  /**
+   * One board for the throwers, one for the holder, who is further away from it. They hang high enough that no name
+   * label hides a line.
+   */
   boards: [
     { z: -9.4, turned: 0, width: 3.1, middle: 3.8 },
     { z: 6.6, turned: Math.PI, width: 3.7, middle: 4.5 },

@@ -30,7 +30,10 @@ function voiceText({ voice, link, silenced }: PersonVoice): string {
   return linkTexts[link] || (voice === 'muted' ? 'muted' : 'can be heard');
 }
 
-/** Lists the other people in the room. `seat`: the user's, null for a spectator; `inVoices`: the user takes part in the voices. */
+/**
+ * Lists the other people in the room. `seat`: the user's, null for a spectator; `inVoices`: the user takes part in the
+ * voices.
+ */
 export const otherPlayers = (
   { seat: own, people }: { readonly seat: number | null; readonly people: readonly Seated[] },
   inVoices: boolean,

@@ -24,7 +24,10 @@ function distanceToLine(point: Vec3, from: Vec3, to: Vec3): number {
   return Math.hypot(point.x - from.x - share * x, point.y - from.y - share * y, point.z - from.z - share * z);
 }
 
-/** Returns the opacity of another body for these eyes, floor frame: 1 from half a metre on, 0 where its head, trunk or hands come closer than 0.2 m. `placement`: its floor in the user's floor frame. */
+/**
+ * Returns the opacity of another body for these eyes, floor frame: 1 from half a metre on, 0 where its head, trunk or
+ * hands come closer than 0.2 m. `placement`: its floor in the user's floor frame.
+ */
 export function proximityFade(eyes: Vec3, pose: AvatarPose, placement: Transform<'floor', 'floor'>): number {
   transformPoint(placement, pose.head.position, head);
   if (pose.body) transformPoint(placement, pose.body.hipsPosition, low);

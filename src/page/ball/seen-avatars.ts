@@ -22,7 +22,10 @@ interface SeenAvatarsOptions {
   readonly patienceMs?: number;
 }
 
-/** Loads the avatars of other players. A file comes only from the store of the room or from the server that the store names. It is refused if its hash differs, and is checked in a worker before it is parsed here. */
+/**
+ * Loads the avatars of other players. A file comes only from the store of the room or from the server that the store
+ * names. It is refused if its hash differs, and is checked in a worker before it is parsed here.
+ */
 export class SeenAvatars {
   /** The files of our own bodies that were needed. */
   readonly #own = new Map<OwnBody, Promise<ArrayBuffer>>();
@@ -31,7 +34,10 @@ export class SeenAvatars {
   readonly #patienceMs: number;
   readonly #leaving = new AbortController();
 
-  /** `mannequin`: the file of the plain avatar; `fetchOwn`: downloads another of the page's own. `exchange`: null without a server, and in rooms of a study. */
+  /**
+   * `mannequin`: the file of the plain avatar; `fetchOwn`: downloads another of the page's own. `exchange`: null
+   * without a server, and in rooms of a study.
+   */
   constructor(
     mannequin: ArrayBuffer,
     fetchOwn: (name: OwnBody) => Promise<ArrayBuffer>,

@@ -10,7 +10,10 @@ import {
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import { ballRadius } from 'threepoint-games/ball/flight';
 
-/** Soft dark discs on the floor under what flies, smaller and fainter the higher it is: where it will come down can be seen. */
+/**
+ * Soft dark discs on the floor under what flies, smaller and fainter the higher it is: where it will come down can be
+ * seen.
+ */
 export interface ShadowDiscs {
   readonly object: Object3D;
   put(index: number, position: Vec3): void;

@@ -7,7 +7,10 @@ import type { UserAvatar } from '../activity/activity-context';
 export interface SharedAvatarOptions {
   /** null: there is no server, or the room belongs to a study, where all avatars are alike. */
   readonly exchange: AvatarExchange | null;
-  /** Returns the avatar to show to others: the same object for as long as it is worn; null: the user does not share it. Called in every frame. */
+  /**
+   * Returns the avatar to show to others: the same object for as long as it is worn; null: the user does not share it.
+   * Called in every frame.
+   */
   wear(): UserAvatar | null;
   /** Sends the reference of the user's avatar to the room. */
   send(avatar: AvatarRef): void;
@@ -26,7 +29,9 @@ async function upload(exchange: AvatarExchange, hash: AvatarHash, file: Blob): P
   await exchange.store(hash, file);
 }
 
-/** Shows the user's avatar to other players: uploads a file to the room's store, then sends its reference to the room. */
+/**
+ * Shows the user's avatar to other players: uploads a file to the room's store, then sends its reference to the room.
+ */
 export class SharedAvatar {
   readonly #options: SharedAvatarOptions;
   /** The avatar that was sent last, and the stay in the room in which it was sent. */

@@ -69,8 +69,8 @@ export class SimulatedPlayer {
   }
 
   /**
-   * Returns the player's input at a time [s], or null without a seat. `catchUp`: also plays the moments between two slow pictures, which no device
-   * could.
+   * Returns the player's input at a time [s], or null without a seat. `catchUp`: also plays the moments between two
+   * slow pictures, which no device could.
    */
   act(line: BallConnection, gestures: BallGestures, time: number, catchUp: boolean): PlayerInput | null {
     const view = line.room;
@@ -95,7 +95,10 @@ export class SimulatedPlayer {
     return missed;
   }
 
-  /** Replaces the player for another station, another body or another source of input. A running match keeps its player of the same source. */
+  /**
+   * Replaces the player for another station, another body or another source of input. A running match keeps its player
+   * of the same source.
+   */
   #player(view: BallRoomView, seat: number): { readonly bot: CurrentPlayer['bot']; readonly replaced: boolean } {
     const current = this.#current;
     const { eyeHeight } = this.#calibration;

@@ -20,7 +20,10 @@ const newSession = (): string => {
   return Array.from(bytes, (byte) => byte.toString(16).padStart(2, '0')).join('');
 };
 
-/** The user's part in the voices of a room, from joining to leaving: connections to other pages and the sound of their voices. */
+/**
+ * The user's part in the voices of a room, from joining to leaving: connections to other pages and the sound of their
+ * voices.
+ */
 export class VoiceCall {
   readonly #options: VoiceCallOptions;
   readonly #mesh: VoiceMesh;
@@ -43,10 +46,14 @@ export class VoiceCall {
     return this.#session;
   }
 
-  /** Connects to the pages of these sessions and disconnects from all others. `seated`: the user has a seat; `moved`: another one than before. */
+  /**
+   * Connects to the pages of these sessions and disconnects from all others. `seated`: the user has a seat; `moved`:
+   * another one than before.
+   */
   connect(sessions: readonly (string | null)[], seated: boolean, moved: boolean): void {
     const others = seated ? sessions.filter((session) => session !== null) : [];
-    // The other page may have kept its half of a connection that was closed here. A new session makes it close that too.
+    // The other page may have kept its half of a connection that was closed here. A new session makes it close that
+    // too.
     if (seated && (moved || others.some((session) => this.#dropped.has(session)))) {
       this.#mesh.close();
       this.#linked.clear();

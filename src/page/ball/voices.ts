@@ -188,7 +188,9 @@ export class Voices {
     if (this.#call) this.#line?.setVoice({ session: this.#call.session, muted: this.#announcedSilent });
   }
 
-  /** Sends the microphone unless it is muted. It stays open, so that unmuting in a headset shows no permission prompt. */
+  /**
+   * Sends the microphone unless it is muted. It stays open, so that unmuting in a headset shows no permission prompt.
+   */
   #sendTrack(): void {
     const { track } = this.#microphone;
     if (!this.#call) return;

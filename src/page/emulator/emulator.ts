@@ -12,7 +12,9 @@ export interface Emulator {
   readonly device: XRDevice;
   /** Head and wrists as the emulator has them now, outside of any session. */
   read(time: number): TrackingFrame;
-  /** Puts headset and controllers where this frame's head and wrists are, to within 0.1 mm, and presses these buttons. */
+  /**
+   * Puts headset and controllers where this frame's head and wrists are, to within 0.1 mm, and presses these buttons.
+   */
   drive(frame: TrackingFrame, buttons?: Buttons): void;
   /** Lets the panel move headset and controllers again. */
   release(): void;
@@ -24,8 +26,8 @@ export interface Emulator {
 const rest = { head: vec3(0, 1.59, 0), left: vec3(-0.22, 1.1, -0.32), right: vec3(0.22, 1.1, -0.32) };
 
 /**
- * Installs iwer in place of the browser's own WebXR. The code of the emulator is loaded here and nowhere else, so that real
- * headsets never pay for it.
+ * Installs iwer in place of the browser's own WebXR. The code of the emulator is loaded here and nowhere else, so that
+ * real headsets never pay for it.
  */
 export async function installEmulator(): Promise<Emulator> {
   const { XRDevice: Device, metaQuest3 } = await import('iwer');
@@ -87,7 +89,8 @@ class EmulatedHeadset implements Emulator {
 
   async setPanelVisible(visible: boolean): Promise<void> {
     this.#panelWanted = visible;
-    // iwer lays the panel over the picture when a session begins, and stumbles at its end over one that came in between.
+    // iwer lays the panel over the picture when a session begins, and stumbles at its end over one that came in
+    // between.
     if (visible && !this.device.activeSession) {
       this.#panel ??= import('@iwer/devui').then(({ DevUI }) => this.device.installDevUI(DevUI));
     }
@@ -120,7 +123,10 @@ function place(target: { readonly position: Setter3; readonly quaternion: Setter
   target.quaternion.set(o.x, o.y, o.z, o.w);
 }
 
-/** Marks the controllers as tracked. By default iwer reports every position as emulated (`emulatedPosition`), behind a symbol. */
+/**
+ * Marks the controllers as tracked. By default iwer reports every position as emulated (`emulatedPosition`), behind a
+ * symbol.
+ */
 function markAsTracked(device: XRDevice): void {
   const inputs = [...Object.values(device.controllers), ...Object.values(device.hands)];
   const spaces: (object | undefined)[] = [device.viewerSpace, ...Object.values(device.viewSpaces)];

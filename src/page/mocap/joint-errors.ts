@@ -36,8 +36,8 @@ export const makeJointErrors = (): JointErrors => new Float64Array(estimatedJoin
 export const meanOf = (errors: JointErrors): number => errors.reduce((sum, error) => sum + error, 0) / errors.length;
 
 /**
- * Mean errors of a method over a whole clip, frame after frame, each answer of its network waited for: the evaluation's figures. Yields the share
- * [0, 1] that is done. Throws a sentence where the method draws no body or fails.
+ * Mean errors of a method over a whole clip, frame after frame, each answer of its network waited for: the evaluation's
+ * figures. Yields the share [0, 1] that is done. Throws a sentence where the method draws no body or fails.
  */
 export async function* meanErrors(
   recording: Replayable,

@@ -3,7 +3,10 @@ import { nameOf } from 'threepoint-ui/limited-files';
 /** A file of this device, or the address of one. */
 export type MocapFile = File | string;
 
-/** Files that make one motion: a BVH, a VRM Animation, or an AMC with its skeleton; with a map of the skeleton where that is needed. */
+/**
+ * Files that make one motion: a BVH, a VRM Animation, or an AMC with its skeleton; with a map of the skeleton where
+ * that is needed.
+ */
 export interface MocapFiles {
   readonly motion: MocapFile;
   /** The skeleton of an AMC file; null: not an AMC file. */
@@ -18,7 +21,8 @@ const endingOf = (file: MocapFile): string => nameOf(file).split('.').at(-1)!.to
 export const isMap = (file: MocapFile): boolean => endingOf(file) === 'json';
 
 /**
- * Which of these files is the motion, which its skeleton and which the map of that. Throws a sentence where a part is missing; `others`: names of what is left over.
+ * Which of these files is the motion, which its skeleton and which the map of that. Throws a sentence where a part is
+ * missing; `others`: names of what is left over.
  */
 export function pairFiles(files: readonly MocapFile[]): MocapFiles & { readonly others: readonly string[] } {
   const [motion] = files.filter((file) => !['asf', 'json'].includes(endingOf(file)));

@@ -23,7 +23,10 @@ import type { TruthPlace } from './truth-places';
 /** The page's replay, which brings a recording's frames to its body. */
 export interface Replay extends MovingReplay {
   readonly duration: number;
-  /** Throws a sentence where another recording must not be lost to this one. `asked`: its place among the wishes; absent: the newest. */
+  /**
+   * Throws a sentence where another recording must not be lost to this one. `asked`: its place among the wishes;
+   * absent: the newest.
+   */
   begin(name: string, recording: Replayable, asked?: number): void;
   seek(seconds: number): void;
   setPaused(on: boolean): void;
@@ -73,7 +76,9 @@ interface Opened {
 const secondAside = 1.15;
 const truthAside = -0.85;
 
-/** Motion capture on the stage: the truth as a ghost, what methods draw of its three points, and how far they are off. */
+/**
+ * Motion capture on the stage: the truth as a ghost, what methods draw of its three points, and how far they are off.
+ */
 export class MocapView {
   readonly #options: MocapViewOptions;
   readonly #ghosts = [new Ghost(), new Ghost()] as const;
@@ -100,7 +105,10 @@ export class MocapView {
     this.#hide();
   }
 
-  /** Reads files of this device or addresses, and shows their motion. A skeleton map alone applies to the previous files. Never rejects: faults become notices, and the shown motion stays. */
+  /**
+   * Reads files of this device or addresses, and shows their motion. A skeleton map alone applies to the previous
+   * files. Never rejects: faults become notices, and the shown motion stays.
+   */
   async open(given: readonly MocapFile[], outlook: Outlook = {}, asked?: number): Promise<void> {
     const { tell } = this.#options;
     // A map that comes alone is of the motion that came before it.

@@ -9,8 +9,9 @@ import type { MocapAnswer } from './mocap-worker';
 const forWorker = (file: MocapFile): MocapFile => (typeof file === 'string' ? new URL(file, location.href).href : file);
 
 /**
- * Reads motion capture in a worker that lives no longer than that, from the first byte on: neither a large file nor a broken one touches the
- * picture. Rejects with a sentence where the file is none, with the signal's reason where it is given up.
+ * Reads motion capture in a worker that lives no longer than that, from the first byte on: neither a large file nor a
+ * broken one touches the picture. Rejects with a sentence where the file is none, with the signal's reason where it is
+ * given up.
  */
 export function readMocap(
   { motion, skeleton, map }: MocapFiles,

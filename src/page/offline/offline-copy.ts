@@ -1,7 +1,9 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { pageFolder } from 'threepoint-ui/page-folder';
 
-/** This browser's copy of the page for use without a network: none, loading, complete, or the reason why there is none. */
+/**
+ * This browser's copy of the page for use without a network: none, loading, complete, or the reason why there is none.
+ */
 export type OfflineCopyState = 'nothing' | 'coming' | 'whole' | { readonly refused: string };
 
 /** Resolves when the worker has its files, or never will. */
@@ -25,7 +27,10 @@ export class OfflineCopy {
     return this.#state;
   }
 
-  /** Stores a copy of the page, or a newer one. A browser that stores nothing (no secure context, a private window, full storage, a policy) changes nothing. Never rejects. */
+  /**
+   * Stores a copy of the page, or a newer one. A browser that stores nothing (no secure context, a private window, full
+   * storage, a policy) changes nothing. Never rejects.
+   */
   async keep(workers: ServiceWorkerContainer | undefined): Promise<void> {
     if (!workers) {
       this.#state = { refused: 'this browser does not support service workers here' };

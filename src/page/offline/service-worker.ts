@@ -1,23 +1,28 @@
 import { PrecacheController } from 'workbox-precaching';
 
 /**
- * Keeps one whole version of the page for visits without a network. With a network the page comes from its host as ever: where that has the
- * very version that is kept, the page's files come from here, else all of them come from the host. So no page has files of two versions,
- * and a newer version, once it is here whole, waits until no window has the older one. What is asked of a server (api, relay, studies, the
- * experimenter's pages) is neither kept nor answered here.
+ * Keeps one whole version of the page for visits without a network. With a network the page comes from its host as
+ * ever: where that has the very version that is kept, the page's files come from here, else all of them come from the
+ * host. So no page has files of two versions, and a newer version, once it is here whole, waits until no window has the
+ * older one. What is asked of a server (api, relay, studies, the experimenter's pages) is neither kept nor answered
+ * here.
  */
 declare const self: ServiceWorkerGlobalScope & {
   /** Written by scripts/build-service-worker.mjs: every file with the SHA-256 of its content. */
   readonly keptFiles: readonly { readonly url: string; readonly revision: string | null; readonly integrity: string }[];
 };
 
-/** The ids of windows whose page is another version than the stored one. They are stored, because browsers often restart workers. */
+/**
+ * The ids of windows whose page is another version than the stored one. They are stored, because browsers often restart
+ * workers.
+ */
 const strangersCache = `threepoint windows ${self.registration.scope}`;
 
 const kept = new PrecacheController({
   plugins: [
     {
-      // What the page has just fetched is asked for again in a word: whether it is still the same. Its digest is checked in any case.
+      // What the page has just fetched is asked for again in a word: whether it is still the same. Its digest is
+      // checked in any case.
       requestWillFetch: async ({ request }) =>
         request.cache === 'reload' ? new Request(request, { cache: 'no-cache' }) : request,
     },
@@ -42,7 +47,9 @@ self.addEventListener('activate', (event) => {
 /** The time after which a host that does not answer counts as offline [ms]. */
 const patienceMs = 4000;
 
-/** A study runs on what its server serves now; what computes by WebGPU is too large to be kept, and must fit its page. */
+/**
+ * A study runs on what its server serves now; what computes by WebGPU is too large to be kept, and must fit its page.
+ */
 function asksForServer(address: string): boolean {
   const { searchParams } = new URL(address);
   return searchParams.has('study') || searchParams.get('ep') === 'webgpu';

@@ -91,7 +91,10 @@ function createControls(camera: PerspectiveCamera, canvas: HTMLCanvasElement): O
   return controls;
 }
 
-/** Turns the arm that holds the camera by an arrow key, or changes its length by plus and minus; false: the key means nothing here. */
+/**
+ * Turns the arm that holds the camera by an arrow key, or changes its length by plus and minus; false: the key means
+ * nothing here.
+ */
 function moveArm(arm: Vector3, key: string): boolean {
   const right = new Vector3().crossVectors(up, arm).normalize();
   const elevation = Math.asin(arm.y / arm.length());

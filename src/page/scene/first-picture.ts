@@ -31,8 +31,8 @@ function texturesOf(object: Object3D): Set<Texture> {
 const nextTurn = (): Promise<void> => new Promise((resolve) => setTimeout(resolve));
 
 /**
- * Brings what an object needs to the graphics device before it is in the scene: its pictures one at a time, and its programs while the device
- * compiles them by itself. Its first picture waits for neither.
+ * Brings what an object needs to the graphics device before it is in the scene: its pictures one at a time, and its
+ * programs while the device compiles them by itself. Its first picture waits for neither.
  */
 export async function prepareFirstPicture(renderer: WebGLRenderer, scene: Scene, object: Object3D): Promise<void> {
   for (const texture of texturesOf(object)) {

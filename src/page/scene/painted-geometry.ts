@@ -1,7 +1,10 @@
 import { type BufferGeometry, Color, Float32BufferAttribute } from 'three';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 
-/** Gives every vertex one colour, or a colour by its position; the geometry loses its index and texture coordinates so that any two can be merged. */
+/**
+ * Gives every vertex one colour, or a colour by its position; the geometry loses its index and texture coordinates so
+ * that any two can be merged.
+ */
 export function painted(
   geometry: BufferGeometry,
   color: string | ((x: number, y: number, z: number, paint: Color) => void),

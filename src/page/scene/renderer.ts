@@ -12,7 +12,9 @@ import {
 /** high: antialiasing, shadow map, device pixels. low: for software rendering; blob shadows, fewer pixels. */
 export type Quality = 'high' | 'low';
 
-/** How finely a texture seen at a glancing angle is sampled: each sample costs as much as a pixel where software draws. */
+/**
+ * How finely a texture seen at a glancing angle is sampled: each sample costs as much as a pixel where software draws.
+ */
 export const anisotropyOf = (quality: Quality): number => (quality === 'high' ? 8 : 1);
 
 /** How a texture seen from afar is sampled: between two of its sizes, or from the nearer one at half the cost. */
@@ -40,7 +42,8 @@ export function affordableQuality(): Quality {
 export function createRenderer(canvas: HTMLCanvasElement, quality: Quality): WebGLRenderer {
   const renderer = new WebGLRenderer({ canvas, antialias: quality === 'high', powerPreference: 'high-performance' });
   renderer.outputColorSpace = SRGBColorSpace;
-  // Three fogs after tone mapping, and what a mirror shows is mapped twice: a mapping that leaves colours alone shows one room in both.
+  // Three fogs after tone mapping, and what a mirror shows is mapped twice: a mapping that leaves colours alone shows
+  // one room in both.
   renderer.toneMapping = LinearToneMapping;
   renderer.shadowMap.enabled = quality === 'high';
   renderer.shadowMap.type = PCFShadowMap;
@@ -53,7 +56,10 @@ export function createRenderer(canvas: HTMLCanvasElement, quality: Quality): Web
 /** Share of the window's pixels, in each direction, that are drawn in low quality. */
 const lowPixelShare = 0.66;
 
-/** An emulated headset draws into the whole window, however large that is: in low quality it gets fewer pixels. Call it in a session. */
+/**
+ * An emulated headset draws into the whole window, however large that is: in low quality it gets fewer pixels. Call it
+ * in a session.
+ */
 export function easeEmulatedPicture(renderer: WebGLRenderer, quality: Quality): void {
   if (quality === 'high') return;
   const { domElement } = renderer;

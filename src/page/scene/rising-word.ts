@@ -51,7 +51,10 @@ export class RisingWord {
     });
   }
 
-  /** Shows the word at this place, arena frame, at this age [s]; before and after its time it is hidden. `eyes`: the reader's. */
+  /**
+   * Shows the word at this place, arena frame, at this age [s]; before and after its time it is hidden. `eyes`: the
+   * reader's.
+   */
   show(place: Vec3, age: number, eyes: Vec3): void {
     const share = age / this.#options.seconds;
     this.object.visible = share >= 0 && share < 1;

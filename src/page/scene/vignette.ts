@@ -6,7 +6,10 @@ import type { Pose } from 'threepoint/core/math/pose';
 /** Seconds until the picture is whole again after a turn. */
 const openingSeconds = 0.4;
 
-/** Darkens the edges of the picture for a moment. A turn that only the centre of the eye sees causes less motion sickness. */
+/**
+ * Darkens the edges of the picture for a moment. A turn that only the centre of the eye sees causes less motion
+ * sickness.
+ */
 export interface Vignette {
   readonly object: Mesh;
   /** Dark at this time [s]. */

@@ -120,7 +120,10 @@ export class Activities {
     if (sound) this.#cancelSound = wakeSound(sound, on, notices);
   }
 
-  /** Lets the mouse or the simulated player play while no headset is worn. Ends a replay, which would move the same body. */
+  /**
+   * Lets the mouse or the simulated player play while no headset is worn. Ends a replay, which would move the same
+   * body.
+   */
   chooseInput(source: 'mouse' | 'actor'): void {
     this.#options.recorder.giveWay();
     this.#options.services.writer.change({ actor: true, mouse: source === 'mouse' });
@@ -151,7 +154,10 @@ export class Activities {
     return pulses;
   }
 
-  /** Closes a hand around the object that it holds. `hand`: the geometry of the avatar's hand; null: unknown. Returns false if it holds nothing. */
+  /**
+   * Closes a hand around the object that it holds. `hand`: the geometry of the avatar's hand; null: unknown. Returns
+   * false if it holds nothing.
+   */
   grasp(side: Side, wrist: Pose<'floor'>, hand: HandGeometry | null, target: MutableHandShape): boolean {
     this.#holding.fitTo(side, hand, this.#options.body.calibration.eyeHeight);
     return this.#current?.grasp?.(side, wrist, this.#holding, target) ?? false;

@@ -33,7 +33,9 @@ export interface AvatarLoaderOptions {
   prepare(object: Avatar['object']): Promise<void>;
 }
 
-/** Returns the file for other players, who have no map of its bones. Its hash is null if this page cannot compute it. */
+/**
+ * Returns the file for other players, who have no map of its bones. Its hash is null if this page cannot compute it.
+ */
 async function fileFor({ bytes, hash }: CheckedAvatar, bones: BoneMap | undefined) {
   if (!bones) return { file: new Blob([bytes]), hash };
   const named = await withNamedBones(bytes, bones);
@@ -69,7 +71,10 @@ export class AvatarLoader {
     return checkInWorker(bytes, { name: nameOf(source), unpacked: Object.keys(decoders) });
   }
 
-  /** Builds the avatar of a checked file with the bones that the user gave for it before. Rejects with UnknownBones if they are unknown. */
+  /**
+   * Builds the avatar of a checked file with the bones that the user gave for it before. Rejects with UnknownBones if
+   * they are unknown.
+   */
   build(checked: CheckedAvatar, name: string): Promise<LoadedUserAvatar> {
     return this.#build(checked, name, checked.hash === null ? undefined : this.#options.knownBones.of(checked.hash));
   }

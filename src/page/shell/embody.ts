@@ -14,8 +14,9 @@ export interface EmbodyingParts {
 }
 
 /**
- * Gives the participant the body of a round for this visit; resolves when it is drawn. Rejects with a sentence where it cannot be. What the
- * embodiment does not say stays, but for impairments: there are none then. `seed`: of what is random in them.
+ * Gives the participant the body of a round for this visit; resolves when it is drawn. Rejects with a sentence where it
+ * cannot be. What the embodiment does not say stays, but for impairments: there are none then. `seed`: of what is
+ * random in them.
  */
 export async function embody(parts: EmbodyingParts, embodiment: Embodiment, seed: number): Promise<void> {
   const { writer, avatar, body, impaired } = parts;

@@ -57,7 +57,10 @@ export interface FrameTiming {
   /** Forgets what was: after a pause, a hidden page or another kind of frame nothing before is comparable. */
   reset(): void;
   summary(): FrameSummary;
-  /** Passes every frame to a listener: the duration of each stage and of the whole ("frame") [ms], and whether it was late; null: no listener. */
+  /**
+   * Passes every frame to a listener: the duration of each stage and of the whole ("frame") [ms], and whether it was
+   * late; null: no listener.
+   */
   listen(listener: FrameListener | null): void;
 }
 

@@ -62,7 +62,10 @@ export class PageFrame implements FrameParts<XRFrame> {
     return this.#count;
   }
 
-  /** Resolves when the next picture has been drawn, in the window or in a session: while one lasts, headsets let their windows rest. */
+  /**
+   * Resolves when the next picture has been drawn, in the window or in a session: while one lasts, headsets let their
+   * windows rest.
+   */
   nextPicture(): Promise<void> {
     return new Promise((resolve) => this.#waiting.push(resolve));
   }
@@ -120,7 +123,10 @@ export class PageFrame implements FrameParts<XRFrame> {
     this.#lastFault = text;
   }
 
-  /** What a hand holds closes it; else its fingers are as tracked, or as the buttons of a hand say whose fingers no device sees. */
+  /**
+   * What a hand holds closes it; else its fingers are as tracked, or as the buttons of a hand say whose fingers no
+   * device sees.
+   */
   #bendFingers(side: Side, { fingers, leftHand, rightHand }: TrackingFrame): void {
     const { activities, source, avatar } = this.#options;
     const target = this.#shapes[side];

@@ -46,8 +46,8 @@ export class PageMocap {
   }
 
   /**
-   * Shows the motion of files of this device, or of what addresses answer. `asked`: the recorder's place for this wish. Never rejects: faults
-   * become notices.
+   * Shows the motion of files of this device, or of what addresses answer. `asked`: the recorder's place for this wish.
+   * Never rejects: faults become notices.
    */
   async open(
     sources: readonly (File | string)[],

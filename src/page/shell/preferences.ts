@@ -95,7 +95,10 @@ export function parsePreferences(text: string | null): { preferences: Preference
 const denied =
   'This browser does not let the page store anything, so calibration and settings are lost when you close it.';
 
-/** Keeps preferences in a storage (localStorage); null: the browser grants none. `onDenied` is called once if the storage refuses to store. */
+/**
+ * Keeps preferences in a storage (localStorage); null: the browser grants none. `onDenied` is called once if the
+ * storage refuses to store.
+ */
 export function createPreferenceStore(
   storage: Pick<Storage, 'getItem' | 'setItem'> | null,
   onDenied: (sentence: string) => void = () => undefined,

@@ -67,7 +67,10 @@ export class SessionChanges implements HeadsetListener {
     document.addEventListener('visibilitychange', () => this.#sightChanged());
   }
 
-  /** Resets frame times, which do not compare across the change, and notifies other players whether the user can see the match. */
+  /**
+   * Resets frame times, which do not compare across the change, and notifies other players whether the user can see the
+   * match.
+   */
   #sightChanged(): void {
     const { headset, timing, activities } = this.#options;
     timing.reset();

@@ -22,7 +22,10 @@ export interface Settings extends ActivitySettings {
   /** The skin tone of a human avatar; undefined: the avatar's own. */
   readonly skinTone: SkinTone | undefined;
   readonly emulatorPanel: boolean;
-  /** The next session asks the headset for the body that it tracks itself; never remembered, because a browser has crashed when it was asked. */
+  /**
+   * The next session asks the headset for the body that it tracks itself; never remembered, because a browser has
+   * crashed when it was asked.
+   */
   readonly deviceBody: boolean;
   /** The source of the user's measurements, in words. */
   readonly calibrationSource: string;

@@ -132,8 +132,8 @@ export class ShownAvatar {
   }
 
   /**
-   * Shows the page's own avatar that the user chose. Requests before this are ignored when they arrive. `bytes`: its file, if the download has started
-   * already. Returns false after a notice if it fails.
+   * Shows the page's own avatar that the user chose. Requests before this are ignored when they arrive. `bytes`: its
+   * file, if the download has started already. Returns false after a notice if it fails.
    */
   openOwn(bytes?: Promise<ArrayBuffer>): Promise<boolean> {
     const { ownBody, skinTone } = this.#options.settings;
@@ -141,7 +141,10 @@ export class ShownAvatar {
     return this.#arrive(request, () => this.#loader.loadOwn(ownBody, skinTone, bytes));
   }
 
-  /** Shows the avatar of a file or an address. Returns false after a notice if it fails. Of several requests the last one is shown. */
+  /**
+   * Shows the avatar of a file or an address. Returns false after a notice if it fails. Of several requests the last
+   * one is shown.
+   */
   open(source: string | File): Promise<boolean> {
     const request = this.#request(nameOf(source), false);
     return this.#arrive(request, async () => {

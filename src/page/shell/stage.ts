@@ -34,7 +34,9 @@ export interface Shot {
   readonly aside: number;
   /** The person that a camera without a body of its own looks at; null: there is a body. */
   readonly watched: Watched | null;
-  /** never; always; or only for a camera that does not stand behind the mirror: from there one wants to see the body. */
+  /**
+   * never; always; or only for a camera that does not stand behind the mirror: from there one wants to see the body.
+   */
   readonly mirror: 'never' | 'always' | 'unless-behind';
 }
 

@@ -24,7 +24,10 @@ export interface TrackingSourceOptions {
   readonly study: Pick<PageStudy, 'idle'>;
 }
 
-/** Who moves the body: a session, a replay, a built-in player, the actor, or the emulator outside of a session; or no one. */
+/**
+ * Who moves the body: a session, a replay, a built-in player, the actor, or the emulator outside of a session; or no
+ * one.
+ */
 export class TrackingSource {
   readonly #options: TrackingSourceOptions;
   #buttons: Buttons = nothingPressed;
@@ -39,7 +42,10 @@ export class TrackingSource {
     return this.#buttons;
   }
 
-  /** The measures of who moves the body where that is no wearer of a headset: of the person in a recording, else the user's. null: a wearer does. */
+  /**
+   * The measures of who moves the body where that is no wearer of a headset: of the person in a recording, else the
+   * user's. null: a wearer does.
+   */
   get standIn(): Calibration | null {
     const { headset, recorder, body } = this.#options;
     return headset.tracking ? null : (recorder.person ?? body.wearerCalibration);

@@ -5,7 +5,10 @@ import type { ActivitySound } from '../activity/activity';
 /** By which a user may touch the page. */
 const touches = ['pointerdown', 'pointerup', 'keydown'];
 
-/** Plays or mutes the sound of an activity. Browsers let a page play sound only after a touch of its user. Until then this waits. Call the returned function to stop waiting. */
+/**
+ * Plays or mutes the sound of an activity. Browsers let a page play sound only after a touch of its user. Until then
+ * this waits. Call the returned function to stop waiting.
+ */
 export function wakeSound(sound: ActivitySound, wanted: boolean, notices: Pick<Notices, 'show'>): () => void {
   const waiting = new AbortController();
   const giveUp = () => waiting.abort();

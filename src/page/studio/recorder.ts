@@ -9,7 +9,10 @@ import {
 } from 'threepoint/core/tracking/recording';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
-/** Frames kept at most: a quarter of an hour at 120 Hz, some 50 MB, with a device's body 100. Longer recordings stop by themselves. */
+/**
+ * Frames kept at most: a quarter of an hour at 120 Hz, some 50 MB, with a device's body 100. Longer recordings stop by
+ * themselves.
+ */
 const most = 108_000;
 
 /** The header of a new recording. */
@@ -175,7 +178,10 @@ export class Recorder {
     if (this.#mode === 'replaying') this.#seconds = Math.max(0, Math.min(this.duration, seconds));
   }
 
-  /** Takes a recording from the text of a file; throws a sentence when it is none, or one of no person, and where `take` does. */
+  /**
+   * Takes a recording from the text of a file; throws a sentence when it is none, or one of no person, and where `take`
+   * does.
+   */
   open(name: string, text: string, asked = this.ask()): Replayable {
     const recording = parseRecording(text);
     const complaint = recording.calibration && calibrationComplaint(recording.calibration);
@@ -184,13 +190,19 @@ export class Recorder {
     return recording;
   }
 
-  /** The place of a wish for a recording among all of them: what it brings may take a while, and comes too late for a newer one. */
+  /**
+   * The place of a wish for a recording among all of them: what it brings may take a while, and comes too late for a
+   * newer one.
+   */
   ask(): number {
     this.#asked += 1;
     return this.#asked;
   }
 
-  /** Takes a recording, which replaces the current one. Throws while another is being recorded, and if a later request has been met. */
+  /**
+   * Takes a recording, which replaces the current one. Throws while another is being recorded, and if a later request
+   * has been met.
+   */
   take(name: string, recording: Replayable, asked = this.ask()): void {
     if (this.#mode === 'recording') throw new Error('a recording is in progress; stop it first');
     if (asked < this.#newest) throw new Error('a newer recording was opened');

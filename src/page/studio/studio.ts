@@ -99,7 +99,9 @@ function createGrid(): Mesh {
   return grid;
 }
 
-/** Creates the floor. Lambert is matt, and compiles in a third of the time where shaders are compiled for a processor. */
+/**
+ * Creates the floor. Lambert is matt, and compiles in a third of the time where shaders are compiled for a processor.
+ */
 function createFloor(): Mesh {
   const floor = new Mesh(levelSquare(2 * floorRadius), new MeshLambertMaterial({ color: ground }));
   floor.receiveShadow = true;

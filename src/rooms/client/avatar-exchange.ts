@@ -24,7 +24,10 @@ export interface AvatarExchange {
   terms(): Promise<AvatarTerms>;
   /** Resolves to whether the other server has this file, which then needs no upload. */
   isStoredElsewhere(hash: AvatarHash): Promise<boolean>;
-  /** Uploads a file; the server keeps it while its owner wears it on a seat. Rejects with a sentence if the server refuses it. */
+  /**
+   * Uploads a file; the server keeps it while its owner wears it on a seat. Rejects with a sentence if the server
+   * refuses it.
+   */
   store(hash: AvatarHash, file: Blob): Promise<void>;
   /** Resolves to the addresses at which this file may be, the likeliest first. */
   addressesOf(hash: AvatarHash): Promise<readonly AvatarAddress[]>;

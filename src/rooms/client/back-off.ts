@@ -11,8 +11,8 @@ const first = 0.5;
 const longest = 3;
 
 /**
- * Creates a back-off that doubles with every failure, up to 3 s, with a jitter of ±50 %: pages that lose a server at the same moment do not all
- * return at the same moment. `chance` returns numbers in [0, 1).
+ * Creates a back-off that doubles with every failure, up to 3 s, with a jitter of ±50 %: pages that lose a server at
+ * the same moment do not all return at the same moment. `chance` returns numbers in [0, 1).
  */
 export function createBackOff(chance: () => number = Math.random): BackOff {
   let attempts = 0;

@@ -4,7 +4,10 @@ export interface ClockSync {
   readonly offset: number;
   /** Round trip of the answer from which `offset` is taken [s]; Infinity before the first. */
   readonly roundTrip: number;
-  /** Returns the median round trip of the last five answers [s], or the age of an open request if that is longer; null: no answer yet. */
+  /**
+   * Returns the median round trip of the last five answers [s], or the age of an open request if that is longer; null:
+   * no answer yet.
+   */
   delayAt(now: number): number | null;
   /** Returns whether to send a request now: often at first, then every two seconds. */
   due(now: number): boolean;
@@ -24,8 +27,8 @@ const every = 2;
 const longestSilence = 5;
 
 /**
- * Creates a clock estimate from the answer with the shortest round trip, half of which bounds its error. Clocks in seconds, monotonic; a gap of
- * more than 5 s between two calls of `due` counts as a pause of the machine.
+ * Creates a clock estimate from the answer with the shortest round trip, half of which bounds its error. Clocks in
+ * seconds, monotonic; a gap of more than 5 s between two calls of `due` counts as a pause of the machine.
  */
 export function createClockSync(): ClockSync {
   let answers: { readonly at: number; readonly ahead: number; readonly roundTrip: number }[] = [];
@@ -74,7 +77,8 @@ export function createClockSync(): ClockSync {
       answers = answers.filter(({ at }) => now - at < memory);
       answers.push({ at: now, ahead: there - (sent + now) / 2, roundTrip });
       best = answers.reduce((least, answer) => (answer.roundTrip < least.roundTrip ? answer : least));
-      // No answer is wrong by more than half its round trip: a larger difference means that a clock was set or a machine slept.
+      // No answer is wrong by more than half its round trip: a larger difference means that a clock was set or a
+      // machine slept.
       const newest = answers[answers.length - 1]!;
       if (Math.abs(newest.ahead - best.ahead) > (newest.roundTrip + best.roundTrip) / 2 + 0.005) {
         answers = [newest];

@@ -38,7 +38,8 @@ export interface RoomView<Game extends HostedGame> {
   /** Whether roles move on with every rematch. */
   readonly rotate: boolean;
   /**
-   * The match, with the player's own actions predicted; null before the first welcome. It has no poses: RemotePlayers has them.
+   * The match, with the player's own actions predicted; null before the first welcome. It has no poses: RemotePlayers
+   * has them.
    */
   readonly match: Game['state'] | null;
   /** Response time of the room [s]; null: it runs in this page, or has not answered yet. */
@@ -92,8 +93,8 @@ export interface VoiceChannel {
 }
 
 /**
- * A client's connection to a room, whether the Room runs on a server or in this page. Times are the page's clock [s], by which tracked frames are
- * timed.
+ * A client's connection to a room, whether the Room runs on a server or in this page. Times are the page's clock [s],
+ * by which tracked frames are timed.
  */
 export interface Connection<Game extends HostedGame> {
   readonly status: ConnectionStatus;
@@ -101,7 +102,9 @@ export interface Connection<Game extends HostedGame> {
   readonly room: RoomView<Game> | null;
   /** Returns what has arrived since the last call; to be called once a frame. */
   update(time: number): ConnectionUpdate<Game>;
-  /** Sends the pose of a tracked frame at `time`, 30 times a second; to be called once a frame. Spectators send nothing. */
+  /**
+   * Sends the pose of a tracked frame at `time`, 30 times a second; to be called once a frame. Spectators send nothing.
+   */
   sendPose(time: number, shown: ShownPose): void;
   /** Sends an action of the game. It is predicted at once; the Room decides. */
   act(action: Game['action']): void;

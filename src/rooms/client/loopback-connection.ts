@@ -19,7 +19,9 @@ export interface LoopbackOptions<Game extends HostedGame> extends Partial<RoomOp
   stepped?(actions: readonly MatchAction<Game>[]): void;
 }
 
-/** Creates a host of the same Room class as the server's; it may be paused. It ticks with the first `update` of a frame. */
+/**
+ * Creates a host of the same Room class as the server's; it may be paused. It ticks with the first `update` of a frame.
+ */
 export function createLoopbackHost<Game extends HostedGame>(
   match: MatchPolicy<Game>,
   client: ClientPolicy<Game>,

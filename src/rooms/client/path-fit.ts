@@ -21,8 +21,9 @@ const stiffness = 1e-9;
 const most = 24;
 
 /**
- * Computes the weights of a path's samples for a point on it, by local quadratic regression (Cleveland, Robust Locally Weighted Regression, 1979).
- * It follows constant speed and acceleration without lag, and averages rounding and tremor. Linear interpolation has a corner at each packet.
+ * Computes the weights of a path's samples for a point on it, by local quadratic regression (Cleveland, Robust Locally
+ * Weighted Regression, 1979). It follows constant speed and acceleration without lag, and averages rounding and tremor.
+ * Linear interpolation has a corner at each packet.
  */
 export class PathFit {
   /** Index of the first sample in the fit, and their number. */
@@ -32,8 +33,8 @@ export class PathFit {
   readonly shares = new Float64Array(most);
 
   /**
-   * Fits samples[from] to samples[to] at the time `at` of the sender's clock [s]; beyond the last sample along the tangent there. `now`: the page's
-   * clock [s].
+   * Fits samples[from] to samples[to] at the time `at` of the sender's clock [s]; beyond the last sample along the
+   * tangent there. `now`: the page's clock [s].
    */
   solve(samples: readonly PathSample[], from: number, to: number, at: number, now: number): void {
     const { shares } = this;
@@ -59,7 +60,8 @@ export class PathFit {
       m3 += weight * s * s * s;
       m4 += weight * s * s * s * s;
     }
-    // The symmetric matrix of the normal equations: m0 m1 m2, m1 slope m3, m2 m3 bend. Two rows of its inverse are needed.
+    // The symmetric matrix of the normal equations: m0 m1 m2, m1 slope m3, m2 m3 bend. Two rows of its inverse are
+    // needed.
     const slope = m2 + stiffness * m0;
     const bend = m4 + stiffness * m0;
     const c00 = slope * bend - m3 * m3;

@@ -17,8 +17,8 @@ export interface PlaybackReport {
 }
 
 /**
- * The first, shortest and longest playout offset [s]; between the limits the network's jitter decides. At 30 packets a second without jitter it is
- * 45 ms: the next packet has just arrived when playback reaches the one before.
+ * The first, shortest and longest playout offset [s]; between the limits the network's jitter decides. At 30 packets a
+ * second without jitter it is 45 ms: the next packet has just arrived when playback reaches the one before.
  */
 export const firstDelay = 0.1;
 export const shortestDelay = 0.04;
@@ -126,7 +126,9 @@ export class Playback {
     this.transits.add(arrivedAt, arrivedAt - time);
   }
 
-  /** Writes the pose at this time of the page's clock [s] into `shown` and returns its opacity; null: nothing is drawn. */
+  /**
+   * Writes the pose at this time of the page's clock [s] into `shown` and returns its opacity; null: nothing is drawn.
+   */
   follow(time: number): number | null {
     const { samples } = this;
     const silence = time - this.receivedAt;
@@ -168,7 +170,9 @@ export class Playback {
     return time - this.clockOffset;
   }
 
-  /** Writes the pose `at` this time of the sender's clock [s] into `shown`; before the first packet that packet's pose. */
+  /**
+   * Writes the pose `at` this time of the sender's clock [s] into `shown`; before the first packet that packet's pose.
+   */
   private sampleAt(at: number, time: number): void {
     const { samples, shown, fit } = this;
     let i = samples.length - 1;
@@ -191,7 +195,10 @@ export class Playback {
     else shown.follow(samples, fit, a.packet, a.packet, 1);
   }
 
-  /** Returns the time on the path: beyond the last packet it slows down, and after a late packet it catches up without a jump. */
+  /**
+   * Returns the time on the path: beyond the last packet it slows down, and after a late packet it catches up without a
+   * jump.
+   */
   private timeOnPath(at: number, last: number, time: number): number {
     const beyond = clamp(at - last, 0, 10);
     const goal = Math.min(at, last) + longestExtrapolation * (1 - Math.exp(-beyond / longestExtrapolation));

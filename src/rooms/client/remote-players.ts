@@ -16,7 +16,10 @@ export interface RemotePlayer {
 /** Plays the packets of the other players with a jitter buffer for each. */
 export interface RemotePlayers {
   receive(arrived: ArrivedPose): void;
-  /** Returns the players to draw at this time of the page's clock [s], without those silent for 3 s. The same list in every frame. */
+  /**
+   * Returns the players to draw at this time of the page's clock [s], without those silent for 3 s. The same list in
+   * every frame.
+   */
   follow(time: number): readonly RemotePlayer[];
   /** Discards the packets of a seat that another person has taken. */
   forget(seat: number): void;

@@ -2,7 +2,10 @@ import type { RoomTerms } from '../protocol/messages';
 
 /** The signed pass that lets a page into a room. */
 export interface RoomPass {
-  /** Resolves to the newest token; `afresh`: a renewed one, after a refusal. Rejects with a sentence if the server issues none. */
+  /**
+   * Resolves to the newest token; `afresh`: a renewed one, after a refusal. Rejects with a sentence if the server
+   * issues none.
+   */
   token(afresh: boolean): Promise<string>;
 }
 
@@ -13,8 +16,8 @@ export interface Keep {
 }
 
 /**
- * Creates the pass to a room of the relay at `base`. A reload in the same tab keeps the person. `kind`: the name of the game; `terms`: the terms of the
- * room, if this person is the first in it.
+ * Creates the pass to a room of the relay at `base`. A reload in the same tab keeps the person. `kind`: the name of the
+ * game; `terms`: the terms of the room, if this person is the first in it.
  */
 export function createRoomPass(base: string, room: string, kind: string, keep?: Keep, terms: RoomTerms = {}): RoomPass {
   const key = `threepoint pass ${kind} ${room}`;

@@ -64,7 +64,10 @@ export class ShownPlayer implements Shown {
     return this;
   }
 
-  /** Writes the pose at a fitted time. A part that is missing in a sample is interpolated from a (t = 0) to b (t = 1), the neighbouring packets. */
+  /**
+   * Writes the pose at a fitted time. A part that is missing in a sample is interpolated from a (t = 0) to b (t = 1),
+   * the neighbouring packets.
+   */
   follow(samples: readonly PathSample[], fit: PathFit, a: Shown, b: Shown, t: number): this {
     const { pose, hands, fingers, shapes } = this;
     const next = (t < 1 ? a : b).pose;

@@ -187,8 +187,8 @@ class Rebuilding {
   }
 
   /**
-   * Writes the swivel and the twist that make the receiver's arm, with this stretch of the wrist, most like the sender's. Returns the error of the
-   * elbow [m].
+   * Writes the swivel and the twist that make the receiver's arm, with this stretch of the wrist, most like the
+   * sender's. Returns the error of the elbow [m].
    */
   private writeBend(
     side: Side,

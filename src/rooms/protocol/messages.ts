@@ -5,8 +5,8 @@ import { cleanName } from './names';
 import { packedVoice, packVoice, signalFrom, signalTo, unpackVoice, type Voice, voice } from './voice-messages';
 
 /**
- * Rises with every incompatible change of messages, pose packets (which also have `poseVersion`) or frames of poses. The server disconnects a client
- * with another version.
+ * Rises with every incompatible change of messages, pose packets (which also have `poseVersion`) or frames of poses.
+ * The server disconnects a client with another version.
  */
 export const protocolVersion = 9;
 
@@ -86,8 +86,8 @@ export function clientMessageFrom(value: unknown): ClientMessage | null {
 }
 
 /**
- * The terms of a room, which the first person in it sets for good. `seconds` and `balls` are those of a round of the ball game. `pausable`: players may
- * pause the match clock.
+ * The terms of a room, which the first person in it sets for good. `seconds` and `balls` are those of a round of the
+ * ball game. `pausable`: players may pause the match clock.
  */
 export const roomTerms = v.strictObject({
   seconds: v.exactOptional(v.pipe(v.number(), v.finite(), v.minValue(1), v.maxValue(3600))),
@@ -96,7 +96,10 @@ export const roomTerms = v.strictObject({
 });
 export type RoomTerms = v.InferOutput<typeof roomTerms>;
 
-/** What others see of a player. away: the page is hidden or the headset is off. gone: the connection is lost, the seat is held. */
+/**
+ * What others see of a player. away: the page is hidden or the headset is off. gone: the connection is lost, the seat
+ * is held.
+ */
 export interface SeatInfo {
   readonly name: string;
   readonly calibration: Calibration;
@@ -108,7 +111,10 @@ export interface SeatInfo {
 }
 const presences = ['here', 'away', 'gone'] as const;
 
-/** Wire form of a seat: name, eye height, arm span, forearm [m] or null, presence (index), 1 for a bot, avatar, voice; null: the seat is empty. */
+/**
+ * Wire form of a seat: name, eye height, arm span, forearm [m] or null, presence (index), 1 for a bot, avatar, voice;
+ * null: the seat is empty.
+ */
 const packedSeatInfo = v.nullable(
   v.tuple([
     v.string(),
@@ -149,8 +155,9 @@ export function unpackSeatInfo(packed: PackedSeatInfo): SeatInfo | null {
 }
 
 /**
- * Why a client is disconnected: the same person connected again (replaced), a person took the bot's seat (yielded), the client asked for it (left),
- * misbehaved or reads too slowly, the room was closed, the server stops, or the page has another version.
+ * Why a client is disconnected: the same person connected again (replaced), a person took the bot's seat (yielded), the
+ * client asked for it (left), misbehaved or reads too slowly, the room was closed, the server stops, or the page has
+ * another version.
  */
 const disconnectReasons = [
   'replaced',

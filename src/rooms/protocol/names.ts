@@ -17,8 +17,8 @@ const excessMarks = /(?<=\p{M}{3})\p{M}+/gu;
 const leadingMarks = /^[\p{M} ]+/u;
 
 /**
- * Returns a name as plain text: without control characters, direction marks and invisible characters, with at most three marks on a letter, single
- * spaces, and at most 20 characters. Empty if nothing is left.
+ * Returns a name as plain text: without control characters, direction marks and invisible characters, with at most
+ * three marks on a letter, single spaces, and at most 20 characters. Empty if nothing is left.
  */
 export function cleanName(name: string): string {
   const visible = name

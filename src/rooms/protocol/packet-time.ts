@@ -5,7 +5,8 @@ const turnMs = 2 ** 14;
 export const packetMs = (ms: number): number => Math.round(ms) & (turnMs - 1);
 
 /**
- * Returns the seconds from one packet time to another [ms], the shorter way round, in [−8.192, 8.192). Times that are not wrapped are accepted too.
+ * Returns the seconds from one packet time to another [ms], the shorter way round, in [−8.192, 8.192). Times that are
+ * not wrapped are accepted too.
  */
 export function packetSecondsBetween(fromMs: number, toMs: number): number {
   const half = turnMs / 2;

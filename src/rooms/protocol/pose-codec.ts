@@ -38,8 +38,9 @@ const isFiniteAvatar = ({ head, leftHand, rightHand, body }: AvatarPose): boolea
   isFinitePose(head) && isFinitePose(leftHand) && isFinitePose(rightHand) && (!body || isFiniteBody(body));
 
 /**
- * Returns the packet's bytes, 64 at most; null if head, a hand or the body is not finite. The skeleton is the sender's own; the body's head must be
- * where the pose's head is, as with every estimator. Positions beyond the ranges in src/rooms/README.md are clamped.
+ * Returns the packet's bytes, 64 at most; null if head, a hand or the body is not finite. The skeleton is the sender's
+ * own; the body's head must be where the pose's head is, as with every estimator. Positions beyond the ranges in
+ * src/rooms/README.md are clamped.
  */
 export function encodePose(packet: PosePacket, skeleton: Skeleton): Uint8Array | null {
   const { head, leftHand, rightHand, body } = packet.pose;
@@ -79,7 +80,9 @@ function wristOf(side: Side): Pose<'floor'> {
   return bodyWrist;
 }
 
-/** Writes the fingers, after the body. They are unknown if they are not finite, or if the arm does not end at the hand. */
+/**
+ * Writes the fingers, after the body. They are unknown if they are not finite, or if the arm does not end at the hand.
+ */
 function writeFingers(side: Side, { fingers }: PosePacket, hand: TrackedPose | null): void {
   const target = steps.fingers[side];
   const shape = fingers[side];

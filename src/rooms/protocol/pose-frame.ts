@@ -16,8 +16,8 @@ export function frameLength(poses: readonly SeatPose[], except: number | null): 
 }
 
 /**
- * Writes a frame of a room into `target` from byte `at` on: the pose packets since the last frame, except those of one seat. The seat replaces the
- * version in each packet. Seats rise; the packets of a seat are in order of arrival.
+ * Writes a frame of a room into `target` from byte `at` on: the pose packets since the last frame, except those of one
+ * seat. The seat replaces the version in each packet. Seats rise; the packets of a seat are in order of arrival.
  */
 export function writeFrame(poses: readonly SeatPose[], except: number | null, target: Uint8Array, at = 0): void {
   let to = at;
@@ -36,7 +36,9 @@ export function encodeFrame(poses: readonly SeatPose[]): Uint8Array {
   return frame;
 }
 
-/** Returns the packets of a frame; null for bytes that are not a frame. Packets are not validated beyond their length. */
+/**
+ * Returns the packets of a frame; null for bytes that are not a frame. Packets are not validated beyond their length.
+ */
 export function decodeFrame(frame: Uint8Array): readonly SeatPose[] | null {
   const poses: SeatPose[] = [];
   let at = 0;

@@ -1,7 +1,10 @@
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import type { Fingers } from 'threepoint/core/body/hand-shape';
 
-/** Rises with every change of the layout, or of the body proportions that packets are relative to. Other versions are rejected. */
+/**
+ * Rises with every change of the layout, or of the body proportions that packets are relative to. Other versions are
+ * rejected.
+ */
 export const poseVersion = 4;
 
 /** The longest packet [bytes]. */

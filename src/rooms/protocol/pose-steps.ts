@@ -63,7 +63,10 @@ export interface ArmSteps {
   clavicleV: number;
   swivel: number;
   forearmTwist: number;
-  /** Distance along the arm from the hand to the drawn wrist: tenths of a millimetre move the elbow of an almost straight arm. */
+  /**
+   * Distance along the arm from the hand to the drawn wrist: tenths of a millimetre move the elbow of an almost
+   * straight arm.
+   */
   stretch: number;
   /** Whether the arm ends at a wrist of its own, which the next fields describe; false: it ends at the hand. */
   free: boolean;
@@ -162,7 +165,10 @@ export const headPosition = ({ x, y, z }: VecSteps, target: MutableVec3 = vec3(0
 export const limited = (steps: number, bits: number): number =>
   clamp(Math.round(steps), -mostSteps(bits), mostSteps(bits));
 
-/** Writes the nearest steps of a head, floor frame; positions beyond the ranges of `headBits` and `heightBits` are clamped. */
+/**
+ * Writes the nearest steps of a head, floor frame; positions beyond the ranges of `headBits` and `heightBits` are
+ * clamped.
+ */
 export function headSteps({ position: { x, y, z }, orientation }: Pose<'floor'>, target: HeadSteps): HeadSteps {
   const { position } = target;
   position.x = limited(x / placeUnit, headBits);
@@ -172,7 +178,10 @@ export function headSteps({ position: { x, y, z }, orientation }: Pose<'floor'>,
   return target;
 }
 
-/** Writes the nearest steps of a hand, floor frame, relative to the head as the receiver decodes it [m]; see `toHandPlace` for the range. */
+/**
+ * Writes the nearest steps of a hand, floor frame, relative to the head as the receiver decodes it [m]; see
+ * `toHandPlace` for the range.
+ */
 export function handSteps(head: Vec3, { position, orientation }: Pose<'floor'>, target: HandPoseSteps): HandPoseSteps {
   toHandPlace(head, position, target.place);
   toQuatSteps(orientation, trackedBits, target.orientation);

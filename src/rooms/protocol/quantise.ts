@@ -7,8 +7,8 @@ import type { BitReader, BitWriter } from './bits';
 export const placeUnit = 0.00025;
 
 /**
- * Returns the largest step m = 2^(b−1) − 1 of a signed number of b bits. A step in [−m, m] is written as step + m: zero is exact, and the code
- * 2^b − 1 is invalid.
+ * Returns the largest step m = 2^(b−1) − 1 of a signed number of b bits. A step in [−m, m] is written as step + m: zero
+ * is exact, and the code 2^b − 1 is invalid.
  */
 export const mostSteps = (bits: number): number => (1 << (bits - 1)) - 1;
 
@@ -19,7 +19,8 @@ export const toStep = (value: number, range: number, bits: number): number =>
 export const fromStep = (step: number, range: number, bits: number): number => (step / mostSteps(bits)) * range;
 
 /**
- * Returns the step of a non-uniform quantiser for values near 0: half the uniform step at 0, 1.5 times at ±range, clamped beyond.
+ * Returns the step of a non-uniform quantiser for values near 0: half the uniform step at 0, 1.5 times at ±range,
+ * clamped beyond.
  */
 export function toCentredStep(value: number, range: number, bits: number): number {
   const step = toStep((Math.sqrt(1 + 8 * clamp(Math.abs(value) / range, 0, 1)) - 1) / 2, 1, bits);
@@ -41,7 +42,10 @@ export function readStep(reader: BitReader, bits: number): number | null {
   return step <= most ? step : null;
 }
 
-/** A rotation in smallest-three form: the index of the largest of x, y, z, w (made positive), and the other three. A buffer. */
+/**
+ * A rotation in smallest-three form: the index of the largest of x, y, z, w (made positive), and the other three. A
+ * buffer.
+ */
 export interface QuatSteps {
   largest: number;
   a: number;
@@ -54,7 +58,10 @@ export const makeQuatSteps = (): QuatSteps => ({ largest: 3, a: 0, b: 0, c: 0 })
 /** Range of the other three components: ±1/√2. */
 const range = Math.SQRT1_2;
 
-/** Writes the nearest steps of a unit quaternion, the same for q and −q. Of equal largest components the first of w, x, y, z is taken. */
+/**
+ * Writes the nearest steps of a unit quaternion, the same for q and −q. Of equal largest components the first of w, x,
+ * y, z is taken.
+ */
 export function toQuatSteps({ x, y, z, w }: Quat, bits: number, target: QuatSteps = makeQuatSteps()): QuatSteps {
   let largest = 3;
   let most = w;

@@ -66,7 +66,9 @@ export const spineAxis = ({ restOffsets }: Skeleton, target: MutableVec3): Mutab
 export const chestAxis = ({ restOffsets }: Skeleton, target: MutableVec3): MutableVec3 =>
   normalise(add(restOffsets.upperChest, restOffsets.neck, target), undefined, target);
 
-/** The trunk as the receiver rebuilds it: rotations of its joints in the floor frame, and the roots of the clavicles. */
+/**
+ * The trunk as the receiver rebuilds it: rotations of its joints in the floor frame, and the roots of the clavicles.
+ */
 export class RebuiltTrunk {
   readonly hipsPosition = vec3(0, 0, 0);
   readonly hips = quat(0, 0, 0, 1);
@@ -109,7 +111,8 @@ const swivelZero: Readonly<Record<Side, Vec3>> = { left: vec3(-0.2, -0.88, 0.43)
 /** Writes the directions of swivel 0 and of a quarter turn, about the line from shoulder to wrist. */
 export function swivelAxes(side: Side, upperChest: Quat, along: Vec3, u: MutableVec3, v: MutableVec3): void {
   reject(rotate(upperChest, swivelZero[side], u), along, u);
-  // For an arm that points down and back, forward replaces it. Sender and receiver decide on the same arm, up to rounding.
+  // For an arm that points down and back, forward replaces it. Sender and receiver decide on the same arm, up to
+  // rounding.
   if (!(length(u) > 0.1)) reject(rotate(upperChest, forward, u), along, u);
   normalise(u, undefined, u);
   cross(along, u, v);

@@ -1,6 +1,7 @@
 /**
- * Parsers for socket.io that put every packet into one WebSocket frame. Pose packets and frames of poses are sent as their bytes alone; all other
- * packets are text: the digit of the packet's type and JSON. Anything else throws, and socket.io closes the connection.
+ * Parsers for socket.io that put every packet into one WebSocket frame. Pose packets and frames of poses are sent as
+ * their bytes alone; all other packets are text: the digit of the packet's type and JSON. Anything else throws, and
+ * socket.io closes the connection.
  */
 
 /** A packet of socket.io. Types: 0 connect, 1 disconnect, 2 event, 3 acknowledgement, 4 error. */
@@ -41,8 +42,8 @@ const isEvent = (value: unknown): boolean =>
   Array.isArray(value) && typeof value[0] === 'string' && !reservedEvents.has(value[0]);
 
 /**
- * Returns whether a packet may carry some data, by the digit of its type. socket.io relies on its parser for this check: invalid data can crash the
- * process.
+ * Returns whether a packet may carry some data, by the digit of its type. socket.io relies on its parser for this
+ * check: invalid data can crash the process.
  */
 const mayCarry: readonly ((data: unknown) => boolean)[] = [
   (data) => data === undefined || isObject(data),
@@ -84,7 +85,10 @@ class PageEncoder {
   }
 }
 
-/** The relay's decoder, for text alone: poses are read below socket.io. It has the methods of an event emitter that socket.io calls. */
+/**
+ * The relay's decoder, for text alone: poses are read below socket.io. It has the methods of an event emitter that
+ * socket.io calls.
+ */
 class RelayDecoder {
   private listeners: Listener[] = [];
 

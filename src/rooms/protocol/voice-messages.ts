@@ -18,7 +18,9 @@ export const packVoice = (of: Voice | null): PackedVoice => (of ? [of.session, o
 export const unpackVoice = (packed: PackedVoice): Voice | null =>
   packed === 0 ? null : { session: packed[0], muted: packed[1] === 1 };
 
-/** The longest description [characters], and the most candidates in one message, so that it fits into a control message. */
+/**
+ * The longest description [characters], and the most candidates in one message, so that it fits into a control message.
+ */
 export const longestDescription = 3200;
 export const mostCandidates = 8;
 
@@ -44,8 +46,8 @@ const candidate = v.pipe(
 );
 
 /**
- * A signal between two pages that connect: a description, or ICE candidates. Browsers would also accept other media, and throw at a candidate without
- * a media section; rooms and pages reject both.
+ * A signal between two pages that connect: a description, or ICE candidates. Browsers would also accept other media,
+ * and throw at a candidate without a media section; rooms and pages reject both.
  */
 const signalBody = v.union([
   v.strictObject({

@@ -80,7 +80,10 @@ export class MatchClock<Game extends HostedGame> {
     this.#queued.push(action);
   }
 
-  /** Steps the match up to this time [s]. `wantPause`: whether a player requests a pause; the clock is then paused, or stays so. */
+  /**
+   * Steps the match up to this time [s]. `wantPause`: whether a player requests a pause; the clock is then paused, or
+   * stays so.
+   */
   step(time: number, wantPause: boolean): void {
     if (this.#stoppedAt !== null) {
       if (wantPause) return;

@@ -29,8 +29,8 @@ export interface HostedMatch<Game extends HostedGame> {
   /** Seconds from the end of the last tick to the time of the last `advance`, usually negative. */
   readonly lead: number;
   /**
-   * Steps every tick that has begun by `time` [s, any monotonic clock; the first call starts tick 0], and returns the events. The actions belong to the
-   * tick in which `time` lies.
+   * Steps every tick that has begun by `time` [s, any monotonic clock; the first call starts tick 0], and returns the
+   * events. The actions belong to the tick in which `time` lies.
    */
   advance(time: number, actions: readonly MatchAction<Game>[]): readonly Game['event'][];
 }
@@ -42,11 +42,14 @@ export interface MatchPolicy<Game extends HostedGame> {
   readonly seats: number;
   /** Length of a tick [s]. */
   readonly tickSeconds: number;
-  /** Creates a match that waits for its players. `rotation`: seats by which roles have moved on. `onTick` is called before each tick with its actions. */
+  /**
+   * Creates a match that waits for its players. `rotation`: seats by which roles have moved on. `onTick` is called
+   * before each tick with its actions.
+   */
   start(rotation: number, onTick: (actions: readonly MatchAction<Game>[]) => void): HostedMatch<Game>;
   /**
-   * Returns by how many seats roles move on for another match of the players present: 0, or with `rotate` as few as permit a match. null: they cannot
-   * play one.
+   * Returns by how many seats roles move on for another match of the players present: 0, or with `rotate` as few as
+   * permit a match. null: they cannot play one.
    */
   nextRoles(state: Game['state'], rotate: boolean): number | null;
   snapshot(state: Game['state']): Game['snapshot'];
@@ -54,7 +57,9 @@ export interface MatchPolicy<Game extends HostedGame> {
   readAction(value: unknown): Game['action'] | null;
   /** Returns the event that refuses an action during a pause. */
   refusalInPause(player: number, action: Game['action']): Game['event'];
-  /** Returns the player whose action an event refuses, and why; null: it is another event, which all clients receive. */
+  /**
+   * Returns the player whose action an event refuses, and why; null: it is another event, which all clients receive.
+   */
   refusalOf(event: Game['event']): { readonly player: number; readonly reason: string } | null;
   /** Returns the transform from a seat's floor to the arena. */
   arenaFromFloor(seat: number, state: Game['state']): Transform<'arena', 'floor'>;

@@ -15,7 +15,9 @@ const mostFresh = 16;
 const speedCheckSeconds = 1;
 /** A packet's time may lie this far ahead of the room clock [s]: a sender knows that clock to half a round trip. */
 const mostAhead = 0.25;
-/** How often a space may be re-anchored, per second on average and at once: snap turns, recentring, change of devices. */
+/**
+ * How often a space may be re-anchored, per second on average and at once: snap turns, recentring, change of devices.
+ */
 const jumpsPerSecond = 1;
 const jumpsAtOnce = 4;
 
@@ -59,8 +61,8 @@ export class PoseValidator {
   }
 
   /**
-   * Accepts a packet and keeps its bytes for forwarding. It rejects a packet that is older than the newest one, or in which the head has moved
-   * faster than a person can.
+   * Accepts a packet and keeps its bytes for forwarding. It rejects a packet that is older than the newest one, or in
+   * which the head has moved faster than a person can.
    */
   accept(packet: PointsPacket, bytes: Uint8Array, time: number): 'accepted' | 'old' | 'too-fast' {
     // A time in the future would permit a jump later.

@@ -39,7 +39,10 @@ export interface RoomHost<Game extends HostedGame> {
   send(to: ClientId, message: RoomMessage<Game>): void;
   /** Sends a message to all clients that have joined, reliably and in order. */
   broadcast(message: RoomMessage<Game>): void;
-  /** Sends the packets since the last call, at least one, by seat: to all clients that have joined, except each one's own. */
+  /**
+   * Sends the packets since the last call, at least one, by seat: to all clients that have joined, except each one's
+   * own.
+   */
   sendPoses(poses: readonly FreshPose[]): void;
   /** Disconnects a client that the Room has removed. */
   disconnect(client: ClientId, reason: DisconnectReason): void;

@@ -88,8 +88,8 @@ export class RoomMatch<Game extends HostedGame> {
   }
 
   /**
-   * Queues an action of the player on a seat; during a pause the player receives a refusal instead. Returns 'bad' for a value that is not an
-   * action of the game, and 'no-seat' where the client has no seat (null).
+   * Queues an action of the player on a seat; during a pause the player receives a refusal instead. Returns 'bad' for a
+   * value that is not an action of the game, and 'no-seat' where the client has no seat (null).
    */
   act(player: number | null, value: unknown): 'taken' | 'bad' | 'no-seat' {
     const action = this.#policy.readAction(value);
@@ -100,7 +100,10 @@ export class RoomMatch<Game extends HostedGame> {
     return 'taken';
   }
 
-  /** Queues the pose of the player on a seat, in the arena frame; ignored during a pause. `packetTime`: room time of the pose [s]. */
+  /**
+   * Queues the pose of the player on a seat, in the arena frame; ignored during a pause. `packetTime`: room time of the
+   * pose [s].
+   */
   addPose(player: number, { pose: { head, leftHand, rightHand } }: PointsPacket, packetTime: number): void {
     if (this.isPaused) return;
     const arenaFromFloor = this.#policy.arenaFromFloor(player, this.state);

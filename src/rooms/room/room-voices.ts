@@ -7,8 +7,8 @@ import type { Member, Seats } from './seats';
 type Received<Type extends ClientMessage['type']> = Extract<ClientMessage, { type: Type }>;
 
 /**
- * The voice sessions of a room, and the signals by which their pages connect. Sound never passes through the room: pages send it to each
- * other. A spectator has no seat, and therefore no voice.
+ * The voice sessions of a room, and the signals by which their pages connect. Sound never passes through the room:
+ * pages send it to each other. A spectator has no seat, and therefore no voice.
  */
 export class RoomVoices {
   readonly #seats: Seats;
@@ -22,7 +22,10 @@ export class RoomVoices {
     this.#host = host;
   }
 
-  /** Returns the voice with which a joining person takes part; null where the room has no voices or the session is taken. */
+  /**
+   * Returns the voice with which a joining person takes part; null where the room has no voices or the session is
+   * taken.
+   */
   admitted(identity: string, voice: Voice | null): Voice | null {
     if (!voice || !this.#enabled) return null;
     const taken = this.#seats.withVoice(voice.session);

@@ -36,8 +36,9 @@ const idleTickSeconds = 0.1;
 const points = makePoints();
 
 /**
- * The authority over one room: its members, their seats, and the match that they play. A Room knows no game (its policy supplies it), no socket
- * and no clock. Times are the room clock's [s] and never decrease; the host decides when to tick and when to send poses.
+ * The authority over one room: its members, their seats, and the match that they play. A Room knows no game (its policy
+ * supplies it), no socket and no clock. Times are the room clock's [s] and never decrease; the host decides when to
+ * tick and when to send poses.
  */
 export class Room<Game extends HostedGame> {
   readonly options: RoomOptions;
@@ -92,8 +93,8 @@ export class Room<Game extends HostedGame> {
   }
 
   /**
-   * Adds a connection of a person whose identity the host has verified. It replaces an older connection of the same person, and takes the seat that
-   * is held for them.
+   * Adds a connection of a person whose identity the host has verified. It replaces an older connection of the same
+   * person, and takes the seat that is held for them.
    */
   join(client: ClientId, identity: string, request: JoinRequest, time: number): void {
     this.#time = time;
@@ -131,7 +132,9 @@ export class Room<Game extends HostedGame> {
     this.#broadcastAbout();
   }
 
-  /** Handles a message. Returns 'bad' for an action that is not one of this game; a message that is refused is 'taken'. */
+  /**
+   * Handles a message. Returns 'bad' for an action that is not one of this game; a message that is refused is 'taken'.
+   */
   onMessage(client: ClientId, message: Exclude<ClientMessage, { type: 'join' }>, time: number): 'taken' | 'bad' {
     this.#time = time;
     const member = this.#members.get(client);
@@ -150,8 +153,8 @@ export class Room<Game extends HostedGame> {
   }
 
   /**
-   * Handles a pose packet. Returns 'bad' for bytes that are not a packet, and 'ignored' for a packet that changes nothing: it is old, moves too
-   * fast, or comes from a spectator.
+   * Handles a pose packet. Returns 'bad' for bytes that are not a packet, and 'ignored' for a packet that changes
+   * nothing: it is old, moves too fast, or comes from a spectator.
    */
   onPose(client: ClientId, bytes: Uint8Array, time: number): 'taken' | 'ignored' | 'bad' {
     const packet = decodePoints(bytes, points);
@@ -166,7 +169,9 @@ export class Room<Game extends HostedGame> {
     return 'taken';
   }
 
-  /** Whether ticks change nothing until the next message: no match runs, no player is awaited, and no update is queued. */
+  /**
+   * Whether ticks change nothing until the next message: no match runs, no player is awaited, and no update is queued.
+   */
   get isIdle(): boolean {
     return this.#match.isIdle && this.#seats.areIdle && this.#seatUpdates.isComplete;
   }

@@ -1,13 +1,16 @@
 import { TokenBucket } from './token-bucket';
 
 /**
- * The most changes of a seat that are sent, per second on average and at once. Each costs every other page a fitted body, a loaded file or a new voice
- * connection.
+ * The most changes of a seat that are sent, per second on average and at once. Each costs every other page a fitted
+ * body, a loaded file or a new voice connection.
  */
 const changesPerSecond = 0.5;
 const changesAtOnce = 8;
 
-/** Sends the state of seats that have changed: at once, or with a later tick if one changes too often. The last state is always sent. */
+/**
+ * Sends the state of seats that have changed: at once, or with a later tick if one changes too often. The last state is
+ * always sent.
+ */
 export class SeatUpdates {
   readonly #send: (seat: number) => void;
   readonly #allowance: readonly TokenBucket[];

@@ -12,7 +12,10 @@ export const seatHoldSeconds = 30;
 /** A player who is silent or disconnected for this long [s] is away; a disconnected one also leaves the match. */
 export const awayAfter = 2.5;
 
-/** The most changes of seat by a client, per second on average and at once: each removes a player from the match and adds one. */
+/**
+ * The most changes of seat by a client, per second on average and at once: each removes a player from the match and
+ * adds one.
+ */
 const movesPerSecond = 0.5;
 const movesAtOnce = 4;
 
@@ -143,13 +146,18 @@ export class Seats {
     return !seat || (seat.bot && !bot);
   }
 
-  /** Returns why a member may not move to a seat, or become a spectator (null), at this time [s]. null: it may, and the move is counted. */
+  /**
+   * Returns why a member may not move to a seat, or become a spectator (null), at this time [s]. null: it may, and the
+   * move is counted.
+   */
   refusalOf(requested: number | null, { bot, moves }: Member, time: number): 'occupied' | 'too-often' | null {
     if (requested !== null && !this.isFreeFor(requested, bot)) return 'occupied';
     return moves.take(time) ? null : 'too-often';
   }
 
-  /** Returns the requested seat, or any free one (null); null: none. A person takes a bot's seat if no other is free. */
+  /**
+   * Returns the requested seat, or any free one (null); null: none. A person takes a bot's seat if no other is free.
+   */
   freeFor(requested: number | null, bot: boolean): number | null {
     if (requested !== null && this.isFreeFor(requested, bot)) return requested;
     const free = this.#seats.indexOf(null);

@@ -1,4 +1,7 @@
-/** Limits a rate: `burst` at once, and `perSecond` on average. Times are in seconds; a time that goes back adds no tokens. */
+/**
+ * Limits a rate: `burst` at once, and `perSecond` on average. Times are in seconds; a time that goes back adds no
+ * tokens.
+ */
 export class TokenBucket {
   readonly #perSecond: number;
   readonly #burst: number;

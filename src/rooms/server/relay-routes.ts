@@ -78,8 +78,8 @@ const isOnThisMachine = (request: IncomingMessage): boolean =>
   clientAddressOf(request, false).isLoopback && request.headers['x-forwarded-for'] === undefined;
 
 /**
- * Who may call a route of the relay: all pages of the server's origins, the holder of the admin token, programs on this machine, or the holder of a
- * pass to the room in the address, which the route itself verifies.
+ * Who may call a route of the relay: all pages of the server's origins, the holder of the admin token, programs on this
+ * machine, or the holder of a pass to the room in the address, which the route itself verifies.
  */
 export type RelayAccess = 'anyone' | 'admin' | 'this-machine' | 'client';
 

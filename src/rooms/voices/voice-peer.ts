@@ -19,12 +19,15 @@ const answerSeconds = 2;
 const restartSeconds = 2.5;
 const longestCandidate = 300;
 /**
- * A connection is closed after this delay [ms]. Chromium leaks a connection that is closed right after an answer: 9 to 14 of 100 random ones, and at
- * most one with this delay (Chromium 156).
+ * A connection is closed after this delay [ms]. Chromium leaks a connection that is closed right after an answer: 9 to
+ * 14 of 100 random ones, and at most one with this delay (Chromium 156).
  */
 const closingMs = 250;
 
-/** Returns a description that fits into a message: without candidates if it is too long, because they are also sent separately. */
+/**
+ * Returns a description that fits into a message: without candidates if it is too long, because they are also sent
+ * separately.
+ */
 const shortened = (sdp: string): string =>
   sdp.length <= longestDescription ? sdp : sdp.replace(/^a=(candidate|end-of-candidates).*\r\n/gm, '');
 
@@ -37,8 +40,8 @@ function opusAlone(transceiver: RTCRtpTransceiver): void {
 }
 
 /**
- * A peer connection to one other page, which carries both voices. It uses perfect negotiation (WebRTC 1.0, section 10.7): either page may make an
- * offer, and if both do, the polite one rolls its own back.
+ * A peer connection to one other page, which carries both voices. It uses perfect negotiation (WebRTC 1.0, section
+ * 10.7): either page may make an offer, and if both do, the polite one rolls its own back.
  */
 export class VoicePeer {
   readonly #options: VoicePeerOptions;

@@ -20,7 +20,10 @@ const settings = v.object({
   ttlSeconds: v.nullable(v.pipe(v.number(), v.minValue(1))),
 });
 
-/** Fetches the settings from the relay at `base`, without a trailing slash. Rejects with a sentence if the server does not answer. */
+/**
+ * Fetches the settings from the relay at `base`, without a trailing slash. Rejects with a sentence if the server does
+ * not answer.
+ */
 export async function fetchVoiceSettings(base: string, room: string, pass: RoomPass): Promise<VoiceSettings> {
   for (const afresh of [false, true]) {
     const response = await fetch(`${base}/api/voices?room=${room}`, {

@@ -18,8 +18,8 @@ export interface StoredSimulationOptions extends Simulation {
 const secondsPerParticipant = 7200;
 
 /**
- * Stores simulated participants, who go through a plan to its end, in a separate study, which replaces that of an earlier
- * simulation. Resolves with the id of that study.
+ * Stores simulated participants, who go through a plan to its end, in a separate study, which replaces that of an
+ * earlier simulation. Resolves with the id of that study.
  */
 export async function storeSimulation(
   client: Pick<ExperimenterClient, 'studies' | 'addStudy' | 'addSimulated' | 'deleteSimulated'>,

@@ -5,7 +5,9 @@ import type { ParticipantSession } from './participant-session';
 import { remoteFaults } from './remote-faults';
 import type { StudyHost } from './study-host';
 
-/** Measures the body of a participant in the headset, and checks device, room and height of one who takes part alone. */
+/**
+ * Measures the body of a participant in the headset, and checks device, room and height of one who takes part alone.
+ */
 export class BodyMeasurement {
   readonly #session: ParticipantSession;
   readonly #host: StudyHost;

@@ -25,7 +25,10 @@ export interface RunningStudyOptions {
   readonly forget: () => Promise<void>;
 }
 
-/** The flow of a participant's session: shows the present step, passes on the participant's actions and exchanges with the server. */
+/**
+ * The flow of a participant's session: shows the present step, passes on the participant's actions and exchanges with
+ * the server.
+ */
 export class RunningStudy {
   readonly session: ParticipantSession;
   readonly #host: StudyHost;

@@ -60,7 +60,10 @@ export class SessionTrials {
     return `${step.id}@${place?.run}.${place?.attempt}`;
   }
 
-  /** Aborts a trial that became void, pauses one whose participant pauses, and prepares and starts that of the present step. */
+  /**
+   * Aborts a trial that became void, pauses one whose participant pauses, and prepares and starts that of the present
+   * step.
+   */
   settle(): void {
     const { step, progress } = this.#session;
     if (this.#trial && this.#trial.key !== this.attempt) this.abort();
@@ -95,8 +98,8 @@ export class SessionTrials {
   }
 
   /**
-   * Restores the body of the last trial after a reload, because the participant still wears it in the rest and the questions
-   * that follow. Does nothing after any other body was shown. Rejects if the body cannot be loaded.
+   * Restores the body of the last trial after a reload, because the participant still wears it in the rest and the
+   * questions that follow. Does nothing after any other body was shown. Rejects if the body cannot be loaded.
    */
   async restoreBody(): Promise<void> {
     const { step, schedule } = this.#session;
@@ -152,7 +155,9 @@ export class SessionTrials {
     };
   }
 
-  /** Returns the seed of a layout, which is the same for each participant's first, second … trial under every condition. */
+  /**
+   * Returns the seed of a layout, which is the same for each participant's first, second … trial under every condition.
+   */
   #seedOf(step: PlayedStep): number {
     const repetition = step.kind === 'trial' ? step.repetition : 0;
     return randomFor(this.#session.plan.seed, `layout of ${step.task} ${repetition}`).seed >>> 1;

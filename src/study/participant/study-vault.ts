@@ -36,8 +36,8 @@ interface Schema extends DBSchema {
 export class SessionForgotten extends Error {}
 
 /**
- * Stores sessions, records and recordings in IndexedDB until the server has them. Every request rejects if the storage does
- * not answer within five seconds.
+ * Stores sessions, records and recordings in IndexedDB until the server has them. Every request rejects if the storage
+ * does not answer within five seconds.
  */
 export interface StudyVault {
   session(study: string, participant: string): Promise<KeptSession | null>;

@@ -98,9 +98,10 @@ function greenhouseGeisser(residuals: readonly (readonly number[])[]): number {
 }
 
 /**
- * Analysis of variance of participants who met all conditions (within) and belong to cohorts (between): repeated measures where there is one
- * cohort, one-way where there is one condition, else mixed. `cohorts[c][p][k]`: of participant p of cohort c under condition k. As SPSS and
- * R's car of type III: cohorts of unequal size count alike. Throws where a cohort is empty or values are missing.
+ * Analysis of variance of participants who met all conditions (within) and belong to cohorts (between): repeated
+ * measures where there is one cohort, one-way where there is one condition, else mixed. `cohorts[c][p][k]`: of
+ * participant p of cohort c under condition k. As SPSS and R's car of type III: cohorts of unequal size count alike.
+ * Throws where a cohort is empty or values are missing.
  */
 export function varianceAnalysis(cohorts: readonly (readonly (readonly number[])[])[]): VarianceAnalysis {
   const conditions = cohorts[0]?.[0]?.length ?? 0;

@@ -67,8 +67,8 @@ const exactBelow = 50;
 /**
  * Computes R's `wilcox.test(first, second, paired = TRUE)` up to R 4.5: exact for fewer than 50 pairs without ties and
  * zeros, otherwise the normal approximation with continuity correction, without zeros (Wilcoxon's method). Differences
- * that are equal up to rounding are tied (R: with `digits.rank`), and those within rounding of 0 are zeros. Throws if the
- * lists differ in length or are empty.
+ * that are equal up to rounding are tied (R: with `digits.rank`), and those within rounding of 0 are zeros. Throws if
+ * the lists differ in length or are empty.
  */
 export function signedRankTest(first: readonly number[], second: readonly number[]): SignedRankTest {
   refuseUnpaired(first, second);

@@ -3,8 +3,8 @@ import { bisect } from 'threepoint/core/math/bisection';
 import { type Interval, roundingOf } from './summaries';
 
 /**
- * Ranks from 1, ties sharing their mean rank, and the sizes of the groups of ties. Values next to each other are tied where they are no
- * further apart than `rounding`; 0: where they are equal to the last digit.
+ * Ranks from 1, ties sharing their mean rank, and the sizes of the groups of ties. Values next to each other are tied
+ * where they are no further apart than `rounding`; 0: where they are equal to the last digit.
  */
 export function ranksOf(
   values: readonly number[],
@@ -32,8 +32,8 @@ export function ranksOf(
 export const cubesOf = (ties: readonly number[]): number => ties.reduce((sum, size) => sum + size ** 3 - size, 0);
 
 /**
- * The interval of a rank-biserial correlation by Fisher's z, with the standard error that it has where nothing differs (as R's
- * effectsize::rank_biserial). null: all ranks are on one side, where z has no end.
+ * The interval of a rank-biserial correlation by Fisher's z, with the standard error that it has where nothing differs
+ * (as R's effectsize::rank_biserial). null: all ranks are on one side, where z has no end.
  */
 export function rankBiserialInterval(effect: number, error: number, confidence = 0.95): Interval | null {
   if (Math.abs(effect) === 1) return null;

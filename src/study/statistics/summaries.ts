@@ -47,8 +47,8 @@ export const twoSidedP = (t: number, df: number): number => Math.min(1, 2 * tCdf
 const equalWithin = 1e-9;
 
 /**
- * How far apart the same figure may come out, in the unit of the values that it is computed from: means of thirds, their differences and
- * means of means differ in the last digits where they are equal.
+ * How far apart the same figure may come out, in the unit of the values that it is computed from: means of thirds,
+ * their differences and means of means differ in the last digits where they are equal.
  */
 export const roundingOf = (values: readonly number[]): number =>
   equalWithin * values.reduce((largest, value) => Math.max(largest, Math.abs(value)), 0);

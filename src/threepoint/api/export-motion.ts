@@ -5,8 +5,9 @@ import type { MotionExportOptions, MotionFile } from './motion-export';
 export type ExportOptions = Omit<MotionExportOptions, 'networks'> & Partial<Pick<MotionExportOptions, 'networks'>>;
 
 /**
- * A file of what a method draws of a recording, with fingers: BVH, a table of joints (CSV), VRM Animation, or what a writer makes; the networks as
- * of a Body. Rejects with a sentence where the method draws no body or fails, or no network comes; with the signal's reason where it is given up.
+ * A file of what a method draws of a recording, with fingers: BVH, a table of joints (CSV), VRM Animation, or what a
+ * writer makes; the networks as of a Body. Rejects with a sentence where the method draws no body or fails, or no
+ * network comes; with the signal's reason where it is given up.
  */
 export async function exportMotion(recording: Recording, options: ExportOptions): Promise<MotionFile> {
   // Pages that export nothing load none of it.

@@ -6,8 +6,8 @@ import { readOwnWeights } from './own-weights';
 
 export interface LearnedOptions {
   /**
-   * The address of another contract (.json), with its weights in the same folder; in Node also a file (`file:`). Default: the network that the
-   * package brings.
+   * The address of another contract (.json), with its weights in the same folder; in Node also a file (`file:`).
+   * Default: the network that the package brings.
    */
   readonly modelUrl?: string | URL;
   /** Called with the share [0, 1] of the weights that has arrived. */
@@ -15,7 +15,8 @@ export interface LearnedOptions {
 }
 
 /**
- * The learned network without a runtime: 91 kB, answered within the frame. Rejects with a sentence that says what is wrong with which file.
+ * The learned network without a runtime: 91 kB, answered within the frame. Rejects with a sentence that says what is
+ * wrong with which file.
  */
 export async function loadLearned({ modelUrl, onProgress }: LearnedOptions = {}): Promise<PoseRegressor> {
   const progress = onProgress ? { onProgress } : {};

@@ -119,7 +119,10 @@ class SessionBody {
     this.spaces = new JointSpaces(jointNames);
   }
 
-  /** Starts tracking once the session has a floor; rejects where it has none: then there are joints, but no poses of them. */
+  /**
+   * Starts tracking once the session has a floor; rejects where it has none: then there are joints, but no poses of
+   * them.
+   */
   async begin(): Promise<void> {
     const floor = await this.#session.requestReferenceSpace('local-floor');
     this.#floor = floor;

@@ -143,8 +143,8 @@ function* clipTracks(motion: Motion, avatar: LoadedAvatar): Generator<number, re
 }
 
 /**
- * Makes GLB files of an avatar (VRM or a humanoid of another kind) that moves: all that is in its file stays, but for clips of its own. Rejects
- * with a sentence that names the file.
+ * Makes GLB files of an avatar (VRM or a humanoid of another kind) that moves: all that is in its file stays, but for
+ * clips of its own. Rejects with a sentence that names the file.
  */
 export async function avatarClip(bytes: ArrayBuffer, name: string, options: ParseOptions = {}): Promise<AvatarClip> {
   const { description, binary } = read(bytes, name, options.decoders);

@@ -228,7 +228,8 @@ class VrmAvatar implements Avatar {
       const name = jointNames[i]!;
       const rest = this.rig.rest(name);
       if (!rest || !restHead) continue;
-      // The skin of the head reaches down to the neck or, without one, the trunk: they go along as they rest. A rig faces the other way.
+      // The skin of the head reaches down to the neck or, without one, the trunk: they go along as they rest. A rig
+      // faces the other way.
       const from = setVec3(this.joint, restHead.x - rest.x, rest.y - restHead.y, restHead.z - rest.z);
       addScaled(headJoint, rotate(head.orientation, from, from), this.scale, from);
       this.rig.place(name, from, head.orientation, name === 'head');

@@ -95,9 +95,10 @@ class Mover {
 }
 
 /**
- * Meshes that have the shape of a mouth and no other one. They have it while the mouth is open: three.js draws a mesh with shapes by a program
- * of its own, to which it sends all lights in every frame, and keeps a texture of shapes for each body. They have it until the first frame, too:
- * what is compiled for them beforehand is compiled for both. A mesh with lids keeps its shapes: they blink too often for that.
+ * Meshes that have the shape of a mouth and no other one. They have it while the mouth is open: three.js draws a mesh
+ * with shapes by a program of its own, to which it sends all lights in every frame, and keeps a texture of shapes for
+ * each body. They have it until the first frame, too: what is compiled for them beforehand is compiled for both. A mesh
+ * with lids keeps its shapes: they blink too often for that.
  */
 class MouthMeshes {
   readonly #geometries: { readonly geometry: BufferGeometry; readonly shapes: BufferGeometry['morphAttributes'] }[] =

@@ -27,7 +27,9 @@ export interface MirrorOptions {
   readonly samples?: number;
 }
 
-/** A standing mirror that shows the room and the whole avatar, the own head included; each eye sees its own reflection. */
+/**
+ * A standing mirror that shows the room and the whole avatar, the own head included; each eye sees its own reflection.
+ */
 export interface Mirror {
   readonly object: Object3D;
   setVisible(visible: boolean): void;
@@ -45,8 +47,9 @@ const frameDepth = 0.05;
 const gapBelow = 0.06;
 
 /**
- * The reflection is drawn with the very programs of the scene: into a texture whose colours are encoded as the canvas's are (see
- * `reflect`). Where they differed, three.js looked up the program of every material twice a frame, which left 47 kB to the collector.
+ * The reflection is drawn with the very programs of the scene: into a texture whose colours are encoded as the canvas's
+ * are (see `reflect`). Where they differed, three.js looked up the program of every material twice a frame, which left
+ * 47 kB to the collector.
  */
 const { ReflectorShader } = Reflector as unknown as { readonly ReflectorShader: Record<'fragmentShader', string> };
 const shader = {
@@ -160,8 +163,9 @@ class StandingMirror implements Mirror {
     });
     // three.js recognises by this property a target whose colours are encoded like a canvas's.
     Object.assign(glass.getRenderTarget(), { isXRRenderTarget: true });
-    // In first person the own head lies on this layer alone: a mirror shows it all the same. What lies on the layers of the eyes alone
-    // it does not show. The reflecting camera is a copy made on demand by a method that three's types leave out.
+    // In first person the own head lies on this layer alone: a mirror shows it all the same. What lies on the layers of
+    // the eyes alone it does not show. The reflecting camera is a copy made on demand by a method that three's types
+    // leave out.
     const cameras = glass as unknown as { getReflectionCamera(camera: Camera): Camera };
     const makeCamera = cameras.getReflectionCamera;
     cameras.getReflectionCamera = (camera) => {

@@ -3,8 +3,9 @@ import { type Camera, Matrix4 } from 'three';
 const clipFromRectangle = new Matrix4();
 
 /**
- * Whether a camera may see a rectangle [m] about the origin of its frame's xy plane: false where all of it lies beyond one side of what
- * the camera sees. Makes no garbage, as the planes of three's Frustum do. The camera's matrices are those of this frame.
+ * Whether a camera may see a rectangle [m] about the origin of its frame's xy plane: false where all of it lies beyond
+ * one side of what the camera sees. Makes no garbage, as the planes of three's Frustum do. The camera's matrices are
+ * those of this frame.
  */
 export function seesRectangle(camera: Camera, floorFromRectangle: Matrix4, width: number, height: number): boolean {
   clipFromRectangle.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).multiply(floorFromRectangle);

@@ -8,8 +8,8 @@ export interface PlainLoadOptions {
 }
 
 /**
- * The learned network without a runtime, ready to answer within a frame: contract and weights fetched, size and SHA-256 checked. Rejects with a
- * sentence that says what is wrong with which file.
+ * The learned network without a runtime, ready to answer within a frame: contract and weights fetched, size and SHA-256
+ * checked. Rejects with a sentence that says what is wrong with which file.
  */
 export async function loadPlainRegressor(
   contractUrl: string,

@@ -29,8 +29,8 @@ export interface LoadOptions {
 }
 
 /**
- * A network, ready to run: contract and model fetched, size and SHA-256 checked, tensors compared with the contract, one run
- * made to warm up. Rejects with a sentence that says what is wrong with which file.
+ * A network, ready to run: contract and model fetched, size and SHA-256 checked, tensors compared with the contract,
+ * one run made to warm up. Rejects with a sentence that says what is wrong with which file.
  */
 export async function loadRegressor(contractUrl: string, options: LoadOptions = {}): Promise<PoseRegressor> {
   const contract = await fetchContract(contractUrl);

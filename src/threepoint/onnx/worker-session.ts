@@ -23,8 +23,9 @@ function namesOf(answer: Answer): Pick<InferenceSession, 'inputNames' | 'outputN
 }
 
 /**
- * Opens a model in a worker of its own: what a frame pays for a run is to ask for it; the answer arrives between frames. Rejects when
- * there is no worker or it does not take the model; a worker that breaks or falls silent rejects every run from then on.
+ * Opens a model in a worker of its own: what a frame pays for a run is to ask for it; the answer arrives between
+ * frames. Rejects when there is no worker or it does not take the model; a worker that breaks or falls silent rejects
+ * every run from then on.
  */
 export async function createWorkerSession(
   model: Uint8Array,

@@ -31,7 +31,10 @@ const stickBack = 0.35;
 /** The index of a stick's button in an “xr-standard” gamepad. */
 const stickButton = 3;
 
-/** Reads wrists, fingers and buttons of a session by handedness, never by index: swapped and returning devices keep their sides. */
+/**
+ * Reads wrists, fingers and buttons of a session by handedness, never by index: swapped and returning devices keep
+ * their sides.
+ */
 export class InputReader {
   /** How each side was tracked in the newest frame. */
   readonly kinds: Record<Side, InputKind> = { left: 'none', right: 'none' };
@@ -70,8 +73,8 @@ export class InputReader {
   }
 
   /**
-   * Returns the wrists of this frame in the space, and updates kinds, buttons and fingers; null: not seen. While the session is `suspended`
-   * behind a menu of the device, no hand is read: it is busy there.
+   * Returns the wrists of this frame in the space, and updates kinds, buttons and fingers; null: not seen. While the
+   * session is `suspended` behind a menu of the device, no hand is read: it is busy there.
    */
   read(
     frame: XRFrame,
@@ -113,7 +116,10 @@ export class InputReader {
     return hands;
   }
 
-  /** Returns whether a source is the transient pointer of a pinch whose hand the device reports as well: the hand has all of it. */
+  /**
+   * Returns whether a source is the transient pointer of a pinch whose hand the device reports as well: the hand has
+   * all of it.
+   */
   #repeatsHand({ targetRayMode, handedness }: XRInputSource): boolean {
     if (targetRayMode !== 'transient-pointer') return false;
     for (const other of this.#session.inputSources) {
@@ -132,7 +138,10 @@ export class InputReader {
     return tracked && { ...wristFromGrip(tracked, side, handleFit(source.profiles)), tracking: tracked.tracking };
   }
 
-  /** Returns the buttons of a source that was just read; a bare hand has its pinch, which its gamepad reports only at its end. */
+  /**
+   * Returns the buttons of a source that was just read; a bare hand has its pinch, which its gamepad reports only at
+   * its end.
+   */
   #pressedBy(source: XRInputSource, side: Side): HandButtons {
     if (!source.hand) return pressedButtons(source.gamepad);
     const { pinch } = this.#handReaders[side];

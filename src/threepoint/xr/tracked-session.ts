@@ -8,7 +8,10 @@ import type { DeviceBodyReader } from './device-body-reader';
 import { InputReader } from './input-reader';
 import { toTrackedPose } from './tracked-pose';
 
-/** The reference space that a renderer draws its session in (`renderer.xr` of three.js); setting null restores the renderer's own space. */
+/**
+ * The reference space that a renderer draws its session in (`renderer.xr` of three.js); setting null restores the
+ * renderer's own space.
+ */
 export interface DrawingSpace {
   getReferenceSpace(): XRReferenceSpace | null;
   setReferenceSpace(space: XRReferenceSpace | null): void;
@@ -27,9 +30,9 @@ export interface TrackedSessionOptions {
 }
 
 /**
- * Turns the frames of one XRSession into tracking frames, from its start to its end. The tracking frame's floor is the space that the renderer
- * requested, or where `recentre` and `turn` moved it. A page that moves its user lets the renderer draw in other spaces: these move what
- * is drawn, not what is tracked.
+ * Turns the frames of one XRSession into tracking frames, from its start to its end. The tracking frame's floor is the
+ * space that the renderer requested, or where `recentre` and `turn` moved it. A page that moves its user lets the
+ * renderer draw in other spaces: these move what is drawn, not what is tracked.
  */
 export class TrackedSession {
   readonly inputs: InputReader;
@@ -82,8 +85,8 @@ export class TrackedSession {
   }
 
   /**
-   * Returns head and wrists of this frame, floor frame, and starts the session where that has not happened; null while the head is not seen.
-   * `time`: [s]. Call it before any await of the frame: throws an InvalidStateError afterwards.
+   * Returns head and wrists of this frame, floor frame, and starts the session where that has not happened; null while
+   * the head is not seen. `time`: [s]. Call it before any await of the frame: throws an InvalidStateError afterwards.
    */
   read(frame: XRFrame, time: number): TrackingFrame | null {
     if (!this.start() || !this.#floor) return null;
@@ -99,7 +102,10 @@ export class TrackedSession {
     return this.#gate.admit({ ...poses, ...(deviceBody && { deviceBody }), ...(suspended && { suspended }) });
   }
 
-  /** Moves the floor's origin under the head, its −Z to where the head looks; the drawing moves along and keeps its height. */
+  /**
+   * Moves the floor's origin under the head, its −Z to where the head looks; the drawing moves along and keeps its
+   * height.
+   */
   recentre(): void {
     const head = this.#lastHead;
     if (head && this.#floor) {

@@ -32,7 +32,9 @@ interface Seen {
   readonly player: SteeredPlayer;
 }
 
-/** A match at 60 frames a second with one seat at the mouse, the other thrower idle and a built-in player for the third. */
+/**
+ * A match at 60 frames a second with one seat at the mouse, the other thrower idle and a built-in player for the third.
+ */
 function playing(seat: number, steer: (seen: Seen) => BallSteering, others: 'idle' | 'built-in' = 'idle') {
   let state = ballRules.start(['a', 'b', 'c'], 1);
   const told: { now: BallSteering } = { now: { ray: pointingAt(0, 1, -4.5), ...released } };

@@ -8,7 +8,10 @@ import { type Posed, posed } from '../../games/archery/bowman';
 
 const frameMs = 1000 / 72;
 
-/** A page at 72 Hz on which a person shoots with the left hand on the bow; time stamps in milliseconds, as the device gives them. */
+/**
+ * A page at 72 Hz on which a person shoots with the left hand on the bow; time stamps in milliseconds, as the device
+ * gives them.
+ */
 function range(settings: { readonly seconds?: number } = {}) {
   const play = createArcheryPlay(
     defaultCalibration,

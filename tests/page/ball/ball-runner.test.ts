@@ -77,8 +77,8 @@ function restartedRoom() {
 }
 
 /**
- * Three participants of one group in one room, each page with its own trial, frame by frame. `stopped`: the seat of the second wants
- * the clock to stand, as that page left it before it was loaded again.
+ * Three participants of one group in one room, each page with its own trial, frame by frame. `stopped`: the seat of the
+ * second wants the clock to stand, as that page left it before it was loaded again.
  */
 async function group({ stopped = false } = {}) {
   const room = restartedRoom();

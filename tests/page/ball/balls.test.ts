@@ -36,7 +36,10 @@ describe('a ball that has not been told to be caught', () => {
   const opening = { position: vec3(0, 1.1, -4.5), normal: vec3(0, 1, 0) };
   const fresh = ballRules.start(['a', 'b', 'c'], 1);
 
-  /** How far above its flight it is drawn at most [m], thrown so that it comes to this height over or under the middle of the opening. */
+  /**
+   * How far above its flight it is drawn at most [m], thrown so that it comes to this height over or under the middle
+   * of the opening.
+   */
   function lifted(height: number): number {
     const at = vec3(0, opening.position.y + height, opening.position.z);
     const from = vec3(0, 1.5, -0.5);

@@ -22,7 +22,10 @@ function holder() {
   const connection = host.connect(visitor('Ann', { seat: 0 }), 10);
   let time = 10;
   return {
-    /** Half a second with the wrists there, tracked or told by the device's guess alone, the head so far aside of the mark [m]. */
+    /**
+     * Half a second with the wrists there, tracked or told by the device's guess alone, the head so far aside of the
+     * mark [m].
+     */
     show(wrists: Wrists, tracking: TrackedPose['tracking'] = 'tracked', aside = 0) {
       for (let i = 0; i < 36; i++) {
         time += 1 / 72;

@@ -10,8 +10,9 @@ function deafContext(): unknown {
 }
 
 /**
- * Node has no canvas: what is drawn on one here is drawn nowhere, so that views can be built whose pictures are not the matter. Until the
- * file's tests are over: stubs of vitest are taken back before each test, and views are built for several.
+ * Node has no canvas: what is drawn on one here is drawn nowhere, so that views can be built whose pictures are not the
+ * matter. Until the file's tests are over: stubs of vitest are taken back before each test, and views are built for
+ * several.
  */
 export function drawNowhere(): void {
   // Stubs of the file before are taken back before the next test: a document among them would take ours away.

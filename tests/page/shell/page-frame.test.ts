@@ -1,7 +1,10 @@
 import { PageFrame, type PageFrameOptions } from 'threepoint-page/shell/page-frame';
 import { expect, test } from 'vitest';
 
-/** A page that draws nothing, frame by frame as its device asks for them: a window, or a session, which lets windows rest. */
+/**
+ * A page that draws nothing, frame by frame as its device asks for them: a window, or a session, which lets windows
+ * rest.
+ */
 function page(draw: () => void = () => undefined): PageFrame {
   const parts = {
     settings: { mirror: false },

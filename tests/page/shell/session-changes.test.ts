@@ -9,7 +9,10 @@ import { afterEach, expect, test, vi } from 'vitest';
 
 afterEach(() => vi.unstubAllGlobals());
 
-/** A player in a match, with a headset to put on and a window that may lie behind others; `recorder`: keeps what is tracked. */
+/**
+ * A player in a match, with a headset to put on and a window that may lie behind others; `recorder`: keeps what is
+ * tracked.
+ */
 function player(recorder = new Recorder()) {
   const page = Object.assign(new EventTarget(), { hidden: false });
   vi.stubGlobal('document', page);

@@ -30,7 +30,10 @@ import {
 
 type Networks = ConstructorParameters<typeof BodySolver>[0]['networks'];
 
-/** A page in a session whose device reports these frames: what it draws of one, joint by joint. Only the device and the picture are missing. */
+/**
+ * A page in a session whose device reports these frames: what it draws of one, joint by joint. Only the device and the
+ * picture are missing.
+ */
 async function openPage(estimator: EstimatorName, calibration: Calibration, networks: Networks) {
   const recorder = new Recorder();
   const body = new BodySolver({ estimator, calibration, networks });

@@ -3,7 +3,10 @@ import { createClockSync } from 'threepoint-rooms/client/clock-sync';
 import { describe, expect, test } from 'vitest';
 import { printFigures } from '../../print-figures';
 
-/** Asks for `seconds` from `start` on; one way takes `there()` and the other `back()` [s]. Returns when it was within 10 ms for good. */
+/**
+ * Asks for `seconds` from `start` on; one way takes `there()` and the other `back()` [s]. Returns when it was within 10
+ * ms for good.
+ */
 function follow(
   sync: ReturnType<typeof createClockSync>,
   start: number,

@@ -36,8 +36,8 @@ function walker(time: number, more: Partial<PosePacket> = {}, lostLeft = false):
 }
 
 /**
- * Packets at 30 Hz from 0 to `end`, each `transit` late, and of those that reach the relay at once the newest, as it passes them on;
- * then what is drawn at 90 Hz.
+ * Packets at 30 Hz from 0 to `end`, each `transit` late, and of those that reach the relay at once the newest, as it
+ * passes them on; then what is drawn at 90 Hz.
  */
 function playback(
   end: number,
@@ -111,7 +111,8 @@ describe('playback of others', () => {
       printFigures(name, { minutes, 'freezes a minute': freezes, 'shown late by [ms]': mean * 1000 });
       return freezes;
     };
-    // A person on a bad line, seen by one on a good line, or the other way round; and, for the record, both on bad ones.
+    // A person on a bad line, seen by one on a good line, or the other way round; and, for the record, both on bad
+    // ones.
     expect(measure('100 ± 30 ms, 2 % lost', () => badWay() + 0.005)).toBeLessThan(1);
     measure('the same, both players so', () => badWay() + badWay());
   });

@@ -210,7 +210,8 @@ describe('control messages', () => {
 });
 
 test('a change of packets or frames is told to older pages as a change of messages is: by the version of the protocol', () => {
-  // A change of packets, or of the frames they come in, raises the first: pages that would not see each other are told so when they join.
+  // A change of packets, or of the frames they come in, raises the first: pages that would not see each other are told
+  // so when they join.
   const frame = encodeFrame([{ seat: 5, bytes: Uint8Array.from({ length: 20 }, () => poseVersion << 4) }]);
   expect({ protocolVersion, poseVersion, seatAndFlags: frame[0] }).toEqual({
     protocolVersion: 9,

@@ -32,7 +32,10 @@ function worstOf() {
   };
 }
 
-/** What the receiver may be off by, for any person in any movement, hands seen, lost, guessed, coming back, out of reach or wrung. */
+/**
+ * What the receiver may be off by, for any person in any movement, hands seen, lost, guessed, coming back, out of reach
+ * or wrung.
+ */
 async function measure(
   worst: ReturnType<typeof worstOf>,
   create: Parameters<typeof packetOf>[1] | undefined,

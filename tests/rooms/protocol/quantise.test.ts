@@ -60,7 +60,8 @@ test('rotations survive the wire, both signs alike: 0.14° at 11 bits, 1.11° at
     );
   }
   for (const bits of [11, 8] as const) {
-    // Each of three components is half a step off at most, and the largest by as much again as all of them: half the angle's sine.
+    // Each of three components is half a step off at most, and the largest by as much again as all of them: half the
+    // angle's sine.
     const halfStep = Math.SQRT1_2 / mostSteps(bits) / 2;
     expect(worst[bits]).toBeLessThan(2 * 2 * Math.sqrt(3) * halfStep * degrees);
     expect(worst[bits]).toBeGreaterThan(Math.sqrt(3) * halfStep * degrees);

@@ -38,7 +38,10 @@ const hand = fc.option(
   { nil: null },
 );
 
-/** A person of any size anywhere, turned anyhow, in the middle of an actor's or a random movement, both hands with a fate. */
+/**
+ * A person of any size anywhere, turned anyhow, in the middle of an actor's or a random movement, both hands with a
+ * fate.
+ */
 export const senders = fc.record({
   calibration: calibrationOf,
   motion: fc.integer({ min: 1 }),

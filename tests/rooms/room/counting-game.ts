@@ -85,7 +85,10 @@ export const countingPolicy = (seats: number, goal = 3): MatchPolicy<CountingGam
 const counted = v.strictObject({ type: v.literal('counted'), player: v.number(), total: v.number() });
 const refused = v.strictObject({ type: v.literal('refused'), player: v.number(), reason: v.string() });
 
-/** The counting game as a client of its Room follows it: a client knows the total alone, and predicts its own next number. */
+/**
+ * The counting game as a client of its Room follows it: a client knows the total alone, and predicts its own next
+ * number.
+ */
 export const countingClientPolicy: ClientPolicy<CountingGame> = {
   readMessage: roomMessageReader<CountingGame>(
     countingKind,

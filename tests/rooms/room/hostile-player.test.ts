@@ -14,7 +14,9 @@ type SeatMessage = Exclude<ClientMessage, { type: 'join' }>;
 /** What the packet with this number, sent at this time [s], says of itself; null: none is sent. */
 type Claim = (i: number, time: number) => { readonly timeMs: number; readonly jump: boolean } | null;
 
-/** Speed [m/s] of a head as others see it, whose player sends forty packets a second from alternating ends of the room. */
+/**
+ * Speed [m/s] of a head as others see it, whose player sends forty packets a second from alternating ends of the room.
+ */
 function seenSpeed(claim: Claim): number {
   const testRoom = createTestRoom();
   testRoom.join('ann');

@@ -47,7 +47,8 @@ async function mutations(chance: () => number) {
   }
   const some = () => Uint8Array.from(valid[below(valid.length)]!);
   const ways: readonly (() => Uint8Array)[] = [
-    // A bit to four, anywhere; in the head of the packet, which says how long it is; bytes; cut off; put together from two.
+    // A bit to four, anywhere; in the head of the packet, which says how long it is; bytes; cut off; put together from
+    // two.
     () => flipped(some(), () => below(40 * 8)),
     () => flipped(some(), () => below(13)),
     () => some().map((byte) => (chance() < 0.05 ? below(256) : byte)),
@@ -64,7 +65,10 @@ async function mutations(chance: () => number) {
   return { next: () => ways[below(ways.length)]!(), below };
 }
 
-/** Writes a time [ms] into a packet, from its bit 13 on (src/rooms/README.md), so that its age is not what keeps it from the room. */
+/**
+ * Writes a time [ms] into a packet, from its bit 13 on (src/rooms/README.md), so that its age is not what keeps it from
+ * the room.
+ */
 function setTime(bytes: Uint8Array, timeMs: number): void {
   for (let bit = 0; bit < 14; bit++) {
     const at = 13 + bit;

@@ -161,7 +161,10 @@ test('actions sent twice, out of order and again later score once', { tags: ['fu
 });
 
 describe('latency', () => {
-  /** A throw at a moving basket, all clients this long from the Room [s one way, and by how much that varies]; what became of it. */
+  /**
+   * A throw at a moving basket, all clients this long from the Room [s one way, and by how much that varies]; what
+   * became of it.
+   */
   function verdict(seed: number, delay: number, jitter: number): string {
     const chance = randomNumbers(seed);
     const [dx, dy, dz] = [0, 0, 0].map(() => (chance() - 0.5) * 0.8) as [number, number, number];

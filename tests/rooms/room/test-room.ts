@@ -28,7 +28,10 @@ export const joinRequest = (more: Partial<JoinRequest> = {}): JoinRequest => ({
 
 type Wrists = ReturnType<typeof fists>;
 
-/** The packet of a player on a seat with these wrists (arena frame of the ball game), taken at this time of the room clock [s]. */
+/**
+ * The packet of a player on a seat with these wrists (arena frame of the ball game), taken at this time of the room
+ * clock [s].
+ */
 export function packetAt(match: BallState | null, seat: number, wrists: Wrists, time: number): Uint8Array {
   const shown = shownAt({ arenaFromFloor: (index) => arenaFromSeatFloor(index, match) }, seat, wrists);
   const bytes = encodePose({ ...shown, timeMs: packetMs(time * 1000) }, skeleton);
@@ -40,7 +43,10 @@ interface TestRoomOptions extends Partial<RoomOptions> {
   readonly ball?: Partial<BallOptions>;
 }
 
-/** A room of the ball game that a test tells everything, with all that it says. Every message is one that a page can read. */
+/**
+ * A room of the ball game that a test tells everything, with all that it says. Every message is one that a page can
+ * read.
+ */
 export function createTestRoom({ ball, ...options }: TestRoomOptions = {}) {
   const sent: { readonly to: string; readonly message: BallRoomMessage }[] = [];
   const frames: Uint8Array[] = [];

@@ -2,8 +2,8 @@ import fc from 'fast-check';
 import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { poseBytes } from './running-relay';
 
-// What a client may send over the relay's WebSocket, by a grammar of what is right and what is not: each part is right more often than
-// not, so that what is wrong is met behind every check, and not only at the first.
+// What a client may send over the relay's WebSocket, by a grammar of what is right and what is not: each part is right
+// more often than not, so that what is wrong is met behind every check, and not only at the first.
 
 /** A text frame, or a binary one. */
 export type WireFrame = string | Uint8Array;

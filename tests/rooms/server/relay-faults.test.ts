@@ -88,7 +88,8 @@ test('100 ms ± 30 ms with 2 % of losses: a thrower behind it plays on', async (
   ending(way, ({ close }) => close());
   const people = await threePlay([way.url, server.url, server.url]);
   const watching = people.map(() => createRemotePlayers());
-  // What this machine itself holds up says nothing about the way: a frame that comes late, and a second after it, are counted apart.
+  // What this machine itself holds up says nothing about the way: a frame that comes late, and a second after it, are
+  // counted apart.
   const stalls: number[] = [];
   const held: number[] = [];
   const calmFrames = () => held.reduce((sum, stalled) => sum + 1 - stalled, 0);

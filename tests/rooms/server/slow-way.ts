@@ -2,7 +2,9 @@ import { once } from 'node:events';
 import type { AddressInfo } from 'node:net';
 import { connect, createServer, type Socket } from 'node:net';
 
-/** A way to a server that is as bad as one likes. In order and without losses, as TCP is; what a loss costs is a delay. */
+/**
+ * A way to a server that is as bad as one likes. In order and without losses, as TCP is; what a loss costs is a delay.
+ */
 export async function createSlowWay(port: number, delayMs: () => number = () => 0) {
   const sockets = new Set<Socket>();
   let closed = false;

@@ -1,7 +1,10 @@
 import { Microphone } from 'threepoint-rooms/voices/microphone';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
 
-/** A track as a browser's: an event target that can be stopped; `end`: the device ends it, as a headset does that sleeps. */
+/**
+ * A track as a browser's: an event target that can be stopped; `end`: the device ends it, as a headset does that
+ * sleeps.
+ */
 class Track extends EventTarget {
   stopped = false;
 

@@ -67,7 +67,8 @@ describe('what is wrong with a plan', () => {
 
 describe('what a plan comes to', () => {
   test('is as long as its rounds, rests and questionnaires', () => {
-    // Archery: practice 70, two rounds of 70; ball: practice 90 and its rest, two rounds of 90. Four rests, four questionnaires.
+    // Archery: practice 70, two rounds of 70; ball: practice 90 and its rest, two rounds of 90. Four rests, four
+    // questionnaires.
     expect(durationOf(paperPlan())).toEqual({ played: 480, rests: 300, questionnaires: 1680 });
   });
 

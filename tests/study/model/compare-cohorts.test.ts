@@ -11,7 +11,10 @@ import { chicks, plantGrowth } from '../statistics/data-sets';
 import { rowsOf } from './answered';
 import { latencyPlan } from './studies';
 
-/** R's figures: t.test(a, b), wilcox.test(a, b); d_s by pooled standard deviations, its interval by uniroot and pt with a noncentrality. */
+/**
+ * R's figures: t.test(a, b), wilcox.test(a, b); d_s by pooled standard deviations, its interval by uniroot and pt with
+ * a noncentrality.
+ */
 interface InR {
   readonly t: number;
   readonly df: number;

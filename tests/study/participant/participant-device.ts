@@ -71,7 +71,10 @@ export function toTheFirstRest(session: ParticipantSession, motion = false): voi
   expect(session.step.kind).toBe('rest');
 }
 
-/** The participant has played the first round, rested, and sits before its questions; `motion`: with consent to tracked frames. */
+/**
+ * The participant has played the first round, rested, and sits before its questions; `motion`: with consent to tracked
+ * frames.
+ */
 export function toTheFirstQuestion(session: ParticipantSession, motion = false): void {
   toTheFirstRest(session, motion);
   // A rest is over when enough ticks of this clock have passed.

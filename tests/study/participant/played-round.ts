@@ -7,7 +7,10 @@ import { activityServices } from '../../page/activity-services';
 export const frameSeconds = 1 / 72;
 export const epoch = 1_800_000_000;
 
-/** What goes wrong in a round: at which second of it (by the page's clock) it is paused, the head or the left hand is not seen. */
+/**
+ * What goes wrong in a round: at which second of it (by the page's clock) it is paused, the head or the left hand is
+ * not seen.
+ */
 export interface RoundTroubles {
   readonly paused?: (second: number) => boolean;
   readonly headless?: (second: number) => boolean;
@@ -42,7 +45,9 @@ export function studiedArcher(seed: number) {
   return { play, runner };
 }
 
-/** The built-in archer's round in a study, begun at `began` by the page's clock, and when by it each arrow came down. */
+/**
+ * The built-in archer's round in a study, begun at `began` by the page's clock, and when by it each arrow came down.
+ */
 export function playedRound({ paused = never, headless = never, handless = never }: RoundTroubles, began = 345.6) {
   const { play, runner } = studiedArcher(3);
   let time = began;

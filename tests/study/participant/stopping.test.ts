@@ -10,7 +10,9 @@ const stops = ({ store }: StudyServer) =>
 
 const stateOf = ({ store }: StudyServer) => store.overview('paper', 1e9)[0]?.session;
 
-/** That it is over for good: said on the screen and on the experimenter's page, recorded, and the same after a reload. */
+/**
+ * That it is over for good: said on the screen and on the experimenter's page, recorded, and the same after a reload.
+ */
 async function expectStopped(server: StudyServer, { device, tab }: { device: ReturnType<typeof browser>; tab: Tab }) {
   expect(tab.display.shown).toBe('end');
   expect(tab.display.screen?.text.join(' ')).toContain('Your part is over');

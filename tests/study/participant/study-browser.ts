@@ -105,7 +105,10 @@ export class ShownParts implements StudyDisplay {
   }
 }
 
-/** A game of one shot: the test says when it hits, which ends it. What was put away must be prepared again, as the court must. */
+/**
+ * A game of one shot: the test says when it hits, which ends it. What was put away must be prepared again, as the court
+ * must.
+ */
 export class OneShotGame implements TaskRunner {
   readonly waitingFor = null;
   readonly standing = false;
@@ -238,7 +241,9 @@ function stretched(time: number, raised: boolean, eyes: number): TrackingFrame {
 
 export type Tab = Awaited<ReturnType<ReturnType<typeof browser>['open']>>;
 
-/** A browser with its own storage, in which P01's place is opened; tabs share its storage and see each other's locks. */
+/**
+ * A browser with its own storage, in which P01's place is opened; tabs share its storage and see each other's locks.
+ */
 export function browser(server: StudyServer) {
   vi.stubGlobal('indexedDB', new IDBFactory());
   const locks = new Map<string, object>();
@@ -282,7 +287,10 @@ export function browser(server: StudyServer) {
       host,
       /** Where the page is sent to, once it is. */
       wentTo,
-      /** Resolves when the server has all there is now: an exchange under way may have begun before, a second one has not. */
+      /**
+       * Resolves when the server has all there is now: an exchange under way may have begun before, a second one has
+       * not.
+       */
       async exchange(): Promise<void> {
         await visit.exchange();
         await visit.exchange();

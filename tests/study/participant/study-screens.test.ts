@@ -14,7 +14,10 @@ const consent = { type: 'consent', version: plan.consent.version, motion: false 
 const demographics = { type: 'demographics', demographics: aWomanOf26 } as const;
 const measured = { type: 'calibrated', calibration: { eyeHeight: 1.62, armSpan: 1.5 } } as const;
 
-/** A participant of the paper's study on a device without storage and without a server, after these events; the clock stands. */
+/**
+ * A participant of the paper's study on a device without storage and without a server, after these events; the clock
+ * stands.
+ */
 function participant(...events: readonly ProgressEvent[]) {
   let now = 1_800_000_000;
   const claim = { plan, token: 'a token', withdrawalCode: 'a code', simulated: false, progress: null };

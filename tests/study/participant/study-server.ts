@@ -11,7 +11,10 @@ import { studiesInThisThread } from '../server/running-studies';
 
 const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 
-/** The real server with the paper's study, changed or not, on a port; it can be taken away and put back on the same port. */
+/**
+ * The real server with the paper's study, changed or not, on a port; it can be taken away and put back on the same
+ * port.
+ */
 export async function studyServer(changes: Partial<StudyPlan> = {}) {
   const file = join(directoryWith(), 'studies.db');
   const store = openStudyStore(file);

@@ -43,7 +43,9 @@ const remark = (number: number): StudyRecord => ({
   ...{ id: `event-${number}`, kind: 'event', body: { type: 'remark', text: `remark ${number}` } },
 });
 
-/** Three people in a room of this server who stand in a match's place and send poses; how late the poses of others come. */
+/**
+ * Three people in a room of this server who stand in a match's place and send poses; how late the poses of others come.
+ */
 async function playing(url: string) {
   const people = ['Ann', 'Ben', 'Cal'].map((name) => arrive(url, 'beside', name));
   onTestFinished(() => {
@@ -53,7 +55,9 @@ async function playing(url: string) {
   return people;
 }
 
-/** Sends writes and reads to the study until it is stopped, and keeps the status and the duration [s] of every answer. */
+/**
+ * Sends writes and reads to the study until it is stopped, and keeps the status and the duration [s] of every answer.
+ */
 function studyTraffic(url: string, token: string) {
   const answers: { kind: 'write' | 'read'; status: number; seconds: number; retryAfter: string | null; id?: string }[] =
     [];

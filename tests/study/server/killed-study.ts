@@ -181,8 +181,9 @@ async function started(file: string, directory: string): Promise<Server> {
 const devicesAtOnce = 6;
 
 /**
- * Kills a server of studies (SIGKILL) so often at a drawn moment while participants write, two experimenters begin the same study and participants withdraw;
- * looks into its files after each. The same seed draws the same moments; what the operating system makes of them it does not.
+ * Kills a server of studies (SIGKILL) so often at a drawn moment while participants write, two experimenters begin the
+ * same study and participants withdraw; looks into its files after each. The same seed draws the same moments; what the
+ * operating system makes of them it does not.
  */
 export async function killedStudy(
   kills: number,
@@ -233,8 +234,8 @@ export async function killedStudy(
         try {
           await act(device, counted, random);
         } catch (error) {
-          // fetch says "TypeError" of a server that is gone, and of one that has just closed the connection because nothing came by it for
-          // some seconds: then it is sent again, as the page does.
+          // fetch says "TypeError" of a server that is gone, and of one that has just closed the connection because
+          // nothing came by it for some seconds: then it is sent again, as the page does.
           const unanswered = error instanceof TypeError;
           if (unanswered && !dying && isAlive(server.child)) continue;
           if (!unanswered || !dying) faults.push(error);

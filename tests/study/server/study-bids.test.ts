@@ -27,7 +27,10 @@ interface RecordedRound {
   readonly began: number;
 }
 
-/** Two participants who played archery with consent to motion, one block of P01 voided; everything of it in one data set. */
+/**
+ * Two participants who played archery with consent to motion, one block of P01 voided; everything of it in one data
+ * set.
+ */
 function playedStudy() {
   const rounds: RecordedRound[] = [];
   const motion: { participant: string; trial: string; text: string }[] = [];

@@ -69,7 +69,8 @@ describe('storage that is full', () => {
     before.plans.add(paperPlan(), { simulated: false, at: now });
     before.records.store('paper', 'P01', consented('P01').slice(0, 1), now);
     before.close();
-    // In blocks of 1024 bytes: a little more than the file is now. SIGXFSZ is ignored, as servers do: writes fail instead.
+    // In blocks of 1024 bytes: a little more than the file is now. SIGXFSZ is ignored, as servers do: writes fail
+    // instead.
     const blocks = Math.ceil(statSync(file).size / 1024) + 1000;
     const writer = spawn(
       'bash',

@@ -70,8 +70,9 @@ test('a database from before versions of plans keeps every plan and participant,
 });
 
 /**
- * The database that the first version of the program left, with what its pages had sent. Participants P01 and P02 of the study "paper" have
- * finished and begun, P07 has withdrawn. P01 of "pairs" plays archery in pairs, which plans of today may not ask for.
+ * The database that the first version of the program left, with what its pages had sent. Participants P01 and P02 of
+ * the study "paper" have finished and begun, P07 has withdrawn. P01 of "pairs" plays archery in pairs, which plans of
+ * today may not ask for.
  */
 describe('a database that the first version of the program wrote', () => {
   const golden = (name: string) => readFileSync(new URL(`../../golden/${name}`, import.meta.url));

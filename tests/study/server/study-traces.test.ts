@@ -109,7 +109,10 @@ const filesIn = (directory: string) =>
     .filter((name) => statSync(join(directory, name)).isFile())
     .map((name) => ({ name, bytes: readFileSync(join(directory, name)) }));
 
-/** What identifies a participant on a disk: texts, secrets, the address, and the middle of the recording as it is packed. */
+/**
+ * What identifies a participant on a disk: texts, secrets, the address, and the middle of the recording as it is
+ * packed.
+ */
 const tracesOf = (participant: string, { token, code }: { readonly token: string; readonly code: string }) => [
   ...[markOf(participant), token, code, code.replaceAll('-', ''), addressOf(participant)],
   gzipSync(recordingOf(participant)).subarray(4000, 4032),

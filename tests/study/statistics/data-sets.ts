@@ -12,7 +12,9 @@ export const depression = {
   second: [0.878, 0.647, 0.598, 2.05, 1.06, 1.29, 1.06, 3.14, 1.29],
 };
 
-/** Permeability of the placenta at term and at 12 to 26 weeks (Hollander and Wolfe 1973, p. 69 f.): R's ?wilcox.test. */
+/**
+ * Permeability of the placenta at term and at 12 to 26 weeks (Hollander and Wolfe 1973, p. 69 f.): R's ?wilcox.test.
+ */
 export const placenta = {
   term: [0.8, 0.83, 1.89, 1.04, 1.45, 1.38, 1.91, 1.64, 0.73, 1.46],
   early: [1.15, 0.88, 0.9, 0.74, 1.21],
@@ -41,7 +43,10 @@ export const insectSprays = [
   [11, 9, 15, 22, 15, 16, 13, 10, 26, 26, 24, 13],
 ];
 
-/** Seconds of 22 baseball players round first base in three ways (Hollander and Wolfe 1973, p. 140 ff.): R's ?friedman.test. */
+/**
+ * Seconds of 22 baseball players round first base in three ways (Hollander and Wolfe 1973, p. 140 ff.): R's
+ * ?friedman.test.
+ */
 export const roundingTimes = [
   [5.4, 5.5, 5.55],
   [5.85, 5.7, 5.75],
@@ -67,7 +72,10 @@ export const roundingTimes = [
   [6.3, 6.3, 6.25],
 ];
 
-/** Uptake of CO2 by grasses of Quebec and of Mississippi at seven concentrations (Potvin, Lechowicz and Tardif 1990): `CO2`. */
+/**
+ * Uptake of CO2 by grasses of Quebec and of Mississippi at seven concentrations (Potvin, Lechowicz and Tardif 1990):
+ * `CO2`.
+ */
 export const grasses = [
   [
     [16, 30.4, 34.8, 37.2, 35.3, 39.2, 39.7],
@@ -87,7 +95,10 @@ export const grasses = [
   ],
 ];
 
-/** Weight of chicks on four diets after 0, 10 and 20 days, those that lived (Crowder and Hand 1990): `ChickWeight`. Cohorts of unequal size. */
+/**
+ * Weight of chicks on four diets after 0, 10 and 20 days, those that lived (Crowder and Hand 1990): `ChickWeight`.
+ * Cohorts of unequal size.
+ */
 export const chicks = [
   [
     [42, 93, 199],
@@ -145,7 +156,10 @@ export const chicks = [
   ],
 ];
 
-/** Not of R: points of eight people in three rounds of archery under two conditions, made up so that differences of means are tied. */
+/**
+ * Not of R: points of eight people in three rounds of archery under two conditions, made up so that differences of
+ * means are tied.
+ */
 export const threeRounds = {
   first: [
     [5, 5, 10],

@@ -9,7 +9,8 @@ import { depression, sleep } from './data-sets';
 describe('the paired t-test', () => {
   test('agrees with R on its sleep data', () => {
     const result = pairedTTest(sleep.first, sleep.second);
-    // t = -4.0621, df = 9, p-value = 0.002833, 95 percent confidence interval: -2.4598858 -0.7001142, mean difference: -1.58
+    // t = -4.0621, df = 9, p-value = 0.002833, 95 percent confidence interval: -2.4598858 -0.7001142, mean difference:
+    // -1.58
     expect(result.t).toBeCloseTo(-4.0621, 4);
     expect(result.df).toBe(9);
     expect(result.p).toBeCloseTo(0.002833, 6);

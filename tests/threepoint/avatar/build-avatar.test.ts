@@ -115,7 +115,10 @@ describe.each(figures.map((figure) => [figure.name, figure] as const))('the %s',
     expect(bones).toHaveLength(6 + 2 * (4 + 15 + 4));
   });
 
-  /** Meshes that an expression moves, and how many vertices of theirs it moves and leaves; `where`: looks at each that moves. */
+  /**
+   * Meshes that an expression moves, and how many vertices of theirs it moves and leaves; `where`: looks at each that
+   * moves.
+   */
   function shapeOf(name: string, where: (vertex: Vertex, far: number) => void) {
     const json = JSON.parse(new TextDecoder().decode(file.subarray(20, 20 + file.readUInt32LE(12))));
     const binds: { node: number; index: number }[] = json.extensions.VRMC_vrm.expressions.preset[name].morphTargetBinds;

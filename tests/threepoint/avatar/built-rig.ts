@@ -4,7 +4,9 @@ import { glbOf, padded } from './glb';
 
 type Point = readonly [number, number, number];
 
-/** Joints of a slight woman of 1.62 m in T-pose, facing +Z [m]: narrow shoulders and a short neck, as avatars have them. */
+/**
+ * Joints of a slight woman of 1.62 m in T-pose, facing +Z [m]: narrow shoulders and a short neck, as avatars have them.
+ */
 const centre: Readonly<Record<string, readonly [parent: string | null, at: Point]>> = {
   hips: [null, [0, 0.92, 0.01]],
   spine: ['hips', [0, 1.0, 0.01]],
@@ -131,7 +133,10 @@ function vertexData(count: number, positions: Float32Array, interleaved: boolean
   return { boxes, buffers: [new Uint8Array(buffer.buffer)], stride };
 }
 
-/** A humanoid GLB made from nothing: a box of skin about each joint, bound to that joint alone, in the order of its bones. */
+/**
+ * A humanoid GLB made from nothing: a box of skin about each joint, bound to that joint alone, in the order of its
+ * bones.
+ */
 export function builtRig(options: RigOptions): ArrayBuffer {
   const { nameOf, without = [], armsDown = 0, root = new Matrix4(), rootScale, unit = 1 } = options;
   const all = joints(without);

@@ -11,7 +11,10 @@ function pngChunk(type: string, data: Buffer): Buffer {
   return chunk;
 }
 
-/** A painted square of so many pixels a side: soft shades with a grain, about a byte for each pixel, as skins and clothes have it. */
+/**
+ * A painted square of so many pixels a side: soft shades with a grain, about a byte for each pixel, as skins and
+ * clothes have it.
+ */
 function paintedPng(side: number, shade: number): Buffer {
   const rows = Buffer.alloc(side * (1 + 3 * side));
   let grain = 1 + shade;
@@ -48,7 +51,10 @@ export interface LargeAvatarOptions {
   readonly mtoon: boolean;
 }
 
-/** A VRM as large as people's own avatars are: the mannequin with layers of cloth, shapes of the face and painted pictures. */
+/**
+ * A VRM as large as people's own avatars are: the mannequin with layers of cloth, shapes of the face and painted
+ * pictures.
+ */
 export function largeAvatar({ pictures, layers, shapes, mtoon }: LargeAvatarOptions): ArrayBuffer {
   const painted = Array.from({ length: pictures }, (_, i) => paintedPng(2048, i));
   const padding = (length: number) => Buffer.alloc((4 - (length % 4)) % 4);

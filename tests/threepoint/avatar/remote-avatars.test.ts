@@ -128,7 +128,9 @@ describe('bodies of others', () => {
 describe('an avatar that could not be had', () => {
   const file = 'A'.repeat(43) as AvatarHash;
 
-  /** One person with this file on; `answers`: what becomes of each attempt to have it, the last one of all that follow. */
+  /**
+   * One person with this file on; `answers`: what becomes of each attempt to have it, the last one of all that follow.
+   */
   function wearing(answers: readonly (Error | null)[]) {
     const told: string[] = [];
     let asked = 0;

@@ -8,7 +8,10 @@ const nodeOf = (json: GltfJson, name: string): number => json.nodes.findIndex((n
 const bonesOf = (json: GltfJson): readonly (readonly [string, number])[] =>
   json.nodes.flatMap(({ name }, node) => (name === 'Armature' || name === 'Body' ? [] : [[name, node] as const]));
 
-/** VRM 1.0 with all that has numbers of nodes, meshes and materials in it: first person, an expression, springs, colliders, a constraint. */
+/**
+ * VRM 1.0 with all that has numbers of nodes, meshes and materials in it: first person, an expression, springs,
+ * colliders, a constraint.
+ */
 export const smallVrm = changed(
   (json) => {
     const [body, head, hand] = ['Body', 'head', 'leftHand'].map((name) => nodeOf(json, name)) as [

@@ -12,7 +12,10 @@ const beside = (x: number, z: number, yaw = 0): Goals => ({
   right: { x: x + 0.1 * Math.cos(yaw), z: z - 0.1 * Math.sin(yaw), yaw, standing: 0.95 },
 });
 
-/** What is expected of a walker, half a second a step, 1.1 m/s towards −Z: one foot stands, the other goes twice as fast as the walker. */
+/**
+ * What is expected of a walker, half a second a step, 1.1 m/s towards −Z: one foot stands, the other goes twice as fast
+ * as the walker.
+ */
 function walking(time: number): Goals {
   const foot = (x: number, phase: number): FootGoal => {
     const cycle = time + phase;

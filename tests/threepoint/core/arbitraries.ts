@@ -5,7 +5,10 @@ import { normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 /** Every property of core starts from this seed, so that a failure can be repeated. */
 export const seed = 2460;
 
-/** Numbers of [min, max] as fast-check draws them: evenly among the floating-point numbers, of which most lie next to zero. */
+/**
+ * Numbers of [min, max] as fast-check draws them: evenly among the floating-point numbers, of which most lie next to
+ * zero.
+ */
 export const number = (min: number, max: number): fc.Arbitrary<number> => fc.double({ min, max, noNaN: true });
 
 /** Numbers of [min, max], evenly spread over it. */

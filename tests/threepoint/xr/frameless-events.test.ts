@@ -3,7 +3,10 @@ import { giveFramesToEvents } from 'threepoint/xr/frameless-events';
 import { expect, test } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
 
-/** A session whose frames are called by hand; three's controller listens to it as three's manager of sessions has it listen. */
+/**
+ * A session whose frames are called by hand; three's controller listens to it as three's manager of sessions has it
+ * listen.
+ */
 function headset() {
   const waiting: XRFrameRequestCallback[] = [];
   const session = Object.assign(new EventTarget(), {

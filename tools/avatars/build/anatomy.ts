@@ -44,8 +44,9 @@ export const movedRegion = (region: Region, move: Parameters<typeof moved>[1]): 
   each(region, (one) => ({ ...one, solid: moved(one.solid, move) }));
 
 /**
- * What lies on the clavicle of shoulder joints so far out of the middle [m]: the trapezius, which slopes by some 20° from the neck down to the
- * acromion, and the muscles before it; so thick against the mannequin's. The acromion's skin is 4 cm above the joint: a hanging arm then lies under it.
+ * What lies on the clavicle of shoulder joints so far out of the middle [m]: the trapezius, which slopes by some 20°
+ * from the neck down to the acromion, and the muscles before it; so thick against the mannequin's. The acromion's skin
+ * is 4 cm above the joint: a hanging arm then lies under it.
  */
 export const shoulderGirdle = (shoulder: number, thick: number): Part[] => [
   part(

@@ -18,7 +18,10 @@ interface Colours {
   readonly bottom: string;
 }
 
-/** Triangles before seams are cut: a beard or a large head needs some of them for its shapes, so that the file stays as small. */
+/**
+ * Triangles before seams are cut: a beard or a large head needs some of them for its shapes, so that the file stays as
+ * small.
+ */
 const usualTriangles = 5_350;
 
 function person(

@@ -31,8 +31,9 @@ function importance({ positions }: Surface, { rig, careful }: Figure): Float32Ar
 const fingerReach = 1.8;
 
 /**
- * Returns a value of each vertex, 0 to 1, that rises and falls in turn from joint to joint of a finger. Fingers are straight at rest, where an edge from
- * knuckle to tip costs no shape; along such an edge this changes, and corners of it are at the joints, where fingers bend.
+ * Returns a value of each vertex, 0 to 1, that rises and falls in turn from joint to joint of a finger. Fingers are
+ * straight at rest, where an edge from knuckle to tip costs no shape; along such an edge this changes, and corners of
+ * it are at the joints, where fingers bend.
  */
 function alongFingers({ positions }: Surface, { rig }: Figure): Float32Array {
   return Float32Array.from({ length: positions.length / 3 }, (_, v) => {
@@ -61,7 +62,9 @@ function onLine(at: Point, from: Point, to: Point): { readonly share: number; re
   return { share, distance: Math.hypot(...past.map((value, axis) => value - share * way[axis]!)) };
 }
 
-/** No edge is longer than this where an elbow bends and where a shoulder turns [m]: bent, they would be seen as corners. */
+/**
+ * No edge is longer than this where an elbow bends and where a shoulder turns [m]: bent, they would be seen as corners.
+ */
 const bending = { elbow: { within: 0.045, longest: 0.025 }, shoulder: { within: 0.06, longest: 0.034 } };
 
 /** How long edges may be at a place [m]. */
@@ -83,10 +86,16 @@ const middleOf = ({ positions, indices }: Surface, t: number): Point =>
     (axis) => [0, 1, 2].reduce((sum, corner) => sum + positions[3 * indices[t + corner]! + axis]!, 0) / 3,
   ) as unknown as Point;
 
-/** A corner of a triangle inside a seam lies at most so far out of it: vertices are put onto the seams that are cut later [m]. */
+/**
+ * A corner of a triangle inside a seam lies at most so far out of it: vertices are put onto the seams that are cut
+ * later [m].
+ */
 const outsideAtMost = 8e-4;
 
-/** Whether a triangle, once cut, is inside a seam. One that reaches over a line's end with its middle inside is not: it would stand out as a tick. */
+/**
+ * Whether a triangle, once cut, is inside a seam. One that reaches over a line's end with its middle inside is not: it
+ * would stand out as a tick.
+ */
 const isInside = ({ value }: Seam, { positions, indices }: Surface, t: number, middle: Point): boolean =>
   value(...middle) < 0 &&
   [0, 1, 2].every((corner) => {
@@ -120,7 +129,8 @@ export async function buildBody(figure: Figure, report?: (what: string) => void,
   let surface = projectOnto(body, coarse);
   surface = projectOnto(body, refine(surface, finenessOf(figure)));
   const settled = new Set<number>();
-  // What lies over others comes last: a thin line through a surface that is cut along its middle already keeps both edges.
+  // What lies over others comes last: a thin line through a surface that is cut along its middle already keeps both
+  // edges.
   for (const { value } of seams.toReversed()) surface = cutAlong(surface, value, settled);
   surface = compact(surface);
   report?.(`${surface.indices.length / 3} triangles`);

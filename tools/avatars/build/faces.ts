@@ -7,7 +7,10 @@ export interface FaceMeasures {
   /** The scale of the whole head, and the additional scale of its width. */
   readonly size: number;
   readonly width: number;
-  /** Half width and half height of an eye, how far out of the middle it lies and how much higher its outer corner is [m]. */
+  /**
+   * Half width and half height of an eye, how far out of the middle it lies and how much higher its outer corner is
+   * [m].
+   */
   readonly eye: { readonly radii: readonly [number, number]; readonly out: number; readonly slant: number };
   /** Half of a brow's thickness, and how far above the eye it lies [m]. */
   readonly brow: { readonly thickness: number; readonly above: number };
@@ -44,7 +47,10 @@ export const onAverageHead = (
   z: number,
 ): Point => [foldedX(x) / (size * width), root[1] + (y - root[1]) / size, root[2] + (z - root[2]) / size];
 
-/** A place on a head of these measures after what lies there on the average one has gone from one place to another; x ≥ 0 there, on both sides here. */
+/**
+ * A place on a head of these measures after what lies there on the average one has gone from one place to another; x ≥
+ * 0 there, on both sides here.
+ */
 const movedOnHead = (
   { size }: Pick<FaceMeasures, 'size'>,
   [worldX, worldY, worldZ]: Point,
@@ -145,7 +151,10 @@ const onFront = (
   };
 };
 
-/** The line between the lips of a head and the lips: the upper one is cut by itself, so that vertices lie along the line's middle, too. */
+/**
+ * The line between the lips of a head and the lips: the upper one is cut by itself, so that vertices lie along the
+ * line's middle, too.
+ */
 export const mouthSeams = (face: MouthMeasures, line: Seam['label'], lips: Seam['label']): readonly Seam[] => [
   { label: line, value: onFront(face, (x, y) => mouthLine(face, x, y)) },
   { label: lips, value: onFront(face, (x, y) => Math.max(bothLips(face, x, y), lipsMeetAt(x) - y)) },
@@ -232,7 +241,10 @@ export function closedEyes(face: FaceMeasures, worldX: number, worldY: number, w
   return movedOnHead(face, [worldX, worldY, worldZ], [x, y, z], [x, y + moved, z]);
 }
 
-/** Jaws turn about this line, before the ears [m], so far when the mouth is open [rad]; the upper lip is raised a little [m]. */
+/**
+ * Jaws turn about this line, before the ears [m], so far when the mouth is open [rad]; the upper lip is raised a little
+ * [m].
+ */
 const jawHinge = [1.572, -0.004] as const;
 const jawTurn = 0.16;
 const lipRaise = 0.0018;
@@ -246,8 +258,8 @@ const depth = 0.012;
 const unseen = 2e-4;
 
 /**
- * What share of the jaw's turn a place takes part in, so far out of the middle and below where the lips meet [m]. Lips part in an
- * oval: the lower goes with the jaw in the middle, both meet at the corners.
+ * What share of the jaw's turn a place takes part in, so far out of the middle and below where the lips meet [m]. Lips
+ * part in an oval: the lower goes with the jaw in the middle, both meet at the corners.
  */
 function jawShare({ mouth: [wide] }: MouthWidth, x: number, below: number, isLower: boolean): number {
   const parted = Math.sqrt(Math.max(0, 1 - (x / (lineEnd * wide - lineThickness)) ** 2));
@@ -256,13 +268,17 @@ function jawShare({ mouth: [wide] }: MouthWidth, x: number, below: number, isLow
   return lip + (1 - lip) * smoothstep(0, stretch.below, below);
 }
 
-/** Returns the place of a face point with an open mouth: the jaw turns down and back with lips and chin; null: unchanged. */
+/**
+ * Returns the place of a face point with an open mouth: the jaw turns down and back with lips and chin; null:
+ * unchanged.
+ */
 export function openMouth(face: MouthMeasures, worldX: number, worldY: number, worldZ: number): Point | null {
   const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
   const [wide] = face.mouth;
   if (z < 0 || y < neckFront || y > eyeHeight) return null;
   const below = lipsMeetAt(Math.min(x, wide)) - y;
-  // Between the lips: 0 on the line's upper edge, 1 on its lower one. Vertices of the edges lie on them but for rounding.
+  // Between the lips: 0 on the line's upper edge, 1 on its lower one. Vertices of the edges lie on them but for
+  // rounding.
   const half = 0.9 * halfLine(face, x);
   const between = half > 0 ? Math.max(0, Math.min(1, (below / half + 1) / 2)) : Number(below > 0);
   const upper = jawShare(face, x, Math.min(below, 0), false);

@@ -38,7 +38,10 @@ export interface Figure extends Anatomy {
   readonly ofHead: (label: Label, middle: Point) => boolean;
   /** Places besides face and hands that keep more triangles, 0 to 1. Absent: none. */
   readonly careful?: (x: number, y: number, z: number) => number;
-  /** Over so much [m] to both sides a vertex takes its normal, where creases that are shorter would shade whole triangles. Absent: 1 mm. */
+  /**
+   * Over so much [m] to both sides a vertex takes its normal, where creases that are shorter would shade whole
+   * triangles. Absent: 1 mm.
+   */
   readonly shadedOver?: number;
   /** How long edges may be at a place [m]; absent: as they come. */
   readonly finer?: (x: number, y: number, z: number) => number;

@@ -40,7 +40,10 @@ const smoothstep = (start: number, end: number, value: number): number => {
   return t * t * (3 - 2 * t);
 };
 
-/** How high a place is above the edge of a top's neck [m]: round the neck's root, higher behind; further out cloth covers the shoulders. */
+/**
+ * How high a place is above the edge of a top's neck [m]: round the neck's root, higher behind; further out cloth
+ * covers the shoulders.
+ */
 const neckline = ({ top }: GarmentStyle, x: number, y: number, z: number): number =>
   y - 1.444 - 0.4 * Math.max(0, x - 0.06) + 0.12 * z + top.neck * smoothstep(0, 0.07, z);
 

@@ -1,4 +1,5 @@
-// npm run build:avatar [-- NAME…] [--quick]: builds our own bodies, or those named; --quick: from cells twice as large, for a look.
+// npm run build:avatar [-- NAME…] [--quick]: builds our own bodies, or those named; --quick: from cells twice as large,
+// for a look.
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { dirname } from 'node:path';
 import { fileURLToPath } from 'node:url';

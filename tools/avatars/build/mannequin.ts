@@ -7,7 +7,10 @@ import type { Seam } from './surface-labels';
 
 const rig = makeRig();
 
-/** Height [m] of the collar, where the head's mesh begins: under the chin, a little higher at the nape, and further out clear of the shoulders. */
+/**
+ * Height [m] of the collar, where the head's mesh begins: under the chin, a little higher at the nape, and further out
+ * clear of the shoulders.
+ */
 const collar = (x: number, z: number): number => 1.452 - 0.12 * z + 0.4 * Math.max(0, Math.abs(x) - 0.06);
 
 /** A yoke: from the collar over the shoulders, pointed at the breastbone; stops before the deltoid. */

@@ -90,7 +90,9 @@ function torsoOf({ rig, chest, waist, hips, breast, belly, seat, trapezius }: Pe
   };
 }
 
-/** The distance from a top's edges within which triangles are small [m]; less than any cloth's distance from the skin. */
+/**
+ * The distance from a top's edges within which triangles are small [m]; less than any cloth's distance from the skin.
+ */
 const atEdge = 0.0025;
 
 /** Projects a displacement onto the surface: lids slide over the eyes. */

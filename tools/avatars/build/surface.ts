@@ -12,8 +12,8 @@ export interface Surface {
 const blockCells = 8;
 
 /**
- * Surface nets: one vertex in each cell of `cell` [m] that the surface passes through, quads between neighbours. The box must
- * hold the whole surface.
+ * Surface nets: one vertex in each cell of `cell` [m] that the surface passes through, quads between neighbours. The
+ * box must hold the whole surface.
  */
 export function mesh(field: DistanceField, min: Point, max: Point, cell: number): Surface {
   const size = [0, 1, 2].map((axis) => Math.ceil((max[axis]! - min[axis]!) / cell) + 2) as [number, number, number];
@@ -206,8 +206,9 @@ function putOnSeam(positions: number[], v: number, value: PlaceValue): void {
 }
 
 /**
- * Cuts triangles along the zero line of a value, so that the border between two materials is a smooth seam, on which vertices lie.
- * `settled`: vertices of seams that were cut before, which stay where they are; those of this one are added.
+ * Cuts triangles along the zero line of a value, so that the border between two materials is a smooth seam, on which
+ * vertices lie. `settled`: vertices of seams that were cut before, which stay where they are; those of this one are
+ * added.
  */
 export function cutAlong(surface: Surface, value: PlaceValue, settled: Set<number>): Surface {
   const positions = Array.from(surface.positions);

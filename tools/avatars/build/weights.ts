@@ -36,8 +36,8 @@ function shoulderShare(x: number, y: number): number {
 }
 
 /**
- * Weights by nearness to the parts of the anatomy, then spread over the surface: neighbours across a gap (fingers, arm and
- * flank) share nothing.
+ * Weights by nearness to the parts of the anatomy, then spread over the surface: neighbours across a gap (fingers, arm
+ * and flank) share nothing.
  */
 export function skinWeights(surface: Surface, { parts, rig }: Pick<Anatomy, 'parts' | 'rig'>): SkinWeights {
   const { bones } = rig;

@@ -92,7 +92,10 @@ interface OwnVertices {
   readonly tints: readonly number[] | null;
 }
 
-/** The vertices of one material in one mesh. A primitive has its own: a shared buffer would be skinned once for every primitive. */
+/**
+ * The vertices of one material in one mesh. A primitive has its own: a shared buffer would be skinned once for every
+ * primitive.
+ */
 function ownVertices(skinned: Skinned, name: MaterialName, { ofHead }: MeshPlan): OwnVertices {
   const index = new Map<string, number>();
   const vertices: number[] = [];
@@ -157,8 +160,8 @@ interface GltfJson {
 }
 
 /**
- * Puts the VRM 1.0 extension into a GLB: which node is which bone, what is hidden in first person, the shapes of the face, the licence. `shaped`: by mesh,
- * the shapes that it has, in their order.
+ * Puts the VRM 1.0 extension into a GLB: which node is which bone, what is hidden in first person, the shapes of the
+ * face, the licence. `shaped`: by mesh, the shapes that it has, in their order.
  */
 function withVrm(
   glb: Uint8Array,

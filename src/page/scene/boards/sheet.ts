@@ -38,8 +38,8 @@ export interface Sheet<Id extends string> {
   /** Once per frame; null hides it. `time` [s]: on any monotonic clock. */
   show(content: SheetContent<Id> | null, time: number): void;
   /**
-   * The button that a ray meets, and how far away [m, floor frame; unit direction]; null: none, or no sheet has been there for
-   * `settlingSeconds`.
+   * The button that a ray meets, and how far away [m, floor frame; unit direction]; null: none, or no sheet has been
+   * there for `settlingSeconds`.
    */
   buttonAt(origin: Point, direction: Point): { readonly id: Id; readonly distance: number } | null;
   /** Lights the button that something points at. */

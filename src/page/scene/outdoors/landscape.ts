@@ -17,7 +17,9 @@ import type { Quality } from '../renderer';
 import { createScatter } from './scatter';
 import { hazeColor } from './sky';
 
-/** A far silhouette all round: radius and height [m], its colour at the top; towards its foot it sinks into the haze. */
+/**
+ * A far silhouette all round: radius and height [m], its colour at the top; towards its foot it sinks into the haze.
+ */
 interface Ridge {
   readonly radius: number;
   readonly height: number;

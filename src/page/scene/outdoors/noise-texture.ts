@@ -40,7 +40,10 @@ function octaves(u: number, v: number, cells: number, count: number, layer: numb
   return sum / total;
 }
 
-/** Short strokes, each a blade with its own brightness, in [0, 1]; they cross the edges and come in again on the other side. */
+/**
+ * Short strokes, each a blade with its own brightness, in [0, 1]; they cross the edges and come in again on the other
+ * side.
+ */
 function grassBlades(): Float32Array {
   const blades = new Float32Array(side * side).fill(0.42);
   const count = 5200;

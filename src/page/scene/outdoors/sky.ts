@@ -5,7 +5,9 @@ import type { Quality } from '../renderer';
 export const hazeColor = '#dfe9ec';
 export const zenithColor = '#3f7fc4';
 
-/** A summer morning: blue overhead, haze at the horizon, a soft sun with its glow, thin clouds. Drawn behind everything. */
+/**
+ * A summer morning: blue overhead, haze at the horizon, a soft sun with its glow, thin clouds. Drawn behind everything.
+ */
 export function createSky(noise: Texture, towardsSun: Vector3, quality: Quality): Mesh<SphereGeometry, ShaderMaterial> {
   const material = new ShaderMaterial({
     side: BackSide,

@@ -50,7 +50,9 @@ function pull(element: HTMLAudioElement, stream: MediaStream): void {
   void element.play().catch(() => undefined);
 }
 
-/** The voices of others from where their heads are, for the ears of the stage that the context belongs to; floor frame. */
+/**
+ * The voices of others from where their heads are, for the ears of the stage that the context belongs to; floor frame.
+ */
 export class VoiceSound {
   readonly #context: AudioContext;
   readonly #heard = new Map<string, Heard>();
@@ -103,7 +105,10 @@ export class VoiceSound {
     heard.element.srcObject = null;
   }
 
-  /** Restarts failed audio elements. Call it often: elements fail when the device's audio output restarts, which would silence their voices. */
+  /**
+   * Restarts failed audio elements. Call it often: elements fail when the device's audio output restarts, which would
+   * silence their voices.
+   */
   mend(): void {
     for (const { element, stream } of this.#heard.values()) if (element.error) pull(element, stream);
   }
@@ -130,8 +135,9 @@ export class VoiceSound {
   }
 
   /**
-   * The own microphone's track, for its level alone; null: nothing of it is sent. A track's source is kept for when it is sent again: Chromium
-   * lets go of none before its context is closed, however often it was disconnected (tried with Chromium 156).
+   * The own microphone's track, for its level alone; null: nothing of it is sent. A track's source is kept for when it
+   * is sent again: Chromium lets go of none before its context is closed, however often it was disconnected (tried with
+   * Chromium 156).
    */
   setOwn(track: MediaStreamTrack | null): void {
     this.#ownOn = track !== null;
@@ -152,7 +158,10 @@ export class VoiceSound {
     return loudnessAt(this.#meter);
   }
 
-  /** Returns the loudness before distance and direction change it [dB of full scale]. The difference from `loudness` is their effect, whatever the level of the microphone. */
+  /**
+   * Returns the loudness before distance and direction change it [dB of full scale]. The difference from `loudness` is
+   * their effect, whatever the level of the microphone.
+   */
   spokenLoudness(): number {
     return loudnessAt(this.#spokenMeter);
   }

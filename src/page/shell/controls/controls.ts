@@ -17,7 +17,9 @@ import { isNarrow, WindowLayout } from './window-layout';
 /** Milliseconds between two looks at the ring buffers: fast enough to follow, slow enough to read. */
 const reportEveryMs = 250;
 
-/** Everything a person can press, read or type, on the desktop and in the headset; it keeps no state of the page's own. */
+/**
+ * Everything a person can press, read or type, on the desktop and in the headset; it keeps no state of the page's own.
+ */
 export class Controls {
   readonly #parts: ControlledParts;
   readonly #measuring: Measuring;
@@ -77,7 +79,10 @@ export class Controls {
     this.#desktop.setPanelOpen(!worn && this.#panelOpenBefore);
   }
 
-  /** Opens or closes the panel. If there is no place beside the picture it stays closed until its button is pressed, unless the address asks for it. */
+  /**
+   * Opens or closes the panel. If there is no place beside the picture it stays closed until its button is pressed,
+   * unless the address asks for it.
+   */
   setPanelOpen(open: boolean): void {
     const asked = this.#parts.switches.panel === true;
     this.#desktop.setPanelOpen(open && (asked || !isNarrow()));

@@ -39,7 +39,10 @@ export class MotionExport {
     this.#giveUp.abort();
   }
 
-  /** Exports the current recording with the chosen method, unless an export is in progress. Never rejects: faults become notices. */
+  /**
+   * Exports the current recording with the chosen method, unless an export is in progress. Never rejects: faults become
+   * notices.
+   */
   async begin(choice: ExportChoice): Promise<void> {
     const { recorder, body, notices } = this.#options;
     const { recording, name } = recorder;

@@ -41,7 +41,10 @@ export class OpenedFiles {
     for (const file of files) if (!mocap.includes(file)) void this.open(file);
   }
 
-  /** A file by its ending: a recording or a map of a skeleton, else an avatar. Never rejects: what goes wrong becomes a notice. */
+  /**
+   * A file by its ending: a recording or a map of a skeleton, else an avatar. Never rejects: what goes wrong becomes a
+   * notice.
+   */
   async open(file: File): Promise<void> {
     const asked = this.#options.recorder.ask();
     if (!isJson(file)) await this.openAvatar(file);
@@ -69,8 +72,8 @@ export class OpenedFiles {
   }
 
   /**
-   * Replays what the file keeps, with the body of the person in it. `asked`: the recorder's place for this wish. Never rejects: what goes wrong
-   * becomes a notice.
+   * Replays what the file keeps, with the body of the person in it. `asked`: the recorder's place for this wish. Never
+   * rejects: what goes wrong becomes a notice.
    */
   async openRecording(source: string | File, asked = this.#options.recorder.ask()): Promise<void> {
     const { recorder, notices } = this.#options;

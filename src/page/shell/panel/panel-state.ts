@@ -15,7 +15,10 @@ export interface RecorderState {
   readonly name: string | null;
 }
 
-/** Kinds of files that recordings can be made into: BVH in metres or centimetres, a VRM Animation, the shown avatar moving, a table of joints. */
+/**
+ * Kinds of files that recordings can be made into: BVH in metres or centimetres, a VRM Animation, the shown avatar
+ * moving, a table of joints.
+ */
 export type ExportChoice = 'bvh' | 'bvh-cm' | 'vrma' | 'glb' | 'csv';
 
 /** A file that is being made. */

@@ -42,7 +42,10 @@ const asFile: Readonly<Record<string, string>> = {
 
 const perMinute = (points: number): RateLimiterMemory => new RateLimiterMemory({ points, duration: 60 });
 
-/** The routes for uploading and downloading the avatars of a room's members. A proxy in front of several processes routes by `?room=`. */
+/**
+ * The routes for uploading and downloading the avatars of a room's members. A proxy in front of several processes
+ * routes by `?room=`.
+ */
 export class AvatarRoutes {
   readonly routes: readonly Route<'client'>[];
   readonly #options: AvatarRoutesOptions;

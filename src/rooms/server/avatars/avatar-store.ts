@@ -42,8 +42,8 @@ const shareOfAddress = 1 / 4;
 const ownerOf = (room: string, identity: string): string => `${room} ${identity}`;
 
 /**
- * Stores the avatar files of people on seats, in memory alone: one for each person and room, by the hash of its content. A file is deleted with
- * its owner's seat, with the room, or when the owner wears another avatar.
+ * Stores the avatar files of people on seats, in memory alone: one for each person and room, by the hash of its
+ * content. A file is deleted with its owner's seat, with the room, or when the owner wears another avatar.
  */
 export class AvatarStore {
   readonly #options: AvatarStoreOptions;
@@ -74,7 +74,10 @@ export class AvatarStore {
     return this.#files.size;
   }
 
-  /** Reserves space for a file. full: the store is full. crowded: this address has used its share. busy: another upload of this person is under way. */
+  /**
+   * Reserves space for a file. full: the store is full. crowded: this address has used its share. busy: another upload
+   * of this person is under way.
+   */
   reserve({ room, identity, address }: AvatarOwner, length: number): Reservation | 'full' | 'crowded' | 'busy' {
     const { mostBytes } = this.#options;
     const owner = ownerOf(room, identity);

@@ -30,7 +30,10 @@ export interface Client {
   ended: boolean;
 }
 
-/** Limits of voice signals. Two pages need a dozen to connect, and again after an outage; a page connects to up to five others. */
+/**
+ * Limits of voice signals. Two pages need a dozen to connect, and again after an outage; a page connects to up to five
+ * others.
+ */
 const signalsPerSecond = 20;
 const signalsAtOnce = 80;
 
@@ -86,8 +89,9 @@ function seatAmong(poses: readonly FreshPose[], client: string): number | null {
 }
 
 /**
- * Sends poses to all clients, except each client's own; a client whose connection is busy misses them. Writes directly to the TCP socket, because
- * the queues of socket.io, Engine.IO and ws cost as much as the system call. Nothing is compressed.
+ * Sends poses to all clients, except each client's own; a client whose connection is busy misses them. Writes directly
+ * to the TCP socket, because the queues of socket.io, Engine.IO and ws cost as much as the system call. Nothing is
+ * compressed.
  */
 export function sendPoses(to: Iterable<Client>, poses: readonly FreshPose[], counts: RelayCounts): void {
   let shared: Buffer | null = null;

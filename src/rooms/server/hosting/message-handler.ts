@@ -27,8 +27,8 @@ const isOtherVersion = (value: unknown): boolean => {
 const isSignal = (value: unknown): boolean => ((value ?? {}) as { readonly type?: unknown }).type === 'signal';
 
 /**
- * Passes the messages of clients to their rooms, if they are valid and within the limits. A client that keeps sending other messages is
- * disconnected.
+ * Passes the messages of clients to their rooms, if they are valid and within the limits. A client that keeps sending
+ * other messages is disconnected.
  */
 export class MessageHandler {
   readonly #options: MessageHandlerOptions;

@@ -12,7 +12,9 @@ export interface PoseSender {
 
 /** Interval between two sends of a room at full load [s]. */
 const longestPace = 0.012;
-/** Load of the process [share of time]: up to the first, poses are sent at once; from the second, `longestPace` apart. */
+/**
+ * Load of the process [share of time]: up to the first, poses are sent at once; from the second, `longestPace` apart.
+ */
 const calm = 0.5;
 const full = 0.9;
 /** Interval at which the load is measured [s], and the weight of a measurement in the average. */
@@ -38,9 +40,9 @@ function ownBusyShare(): () => number {
 }
 
 /**
- * Schedules when rooms send their poses. On a process with little load they are sent at the end of the turn of the event loop that has read them.
- * Under load a room of more than two waits after each send, so that one message carries several poses. `now`: seconds, monotonic; `busyShare`:
- * the load since its last call, in [0, 1].
+ * Schedules when rooms send their poses. On a process with little load they are sent at the end of the turn of the
+ * event loop that has read them. Under load a room of more than two waits after each send, so that one message carries
+ * several poses. `now`: seconds, monotonic; `busyShare`: the load since its last call, in [0, 1].
  */
 export class PoseSchedule {
   readonly #now: () => number;

@@ -34,11 +34,17 @@ export interface RoomRegistry {
   readonly listings: readonly RoomListing[];
   readonly census: HostCensus;
   get(name: string): RegisteredRoom | undefined;
-  /** Returns the room of this name, and ticks it until it is idle again; called when a client sends a message or disconnects. */
+  /**
+   * Returns the room of this name, and ticks it until it is idle again; called when a client sends a message or
+   * disconnects.
+   */
   wake(name: string): RegisteredRoom | undefined;
   /** Schedules the sending of a room's poses, and ticks it until it is idle again. */
   sendPoses(hosted: RegisteredRoom): void;
-  /** Returns the room of a pass, and creates it if needed; null: the server has too many rooms, or does not have the game. */
+  /**
+   * Returns the room of a pass, and creates it if needed; null: the server has too many rooms, or does not have the
+   * game.
+   */
   getOrCreate(pass: RoomPass): RegisteredRoom | null;
   /** Closes rooms that have been empty for `emptyRoomSeconds`; called periodically. `now`: seconds. */
   sweep(now: number): void;

@@ -30,7 +30,10 @@ const commandTimeoutMs = 1000;
 
 const retryStrategy = (attempt: number): number => Math.min(200 * attempt, 2000);
 
-/** Opens a connection whose commands fail at once while Redis is down, so that no request waits; it reconnects by itself. */
+/**
+ * Opens a connection whose commands fail at once while Redis is down, so that no request waits; it reconnects by
+ * itself.
+ */
 export function connectRedis(url: string, log: Logger): Redis {
   return watched(
     new Redis(url, {

@@ -29,7 +29,10 @@ function urlsFrom(environment: Environment, name: string, form: RegExp, like: st
   return urls;
 }
 
-/** Reads the voice settings; null: voices are off. Throws a ConfigurationError that names the variable and its valid values. */
+/**
+ * Reads the voice settings; null: voices are off. Throws a ConfigurationError that names the variable and its valid
+ * values.
+ */
 export function voiceConfigurationFrom(environment: Environment): VoiceConfiguration | null {
   const wanted = environment.THREEPOINT_VOICES || 'on';
   if (wanted !== 'on' && wanted !== 'off') {

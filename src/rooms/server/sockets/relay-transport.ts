@@ -35,8 +35,9 @@ export interface RelayTransport {
   /** The number of open WebSockets, silent ones included. */
   readonly sockets: number;
   /**
-   * Registers the listener for a connection's poses. Binary messages are poses and bypass Engine.IO and socket.io, which cost more for a message
-   * than a room does for its pose. A binary message on a connection without a listener closes it.
+   * Registers the listener for a connection's poses. Binary messages are poses and bypass Engine.IO and socket.io,
+   * which cost more for a message than a room does for its pose. A binary message on a connection without a listener
+   * closes it.
    */
   listen(socket: Socket, listener: WireListener): void;
   /** Opens a WebSocket, or answers why it is refused. Returns false where the path is not the relay's. */
@@ -44,7 +45,9 @@ export interface RelayTransport {
   close(): void;
 }
 
-/** A connection is destroyed this long after it was closed [ms], whether or not the client has read the last message. */
+/**
+ * A connection is destroyed this long after it was closed [ms], whether or not the client has read the last message.
+ */
 const closingMs = 1000;
 
 /** Destroys a socket that its client does not close in time. */
@@ -59,7 +62,10 @@ export function closeConnection(socket: Socket): void {
   destroySoon(raw);
 }
 
-/** Passes a connection's binary messages to `listener`, and all others to Engine.IO. `take` counts a frame and returns whether to handle it. */
+/**
+ * Passes a connection's binary messages to `listener`, and all others to Engine.IO. `take` counts a frame and returns
+ * whether to handle it.
+ */
 function divert(conn: Socket['conn'], take: () => boolean, listener: (bytes: Uint8Array) => void): void {
   // reason: Engine.IO leaves the WebSocket there for its own transport, and does not say so in its types.
   const { websocket } = conn.request as unknown as { readonly websocket: EventEmitter };

@@ -9,7 +9,10 @@ import type { RelayMetrics } from '../settings/relay-metrics';
 
 /** Decides which requests may open a WebSocket. */
 export interface UpgradeAdmission {
-  /** Takes a slot of the client's address and returns the function that releases it. Throws an HttpError that states why the request is refused. */
+  /**
+   * Takes a slot of the client's address and returns the function that releases it. Throws an HttpError that states why
+   * the request is refused.
+   */
   admit(request: IncomingMessage, query: URLSearchParams): () => void;
 }
 

@@ -19,7 +19,8 @@ const noVoices = { voices: false, iceServers: [], ttlSeconds: null };
 
 /**
  * Returns a time-limited credential for a TURN server with the same secret ("REST API for access to TURN services",
- * draft-uberti-behave-turn-rest-00; coturn's use-auth-secret). `until`: seconds since 1970. The user name does not identify the person.
+ * draft-uberti-behave-turn-rest-00; coturn's use-auth-secret). `until`: seconds since 1970. The user name does not
+ * identify the person.
  */
 function turnCredential(secret: string, identity: string, until: number): { username: string; credential: string } {
   const alias = createHash('sha256').update(identity).digest('hex').slice(0, 12);
@@ -27,7 +28,10 @@ function turnCredential(secret: string, identity: string, until: number): { user
   return { username, credential: createHmac('sha1', secret).update(username).digest('base64') };
 }
 
-/** The route that answers whether a room has voices, and by which ICE servers. A proxy in front of several processes routes by `?room=`. */
+/**
+ * The route that answers whether a room has voices, and by which ICE servers. A proxy in front of several processes
+ * routes by `?room=`.
+ */
 export class VoiceRoutes {
   readonly routes: readonly Route<'client'>[];
   readonly #options: VoiceRoutesOptions;

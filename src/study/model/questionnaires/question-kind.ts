@@ -12,8 +12,8 @@ export interface AnswerForms {}
 export type AnswerForm = AnswerForms[keyof AnswerForms];
 
 /**
- * The part of a kind of question that runs in the page, on the server and in the command line tools: how plans and answers
- * are checked, and what tables say about them. A `QuestionView` is the part that draws.
+ * The part of a kind of question that runs in the page, on the server and in the command line tools: how plans and
+ * answers are checked, and what tables say about them. A `QuestionView` is the part that draws.
  */
 export interface QuestionKind<Form extends AnswerForm = AnswerForm> {
   /** The name of the kind, which is the `kind` of its forms. */
@@ -24,13 +24,22 @@ export interface QuestionKind<Form extends AnswerForm = AnswerForm> {
   check?(form: Form, field: string): void;
   /** Returns the schema of an answer. Its message says what is expected: "expected a whole number from 1 to 5". */
   answer(form: Form): v.GenericSchema<unknown, Answer>;
-  /** Returns the least and the greatest answer, or null if answers are not numbers. Scales are computed from numbers only. */
+  /**
+   * Returns the least and the greatest answer, or null if answers are not numbers. Scales are computed from numbers
+   * only.
+   */
   range(form: Form): readonly [number, number] | null;
-  /** Returns the values to choose from, or null if answers are not chosen from a list. Weighted means count such choices. */
+  /**
+   * Returns the values to choose from, or null if answers are not chosen from a list. Weighted means count such
+   * choices.
+   */
   options(form: Form): readonly string[] | null;
   /** Returns every text of a form that participants read, with its path in the form. */
   texts(form: Form): readonly (readonly [string, Words])[];
-  /** Returns the texts at the low end and at the high end of numeric answers, for axes of charts. Absent: there are none. */
+  /**
+   * Returns the texts at the low end and at the high end of numeric answers, for axes of charts. Absent: there are
+   * none.
+   */
   ends?(form: Form): { readonly low?: Words | undefined; readonly high?: Words | undefined };
   /** Converts typed text to an answer, which is checked by `answer`. Absent for kinds that are not typed. */
   parse?(typed: string): unknown;

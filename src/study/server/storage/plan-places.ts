@@ -39,7 +39,10 @@ export class PlanPlaces {
     return place?.invitation ?? null;
   }
 
-  /** Adds the places of a plan that do not exist yet, in a transaction; `linkOf` returns an earlier invitation of a place, or null. */
+  /**
+   * Adds the places of a plan that do not exist yet, in a transaction; `linkOf` returns an earlier invitation of a
+   * place, or null.
+   */
   add(plan: StudyPlan, linkOf: (participant: string) => string | null): void {
     const common = plan.entry === 'open' ? newCode() : null;
     for (const participant of participantsOf(plan)) {
@@ -63,8 +66,8 @@ export class PlanPlaces {
   }
 
   /**
-   * Replaces the free places by those of the new plan, in a transaction. If links stay valid, places keep theirs, and new
-   * places get the common one; null: there is no common link.
+   * Replaces the free places by those of the new plan, in a transaction. If links stay valid, places keep theirs, and
+   * new places get the common one; null: there is no common link.
    */
   renewFree(
     plan: StudyPlan,
@@ -81,8 +84,9 @@ export class PlanPlaces {
   }
 
   /**
-   * Moves a cleared place to the newest plan, in a transaction, with the places that follow an older version only because of
-   * it. A place that the newest plan does not have is deleted. All stay if somebody who plays with them has begun.
+   * Moves a cleared place to the newest plan, in a transaction, with the places that follow an older version only
+   * because of it. A place that the newest plan does not have is deleted. All stay if somebody who plays with them has
+   * begun.
    */
   free({ plan, version, versions }: StudyInfo, participant: string): void {
     const { id } = plan;

@@ -30,7 +30,10 @@ type DracoCall = [
   onError: (error: unknown) => void,
 ];
 
-/** What GLTFLoader asks of a Draco loader, answered by a worker of our own: three.js's own starts from a blob: address, which our policy forbids. */
+/**
+ * What GLTFLoader asks of a Draco loader, answered by a worker of our own: three.js's own starts from a blob: address,
+ * which our policy forbids.
+ */
 function dracoInWorker() {
   const worker: DracoWorker = new WorkerClient(
     'Draco',
@@ -49,7 +52,10 @@ async function meshopt(loader: GLTFLoader): Promise<void> {
   loader.setMeshoptDecoder(MeshoptDecoder);
 }
 
-/** Compressions that a page unpacks, by the name of their extension: what gives a loader the means, fetched when a file needs it. */
+/**
+ * Compressions that a page unpacks, by the name of their extension: what gives a loader the means, fetched when a file
+ * needs it.
+ */
 export const decoders: Decoders = {
   EXT_meshopt_compression: meshopt,
   KHR_meshopt_compression: meshopt,

@@ -6,7 +6,10 @@ interface Waiting<Answer> {
   reject(error: Error): void;
 }
 
-/** A worker that answers in the order in which it is asked. It begins with the first question and ends when none is left. */
+/**
+ * A worker that answers in the order in which it is asked. It begins with the first question and ends when none is
+ * left.
+ */
 export class WorkerClient<Question, Answer> {
   readonly #name: string;
   readonly #begin: () => Worker;

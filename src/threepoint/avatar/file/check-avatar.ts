@@ -24,7 +24,10 @@ export interface CheckedAvatar {
   readonly hash: string | null;
 }
 
-/** Looks at a file without drawing anything of it, and may take its bytes along. Rejects with a sentence that names the file. */
+/**
+ * Looks at a file without drawing anything of it, and may take its bytes along. Rejects with a sentence that names the
+ * file.
+ */
 export type AvatarCheck = (bytes: ArrayBuffer, question: AvatarQuestion) => Promise<CheckedAvatar>;
 
 /** The check itself, on the thread that calls it. */

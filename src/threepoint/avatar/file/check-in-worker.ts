@@ -5,8 +5,8 @@ import type { WorkerAnswer, WorkerQuestion } from './check-worker';
 const patienceMs = 20_000;
 
 /**
- * The check in a worker that lives no longer than the question: neither a slow file nor one that breaks the validator touches the picture. The
- * bytes go there and come back without being copied: those given are empty afterwards.
+ * The check in a worker that lives no longer than the question: neither a slow file nor one that breaks the validator
+ * touches the picture. The bytes go there and come back without being copied: those given are empty afterwards.
  */
 export const checkInWorker: AvatarCheck = (bytes, { name, unpacked, limits }) => {
   const worker = new Worker(new URL('./check-worker.ts', import.meta.url), { type: 'module' });

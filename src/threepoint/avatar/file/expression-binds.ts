@@ -31,8 +31,8 @@ function keepValid(expressions: unknown, schemas: Readonly<Record<string, v.Gene
 }
 
 /**
- * Removes what the expressions of a VRM 0.x or 1.0 bind that is not there or has another form. three-vrm reads binds in promises that nothing
- * waits for: a broken one would be a fault of the page instead of the file.
+ * Removes what the expressions of a VRM 0.x or 1.0 bind that is not there or has another form. three-vrm reads binds in
+ * promises that nothing waits for: a broken one would be a fault of the page instead of the file.
  */
 export const validExpressionBinds = (parser: GLTFParser): GLTFLoaderPlugin => ({
   name: 'threepoint_expressions',

@@ -93,7 +93,10 @@ const ktx2Advice =
 /** No description of a body is nested this deep; a reader that follows one that is runs out of stack. */
 const deepestNesting = 64;
 
-/** Every address in the file: each value that is called `uri`, at any depth, extensions included. Throws where there is no end to the depth. */
+/**
+ * Every address in the file: each value that is called `uri`, at any depth, extensions included. Throws where there is
+ * no end to the depth.
+ */
 function urisIn(json: unknown): string[] {
   const uris: string[] = [];
   const waiting: { readonly value: unknown; readonly depth: number }[] = [{ value: json, depth: 0 }];
@@ -110,9 +113,9 @@ function urisIn(json: unknown): string[] {
 }
 
 /**
- * Throws a sentence that names the file and the limit where a body would cost too much or reach outside itself. Looks at headers
- * alone: nothing is decoded, allocated or fetched. `unpacked`: extensions of compression that are read all the same. Returns those that the
- * file uses.
+ * Throws a sentence that names the file and the limit where a body would cost too much or reach outside itself. Looks
+ * at headers alone: nothing is decoded, allocated or fetched. `unpacked`: extensions of compression that are read all
+ * the same. Returns those that the file uses.
  */
 export function inspectAvatar(
   bytes: Uint8Array,

@@ -23,8 +23,9 @@ function unravelled(attribute: InterleavedBufferAttribute): BufferAttribute {
 }
 
 /**
- * Gives each attribute of a scene's meshes an array of its own, and each geometry an index: files may interleave attributes in one buffer and
- * leave indices out, and what cuts meshes into parts reads plain arrays. Meshes that shared an attribute still do.
+ * Gives each attribute of a scene's meshes an array of its own, and each geometry an index: files may interleave
+ * attributes in one buffer and leave indices out, and what cuts meshes into parts reads plain arrays. Meshes that
+ * shared an attribute still do.
  */
 export function* makeGeometryPlain(scene: Object3D): Steps<void> {
   const known = new Map<Attribute, BufferAttribute>();

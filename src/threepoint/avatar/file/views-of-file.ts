@@ -13,8 +13,9 @@ interface Description {
 const isPacked = (extension: string): boolean => extension.endsWith('meshopt_compression');
 
 /**
- * Reads a GLB's parts from where they lie: meshes are cut out one by one, pictures are parts of a blob of the file, which the browser reads and decodes
- * elsewhere. The loader itself copies the file's binary as a whole and each picture twice, on the page's thread.
+ * Reads a GLB's parts from where they lie: meshes are cut out one by one, pictures are parts of a blob of the file,
+ * which the browser reads and decodes elsewhere. The loader itself copies the file's binary as a whole and each picture
+ * twice, on the page's thread.
  */
 export const viewsOfFile =
   (binary: Uint8Array, file: Blob) =>

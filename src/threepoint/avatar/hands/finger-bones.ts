@@ -34,8 +34,9 @@ import { boneNode } from '../humanoid/humanoid';
 export type BoneIndex = 0 | 1 | 2;
 
 /**
- * A bone of a finger. Its node's rotation for a bend is before · turned · after, where turned is how the bone before it in the rig
- * (none: the hand) and this one have turned against each other since the rest pose, in the frame of the own wrist.
+ * A bone of a finger. Its node's rotation for a bend is before · turned · after, where turned is how the bone before it
+ * in the rig (none: the hand) and this one have turned against each other since the rest pose, in the frame of the own
+ * wrist.
  */
 export interface FingerBone {
   readonly node: Object3D;
@@ -61,7 +62,10 @@ export interface RigHand {
   readonly geometry: HandGeometry | null;
 }
 
-/** A finger's three nodes from the palm on; three-vrm gives the bones of VRM 0.x's thumbs the names of 1.0. null: the rig lacks one. */
+/**
+ * A finger's three nodes from the palm on; three-vrm gives the bones of VRM 0.x's thumbs the names of 1.0. null: the
+ * rig lacks one.
+ */
 const nodesOf = (vrm: VRM, side: Side, finger: FingerName): (Object3D | null)[] =>
   fingerBonesOf(side, finger).map((bone) => boneNode(vrm, bone as BoneName));
 

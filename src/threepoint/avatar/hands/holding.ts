@@ -83,7 +83,10 @@ export class Holding {
     this.#close(side, 'ball', radius, 0, target);
   }
 
-  /** The rim of a round wall that hangs from a tube: the fingers lie on the wall from outside, the thumb goes over the tube. */
+  /**
+   * The rim of a round wall that hangs from a tube: the fingers lie on the wall from outside, the thumb goes over the
+   * tube.
+   */
   rim(side: Side, wrist: Pose<'floor'>, { at, normal, radius, tube }: Rim, target: MutableHandShape): void {
     this.#put(side, wrist, at, normal);
     this.#close(side, 'rim', radius, tube, target);

@@ -1,6 +1,8 @@
 import { Matrix4, type Object3D, type SkinnedMesh } from 'three';
 
-/** A posed bone lies further than this from where its skin was bound to it [share of the body's size, and of a turn]. */
+/**
+ * A posed bone lies further than this from where its skin was bound to it [share of the body's size, and of a turn].
+ */
 const posed = 1e-3;
 
 /** Returns each bone's matrix when its skin was bound to it, in one space for all skins. */
@@ -26,8 +28,9 @@ const difference = (a: Matrix4, b: Matrix4): number => {
 };
 
 /**
- * Puts the bones of a scene back to where they were when the skin was bound to them, where the file shows another pose (the first picture of
- * an animation): the bind pose is a T or an A, the other can be any. A file whose bones stand as bound is left as it is.
+ * Puts the bones of a scene back to where they were when the skin was bound to them, where the file shows another pose
+ * (the first picture of an animation): the bind pose is a T or an A, the other can be any. A file whose bones stand as
+ * bound is left as it is.
  */
 export function restoreBindPose(scene: Object3D): void {
   scene.updateMatrixWorld(true);

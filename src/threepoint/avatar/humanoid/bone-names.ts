@@ -9,7 +9,10 @@ type Finger = (typeof fingerNames)[number];
 /** VRM's names of all bones of a hand's fingers, without the side. */
 export const handFingerBones: readonly string[] = fingerNames.flatMap(fingerBones);
 
-/** VRM's name of a bone. In words of our own: the declarations of @pixiv/three-vrm cannot be read where modules are resolved as Node does. */
+/**
+ * VRM's name of a bone. In words of our own: the declarations of @pixiv/three-vrm cannot be read where modules are
+ * resolved as Node does.
+ */
 export type BoneName =
   | CentreBone
   | `${Side}${
@@ -19,14 +22,19 @@ export type BoneName =
 /** VRM's names of bones, and what a file calls their nodes. */
 export type BoneMap = Readonly<Partial<Record<BoneName, string>>>;
 
-/** How programs of one kind call the bones of a body. A space stands for the separator of words: none, `_`, `.`, `-` or a blank. */
+/**
+ * How programs of one kind call the bones of a body. A space stands for the separator of words: none, `_`, `.`, `-` or
+ * a blank.
+ */
 interface Naming {
   readonly centre: Partial<Readonly<Record<CentreBone, string>>>;
   /** `$` is the side, as `left` and `right` here have it. */
   readonly sides: Partial<Readonly<Record<SideNames, string>>>;
   readonly left: string;
   readonly right: string;
-  /** `$` as above, `#` the number of the phalanx from the palm (1, 2, 3), `%` VRM's name of the bone without the side. */
+  /**
+   * `$` as above, `#` the number of the phalanx from the palm (1, 2, 3), `%` VRM's name of the bone without the side.
+   */
   readonly fingers: Readonly<Record<Finger, string>>;
 }
 
@@ -66,8 +74,9 @@ const characterCreator = {
 };
 
 /**
- * The namings this page knows, by what people call them. Sources: Mixamo's and Ready Player Me's exports, VRoid Studio, Unreal's mannequins 4
- * and 5, Blender's Rigify (deform bones and metarig), Reallusion's Character Creator, 3ds Max's Biped.
+ * The namings this page knows, by what people call them. Sources: Mixamo's and Ready Player Me's exports, VRoid Studio,
+ * Unreal's mannequins 4 and 5, Blender's Rigify (deform bones and metarig), Reallusion's Character Creator, 3ds Max's
+ * Biped.
  */
 const namings: Readonly<Record<string, Naming>> = {
   'Mixamo, Ready Player Me, Avaturn': {
@@ -173,7 +182,10 @@ function byName(names: readonly string[], read: (name: string) => string): Map<s
   return found;
 }
 
-/** What stands before every bone's name in a file: each thing that stands before the hips' (`mixamorig:`, `DEF-`, `J_Bip_`, `CC_Base_`). */
+/**
+ * What stands before every bone's name in a file: each thing that stands before the hips' (`mixamorig:`, `DEF-`,
+ * `J_Bip_`, `CC_Base_`).
+ */
 function prefixesOf(names: Iterable<string>, hips: string): Set<string> {
   const prefixes = new Set<string>();
   for (const name of names) if (name.endsWith(hips)) prefixes.add(name.slice(0, -hips.length));
@@ -181,8 +193,9 @@ function prefixesOf(names: Iterable<string>, hips: string): Set<string> {
 }
 
 /**
- * Which nodes are a body's bones, by their names alone, under any prefix: the naming that finds the most. Empty where no naming
- * finds hips and a head. Names with a number at the end, as Sketchfab writes them (`mixamorig:Hips_01`), are read without it where that finds more.
+ * Which nodes are a body's bones, by their names alone, under any prefix: the naming that finds the most. Empty where
+ * no naming finds hips and a head. Names with a number at the end, as Sketchfab writes them (`mixamorig:Hips_01`), are
+ * read without it where that finds more.
  */
 export function bonesByName(nodeNames: readonly string[]): BoneMap {
   let best: BoneMap = {};

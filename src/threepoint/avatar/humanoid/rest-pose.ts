@@ -12,7 +12,9 @@ const down = new Vector3(0, -1, 0);
 
 /** A body leans or slouches less than this when it rests [rad]: more is a scene that was turned. */
 const mostLean = 0.6;
-/** Bodies that are smaller or larger [m] than any are taken for bodies in another unit, and made as tall as this one. */
+/**
+ * Bodies that are smaller or larger [m] than any are taken for bodies in another unit, and made as tall as this one.
+ */
 const smallest = 0.4;
 const largest = 4;
 const usual = 1.6;
@@ -38,7 +40,10 @@ function axisRotations(): Matrix4[] {
 const between = (a: Matrix4, b: Matrix4): number =>
   new Quaternion().setFromRotationMatrix(a).angleTo(new Quaternion().setFromRotationMatrix(b));
 
-/** The rotation that stands a body up and turns it to +Z: by right angles where that will do, because bodies lean a little. */
+/**
+ * The rotation that stands a body up and turns it to +Z: by right angles where that will do, because bodies lean a
+ * little.
+ */
 function standing(hips: Vector3, head: Vector3, toLeft: Vector3): Matrix4 {
   const y = head.clone().sub(hips).normalize();
   const x = toLeft.clone().addScaledVector(y, -toLeft.dot(y)).normalize();
@@ -47,7 +52,10 @@ function standing(hips: Vector3, head: Vector3, toLeft: Vector3): Matrix4 {
   return between(nearest, exact) < mostLean ? nearest : exact;
 }
 
-/** A body's bones while its rest is settled: turned and moved in the world frame, across nodes between them that are no bones. */
+/**
+ * A body's bones while its rest is settled: turned and moved in the world frame, across nodes between them that are no
+ * bones.
+ */
 class Resting {
   constructor(
     readonly vrm: VRM,
@@ -151,7 +159,9 @@ function lowest(body: Resting): number {
   return ankle - (head - ankle) * ankleShare;
 }
 
-/** Puts the soles on the floor where they are off it by more than shoes are thick, and the pelvis over the middle of it. */
+/**
+ * Puts the soles on the floor where they are off it by more than shoes are thick, and the pelvis over the middle of it.
+ */
 function putOnFloor(body: Resting): void {
   const floor = lowest(body);
   const hips = body.at('hips')!;
@@ -214,9 +224,9 @@ function straightenLeg(body: Resting, side: Side): void {
 }
 
 /**
- * Brings a body from a file to the rest that a rig is read from: upright on the floor, of a body's size, facing +Z, arms straight out to the
- * sides with palms down, legs straight down, under a scene of any scale and rotation. Throws a sentence that names the file where the
- * joints are no body's.
+ * Brings a body from a file to the rest that a rig is read from: upright on the floor, of a body's size, facing +Z,
+ * arms straight out to the sides with palms down, legs straight down, under a scene of any scale and rotation. Throws a
+ * sentence that names the file where the joints are no body's.
  */
 export function settleRest(vrm: VRM, name: string): void {
   const body = new Resting(vrm, name);

@@ -51,9 +51,9 @@ function angleAbout(from: Quat, to: Quat, along: (typeof alongArm)[Side]): numbe
 }
 
 /**
- * Joints between those of an arm, so that its skin is nowhere wrung and no joint folds: the turn of the hand spreads over the forearm and that of
- * the upper arm over itself, and shoulder, elbow and wrist bend in two steps. The skin of any rig is shared among them (spread-weights); twist
- * bones of its own are taken for the bone they lie on.
+ * Joints between those of an arm, so that its skin is nowhere wrung and no joint folds: the turn of the hand spreads
+ * over the forearm and that of the upper arm over itself, and shoulder, elbow and wrist bend in two steps. The skin of
+ * any rig is shared among them (spread-weights); twist bones of its own are taken for the bone they lie on.
  */
 export class ArmHelperJoints {
   readonly #rig: Rig;

@@ -5,7 +5,10 @@ const holdSeconds = 0.2;
 const fadeSeconds = 0.6;
 const faded = 0.25;
 
-/** How solid a body is whose head the device may have lost: a body that stands still shall not look as if a person were in it. */
+/**
+ * How solid a body is whose head the device may have lost: a body that stands still shall not look as if a person were
+ * in it.
+ */
 export interface HeadLoss {
   /** Opacity in [0.25, 1] at this time [s]; 1 at once in the first frame that sees the head again. */
   follow(time: number, seen: boolean): number;

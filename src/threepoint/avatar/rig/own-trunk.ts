@@ -26,7 +26,9 @@ const neckShare = 0.3;
 /** The base of a missing clavicle bone, from the neck out to the shoulder [share]. */
 const clavicleShare = 0.2;
 
-/** A vertebra of the rig: from the one below it, which is next in the rig, at rest and as long as the body wants it [m]. */
+/**
+ * A vertebra of the rig: from the one below it, which is next in the rig, at rest and as long as the body wants it [m].
+ */
 interface Link {
   readonly name: JointName;
   readonly below: JointName;
@@ -62,7 +64,10 @@ const before = vec3(0, 0, 0);
 const after = vec3(0, 0, 0);
 const swing = quat(0, 0, 0, 1);
 
-/** How far from the rig's own shoulder joint to the estimated one it must go until the elbow is `least` to `most` [m] away [share]. */
+/**
+ * How far from the rig's own shoulder joint to the estimated one it must go until the elbow is `least` to `most` [m]
+ * away [share].
+ */
 function yielding(from: Vec3, to: Vec3, elbow: Vec3, least: number, most: number): number {
   const far = distance(from, elbow);
   if (far >= least && far <= most) return 0;
@@ -76,9 +81,9 @@ function yielding(from: Vec3, to: Vec3, elbow: Vec3, least: number, most: number
 }
 
 /**
- * The trunk of a rig that is proportioned otherwise than the estimated body: it keeps its own neck, shoulders and the proportions of its
- * spine. Pelvis, head, elbows and hands stay where they were estimated; where an arm reaches further than the rig's own shoulder lets it, the
- * shoulder gives, as shoulders do.
+ * The trunk of a rig that is proportioned otherwise than the estimated body: it keeps its own neck, shoulders and the
+ * proportions of its spine. Pelvis, head, elbows and hands stay where they were estimated; where an arm reaches further
+ * than the rig's own shoulder lets it, the shoulder gives, as shoulders do.
  */
 export class OwnTrunk {
   private readonly links: Link[] = [];

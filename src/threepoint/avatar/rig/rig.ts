@@ -21,7 +21,9 @@ export interface RigBone {
   /** The rest pose in the rig's own frame, facing +Z. */
   readonly restRotation: Quaternion;
   readonly restPosition: Vector3;
-  /** The node's actual parent, which need not be a human bone, in the frame of the parent bone at rest (or of the rig). */
+  /**
+   * The node's actual parent, which need not be a human bone, in the frame of the parent bone at rest (or of the rig).
+   */
   readonly fromParentBone: Matrix4;
   /** What scales lie above the node in the file (centimetres, a mirror), in its own frame. */
   readonly restScale: Matrix4;
@@ -91,7 +93,10 @@ const facing = quat(0, 0, 0, 1);
 /** The bones of a VRM that poses move. Each has its own place: the rig is no chain of rotations. */
 export class Rig {
   readonly bones: ReadonlyMap<AvatarJoint, RigBone>;
-  /** Nodes of joints that the file lacks: each begins where its bone does, which carries it, and shares the skin before it. */
+  /**
+   * Nodes of joints that the file lacks: each begins where its bone does, which carries it, and shares the skin before
+   * it.
+   */
   readonly helpers = new Set<Object3D>();
   /** Joints of the bones as drawn, floor frame [m]; the same object in every frame. */
   readonly joints: Partial<Record<AvatarJoint, Vec3>> = {};
@@ -140,7 +145,8 @@ export class Rig {
             : name.endsWith('LowerLeg')
               ? legs.lower
               : bone.ownLength;
-      // The trunk's vertebrae are short and lie differently in every rig: stretched, they would tear; moved apart, they bend.
+      // The trunk's vertebrae are short and lie differently in every rig: stretched, they would tear; moved apart, they
+      // bend.
       this.reach(name, trunkBones.has(name) ? bone.ownLength : wanted);
     }
   }

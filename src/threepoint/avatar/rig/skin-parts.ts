@@ -10,7 +10,8 @@ const cornersAStep = 3 * 1024;
 
 /**
  * Sorts a skinned mesh's triangles by part and returns how many indices end after each part. The skin about the hips is
- * divided at the height [m] `hipLine` of the rest pose, so that trunk and legs part along a line and not along triangles.
+ * divided at the height [m] `hipLine` of the rest pose, so that trunk and legs part along a line and not along
+ * triangles.
  */
 export function* sortByPart(
   mesh: SkinnedMesh,

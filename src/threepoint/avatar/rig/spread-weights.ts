@@ -85,8 +85,8 @@ function turnOf(matrix: Matrix4): Turned {
 }
 
 /**
- * The bind of a joint half way between the bones `before` and `after`, which begins there: of a rig that was straightened (A-poses) it does half
- * of that to the skin.
+ * The bind of a joint half way between the bones `before` and `after`, which begins there: of a rig that was
+ * straightened (A-poses) it does half of that to the skin.
  */
 function halfBind(skeleton: Skeleton, before: number, after: number): Matrix4 {
   const skinAfter = skinMatrix(skeleton, after);
@@ -254,8 +254,8 @@ function writeStrongest(shares: Shares, at: number, indices: Uint16Array, weight
 }
 
 /**
- * Shares the skin of arms among their bones and the joints between, in every mesh under `scene`. The rig must be at rest, its world matrices up
- * to date.
+ * Shares the skin of arms among their bones and the joints between, in every mesh under `scene`. The rig must be at
+ * rest, its world matrices up to date.
  */
 export function* spreadArms(scene: Object3D, arms: readonly SpreadArm[]): Steps<void> {
   scene.updateMatrixWorld(true);

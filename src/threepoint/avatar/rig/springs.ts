@@ -5,11 +5,17 @@ import type { Vec3 } from '../../core/math/vec3';
 
 /** Hair and skirts are moved so often [s]: what they hang on moves in every frame, and they with it. */
 const stepSeconds = 1 / 30;
-/** In one frame so often at most, one more being left for the next: slower pages have slower hair, and after a pause it falls no further. */
+/**
+ * In one frame so often at most, one more being left for the next: slower pages have slower hair, and after a pause it
+ * falls no further.
+ */
 const mostSteps = 2;
 /** VRM's drag is a share of each step, and files are made for 60 steps a second. */
 const authoredSteps = 60;
-/** A head that is this far from where it was in the world a frame ago [m, rad] has been carried, not moved: recentred, teleported. */
+/**
+ * A head that is this far from where it was in the world a frame ago [m, rad] has been carried, not moved: recentred,
+ * teleported.
+ */
 const carried = 0.35;
 const turned = 0.9;
 

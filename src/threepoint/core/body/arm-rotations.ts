@@ -18,7 +18,9 @@ const armAtRest = {
 /** The hinge of an elbow, at right angles to shoulder, elbow and wrist: pole × axis of its circle. */
 export const elbowHinge = (pole: Vec3, axis: Vec3, target?: MutableVec3): MutableVec3 => cross(pole, axis, target);
 
-/** The rotation of an upper arm or an untwisted forearm that points in `direction` and bends about `hinge`, floor frame. */
+/**
+ * The rotation of an upper arm or an untwisted forearm that points in `direction` and bends about `hinge`, floor frame.
+ */
 export const armBoneRotation = (side: Side, direction: Vec3, hinge: Vec3, target?: MutableQuat): MutableQuat =>
   alignDirections(armAtRest[side], direction, hinge, target);
 

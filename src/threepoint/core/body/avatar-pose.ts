@@ -3,7 +3,9 @@ import { copyQuat, type MutableQuat, type Quat, quat } from '../math/quat';
 import { copyVec3, type MutableVec3, type Vec3, vec3 } from '../math/vec3';
 import { type JointName, jointNames } from './joints';
 
-/** Rotations of the upper body's joints; every identity is the T-pose facing −Z. `hips` is relative to the floor frame. */
+/**
+ * Rotations of the upper body's joints; every identity is the T-pose facing −Z. `hips` is relative to the floor frame.
+ */
 export interface UpperBodyPose {
   readonly hipsPosition: Vec3;
   readonly localRotations: Readonly<Record<JointName, Quat>>;
@@ -24,9 +26,8 @@ export const makeUpperBodyPose = (): MutableUpperBodyPose => ({
 });
 
 /**
- * What one frame shows: hands exactly as tracked in this frame, the head as its wearer holds it (as tracked, but for how the headset sits on it), and
- * the body between them.
- * `body` is null for estimators that show no body (hands-only).
+ * What one frame shows: hands exactly as tracked in this frame, the head as its wearer holds it (as tracked, but for
+ * how the headset sits on it), and the body between them. `body` is null for estimators that show no body (hands-only).
  */
 export interface AvatarPose {
   readonly head: TrackedPose;

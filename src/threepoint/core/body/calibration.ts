@@ -10,8 +10,8 @@ export interface Calibration {
   /** From elbow to wrist [m]. Absent: unknown, and estimated as an average share of the arm. */
   readonly forearm?: number | undefined;
   /**
-   * How far up [rad] the headset points when its wearer looks straight ahead: it sits tilted on nearly every wearer. Absent: not
-   * measured, and taken for level.
+   * How far up [rad] the headset points when its wearer looks straight ahead: it sits tilted on nearly every wearer.
+   * Absent: not measured, and taken for level.
    */
   readonly gazePitch?: number | undefined;
   /** The tilt of each hand to its forearm. Absent: not measured, and the device's hand frame is used unchanged. */
@@ -21,8 +21,8 @@ export interface Calibration {
 /** The steepest plausible tilt of a headset [rad]; at a steeper one the wearer was not looking ahead. */
 export const steepestGazePitch = Math.PI / 12;
 
-// Height of the eyes above the floor as a share of stature: Drillis & Contini, Body Segment Parameters (1966); ANSUR II agrees
-// within 1 %.
+// Height of the eyes above the floor as a share of stature: Drillis & Contini, Body Segment Parameters (1966); ANSUR II
+// agrees within 1 %.
 const EYE_HEIGHT_PER_STATURE = 0.936;
 
 // The arms and shoulders of the training data, bone by bone, add up to 0.945 eye heights from wrist to wrist. A tape
@@ -135,8 +135,8 @@ export function withForearm(calibration: Calibration, forearm: number | undefine
 const LOWEST_STANDING_ADULT = 1.35;
 
 /**
- * A body for a wearer who has not calibrated, from the headset's height [m] above the floor: taken for the eye height where
- * an adult could stand so tall; otherwise (seated, wrong floor) the default body.
+ * A body for a wearer who has not calibrated, from the headset's height [m] above the floor: taken for the eye height
+ * where an adult could stand so tall; otherwise (seated, wrong floor) the default body.
  */
 export function provisionalCalibration(headHeight: number): Calibration {
   if (!(headHeight >= LOWEST_STANDING_ADULT && headHeight <= eyeHeightRange.max)) return defaultCalibration;

@@ -46,8 +46,8 @@ const toThumb = vec3(0, 0, 0);
 const toIndex = vec3(0, 0, 0);
 
 /**
- * Bends thumb and index finger until their tips are as far apart as the pinch says, on a hand of this geometry: one person's angles
- * close another's fingers beside each other, or short of it. A shape without a pinch stays as it is.
+ * Bends thumb and index finger until their tips are as far apart as the pinch says, on a hand of this geometry: one
+ * person's angles close another's fingers beside each other, or short of it. A shape without a pinch stays as it is.
  */
 export function closePinch(shape: MutableHandShape, geometry: HandGeometry): void {
   const { thumb, index, pinch } = shape;
@@ -79,7 +79,10 @@ const points = makeFingerPoints();
 const tip = vec3(0, 0, 0);
 const moved = fingerBend(0, 0, 0, 0);
 
-/** One step of damped least squares that brings a finger's tip towards a place; its end joint bends half as far as its middle one. */
+/**
+ * One step of damped least squares that brings a finger's tip towards a place; its end joint bends half as far as its
+ * middle one.
+ */
 function reach(name: FingerName, geometry: HandGeometry, bend: MutableFingerBend, place: Vec3): void {
   copyVec3(fingerPoints(name, geometry[name], bend, points)[3], tip);
   subtract(place, tip, error);

@@ -20,7 +20,10 @@ export class FingerMemory {
   /** Overwritten by the next `follow`. */
   readonly shape: HandShape;
   readonly #shape: MutableHandShape = copyHandShape(relaxedHand, makeHandShape());
-  /** For how long each finger has not been seen [s]. Not in the order of a hand's shape, whose objects would box these numbers: see `Vec3`. */
+  /**
+   * For how long each finger has not been seen [s]. Not in the order of a hand's shape, whose objects would box these
+   * numbers: see `Vec3`.
+   */
   readonly #unseen = {
     little: heldSeconds,
     ring: heldSeconds,

@@ -12,7 +12,10 @@ import {
   type MutableHandShape,
 } from './hand-shape';
 
-/** A thing in a hand, in the frame of a left wrist (hand-geometry): how far a point is from its surface, below 0 inside [m]. */
+/**
+ * A thing in a hand, in the frame of a left wrist (hand-geometry): how far a point is from its surface, below 0 inside
+ * [m].
+ */
 export type Surface = (point: Vec3, finger: FingerName) => number;
 
 const relative = vec3(0, 0, 0);
@@ -35,7 +38,10 @@ const joints = ['knuckle', 'middle', 'end'] as const;
 const openThumb = fingerBend(-0.3, 0.75, -0.05, -0.05);
 /** A thumb that stands out of the palm, to be closed from before it round a rod that lies across it. */
 const opposedThumb = fingerBend(1.2, 0.3, -0.05, -0.05);
-/** A finger that is inside a thing when it is straight is closed from here: so far a knuckle bends back without force [rad]. */
+/**
+ * A finger that is inside a thing when it is straight is closed from here: so far a knuckle bends back without force
+ * [rad].
+ */
 const bentBack = 0.4;
 
 const points = makeFingerPoints();
@@ -44,9 +50,9 @@ const bent = fingerBend(0, 0, 0, 0);
 const opposed = fingerBend(0, 0, 0, 0);
 
 /**
- * Closes each finger joint by joint, knuckle first, until its skin lies on the surface; what meets nothing closes to a fist. A finger that
- * is inside when it is straight begins bent back, and stays straight where its outer bones are inside even so. The thumb closes from above
- * the palm or from before it, whichever brings it further round.
+ * Closes each finger joint by joint, knuckle first, until its skin lies on the surface; what meets nothing closes to a
+ * fist. A finger that is inside when it is straight begins bent back, and stays straight where its outer bones are
+ * inside even so. The thumb closes from above the palm or from before it, whichever brings it further round.
  */
 export function closeRound(surface: Surface, geometry: HandGeometry, target: MutableHandShape): void {
   for (let i = 0; i < fingerNames.length; i++) {

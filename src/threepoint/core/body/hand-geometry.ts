@@ -21,8 +21,8 @@ import proportions from './hand-geometry.json';
 import type { FingerBend, FingerName, MutableFingerBend } from './hand-shape';
 
 /**
- * Points and directions of this file are in the frame of a left wrist: −Z towards the knuckles, +Y out of the back of the hand,
- * +X towards the thumb. A right hand is its mirror image at x = 0: `mirrorPoint`.
+ * Points and directions of this file are in the frame of a left wrist: −Z towards the knuckles, +Y out of the back of
+ * the hand, +X towards the thumb. A right hand is its mirror image at x = 0: `mirrorPoint`.
  */
 export interface FingerGeometry {
   /** The joint of the first bone [m]; of the thumb: where its metacarpal begins. */
@@ -58,8 +58,9 @@ export function mirrorRotation(q: MutableQuat): MutableQuat {
 }
 
 /**
- * The thumb of a hand at ease: where its metacarpal points, and the axis about which the bones beyond bend. Where the metacarpal
- * swings, the axis goes along by the shortest way: within 4° (pointing) and 12° (pinching) of the hands that iwer recorded.
+ * The thumb of a hand at ease: where its metacarpal points, and the axis about which the bones beyond bend. Where the
+ * metacarpal swings, the axis goes along by the shortest way: within 4° (pointing) and 12° (pinching) of the hands that
+ * iwer recorded.
  */
 const thumbAtEase = normalise(vec3(0.639, -0.324, -0.697));
 const thumbAxisAtEase = normalise(reject(vec3(0.053, -0.886, 0.461), thumbAtEase));
@@ -74,8 +75,9 @@ function frameAlong(direction: Vec3, axis: Vec3, target: MutableQuat): MutableQu
 }
 
 /**
- * How the axes of the other fingers are rolled about their bones [rad], and more with the knuckle's bend: bent fingers meet before the
- * ball of the thumb. Of the hands that iwer recorded; without it the little finger of a fist ends 2 cm beside the tracked one.
+ * How the axes of the other fingers are rolled about their bones [rad], and more with the knuckle's bend: bent fingers
+ * meet before the ball of the thumb. Of the hands that iwer recorded; without it the little finger of a fist ends 2 cm
+ * beside the tracked one.
  */
 const rolls = {
   index: { straight: -0.03, perKnuckle: -0.14 },
@@ -140,8 +142,8 @@ function bendAgainst(frame: MutableQuat, to: Vec3): number {
 }
 
 /**
- * How a finger is bent whose joints and tip are there: the first bone exactly, the others as far as a hinge bends. A NaN position gives at
- * least one NaN bend.
+ * How a finger is bent whose joints and tip are there: the first bone exactly, the others as far as a hinge bends. A
+ * NaN position gives at least one NaN bend.
  */
 export function bendOfPoints(name: FingerName, points: FingerPoints, target: MutableFingerBend): MutableFingerBend {
   const [first, second, third, tip] = points;

@@ -38,7 +38,9 @@ export function setHandJoint(
   if (side === 'right') mirrorPoint(target, target);
 }
 
-/** How the fingers with these joints are bent. A NaN joint position gives its finger, and a pinch that needs it, NaN. */
+/**
+ * How the fingers with these joints are bent. A NaN joint position gives its finger, and a pinch that needs it, NaN.
+ */
 export function shapeOfJoints(joints: HandJoints, target: MutableHandShape): MutableHandShape {
   for (let i = 0; i < fingerNames.length; i++) {
     const name = fingerNames[i]!;

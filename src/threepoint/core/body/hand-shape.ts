@@ -6,9 +6,10 @@ export const fingerNames = ['thumb', 'index', 'middle', 'ring', 'little'] as con
 export type FingerName = (typeof fingerNames)[number];
 
 /**
- * How one finger is bent [rad], in the wrist's frame (threepoint/README.md, Frames). Its first bone (the thumb's: the metacarpal) points
- * (sin spread, −cos spread · sin knuckle, −cos spread · cos knuckle), x towards the thumb's side, y out of the back of the hand.
- * The two bones beyond are bent against the one before, about an axis that the first bone carries along.
+ * How one finger is bent [rad], in the wrist's frame (threepoint/README.md, Frames). Its first bone (the thumb's: the
+ * metacarpal) points (sin spread, −cos spread · sin knuckle, −cos spread · cos knuckle), x towards the thumb's side, y
+ * out of the back of the hand. The two bones beyond are bent against the one before, about an axis that the first bone
+ * carries along.
  */
 export interface FingerBend {
   /** The bend of the first bone towards the palm, from the direction of the knuckles. */

@@ -1,7 +1,7 @@
 /**
  * Joints of the upper body, by their VRM humanoid names, parents before children. A joint is its bone's origin:
- * `leftLowerArm` is the elbow, `leftHand` the wrist. What the paper calls the shoulder is our `UpperArm`; its "spine" is where
- * our thorax segment begins, which we call `chest`; its "pelvis" is `hips`.
+ * `leftLowerArm` is the elbow, `leftHand` the wrist. What the paper calls the shoulder is our `UpperArm`; its "spine"
+ * is where our thorax segment begins, which we call `chest`; its "pelvis" is `hips`.
  */
 export const jointNames = [
   'hips',
@@ -40,7 +40,9 @@ export const parentOf: Readonly<Record<JointName, JointName | null>> = {
   rightHand: 'rightLowerArm',
 };
 
-/** The six joints that no device tracks, in the order of every tensor: what the networks estimate and the tables report. */
+/**
+ * The six joints that no device tracks, in the order of every tensor: what the networks estimate and the tables report.
+ */
 export const estimatedJoints = [
   'leftLowerArm',
   'rightLowerArm',

@@ -10,7 +10,10 @@ const inverse = quat(0, 0, 0, 1);
 const against = (parent: Quat, child: Quat, target: MutableQuat): MutableQuat =>
   multiply(conjugate(parent, inverse), child, target);
 
-/** Writes the rotation of every joint against its parent's (`parentOf`; the hips': as it is), from all bones' in the floor frame. */
+/**
+ * Writes the rotation of every joint against its parent's (`parentOf`; the hips': as it is), from all bones' in the
+ * floor frame.
+ */
 export function writeLocalRotations(
   trunk: Readonly<Record<'hips' | 'spine' | 'chest' | 'upperChest' | 'neck', Quat>>,
   head: Quat,

@@ -20,7 +20,10 @@ export interface Skeleton {
 /** σ of docs/estimation.md: −1 left, +1 right. */
 export const sideSign = (side: Side): -1 | 1 => (side === 'left' ? -1 : 1);
 
-/** The wrist's frame as the hand bone rests in T-pose (knuckles sideways, palm down): handBone = wrist · wristFromHandBone. */
+/**
+ * The wrist's frame as the hand bone rests in T-pose (knuckles sideways, palm down): handBone = wrist ·
+ * wristFromHandBone.
+ */
 export const wristFromHandBone: Readonly<Record<Side, Quat>> = {
   left: fromAxisAngle(up, -Math.PI / 2),
   right: fromAxisAngle(up, Math.PI / 2),
@@ -33,8 +36,8 @@ export function armLength({ eyeHeight, armSpan }: Calibration): number {
 }
 
 /**
- * Bone lengths [m] that sum to armLength. A calibrated forearm is clamped to forearmShare of the arm, then blended with the average by
- * forearmTrust.
+ * Bone lengths [m] that sum to armLength. A calibrated forearm is clamped to forearmShare of the arm, then blended with
+ * the average by forearmTrust.
  */
 export function armBones(calibration: Calibration): LimbBones {
   const arm = armLength(calibration);
@@ -97,7 +100,10 @@ export function skeletonFromCalibration(calibration: Calibration): Skeleton {
   };
 }
 
-/** What inverse kinematics needs, in chest space: y from the chest joint to the neck, arms and shoulders of the right side [m]. */
+/**
+ * What inverse kinematics needs, in chest space: y from the chest joint to the neck, arms and shoulders of the right
+ * side [m].
+ */
 export interface ChestSpaceBody {
   readonly eyeHeight: number;
   readonly arm: number;

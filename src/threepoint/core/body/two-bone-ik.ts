@@ -34,7 +34,10 @@ export const makeElbowCircle = (): ElbowCircle => ({
   span: Number.NaN,
 });
 
-/** The elbow's circle, all in one frame [m]; a wrist at the shoulder lies along `fallbackAxis`, one out of reach leaves the arm straight. */
+/**
+ * The elbow's circle, all in one frame [m]; a wrist at the shoulder lies along `fallbackAxis`, one out of reach leaves
+ * the arm straight.
+ */
 export function elbowCircle(
   shoulder: Vec3,
   wrist: Vec3,
@@ -54,15 +57,18 @@ export function elbowCircle(
 }
 
 /**
- * Soft-IK reach (Andy Nicholas, 2009): equals `far` up to softReach·reach, then approaches `reach` exponentially, so the elbow does not
- * snap. Same unit in and out.
+ * Soft-IK reach (Andy Nicholas, 2009): equals `far` up to softReach·reach, then approaches `reach` exponentially, so
+ * the elbow does not snap. Same unit in and out.
  */
 export function softenedReach(far: number, reach: number): number {
   const near = reach * limits.softReach;
   return far <= near ? far : reach - (reach - near) * Math.exp((near - far) / (reach - near));
 }
 
-/** The unit vector at right angles to `axis` nearest to `pole`; where that lies along the axis, to the first fallback that does not. */
+/**
+ * The unit vector at right angles to `axis` nearest to `pole`; where that lies along the axis, to the first fallback
+ * that does not.
+ */
 export function poleAcross(
   axis: Vec3,
   pole: Vec3,

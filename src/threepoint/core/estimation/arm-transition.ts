@@ -19,15 +19,15 @@ import { advanceArc, alongArc, type DirectionArc, directionArc, makeDirectionArc
 /** The shortest transition [s]. */
 const shortestSeconds = 0.2;
 /**
- * Elbow and wrist go at most this fast [m/s] beyond what the hand itself moves, 3.75 cm in a frame at 60 Hz; an arm that has further to go
- * than it gets by `hurrySeconds` so, all the way round, goes evenly as fast as it must.
+ * Elbow and wrist go at most this fast [m/s] beyond what the hand itself moves, 3.75 cm in a frame at 60 Hz; an arm
+ * that has further to go than it gets by `hurrySeconds` so, all the way round, goes evenly as fast as it must.
  */
 const fastest = 2.25;
 /** The share of the shortest time that acceleration and deceleration take. */
 const ramp = 0.2;
 /**
- * Catch-up window [s since the jump] of an arm whose hand is tracked: the minimum progress along the arcs ramps from 0 to 1, so a moving
- * goal is reached by the end. Longest measured transition: 0.7 s.
+ * Catch-up window [s since the jump] of an arm whose hand is tracked: the minimum progress along the arcs ramps from 0
+ * to 1, so a moving goal is reached by the end. Longest measured transition: 0.7 s.
  */
 const [hurrySeconds, longestSeconds] = [0.7, 0.9];
 /** The smallest bend [sine of the angle] of an arm that defines the plane it bends in. */
@@ -68,9 +68,10 @@ export interface WantedArm extends ArmDirections {
 }
 
 /**
- * An arm that is not yet where it belongs, because its hand's goal has jumped: from frame to frame each bone turns on an arc from where it
- * was drawn to where it belongs now, both with the same share of its arc, and neither elbow nor wrist goes further than the speed
- * and what the hand itself moves allow. Bones turn in the room's axes: a body that turns about flings no arm.
+ * An arm that is not yet where it belongs, because its hand's goal has jumped: from frame to frame each bone turns on
+ * an arc from where it was drawn to where it belongs now, both with the same share of its arc, and neither elbow nor
+ * wrist goes further than the speed and what the hand itself moves allow. Bones turn in the room's axes: a body that
+ * turns about flings no arm.
  */
 export interface ArmTransition {
   /** The time since the jump [s]; NaN: there is no transition. */
@@ -138,8 +139,9 @@ function distanceAt(transition: ArmTransition, drawn: ArmDirections, wanted: Wan
 }
 
 /**
- * The share of the arcs up to which neither elbow nor wrist is further than this [m] from where it was drawn. If shoulder motion alone
- * exceeds the limit at every share, returns the share with the smallest distance. Shares are sampled in steps of 1/pathSteps.
+ * The share of the arcs up to which neither elbow nor wrist is further than this [m] from where it was drawn. If
+ * shoulder motion alone exceeds the limit at every share, returns the share with the smallest distance. Shares are
+ * sampled in steps of 1/pathSteps.
  */
 function shareWithin(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm, metres: number): number {
   let nearest = 0;
@@ -214,7 +216,8 @@ export function followTransition(
   retargetArc(forearm, drawn.forearm, wanted.forearm);
   const toGo = pathLength(transition, drawn, wanted);
   const step = stepOf(transition, toGo, wanted, passed);
-  // Minimum share per frame: a third of the nominal progress, so shoulder motion cannot stall the transition; plus the catch-up ramp.
+  // Minimum share per frame: a third of the nominal progress, so shoulder motion cannot stall the transition; plus the
+  // catch-up ramp.
   const least = Math.min(1, (transition.speed * passed) / Math.max(3 * toGo, 1e-9));
   const hurry =
     wanted.minDuration === 0 ? clamp((transition.age - hurrySeconds) / (longestSeconds - hurrySeconds), 0, 1) : 0;

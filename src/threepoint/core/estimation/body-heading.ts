@@ -23,8 +23,9 @@ export interface BodyHeading {
 export const makeBodyHeading = (): BodyHeading => ({ yaw: Number.NaN });
 
 /**
- * The yaw of a body under a turning head, as a rotation about +Y: still where only the head turns, slow to settle, limited in
- * speed, and kept where the head is so tilted that its heading is hardly defined. The first call takes the head's.
+ * The yaw of a body under a turning head, as a rotation about +Y: still where only the head turns, slow to settle,
+ * limited in speed, and kept where the head is so tilted that its heading is hardly defined. The first call takes the
+ * head's.
  */
 export function followBodyHeading(
   state: BodyHeading,

@@ -40,8 +40,8 @@ function write(target: Float32Array, next: number, chest: ChestAxes, v: MutableV
 }
 
 /**
- * Chest-frame features of one frame, in which an arm looks the same however its body turns and leans: written into `target` from
- * `start` on.
+ * Chest-frame features of one frame, in which an arm looks the same however its body turns and leans: written into
+ * `target` from `start` on.
  */
 export function chestFeatures(
   { head, leftHand, rightHand }: ThreePoints,

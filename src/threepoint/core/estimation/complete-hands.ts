@@ -48,9 +48,15 @@ import { type BodyHeading, followBodyHeading, makeBodyHeading } from './body-hea
 import { alongArc, type DirectionArc, directionArc, makeDirectionArc, outsideOfBody } from './direction-arc';
 import lostHand from './lost-hand.json';
 
-/** Most losses are shorter than a hand is held; of the longer ones most come back near where they were, so it goes to rest slowly. */
+/**
+ * Most losses are shorter than a hand is held; of the longer ones most come back near where they were, so it goes to
+ * rest slowly.
+ */
 const { holdSeconds, restSeconds, hanging, lowestRest } = lostHand;
-/** Time [s] in which confidence falls from 1 to 0 or rises again; shorter than the way to rest, so that later stages follow a guess slowly. */
+/**
+ * Time [s] in which confidence falls from 1 to 0 or rises again; shorter than the way to rest, so that later stages
+ * follow a guess slowly.
+ */
 export const confidenceSeconds = 0.3;
 /** A hand seen again this far [m] from its guess, or further, gets confidence 0; less far, in proportion. */
 const doubtfulReturn = 0.1;
@@ -64,8 +70,8 @@ export interface CompletedHand extends MutablePose<'floor'> {
   /** The target of its arm: the hand where it is seen, is held, or will rest. */
   readonly goal: MutablePose<'floor'>;
   /**
-   * True in the frame in which the goal changes discontinuously: the hand was reacquired, or begins to sink. The drawn arm must then be
-   * blended.
+   * True in the frame in which the goal changes discontinuously: the hand was reacquired, or begins to sink. The drawn
+   * arm must then be blended.
    */
   jumped: boolean;
 }
@@ -158,7 +164,10 @@ const restAxes: Readonly<Record<Side, MutableQuat>> = {
   right: fromAxes(vec3(0, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0)),
 };
 
-/** A relaxed arm below a head joint at this height [m], body frame: the wrist beside the thigh, the back of the hand outward, fingers down. */
+/**
+ * A relaxed arm below a head joint at this height [m], body frame: the wrist beside the thigh, the back of the hand
+ * outward, fingers down.
+ */
 function restingHand(
   side: Side,
   headJointHeight: number,
@@ -262,8 +271,9 @@ function completeHand(
 }
 
 /**
- * Stage 1: the frame in which a hand that is not seen is held, then sinks to rest beside the hip, and in which a hand that is
- * seen again is where it is seen. The one place that decides where a lost hand is; before a hand was ever seen it rests.
+ * Stage 1: the frame in which a hand that is not seen is held, then sinks to rest beside the hip, and in which a hand
+ * that is seen again is where it is seen. The one place that decides where a lost hand is; before a hand was ever seen
+ * it rests.
  */
 export function completeHands(
   state: CompleteHandsState,

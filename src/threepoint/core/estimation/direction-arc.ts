@@ -30,7 +30,9 @@ export const makeDirectionArc = (): DirectionArc => ({
   roundabout: false,
 });
 
-/** Directions further apart than this [rad] are joined by way of `outside`: the shortest path may lead through the body. */
+/**
+ * Directions further apart than this [rad] are joined by way of `outside`: the shortest path may lead through the body.
+ */
 const farApart = 2.1;
 
 /**
@@ -46,8 +48,8 @@ const across = vec3(0, 0, 0);
 const aside = vec3(0, 0, 0);
 
 /**
- * From the unit direction `from` to `to`; `outside` is where an arm passes that swings all the way round. The direction by way of which it
- * does is as far from either end, so that no path begins by going back.
+ * From the unit direction `from` to `to`; `outside` is where an arm passes that swings all the way round. The direction
+ * by way of which it does is as far from either end, so that no path begins by going back.
  */
 export function directionArc(
   from: Vec3,

@@ -54,8 +54,8 @@ export function createWithNetwork(
 }
 
 /**
- * One estimator by name; `paper` and `learned` throw without their regressor, `device` falls back on IK without that of `learned`. A name of none
- * throws a RangeError.
+ * One estimator by name; `paper` and `learned` throw without their regressor, `device` falls back on IK without that of
+ * `learned`. A name of none throws a RangeError.
  */
 export function createEstimator(
   name: EstimatorName,

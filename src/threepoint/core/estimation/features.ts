@@ -95,7 +95,10 @@ export class FeatureWindow {
     return frame.features;
   }
 
-  /** Writes the features at `ages` [s] before the newest frame, one after the other; linear between frames, the oldest before the start. */
+  /**
+   * Writes the features at `ages` [s] before the newest frame, one after the other; linear between frames, the oldest
+   * before the start.
+   */
   read(ages: readonly number[], target: Float32Array): void {
     const frames = this.#frames;
     const width = this.#width;

@@ -115,7 +115,10 @@ const downAndBack: Readonly<Record<Side, Vec3>> = {
 
 type Mutable<T> = { -readonly [Key in keyof T]: T[Key] };
 
-/** An arm that reaches its wrist, floor frame: the circle that its elbow may lie on, where it lies, and where it points from the circle's axis, unit. */
+/**
+ * An arm that reaches its wrist, floor frame: the circle that its elbow may lie on, where it lies, and where it points
+ * from the circle's axis, unit.
+ */
 interface BentArm {
   readonly wrist: MutableVec3;
   readonly circle: ElbowCircle;
@@ -151,7 +154,9 @@ const inverse = quat(0, 0, 0, 1);
 const inForearm = quat(0, 0, 0, 1);
 const twist = quat(0, 0, 0, 1);
 
-/** Stage 5, the arms: they hang from the trunk's shoulders, reach the hands and bend where their elbows are estimated. */
+/**
+ * Stage 5, the arms: they hang from the trunk's shoulders, reach the hands and bend where their elbows are estimated.
+ */
 export function fitArms(state: FitArmsState, input: ArmsInput, deltaSeconds: number): FitArmsState {
   fitArm('left', state.left, input, deltaSeconds);
   fitArm('right', state.right, input, deltaSeconds);

@@ -103,7 +103,10 @@ export const makeFitTorsoState = (): FitTorsoState => ({
 /** What the fitting of the torso needs of a skeleton, measured once. */
 interface TorsoBones {
   readonly skeleton: Skeleton;
-  /** From chest joint to neck, from hips to chest joint, and from the neck to the head, at rest; their side is the body's right. */
+  /**
+   * From chest joint to neck, from hips to chest joint, and from the neck to the head, at rest; their side is the
+   * body's right.
+   */
   readonly thorax: RestDirections;
   readonly thoraxLength: number;
   readonly lowerBack: RestDirections;
@@ -184,8 +187,9 @@ const rotation = quat(0, 0, 0, 1);
 const swing = quat(0, 0, 0, 1);
 
 /**
- * Stage 5, the trunk: neck, chest joint, hips and clavicles on their bones' lengths under the head, as nearly where they are
- * estimated as that lets them, leaning and turning after hands that the arms alone cannot reach, or would have to be straight to.
+ * Stage 5, the trunk: neck, chest joint, hips and clavicles on their bones' lengths under the head, as nearly where
+ * they are estimated as that lets them, leaning and turning after hands that the arms alone cannot reach, or would have
+ * to be straight to.
  */
 export function fitTorso(
   state: FitTorsoState,
@@ -216,8 +220,8 @@ export function fitTorso(
 }
 
 /**
- * Follows the line through the estimated shoulders: never faster than `turnSpeed`, and slowly where they are estimated close together.
- * Reads no lean, so that the line of a still frame settles whatever the hands ask of the trunk.
+ * Follows the line through the estimated shoulders: never faster than `turnSpeed`, and slowly where they are estimated
+ * close together. Reads no lean, so that the line of a still frame settles whatever the hands ask of the trunk.
  */
 function followShoulderLine(
   { shoulderLine: line, known }: FitTorsoState,
@@ -244,7 +248,10 @@ function turnTowards(wanted: MutableVec3, before: Vec3, share: number, most: num
   normalise(addScaled(wanted, b, Math.sin(turn), wanted), before, wanted);
 }
 
-/** How far the clavicle swings or the neck bends from rest against the thorax [rad], so far on the way from anatomy to the extreme [0 to 1]. */
+/**
+ * How far the clavicle swings or the neck bends from rest against the thorax [rad], so far on the way from anatomy to
+ * the extreme [0 to 1].
+ */
 const limitOf = (joint: 'clavicleSwing' | 'neckBend', extremity: number): number =>
   torsoLimits[joint] + extremity * (extremeLimits[joint] - torsoLimits[joint]);
 
@@ -273,9 +280,9 @@ function placeUprightNeck(
 }
 
 /**
- * Neck, chest joint, the upper chest's rotation and the shoulders, for estimated shoulders that lean by these offsets [m]. A lean turns neck,
- * thorax and shoulder line by less than a right angle each, so that none of them flips; what it asks back along them is left to the
- * clavicles.
+ * Neck, chest joint, the upper chest's rotation and the shoulders, for estimated shoulders that lean by these offsets
+ * [m]. A lean turns neck, thorax and shoulder line by less than a right angle each, so that none of them flips; what it
+ * asks back along them is left to the clavicles.
  */
 function placeThorax(
   state: FitTorsoState,
@@ -307,8 +314,8 @@ function placeThorax(
 }
 
 /**
- * Writes where the end of a bone in this direction (unit) and length [m] points when it is moved by an offset, of which the part that leads
- * back along the bone is left out: by less than a right angle from where it pointed.
+ * Writes where the end of a bone in this direction (unit) and length [m] points when it is moved by an offset, of which
+ * the part that leads back along the bone is left out: by less than a right angle from where it pointed.
  */
 function leanDirection(direction: Vec3, boneLength: number, offset: Vec3, target: MutableVec3): void {
   addScaled(offset, direction, boneLength - Math.min(dot(offset, direction), 0), target);
@@ -330,7 +337,10 @@ function placeShoulder(
   multiply(swing, rotations.upperChest, clavicles[side]);
 }
 
-/** Hips, and how each vertebra turns: the pelvis faces between head and shoulders; each joint above turns a part of the rest. */
+/**
+ * Hips, and how each vertebra turns: the pelvis faces between head and shoulders; each joint above turns a part of the
+ * rest.
+ */
 function placeSpine(
   state: FitTorsoState,
   { joints, frame, bones, deltaSeconds }: TorsoInput,
@@ -352,9 +362,9 @@ function placeSpine(
 }
 
 /**
- * Hips at `lowerBack` [m] from the chest joint, towards the estimate, never below the floor. The direction is rate-limited (hipsTurnSpeed,
- * relative to the body's turn) because it is ill-defined when the estimate is close to the chest joint, or directly below a chest joint
- * that is too low.
+ * Hips at `lowerBack` [m] from the chest joint, towards the estimate, never below the floor. The direction is
+ * rate-limited (hipsTurnSpeed, relative to the body's turn) because it is ill-defined when the estimate is close to the
+ * chest joint, or directly below a chest joint that is too low.
  */
 function hangHips(
   { known, pose, towardsHips: towards }: FitTorsoState,

@@ -28,8 +28,8 @@ const overhead = vec3(0, 0, 0);
 const way = vec3(0, 0, 0);
 
 /**
- * Yaw of hips [rad, 0 = −Z] from a weighted sum of their forward and up axes, so it stays defined when bent over. Upside down with forward
- * not below the horizon both weights are 0: the result is then 0 or ±π, by the signs of zeros.
+ * Yaw of hips [rad, 0 = −Z] from a weighted sum of their forward and up axes, so it stays defined when bent over.
+ * Upside down with forward not below the horizon both weights are 0: the result is then 0 or ±π, by the signs of zeros.
  */
 export function yawOfHips(orientation: Quat): number {
   rotate(orientation, forward, ahead);
@@ -40,8 +40,8 @@ export function yawOfHips(orientation: Quat): number {
 }
 
 /**
- * A gait network's inputs: hips, head and hands at each age, in the frame of the hips as they are now (origin on the floor under them, their
- * yaw), in eye heights.
+ * A gait network's inputs: hips, head and hands at each age, in the frame of the hips as they are now (origin on the
+ * floor under them, their yaw), in eye heights.
  */
 export class GaitFeatures {
   readonly values = new Float64Array(gaitFeatureCount);

@@ -41,8 +41,8 @@ const [standingAt, yawAt] = [4, 6] as const;
 export const shippedGait: GaitNetwork = shipped;
 
 /**
- * Predicts the mean foot pose from a second of hips, head and hands; avatar/legs/stepping turns it into discrete steps. A small network,
- * computed for a person and their mirror image and averaged.
+ * Predicts the mean foot pose from a second of hips, head and hands; avatar/legs/stepping turns it into discrete steps.
+ * A small network, computed for a person and their mirror image and averaged.
  */
 export class Gait {
   /** The newest estimate; overwritten by the next update. */

@@ -22,8 +22,8 @@ const { anatomicalPasses, extremeReach } = limits.reach;
 const leanSpeed = 0.6;
 
 /**
- * Offset of a shoulder's target [m, floor frame], from the estimated shoulder towards a hand that is out of reach, or reachable only with
- * a nearly straight arm.
+ * Offset of a shoulder's target [m, floor frame], from the estimated shoulder towards a hand that is out of reach, or
+ * reachable only with a nearly straight arm.
  */
 export interface Lean {
   /** What would reach the hand: in this frame, and in the one before. */
@@ -57,8 +57,9 @@ export function beginLean(lean: Lean): void {
 }
 
 /**
- * Adds to the lean until the wrist distance is the soft reach (first `anatomicalPasses`) or the full reach (later passes, which also
- * raise `extremity`), within one arm's reach. Returns false when nothing is missing, or the hand is sinking.
+ * Adds to the lean until the wrist distance is the soft reach (first `anatomicalPasses`) or the full reach (later
+ * passes, which also raise `extremity`), within one arm's reach. Returns false when nothing is missing, or the hand is
+ * sinking.
  *
  * reach: the arm's [m]; pass: how often this frame has leaned already.
  */
@@ -82,8 +83,9 @@ export function leanFurther(
 }
 
 /**
- * Follows `wanted` at no more than leanSpeed, and with it the limits of clavicle and neck; for a fully confident tracked hand this frame's
- * change of `wanted` is applied at once, and in the first frame (not `known`) all of it. Returns whether `wanted` was reached.
+ * Follows `wanted` at no more than leanSpeed, and with it the limits of clavicle and neck; for a fully confident
+ * tracked hand this frame's change of `wanted` is applied at once, and in the first frame (not `known`) all of it.
+ * Returns whether `wanted` was reached.
  */
 export function followLean(lean: Lean, hand: CompletedHand, known: boolean, deltaSeconds: number): boolean {
   const { wanted, wantedBefore, offset } = lean;

@@ -19,14 +19,15 @@ export function weightsOf({ name, weights }: ModelContract): FlatWeights {
 }
 
 /**
- * The learned network without a runtime (training/threepoint_training/model.py, CorrectionNetwork): features in, corrections of six joints out.
- * A body and its mirror image go through the network together; the trunk's correction is the mean of both, each arm is computed as a right one.
+ * The learned network without a runtime (training/threepoint_training/model.py, CorrectionNetwork): features in,
+ * corrections of six joints out. A body and its mirror image go through the network together; the trunk's correction is
+ * the mean of both, each arm is computed as a right one.
  */
 class LearnedNetwork {
   readonly #features: number;
   /**
-   * Arm network inputs: reach (3), its length (1), hand axes, IK elbow, up, seen. `armColumns` has the same count: it lacks the computed
-   * length and ends with the arm length, used only as a divisor.
+   * Arm network inputs: reach (3), its length (1), hand axes, IK elbow, up, seen. `armColumns` has the same count: it
+   * lacks the computed length and ends with the arm length, used only as a divisor.
    */
   readonly #armInputs: number;
   readonly #trunk: Perceptron;
@@ -58,7 +59,9 @@ class LearnedNetwork {
     this.#bodies = new Float64Array(2 * features);
   }
 
-  /** Corrections [eye heights, chest frame] of the six estimated joints, overwritten by the next run. Makes no garbage. */
+  /**
+   * Corrections [eye heights, chest frame] of the six estimated joints, overwritten by the next run. Makes no garbage.
+   */
   run(features: Float32Array): Float32Array {
     const bodies = this.#bodies;
     for (let index = 0; index < bodies.length; index++) {
@@ -88,7 +91,10 @@ class LearnedNetwork {
     for (let index = 0; index < 6; index++) output[index] = output[6 + index]!;
   }
 
-  /** The right arm of the body (0) or of its image (1), whose shoulder's correction stands at `shoulder` behind the left one's. */
+  /**
+   * The right arm of the body (0) or of its image (1), whose shoulder's correction stands at `shoulder` behind the left
+   * one's.
+   */
   #fillArm(body: 0 | 1, shoulder: 0 | 3): void {
     const from = body * this.#features;
     const inputs = this.#armInputs;

@@ -29,10 +29,10 @@ const carried = vec3(0, 0, 0);
 const steadiness = ({ source, confidence }: CompletedHand): number => (source === 'tracked' ? confidence : 1);
 
 /**
- * Stage 4: joints may jump for no motion of the person where a hand that was lost is seen elsewhere, and under a head on its side, whose
- * heading says nothing of the body's. There, and until they have caught up, they move about the head at most `doubtfulSpeed` [m/s] without
- * any confidence and at most `catchUpSpeed` with all of it; everywhere else they are free. An elbow whose own hand jumps goes along: the
- * arm transition of stage 5 bridges it. Floor frame.
+ * Stage 4: joints may jump for no motion of the person where a hand that was lost is seen elsewhere, and under a head
+ * on its side, whose heading says nothing of the body's. There, and until they have caught up, they move about the head
+ * at most `doubtfulSpeed` [m/s] without any confidence and at most `catchUpSpeed` with all of it; everywhere else they
+ * are free. An elbow whose own hand jumps goes along: the arm transition of stage 5 bridges it. Floor frame.
  */
 export function limitJoints(
   state: LimitJointsState,

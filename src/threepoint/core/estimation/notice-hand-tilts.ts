@@ -64,8 +64,8 @@ export function resetHandTilts(state: HandTiltsState, calibrated: HandTilts | un
 const direction = vec3(0, 0, 0);
 
 /**
- * Weight of the prior, as the metres of observed travel it equals. A measured tilt's shrinks with the square of doubtAngle/angle once
- * prior and observations differ by more than doubtAngle; the usual tilt's is constant.
+ * Weight of the prior, as the metres of observed travel it equals. A measured tilt's shrinks with the square of
+ * doubtAngle/angle once prior and observations differ by more than doubtAngle; the usual tilt's is constant.
  */
 function priorMetres({ prior, calibrated: told, noticed }: HandTiltState): number {
   if (!told) return usualMetres;
@@ -80,9 +80,10 @@ function turnAfter(state: HandTiltsState, side: Side): void {
 }
 
 /**
- * Accumulates, per tracked hand, the forearm direction that IK gives without knowledge of tilts (frame of the hand as it is tracked), weighted
- * by how far the hand has travelled about the head since the frame before. Takes effect next frame. The input ignores the estimate, so
- * errors cannot feed back; IK's own errors average out as the posture changes. A hand that lies still changes nothing.
+ * Accumulates, per tracked hand, the forearm direction that IK gives without knowledge of tilts (frame of the hand as
+ * it is tracked), weighted by how far the hand has travelled about the head since the frame before. Takes effect next
+ * frame. The input ignores the estimate, so errors cannot feed back; IK's own errors average out as the posture
+ * changes. A hand that lies still changes nothing.
  */
 export function noticeHandTilts(
   state: HandTiltsState,

@@ -32,9 +32,10 @@ interface NoticedFrame extends Pick<SolvedFrame, 'points' | 'ik'> {
 const fromShoulder = vec3(0, 0, 0);
 
 /**
- * Estimates how far the headset sits above its nominal place [m], which carries IK's shoulders up with it. While an arm hangs, a quantile of
- * the shoulder–wrist distance is tracked (stochastic approximation: Robbins and Monro, Annals of Mathematical Statistics 22(3), 1951); the
- * mean of both arms less usualReach, less a dead zone for anatomical variation, is attributed to the headset, within ±furthest.
+ * Estimates how far the headset sits above its nominal place [m], which carries IK's shoulders up with it. While an arm
+ * hangs, a quantile of the shoulder–wrist distance is tracked (stochastic approximation: Robbins and Monro, Annals of
+ * Mathematical Statistics 22(3), 1951); the mean of both arms less usualReach, less a dead zone for anatomical
+ * variation, is attributed to the headset, within ±furthest.
  *
  * arm: its length [m]; lowered: by how much the head of this frame was lowered for what had been noticed before [m].
  */

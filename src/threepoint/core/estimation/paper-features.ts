@@ -21,8 +21,8 @@ function writePoint(target: Float32Array, column: number, { position, orientatio
 }
 
 /**
- * The paper's input [1, 2, 3, 3]: depth (position [m] from the floor point under the headset, axes of the room; Euler angles
- * [rad]), row x, y, z, column head, left, right.
+ * The paper's input [1, 2, 3, 3]: depth (position [m] from the floor point under the headset, axes of the room; Euler
+ * angles [rad]), row x, y, z, column head, left, right.
  */
 export function paperFeatures(
   head: Pose<'floor'>,

@@ -24,7 +24,10 @@ export function createPaper(regressor: PoseRegressor): JointSource {
     },
   );
 
-  /** The joints [m] from the floor point under this frame's headset: an answer to an older frame moves along with the head. */
+  /**
+   * The joints [m] from the floor point under this frame's headset: an answer to an older frame moves along with the
+   * head.
+   */
   function place(output: Float32Array, { completed }: SolvedFrame, target: MutableJointPositions): void {
     const { x, z } = completed.head.position;
     for (let index = 0; index < estimatedJoints.length; index++) {

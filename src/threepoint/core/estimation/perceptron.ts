@@ -19,8 +19,8 @@ interface Layer {
 }
 
 /**
- * A multilayer perceptron with ELU between its layers, computed for two inputs at once: each weight is read once for both. Sums are 64 bits wide,
- * weights the 32-bit numbers of the ONNX graph.
+ * A multilayer perceptron with ELU between its layers, computed for two inputs at once: each weight is read once for
+ * both. Sums are 64 bits wide, weights the 32-bit numbers of the ONNX graph.
  */
 export class Perceptron {
   /** Both inputs, one behind the other, to be filled before `run`. */

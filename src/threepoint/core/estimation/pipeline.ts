@@ -75,8 +75,8 @@ interface OwnedPose {
 }
 
 /**
- * An estimator with a body: complete hands → solve IK → correct (the source) → filter joints → fit torso, fit arms. A method is its
- * source; every other stage is the same for all.
+ * An estimator with a body: complete hands → solve IK → correct (the source) → filter joints → fit torso, fit arms. A
+ * method is its source; every other stage is the same for all.
  */
 export class Pipeline implements PoseEstimator {
   readonly name: EstimatorName;

@@ -12,8 +12,8 @@ export type EstimatorName = (typeof estimatorNames)[number];
 /** Deferred inference for one frame. */
 export interface InferenceRequest {
   /**
-   * Call it after the frame is submitted and before the next `update`; if skipped, older results stay in use. Resolves when the run has
-   * ended, with or without a result; never rejects.
+   * Call it after the frame is submitted and before the next `update`; if skipped, older results stay in use. Resolves
+   * when the run has ended, with or without a result; never rejects.
    */
   ask(): Promise<void>;
 }

@@ -10,7 +10,10 @@ export interface TensorContract {
   readonly frame: 'floor' | 'heading' | 'chest';
 }
 
-/** A model's numbers in one flat file, for a forward pass without a runtime (training/threepoint_training/flat_weights.py). */
+/**
+ * A model's numbers in one flat file, for a forward pass without a runtime
+ * (training/threepoint_training/flat_weights.py).
+ */
 export interface FlatWeights {
   /** File name beside the contract, its size and SHA-256 (hex). */
   readonly file: string;

@@ -21,8 +21,8 @@ export const learnedInputCount = (windowSeconds: readonly number[]): number =>
   windowSeconds.length * featureCount + chestFeatureCount;
 
 /**
- * The learned network: the residual of the IK solution in the frame of IK's chest. It is low-passed there and added to the IK of the current
- * frame, so that neither the filter nor a late answer delays what follows head, hands and chest.
+ * The learned network: the residual of the IK solution in the frame of IK's chest. It is low-passed there and added to
+ * the IK of the current frame, so that neither the filter nor a late answer delays what follows head, hands and chest.
  */
 class Residual implements JointSource, JointNetwork {
   readonly #regressor: PoseRegressor;

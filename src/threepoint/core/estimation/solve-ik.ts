@@ -190,7 +190,10 @@ function leanTrunk(head: Pose<'heading'>, body: ChestSpaceBody): void {
   rotate(lowerBack, up, lowerBackUp);
 }
 
-/** A segment's rotation: sideways, then forward about the chest's side axis, then with the chest's yaw; no lean is singular. */
+/**
+ * A segment's rotation: sideways, then forward about the chest's side axis, then with the chest's yaw; no lean is
+ * singular.
+ */
 function leanRotation(segment: { forward: number[]; sideways: number[] }, target: MutableQuat): void {
   const alpha = clamp(weighted(segment.forward, sagittal), bounds.leanForward.min, bounds.leanForward.max);
   const beta = clamp(weighted(segment.sideways, lateral), bounds.leanSideways.min, bounds.leanSideways.max);
@@ -271,7 +274,10 @@ function placeShoulder(wrist: Pose<'heading'>, body: ChestSpaceBody, sigma: numb
   add(neck, rotate(thorax, clavicle, clavicle), target);
 }
 
-/** The chest's axes by its joints: x between the shoulders, y the part of the way from the chest joint to their middle that is normal to it. */
+/**
+ * The chest's axes by its joints: x between the shoulders, y the part of the way from the chest joint to their middle
+ * that is normal to it.
+ */
 function chestAxesOf(joints: MutableJointPositions, { x, y, z }: ChestAxes): void {
   normalise(subtract(joints.rightUpperArm, joints.leftUpperArm, x), undefined, x);
   lerp(joints.leftUpperArm, joints.rightUpperArm, 0.5, y);

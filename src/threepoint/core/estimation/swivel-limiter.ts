@@ -84,7 +84,10 @@ export interface SwivelContext {
   readonly deltaSeconds: number;
 }
 
-/** Swivel angles are counted about the arm's line from `zero`, which leads away from the trunk, towards `quarter`; both unit, floor frame. */
+/**
+ * Swivel angles are counted about the arm's line from `zero`, which leads away from the trunk, towards `quarter`; both
+ * unit, floor frame.
+ */
 interface SwivelAxes {
   readonly zero: MutableVec3;
   readonly quarter: MutableVec3;
@@ -118,9 +121,9 @@ function poleAt(angle: number, { zero, quarter }: SwivelAxes, target: MutableVec
 }
 
 /**
- * Writes where the elbow points now: after its estimate by way of the trunk's outside, with bounded speed, and slowly where the
- * estimate says little. Its previous side (null: none) is carried along as the arm moves; the first frame takes the estimate, out of
- * the trunk.
+ * Writes where the elbow points now: after its estimate by way of the trunk's outside, with bounded speed, and slowly
+ * where the estimate says little. Its previous side (null: none) is carried along as the arm moves; the first frame
+ * takes the estimate, out of the trunk.
  */
 export function limitSwivel(
   before: SwivelState | null,
@@ -186,7 +189,10 @@ const inTrunk: CircleInCapsule = {
   trunkHeight: 0.5,
 };
 
-/** A vector in the trunk's frame, with the capsule's half width, height of the caps and half depth as units of x, y and z. */
+/**
+ * A vector in the trunk's frame, with the capsule's half width, height of the caps and half depth as units of x, y and
+ * z.
+ */
 function inCapsule(v: Vec3, unit: number, target: MutableVec3): MutableVec3 {
   rotateInverse(floorFromTrunk, v, target);
   target.x /= capsule.halfWidth * unit;
@@ -230,7 +236,10 @@ function findClearRange(circle: CircleInCapsule, target: ClearRange): boolean {
   return target.high < Math.PI || target.low > -Math.PI;
 }
 
-/** Whether an elbow so many parts of a turn away is inside the trunk. Whole numbers: the engine hands them on without a box. */
+/**
+ * Whether an elbow so many parts of a turn away is inside the trunk. Whole numbers: the engine hands them on without a
+ * box.
+ */
 function isInside({ centre, towardsZero, towardsQuarter, trunkHeight }: CircleInCapsule, parts: number): boolean {
   const step = Math.abs(parts) / partsPerStep;
   const whole = Number.isInteger(step);

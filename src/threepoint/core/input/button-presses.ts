@@ -34,13 +34,13 @@ export const pressureOf = (buttons: HandButtons, button: Button): number => {
 /** Distinguishes presses from noise by thresholds with hysteresis, separately for each hand. */
 export interface ButtonPresses {
   /**
-   * The buttons newly pressed in this frame. A hand that is not seen has none; what is down when it is seen (again) for the
-   * first time, or when it has become another kind of hand, was not pressed then.
+   * The buttons newly pressed in this frame. A hand that is not seen has none; what is down when it is seen (again) for
+   * the first time, or when it has become another kind of hand, was not pressed then.
    */
   follow(side: Side, buttons: HandButtons, seen: boolean): readonly Button[];
   /**
-   * Whether the last frame's hand was of another kind than the one seen before, or in this very frame became another device, as when
-   * two controllers change sides: what it held is not held by this one.
+   * Whether the last frame's hand was of another kind than the one seen before, or in this very frame became another
+   * device, as when two controllers change sides: what it held is not held by this one.
    */
   changedKind(side: Side): boolean;
 }

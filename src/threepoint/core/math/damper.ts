@@ -2,8 +2,8 @@ import easing from './easing.json' with { type: 'json' };
 import { lerp, type MutableVec3, type Vec3 } from './vec3';
 
 /**
- * The share of the distance to its goal that exponential smoothing covers in `deltaSeconds`: half in every half-life, at any
- * frame rate. A half-life of 0 arrives at once; a step of no time or less covers nothing.
+ * The share of the distance to its goal that exponential smoothing covers in `deltaSeconds`: half in every half-life,
+ * at any frame rate. A half-life of 0 arrives at once; a step of no time or less covers nothing.
  */
 export function smoothingFactor(halfLifeSeconds: number, deltaSeconds: number): number {
   if (deltaSeconds <= 0) return 0;
@@ -28,8 +28,9 @@ export function smoothstep(start: number, end: number, value: number): number {
 }
 
 /**
- * Trapezoidal easing: 0 at and below `start`, 1 at and above `end`. With ramp = `trapezoidalRamp`, the speed rises evenly over the first
- * ramp·duration, is constant, and falls evenly over the last ramp·duration; peak speed 1/(1−ramp) of the mean, where smoothstep has 1.5.
+ * Trapezoidal easing: 0 at and below `start`, 1 at and above `end`. With ramp = `trapezoidalRamp`, the speed rises
+ * evenly over the first ramp·duration, is constant, and falls evenly over the last ramp·duration; peak speed 1/(1−ramp)
+ * of the mean, where smoothstep has 1.5.
  */
 export function trapezoidalEasing(start: number, end: number, value: number): number {
   const ramp = easing.trapezoidalRamp;

@@ -3,7 +3,8 @@ import { conjugate, copyQuat, type MutableQuat, multiply, type Quat, quat, slerp
 import { addScaled, copyVec3, length, lerp, type MutableVec3, setVec3, subtract, type Vec3, vec3 } from './vec3';
 
 /**
- * A low-pass whose cutoff rises with speed: steady at rest, without lag in motion (Casiez, Roussel and Vogel, “1 € Filter”, CHI 2012).
+ * A low-pass whose cutoff rises with speed: steady at rest, without lag in motion (Casiez, Roussel and Vogel, “1 €
+ * Filter”, CHI 2012).
  */
 export interface OneEuroTuning {
   /** Cutoff at rest [Hz]. */
@@ -57,7 +58,9 @@ const change = vec3(0, 0, 0);
 const turn = quat(0, 0, 0, 1);
 const inverse = quat(0, 0, 0, 1);
 
-/** Low-passes `velocity` towards `change` a step, and returns the share of the way that the value goes to its sample. */
+/**
+ * Low-passes `velocity` towards `change` a step, and returns the share of the way that the value goes to its sample.
+ */
 function shareOf(velocity: MutableVec3, tuning: OneEuroTuning, deltaSeconds: number): number {
   setVec3(change, change.x / deltaSeconds, change.y / deltaSeconds, change.z / deltaSeconds);
   lerp(velocity, change, smoothingFactor(halfLifeOfCutoff(tuning.velocityCutoff), deltaSeconds), velocity);

@@ -88,7 +88,10 @@ const unitFrom = vec3(0, 0, 0);
 const unitTo = vec3(0, 0, 0);
 const normal = vec3(0, 0, 0);
 
-/** The smallest rotation from the direction of one vector to that of another; half a turn about any normal when they oppose. */
+/**
+ * The smallest rotation from the direction of one vector to that of another; half a turn about any normal when they
+ * oppose.
+ */
 export function rotationBetween(from: Vec3, to: Vec3, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
   const a = normalise(from, undefined, unitFrom);
   const b = normalise(to, undefined, unitTo);
@@ -127,7 +130,10 @@ const frameY = vec3(0, 0, 0);
 const frameZ = vec3(0, 0, 0);
 const toFrame = quat(0, 0, 0, 1);
 
-/** Writes the rotation whose x axis is along main and whose z axis is normal to main and side; false where these are parallel. */
+/**
+ * Writes the rotation whose x axis is along main and whose z axis is normal to main and side; false where these are
+ * parallel.
+ */
 function frameOf(main: Vec3, side: Vec3, target: MutableQuat): boolean {
   normalise(main, undefined, frameX);
   cross(frameX, side, frameZ);
@@ -151,8 +157,8 @@ export function restDirections(main: Vec3, side: Vec3): RestDirections {
 }
 
 /**
- * The rotation that takes the main direction at rest to `toMain` exactly and the side as near to `toSide` as that allows.
- * Parallel main and side: the twist is the smallest rotation's.
+ * The rotation that takes the main direction at rest to `toMain` exactly and the side as near to `toSide` as that
+ * allows. Parallel main and side: the twist is the smallest rotation's.
  */
 export const alignDirections = (
   { main, inverse }: RestDirections,
@@ -164,7 +170,10 @@ export const alignDirections = (
     ? multiply(toFrame, inverse, target)
     : rotationBetween(main, toMain, target);
 
-/** Along the shorter arc from a (t = 0) to b (t = 1), both unit; t beyond [0, 1] extrapolates. Half a turn apart: one of the two arcs. */
+/**
+ * Along the shorter arc from a (t = 0) to b (t = 1), both unit; t beyond [0, 1] extrapolates. Half a turn apart: one of
+ * the two arcs.
+ */
 export function slerp(a: Quat, b: Quat, t: number, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
   const cosine = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
   const sign = cosine < 0 ? -1 : 1;
@@ -195,7 +204,10 @@ export function angleBetween(a: Quat, b: Quat): number {
   return 2 * Math.atan2(Math.sqrt(x * x + y * y + z * z), Math.abs(w));
 }
 
-/** The twist of q = swing·twist: about the unit axis, while the swing's axis is at right angles to it. A half-turn swing: the identity. */
+/**
+ * The twist of q = swing·twist: about the unit axis, while the swing's axis is at right angles to it. A half-turn
+ * swing: the identity.
+ */
 export function twistOf(q: Quat, axis: Vec3, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
   const along = q.x * axis.x + q.y * axis.y + q.z * axis.z;
   return normaliseQuat(setQuat(target, axis.x * along, axis.y * along, axis.z * along, q.w), target);

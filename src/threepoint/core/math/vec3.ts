@@ -1,9 +1,9 @@
 /**
  * A point or direction; metres where it is a position. Right-handed, +Y up, −Z forward.
  *
- * V8 gives all literals `{ x, y, z }` of a program one hidden class. As long as only numbers are ever written into it, a vector's
- * numbers are stored in place; one literal `{ x: schema, y: schema, z: schema }` anywhere makes every number stored in any vector an
- * object of its own on the heap (tests/page/boxed-numbers.test.ts). The same holds for `Quat`.
+ * V8 gives all literals `{ x, y, z }` of a program one hidden class. As long as only numbers are ever written into it,
+ * a vector's numbers are stored in place; one literal `{ x: schema, y: schema, z: schema }` anywhere makes every number
+ * stored in any vector an object of its own on the heap (tests/page/boxed-numbers.test.ts). The same holds for `Quat`.
  */
 export interface Vec3 {
   readonly x: number;
@@ -12,8 +12,9 @@ export interface Vec3 {
 }
 
 /**
- * A vector that its owner overwrites. Every function that makes a vector takes one as its optional last argument `target`,
- * writes the result into it and returns it; target may be one of the arguments. Without it a new vector is made.
+ * A vector that its owner overwrites. Every function that makes a vector takes one as its optional last argument
+ * `target`, writes the result into it and returns it; target may be one of the arguments. Without it a new vector is
+ * made.
  */
 export interface MutableVec3 {
   x: number;

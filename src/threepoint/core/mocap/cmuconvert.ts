@@ -11,8 +11,9 @@ const lost = (offset: Vec3, beside: Vec3): boolean => length(offset) < 0.01 * le
 const eachAxis = ([x, y, z]: readonly number[], v: Vec3): Vec3 => vec3(x! * v.x, y! * v.y, z! * v.z);
 
 /**
- * Gives a skeleton of cmuconvert the bones that it lost of the CMU database (the thorax, and the wrist of either arm; training/.../cmuconvert.py
- * says how they are known); other skeletons stay as they are. `notes`: what was done, a sentence each.
+ * Gives a skeleton of cmuconvert the bones that it lost of the CMU database (the thorax, and the wrist of either arm;
+ * training/.../cmuconvert.py says how they are known); other skeletons stay as they are. `notes`: what was done, a
+ * sentence each.
  */
 export function putBackLostBones(joints: readonly BvhJoint[]): {
   readonly joints: readonly BvhJoint[];

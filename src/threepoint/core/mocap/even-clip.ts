@@ -41,7 +41,10 @@ const rotationAt = ({ rotations }: OurMotion, frame: number, joint: number, targ
   return setQuat(target, rotations[at]!, rotations[at + 1]!, rotations[at + 2]!, rotations[at + 3]!);
 };
 
-/** The piece at 60 Hz: every nth frame where that is exact, else interpolated; above a floor at this height [m], its head turned back by `neutral`. */
+/**
+ * The piece at 60 Hz: every nth frame where that is exact, else interpolated; above a floor at this height [m], its
+ * head turned back by `neutral`.
+ */
 export function evenClip(motion: OurMotion, { from, to }: Piece, floor: number, neutral: Quat): EvenClip {
   const { positions, rateHz: rate } = motion;
   const length = to - from;

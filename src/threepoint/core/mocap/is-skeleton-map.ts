@@ -1,4 +1,6 @@
-/** Whether the text of a JSON file may be meant as a map of a skeleton (read-skeleton-map.ts), which a recording is not. */
+/**
+ * Whether the text of a JSON file may be meant as a map of a skeleton (read-skeleton-map.ts), which a recording is not.
+ */
 export function isSkeletonMap(text: string): boolean {
   try {
     const content: unknown = JSON.parse(text);

@@ -25,7 +25,10 @@ function countedFrom(file: FileMotion, { positions, rotations }: JointPoses): Fi
   };
 }
 
-/** A person in T-pose, taken from a frame or from angles, stands turned as they stood: the same motion counted from one who faces forward. */
+/**
+ * A person in T-pose, taken from a frame or from angles, stands turned as they stood: the same motion counted from one
+ * who faces forward.
+ */
 function facingForward(file: FileMotion, map: SkeletonMap): FileMotion {
   const floor = floorFromFile(map);
   const restOf = (joint: 'leftUpperArm' | 'rightUpperArm'): Vec3 => file.rest[file.names.indexOf(map.joints[joint]!)]!;

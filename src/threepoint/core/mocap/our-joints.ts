@@ -29,7 +29,9 @@ export interface OurMotion {
   readonly frameCount: number;
   /** x, y, z of `truthJoints`, frame after frame; NaN: the file has no such joint. */
   readonly positions: Float64Array;
-  /** x, y, z, w of `trackedJoints`: head as at rest, hands with −Z to the knuckles and +Y out of the back of the hand. */
+  /**
+   * x, y, z, w of `trackedJoints`: head as at rest, hands with −Z to the knuckles and +Y out of the back of the hand.
+   */
   readonly rotations: Float64Array;
 }
 
@@ -58,7 +60,10 @@ function wristFromRest(side: 'left' | 'right', rest: RestPose): Quat {
   return multiply(rotationBetween(scale(right, -sign), forearm), turn);
 }
 
-/** Brings a file's joints into ours. Yields the share [0, 1] that is done. Throws a sentence where its skeleton is not known or no person's. */
+/**
+ * Brings a file's joints into ours. Yields the share [0, 1] that is done. Throws a sentence where its skeleton is not
+ * known or no person's.
+ */
 export function* toOurJoints(
   file: FileMotion,
   rateHz: number,

@@ -14,11 +14,16 @@ export interface Piece {
   readonly to: number;
 }
 
-/** The ankle's height above the sole as a share of thigh and shin (Winter, Biomechanics: 0.039 and 0.491 of stature). */
+/**
+ * The ankle's height above the sole as a share of thigh and shin (Winter, Biomechanics: 0.039 and 0.491 of stature).
+ */
 const soleOfLeg = 0.039 / 0.491;
 /** A trunk that deviates less from upright (as a cosine) than this is. */
 const upright = 0.94;
-/** A foot's lowest joint lies so high above the floor [m], and may lie so far off before the floor is taken to lie elsewhere. */
+/**
+ * A foot's lowest joint lies so high above the floor [m], and may lie so far off before the floor is taken to lie
+ * elsewhere.
+ */
 const footHeight = 0.025;
 const floorTolerance = 0.04;
 
@@ -92,7 +97,10 @@ export function neutralHead({ positions, rotations }: OurMotion, pieces: readonl
   return multiply(fromAxisAngle(right, median(pitches)), fromAxisAngle({ x: 0, y: 0, z: 1 }, median(rolls)));
 }
 
-/** How high [m] the floor lies that the lowest joint of the feet usually stands on; 0 where there are no feet or it lies where it should. */
+/**
+ * How high [m] the floor lies that the lowest joint of the feet usually stands on; 0 where there are no feet or it lies
+ * where it should.
+ */
 export function floorHeight(motion: OurMotion, pieces: readonly Piece[]): number {
   const { positions, rest } = motion;
   const feet = sides.flatMap((side) => [`${side}Foot`, `${side}Toes`] as const).filter((joint) => rest.has(joint));

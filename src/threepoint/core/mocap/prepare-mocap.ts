@@ -102,8 +102,9 @@ function personOf(name: string): string {
 }
 
 /**
- * Simulates what a headset and two hands would have seen of the person in a file, as the evaluation does (docs/accuracy.md). Where the motion
- * leaps it is cut. Yields the share [0, 1] that is done. Throws a sentence that begins with the file's name.
+ * Simulates what a headset and two hands would have seen of the person in a file, as the evaluation does
+ * (docs/accuracy.md). Where the motion leaps it is cut. Yields the share [0, 1] that is done. Throws a sentence that
+ * begins with the file's name.
  */
 export function* prepareMocap(source: MocapSource): Generator<number, PreparedMocap> {
   const { name } = source;

@@ -28,8 +28,8 @@ const isObject = (value: unknown): value is Content =>
 const isNumber = (value: unknown): value is number => typeof value === 'number' && Number.isFinite(value);
 
 /**
- * The map of a skeleton in a JSON text, as the evaluation takes it (docs/accuracy.md). Throws a sentence where something is missing, unknown or
- * of the wrong kind.
+ * The map of a skeleton in a JSON text, as the evaluation takes it (docs/accuracy.md). Throws a sentence where
+ * something is missing, unknown or of the wrong kind.
  */
 export function readSkeletonMap(text: string, name: string): SkeletonMap {
   const content = parse(text);

@@ -24,8 +24,9 @@ function shownVector({ x, y, z }: Vec3): string {
 }
 
 /**
- * Throws a sentence where joints at rest are no person in T-pose, with arms anywhere between level and hanging: a bone of no length, a trunk
- * that lies, shoulders that are not left and right, raised or folded arms, legs that do not stand.
+ * Throws a sentence where joints at rest are no person in T-pose, with arms anywhere between level and hanging: a bone
+ * of no length, a trunk that lies, shoulders that are not left and right, raised or folded arms, legs that do not
+ * stand.
  */
 export function checkRest(rest: RestPose, { joints }: SkeletonMap): void {
   const at = (joint: TruthJoint): Vec3 => rest.get(joint)!;

@@ -44,7 +44,10 @@ function checksum(text: string): number {
   return ~sum >>> 0;
 }
 
-/** How a headset and two hands sit on a person, constant for a wearer: offsets [m] in the frames of head and wrists, and turns. */
+/**
+ * How a headset and two hands sit on a person, constant for a wearer: offsets [m] in the frames of head and wrists, and
+ * turns.
+ */
 function drawWearer(person: string): { readonly offsets: readonly Vec3[]; readonly turns: readonly Quat[] } {
   const normal = normalOf(person);
   const handTurn = radians(trackers.handTurnDegrees) / Math.sqrt(3);
@@ -57,8 +60,8 @@ function drawWearer(person: string): { readonly offsets: readonly Vec3[]; readon
 }
 
 /**
- * What a headset and two hands would have reported of a person while the clip of this name was recorded, `trackedWidth` numbers for each frame;
- * the same as the evaluation's, which draws its errors by person and clip.
+ * What a headset and two hands would have reported of a person while the clip of this name was recorded, `trackedWidth`
+ * numbers for each frame; the same as the evaluation's, which draws its errors by person and clip.
  */
 export function simulateTrackers(
   { positions, rotations, frameCount }: EvenClip,

@@ -61,8 +61,8 @@ export type FileAxis = '+x' | '-x' | '+y' | '-y' | '+z' | '-z';
 export const neededJoints: readonly TruthJoint[] = bodyJoints.filter((joint) => joint !== 'spine');
 
 /**
- * The known skeleton that fits these joints: one with all that are needed and most of the others, without those that the file lacks. Throws a
- * sentence where none does.
+ * The known skeleton that fits these joints: one with all that are needed and most of the others, without those that
+ * the file lacks. Throws a sentence where none does.
  */
 export function findSkeletonMap(names: readonly string[]): SkeletonMap {
   const known = new Set(names);

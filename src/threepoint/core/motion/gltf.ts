@@ -26,8 +26,8 @@ export interface Clip {
 const float = 5126;
 
 /**
- * Puts a clip, as the only one, into a description whose binary part is `binaryLength` bytes long; the clip is interpolated along straight lines and shorter arcs.
- * Returns what follows that part, after padding to four bytes.
+ * Puts a clip, as the only one, into a description whose binary part is `binaryLength` bytes long; the clip is
+ * interpolated along straight lines and shorter arcs. Returns what follows that part, after padding to four bytes.
  */
 export function addClip(
   description: GltfDescription,

@@ -14,7 +14,10 @@ export interface Motion {
   readonly times: Float64Array;
   /** The hips' positions [m]: x, y, z of each frame. */
   readonly hips: Float64Array;
-  /** Rotation of each measured bone against its parent, in T-pose's axes: x, y, z, w, bone after bone, frame after frame. */
+  /**
+   * Rotation of each measured bone against its parent, in T-pose's axes: x, y, z, w, bone after bone, frame after
+   * frame.
+   */
   readonly rotations: Float32Array;
   /** Whether the left (1) and the right hand (2) were seen, added up, of each frame. */
   readonly seen: Uint8Array;

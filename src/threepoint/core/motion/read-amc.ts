@@ -30,8 +30,8 @@ function columnsOf({ rootFreedoms, bones }: AsfSkeleton): {
 }
 
 /**
- * Reads the text of an AMC file of a skeleton, which lies in the file of this name. Yields the share [0, 1] that was read. Throws a sentence
- * with line and column where the text is none, or of another skeleton.
+ * Reads the text of an AMC file of a skeleton, which lies in the file of this name. Yields the share [0, 1] that was
+ * read. Throws a sentence with line and column where the text is none, or of another skeleton.
  */
 export function* readAmc(text: string, skeleton: AsfSkeleton, skeletonName: string): Generator<number, FileMotion> {
   const lines: Lines = new Lines(text);

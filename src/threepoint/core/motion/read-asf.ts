@@ -154,7 +154,9 @@ function orderedBones({ bones, parents, radiansPerUnit }: Sections): readonly As
   return ordered;
 }
 
-/** Reads the text of an ASF file. Throws a sentence, where a line is wrong with line and column, where the text is none. */
+/**
+ * Reads the text of an ASF file. Throws a sentence, where a line is wrong with line and column, where the text is none.
+ */
 export function readAsf(text: string): AsfSkeleton {
   const lines = new Lines(text);
   const sections = new Sections(lines);

@@ -125,8 +125,8 @@ function readDeclaration(lines: Lines, declared: Declared): boolean {
 }
 
 /**
- * Reads the text of a BVH file. Yields the share [0, 1] that was read. Throws a sentence with line and column where the text is none: cut
- * short, counts that do not agree, numbers that are none.
+ * Reads the text of a BVH file. Yields the share [0, 1] that was read. Throws a sentence with line and column where the
+ * text is none: cut short, counts that do not agree, numbers that are none.
  */
 export function* readBvh(text: string): Generator<number, BvhMotion> {
   const lines = new Lines(text);
@@ -178,7 +178,10 @@ export function poseBvh({ joints, width, values }: BvhMotion, frame: number, tar
   return target;
 }
 
-/** A BVH file as any file of motion: at rest all its angles are zero. `joints`: those of the file, or what was put right of them. */
+/**
+ * A BVH file as any file of motion: at rest all its angles are zero. `joints`: those of the file, or what was put right
+ * of them.
+ */
 export function bvhFileMotion(motion: BvhMotion, joints = motion.joints, notes: readonly string[] = []): FileMotion {
   const rest: Vec3[] = [];
   for (const { parent, offset } of joints) rest.push(parent < 0 ? zero : add(rest[parent]!, offset));

@@ -224,7 +224,10 @@ class Scene {
   }
 }
 
-/** Reads the description and the binary part of a VRM Animation 1.0. Throws a sentence that names the field where they are none. */
+/**
+ * Reads the description and the binary part of a VRM Animation 1.0. Throws a sentence that names the field where they
+ * are none.
+ */
 export function readVrma(description: unknown, binary: Uint8Array): FileMotion {
   const extension =
     isObject(description) && isObject(description.extensions) ? description.extensions.VRMC_vrm_animation : null;

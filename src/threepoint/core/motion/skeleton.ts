@@ -9,8 +9,8 @@ import { type Side, sides } from '../math/side';
 import { add, type MutableVec3, setVec3, subtract, type Vec3, vec3 } from '../math/vec3';
 
 /**
- * A bone of a motion, by its VRM name. Positions are in the clip frame: the floor frame turned by half about +Y, so that a person
- * in T-pose faces +Z and their left is +X, as files of motion and VRM 1.0 have it.
+ * A bone of a motion, by its VRM name. Positions are in the clip frame: the floor frame turned by half about +Y, so
+ * that a person in T-pose faces +Z and their left is +X, as files of motion and VRM 1.0 have it.
  */
 export interface MotionBone {
   readonly name: string;
@@ -34,12 +34,15 @@ export const turnRotation = (q: Quat, target: MutableQuat): MutableQuat => setQu
 const straight: FingerBend = { knuckle: 0, spread: 0, middle: 0, end: 0 };
 const thumbAside: FingerBend = { ...straight, spread: Math.PI / 4 };
 
-/** How a finger rests in VRM's T-pose: straight and level, the thumb half-way between the fingers' direction and the front. */
+/**
+ * How a finger rests in VRM's T-pose: straight and level, the thumb half-way between the fingers' direction and the
+ * front.
+ */
 export const restBend = (finger: FingerName): FingerBend => (finger === 'thumb' ? thumbAside : straight);
 
 /**
- * Hip joints beside the pelvis, knees, ankles, and how far the foot reaches, as shares of the eye height: those of the mannequin
- * (tools/avatars/build/rig/rig.ts), which stands on them.
+ * Hip joints beside the pelvis, knees, ankles, and how far the foot reaches, as shares of the eye height: those of the
+ * mannequin (tools/avatars/build/rig/rig.ts), which stands on them.
  */
 const legShares = { aside: 0.0566, hip: 0.5849, knee: 0.3176, ankle: 0.0516, foot: 0.13 };
 
@@ -88,7 +91,10 @@ function addLeg(builder: Builder, side: Side, eyeHeight: number, hipsHeight: num
   builder.add(`${side}Foot`, `${side}LowerLeg`, vec3(0, (ankle - knee) * eyeHeight, 0), { end, measured: false });
 }
 
-/** A person's bones in T-pose, every bone before its children: trunk and arms with their fingers, all measured; then the legs, which are not. */
+/**
+ * A person's bones in T-pose, every bone before its children: trunk and arms with their fingers, all measured; then the
+ * legs, which are not.
+ */
 export function motionSkeleton(calibration: Calibration): readonly MotionBone[] {
   const { eyeHeight } = calibration;
   const skeleton: Skeleton = skeletonFromCalibration(calibration);

@@ -38,7 +38,9 @@ const against = quat(0, 0, 0, 1);
 const inverse = quat(0, 0, 0, 1);
 const wrist = quat(0, 0, 0, 1);
 
-/** How a bone of a bent finger has turned against the one before it since T-pose, in T-pose's axes of the floor frame. */
+/**
+ * How a bone of a bent finger has turned against the one before it since T-pose, in T-pose's axes of the floor frame.
+ */
 function fingerRotation(side: Side, index: 0 | 1 | 2, target: MutableQuat): MutableQuat {
   if (index === 0) copyQuat(turned[0], against);
   else multiply(conjugate(turned[(index - 1) as 0 | 1], inverse), turned[index], against);
@@ -47,7 +49,10 @@ function fingerRotation(side: Side, index: 0 | 1 | 2, target: MutableQuat): Muta
   return multiply(multiply(conjugate(toWrist, wrist), against, against), toWrist, target);
 }
 
-/** How every measured bone of a person is turned, frame after frame: fingers that are not seen keep their bend for a while, as on an avatar. */
+/**
+ * How every measured bone of a person is turned, frame after frame: fingers that are not seen keep their bend for a
+ * while, as on an avatar.
+ */
 export class BoneRotations {
   readonly #hand;
   readonly #memories = { left: new FingerMemory(), right: new FingerMemory() };
@@ -61,7 +66,10 @@ export class BoneRotations {
     this.#hand = averageHand(calibration.eyeHeight);
   }
 
-  /** Writes x, y, z, w of each bone, clip frame, in the order of `motionSkeleton`, from `at` on; so long after the frame before [s]. */
+  /**
+   * Writes x, y, z, w of each bone, clip frame, in the order of `motionSkeleton`, from `at` on; so long after the frame
+   * before [s].
+   */
   write(
     { localRotations }: UpperBodyPose,
     fingers: Fingers,
@@ -154,8 +162,9 @@ export class MotionTaker {
 const hipsOfBody = vec3(0, 0, 0);
 
 /**
- * The body that an estimator draws of a recording, frame by frame as it would have live; a network that answers later is waited for. Yields the
- * share [0, 1] that is done, now and then. Throws a sentence where the estimator fails or draws no body.
+ * The body that an estimator draws of a recording, frame by frame as it would have live; a network that answers later
+ * is waited for. Yields the share [0, 1] that is done, now and then. Throws a sentence where the estimator fails or
+ * draws no body.
  */
 export async function* estimateMotion(
   recording: Replayable,

@@ -1,5 +1,6 @@
 /**
- * Long work in pieces: it yields the share [0, 1] that is done, so that who runs it can show how far it is, let others go first, or leave off.
+ * Long work in pieces: it yields the share [0, 1] that is done, so that who runs it can show how far it is, let others
+ * go first, or leave off.
  */
 export type Work<Result> = Generator<number, Result> | AsyncGenerator<number, Result>;
 
@@ -45,8 +46,8 @@ export interface WorkHost {
 const turnMs = 8;
 
 /**
- * Does long work in turns of a few milliseconds, so that a page goes on drawing. `onStep` receives what each step yields and may throw to stop the
- * work. Rejects with what it or the work throws.
+ * Does long work in turns of a few milliseconds, so that a page goes on drawing. `onStep` receives what each step
+ * yields and may throw to stop the work. Rejects with what it or the work throws.
  */
 export async function runInTurns<Step, Result>(
   work: Generator<Step, Result> | AsyncGenerator<Step, Result>,

@@ -101,9 +101,9 @@ export const bidsChannelFrames = {
 };
 
 /**
- * `*_motion.tsv`: a row per frame without a header, columns as `bidsChannels` names them: seconds since the first frame by the recording's
- * clock, which runs on in pauses; then head and wrists [m, unit quaternions, floor frame], `n/a` where a hand was not seen or
- * only guessed.
+ * `*_motion.tsv`: a row per frame without a header, columns as `bidsChannels` names them: seconds since the first frame
+ * by the recording's clock, which runs on in pauses; then head and wrists [m, unit quaternions, floor frame], `n/a`
+ * where a hand was not seen or only guessed.
  */
 export function bidsMotion({ frames }: Recording): string {
   const start = frames[0]!.time;

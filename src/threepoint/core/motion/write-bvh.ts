@@ -15,7 +15,10 @@ const degrees = 180 / Math.PI;
 /** From here on [sine of the middle angle] the outer two angles turn about the same axis to within 0.006°. */
 const locked = 1 - 5e-9;
 
-/** Angles [rad] about x, y, z of Ry·Rx·Rz. Where x is a quarter turn only the sum of the others is a fact: all of it is y's. */
+/**
+ * Angles [rad] about x, y, z of Ry·Rx·Rz. Where x is a quarter turn only the sum of the others is a fact: all of it is
+ * y's.
+ */
 export function eulerYxz(q: Quat, target: MutableVec3): MutableVec3 {
   const sine = 2 * (q.x * q.w - q.y * q.z);
   if (Math.abs(sine) < locked) return toEulerYxz(q, target);
@@ -67,8 +70,9 @@ const framesPerStep = 64;
 const resampling = 0.3;
 
 /**
- * The text of a BVH file, in parts: T-pose at rest facing +Z, the root at the hips, angles in the order Y, X, Z, an even rate. Bones that are
- * not measured have no channels. Yields the share [0, 1] that is done. Throws a sentence where the rate or the unit is none.
+ * The text of a BVH file, in parts: T-pose at rest facing +Z, the root at the hips, angles in the order Y, X, Z, an
+ * even rate. Bones that are not measured have no channels. Yields the share [0, 1] that is done. Throws a sentence
+ * where the rate or the unit is none.
  */
 export function* writeBvh(
   motion: Motion,

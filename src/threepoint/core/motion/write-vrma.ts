@@ -32,8 +32,9 @@ function next(value: number): number {
 }
 
 /**
- * The bytes of a VRM Animation 1.0 (.vrma), in parts: T-pose at rest facing +Z, rotations against it, translation of the hips alone. Legs are in
- * it, as the format wants them, at rest: `extras.notMeasured` of the animation names them. Yields the share [0, 1] that is done.
+ * The bytes of a VRM Animation 1.0 (.vrma), in parts: T-pose at rest facing +Z, rotations against it, translation of
+ * the hips alone. Legs are in it, as the format wants them, at rest: `extras.notMeasured` of the animation names them.
+ * Yields the share [0, 1] that is done.
  */
 export function* writeVrma(motion: Motion): Generator<number, readonly Uint8Array<ArrayBuffer>[]> {
   const { bones, times } = motion;

@@ -127,8 +127,9 @@ function jointsOf(bones: readonly MotionBone[]): readonly XRJoint[] {
 export type XRBodyJoints = ReadonlyMap<string, Pose<'floor'>>;
 
 /**
- * A person's body as WebXR Body Tracking has it: 83 joints, −Z along the bone. +Y is up in T-pose (the back of hands and feet), out of the back of
- * the trunk and out of the shins. All are emulated: what no estimator guesses (legs, the bones of the palm) rests where it grows.
+ * A person's body as WebXR Body Tracking has it: 83 joints, −Z along the bone. +Y is up in T-pose (the back of hands
+ * and feet), out of the back of the trunk and out of the shins. All are emulated: what no estimator guesses (legs, the
+ * bones of the palm) rests where it grows.
  */
 export class XRBodyPoser {
   readonly #bones: readonly MotionBone[];

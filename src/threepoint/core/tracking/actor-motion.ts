@@ -109,7 +109,9 @@ const keys: readonly Key[] = [
 /** Length of the loop [s]. */
 export const actorLoopSeconds = keys.at(-1)?.time ?? 0;
 
-/** From 0 to 1 with neither speed nor acceleration at the ends: how hands move between two places (Flash & Hogan 1985). */
+/**
+ * From 0 to 1 with neither speed nor acceleration at the ends: how hands move between two places (Flash & Hogan 1985).
+ */
 const minimumJerk = (t: number): number => t * t * t * (10 - 15 * t + 6 * t * t);
 
 const radians = (degrees: number): number => (degrees * Math.PI) / 180;
@@ -126,8 +128,8 @@ function bodyOf(calibration: Calibration): ChestSpaceBody {
 }
 
 /**
- * Head and wrists at a time [s] of an endless performance by this body, floor frame, standing about the origin and facing −Z at
- * first. Smooth in position and speed; hands stay within reach.
+ * Head and wrists at a time [s] of an endless performance by this body, floor frame, standing about the origin and
+ * facing −Z at first. Smooth in position and speed; hands stay within reach.
  */
 export function actorFrame(timeSeconds: number, calibration: Calibration): TrackingFrame {
   const loops = Math.floor(timeSeconds / actorLoopSeconds);

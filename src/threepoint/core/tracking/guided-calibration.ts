@@ -215,8 +215,8 @@ function measure(samples: readonly Sample[]): GuidedCalibration {
 }
 
 /**
- * Shoulder to wrist [m] of an arm stretched forward or sideways; null: it points elsewhere. Wrist in the heading frame, the eyes this
- * high now, which for a seated wearer is less than their eye height.
+ * Shoulder to wrist [m] of an arm stretched forward or sideways; null: it points elsewhere. Wrist in the heading frame,
+ * the eyes this high now, which for a seated wearer is less than their eye height.
  */
 function reachOf(side: Side, wrist: Vec3, headHeight: number, eyeHeight: number): number | null {
   const arm = armTo(side, wrist, headHeight, eyeHeight);

@@ -6,8 +6,8 @@ import { forward, right, setVec3, up, vec3 } from '../math/vec3';
 const axis = vec3(0, 0, 0);
 
 /**
- * The yaw [rad] of a head about +Y, from its right axis, so that looking straight up or down does not matter. A head on its side
- * has none: then the gaze's, then that of −Z.
+ * The yaw [rad] of a head about +Y, from its right axis, so that looking straight up or down does not matter. A head on
+ * its side has none: then the gaze's, then that of −Z.
  */
 export function yawOf(orientation: Quat): number {
   const side = rotate(orientation, right, axis);

@@ -17,8 +17,8 @@ import type { TrackingFrame } from './tracking-frame';
  */
 interface HeightWatch {
   /**
-   * Once a frame, with the calibration in force: the same, grown, in the frame that proves it too small; else null. Another
-   * object is another calibration, unless it is the one that was returned.
+   * Once a frame, with the calibration in force: the same, grown, in the frame that proves it too small; else null.
+   * Another object is another calibration, unless it is the one that was returned.
    */
   observe(frame: TrackingFrame, calibration: Calibration): Calibration | null;
   /** Discards the observed height: the floor lies elsewhere, or another person wears the headset. */

@@ -6,15 +6,16 @@ const usualStep = 1 / 60;
 const shortestStep = 1 / 1000;
 
 /**
- * The page's one time [s]: games, estimators, playback of the others and the log of a study all count in it. It never goes back and never
- * leaps when the time stamps do: devices change between clocks of their own, systems set theirs, tabs sleep.
+ * The page's one time [s]: games, estimators, playback of the others and the log of a study all count in it. It never
+ * goes back and never leaps when the time stamps do: devices change between clocks of their own, systems set theirs,
+ * tabs sleep.
  */
 export interface PageClock {
   /**
-   * The time of a frame that the device dates `timestampMs`. A time stamp that goes back is taken as another clock's: this one goes on by
-   * the length of the last frame. One that is more than `longestStep` ahead follows a pause: this clock goes on by `longestStep`. The same
-   * one again within half a frame is the same frame's, asked by another part of the page: its time stays, and `paused`. In
-   * place of one that is no finite number stands what `read` says.
+   * The time of a frame that the device dates `timestampMs`. A time stamp that goes back is taken as another clock's:
+   * this one goes on by the length of the last frame. One that is more than `longestStep` ahead follows a pause: this
+   * clock goes on by `longestStep`. The same one again within half a frame is the same frame's, asked by another part
+   * of the page: its time stays, and `paused`. In place of one that is no finite number stands what `read` says.
    */
   tick(timestampMs: number): number;
   /** Whether the newest frame follows a pause. */

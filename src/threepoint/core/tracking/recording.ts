@@ -263,8 +263,8 @@ function indexAt(frames: TrackingFrames, time: number): number {
 }
 
 /**
- * The frame at a time [s] of the recording's own clock, interpolated; before the first and after the last: that frame. A hand
- * that either neighbour lacks is null, its device's body absent: never on its way from or to nowhere.
+ * The frame at a time [s] of the recording's own clock, interpolated; before the first and after the last: that frame.
+ * A hand that either neighbour lacks is null, its device's body absent: never on its way from or to nowhere.
  */
 export function sampleRecording({ frames }: Replayable, time: number): TrackingFrame {
   const low = indexAt(frames, time);

@@ -3,8 +3,8 @@ import type { TrackedPose } from '../math/pose';
 import type { DeviceBody } from './device-body';
 
 /**
- * One frame of the three tracked points. Head: the viewer pose (origin between the eyes, −Z is the gaze).
- * Hands: the wrist, already corrected for the controller's grip; −Z towards the knuckles, +Y out of the back of the hand.
+ * One frame of the three tracked points. Head: the viewer pose (origin between the eyes, −Z is the gaze). Hands: the
+ * wrist, already corrected for the controller's grip; −Z towards the knuckles, +Y out of the back of the hand.
  */
 export interface TrackingFrame {
   /** The time [s] on a monotonic clock with an arbitrary zero. */

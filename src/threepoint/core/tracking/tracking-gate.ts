@@ -13,8 +13,8 @@ const unitTolerance = 2e-3;
 const isUnit = ({ x, y, z, w }: Quat): boolean => Math.abs(x * x + y * y + z * z + w * w - 1) <= unitTolerance;
 
 /**
- * Returns the pose with a rotation of length 1 and a tracking state; null: it is absent or not finite. A pose without a state is tracked: pages
- * without types leave it out.
+ * Returns the pose with a rotation of length 1 and a tracking state; null: it is absent or not finite. A pose without a
+ * state is tracked: pages without types leave it out.
  */
 function validPose(pose: TrackedPose | null | undefined): TrackedPose | null {
   if (!pose || !isFinitePose(pose)) return null;
@@ -26,15 +26,18 @@ function validPose(pose: TrackedPose | null | undefined): TrackedPose | null {
 
 export interface TrackingGateOptions {
   /**
-   * Whether a point that the source has never reported as tracked counts as tracked. Emulators and controllers without cameras report every
-   * position as guessed; without this their arms would hang and their hands could not play.
+   * Whether a point that the source has never reported as tracked counts as tracked. Emulators and controllers without
+   * cameras report every position as guessed; without this their arms would hang and their hands could not play.
    */
   readonly assumesTracked?: boolean;
   /** Called when a point becomes tracked or is lost. */
   readonly onChange?: (point: TrackedPoint, tracked: boolean) => void;
 }
 
-/** Decides what is tracked in the frames of one source: the only place that checks poses, their tracking state and their times. */
+/**
+ * Decides what is tracked in the frames of one source: the only place that checks poses, their tracking state and their
+ * times.
+ */
 export class TrackingGate {
   readonly #options: TrackingGateOptions;
   /** The time of the newest frame [s]; NaN before the first. */
@@ -48,9 +51,10 @@ export class TrackingGate {
   }
 
   /**
-   * Returns the frame itself, or a copy in which an invalid hand is null, every point has a tracking state, rotations have length 1, an
-   * invalid device body is absent, and an invalid time is that of the frame before. Returns null while the head is not seen or no time is
-   * known. A head counts as tracked in each frame that has one, because the body follows a guessed head too.
+   * Returns the frame itself, or a copy in which an invalid hand is null, every point has a tracking state, rotations
+   * have length 1, an invalid device body is absent, and an invalid time is that of the frame before. Returns null
+   * while the head is not seen or no time is known. A head counts as tracked in each frame that has one, because the
+   * body follows a guessed head too.
    */
   admit(frame: TrackingFrame | null | undefined): TrackingFrame | null {
     const admitted = this.#check(frame);

@@ -1,6 +1,9 @@
 import * as v from 'valibot';
 
-/** What came in is not what it should be; the message names the field: "paper.json: tasks[1].seconds: expected a number". */
+/**
+ * What came in is not what it should be; the message names the field: "paper.json: tasks[1].seconds: expected a
+ * number".
+ */
 export class ValidationError extends Error {
   /** Empty: the whole. */
   readonly field: string;

@@ -29,7 +29,10 @@ import { evenly, seed } from '../arbitraries';
 const bones: LimbBones = { upper: 0.28, lower: 0.26 };
 /** The direction through which an arm swings all the way round: to the right and ahead. */
 const outside = normalise(vec3(1, -0.2, -1));
-/** Speed of elbow and wrist at most [m/s], as if the hand stood still; over a longer path what takes them along it in 0.7 s, 0.05 of them to get up to speed and down. */
+/**
+ * Speed of elbow and wrist at most [m/s], as if the hand stood still; over a longer path what takes them along it in
+ * 0.7 s, 0.05 of them to get up to speed and down.
+ */
 const fastestOver = (metres: number): number => Math.max(2.25, metres / 0.65);
 /** How far elbow or wrist go from frame to frame in all [m], whichever goes further in each. */
 const pathOf = (arms: readonly ArmDirections[]): number =>

@@ -14,7 +14,9 @@ const hipsToHead = 0.72;
 /** The bow goes past the horizontal: 110°. */
 const [deepest, steps] = [1.9, 100];
 
-/** A hand that stays where it is while the person bows, on its own side: at the thigh, behind the back or on the floor. */
+/**
+ * A hand that stays where it is while the person bows, on its own side: at the thigh, behind the back or on the floor.
+ */
 const hand = fc.record({ x: evenly(0.1, 0.5), y: evenly(0.1, 1.1), z: evenly(-0.3, 0.5) });
 
 test('a trunk that bows past the horizontal turns over no shoulder, wherever the hands are', () => {

@@ -294,8 +294,9 @@ describe('a hand that returns', () => {
 
 describe('a hand that comes back far from where it rests', () => {
   const where = fc.record({ x: evenly(-0.5, 0.6), y: evenly(0.6, 2), z: evenly(-0.6, 0.4) });
-  // After a hand beyond its arm's reach, in the trunk or behind the back, the trunk leans and turns as well: that is another way than the arm's.
-  // Drawn evenly, shoulders themselves step by up to 0.2 m, one of twenty times: the reach that the trunk is given is not yet steady there.
+  // After a hand beyond its arm's reach, in the trunk or behind the back, the trunk leans and turns as well: that is
+  // another way than the arm's. Drawn evenly, shoulders themselves step by up to 0.2 m, one of twenty times: the reach
+  // that the trunk is given is not yet steady there.
   const inReach = fc
     .record({ x: number(-0.5, 0.6), y: number(0.6, 2), z: number(-0.6, 0.4) })
     .filter(
@@ -314,7 +315,10 @@ describe('a hand that comes back far from where it rests', () => {
         rightHand: position && turned(position),
       };
     };
-  /** What a step [m] has beyond what the turning person does; the head joint it turns about goes 0.1 m round the eyes itself. */
+  /**
+   * What a step [m] has beyond what the turning person does; the head joint it turns about goes 0.1 m round the eyes
+   * itself.
+   */
   const ownStep = (now: Vec3, before: Vec3, turning: number): number =>
     distance(now, before) -
     Math.abs(turning / 60) * (0.2 + Math.max(Math.hypot(now.x, now.z), Math.hypot(before.x, before.z)));

@@ -58,7 +58,10 @@ export const subjects = [
 /** The subjects that show a body. */
 export const bodies = subjects.filter(({ name }) => name !== 'hands-only');
 
-/** Makes estimators of this subject for the tests of the suite that calls it: their network is opened before the first and closed after the last. */
+/**
+ * Makes estimators of this subject for the tests of the suite that calls it: their network is opened before the first
+ * and closed after the last.
+ */
 export function openSubject({ name, plain }: (typeof subjects)[number]) {
   const wantsModel = needsRegressor(name);
   let regressor: PoseRegressor | null = null;

@@ -25,7 +25,8 @@ function distancesFromTwin({ calibration, frames }: GoldenFit): readonly Apart[]
   });
 }
 
-// The loss of the network's training has torso and arm fitting in Python (training/threepoint_training/differentiable_kinematics.py).
+// The loss of the network's training has torso and arm fitting in Python
+// (training/threepoint_training/differentiable_kinematics.py).
 describe.each(bodies)('torso and arms are fitted as in Python, eyes at $calibration.eyeHeight m', (body) => {
   const apart = distancesFromTwin(body);
 

@@ -18,7 +18,9 @@ import { movingPerson, standing } from './moving-person';
 const body: Calibration = { eyeHeight: 1.64, armSpan: 1.6 };
 const skeleton = skeletonFromCalibration(body);
 
-/** From IK's shoulders straight down, as far as most arms hang; and those shoulders, which follow the hands a little. */
+/**
+ * From IK's shoulders straight down, as far as most arms hang; and those shoulders, which follow the hands a little.
+ */
 const hung = (() => {
   const shoulders = { left: vec3(-0.19, 1.4, 0), right: vec3(0.19, 1.4, 0) };
   const hands = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
@@ -33,7 +35,10 @@ const hung = (() => {
   return { shoulders, hands };
 })();
 
-/** Arms that hang as far from the shoulders as most do, under a headset that sits higher by `rise` [m]; the hands lower by `further`. */
+/**
+ * Arms that hang as far from the shoulders as most do, under a headset that sits higher by `rise` [m]; the hands lower
+ * by `further`.
+ */
 function hanging(rise: number, further = 0): TrackingFrame {
   const frame = standing(body, addScaled(hung.hands.left, down, further), addScaled(hung.hands.right, down, further));
   return { ...frame, head: { ...frame.head, position: addScaled(frame.head.position, up, rise) } };

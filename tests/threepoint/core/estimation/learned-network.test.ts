@@ -8,8 +8,8 @@ import { movingPerson } from './moving-person';
 import { type NetworkName, openPlainModel, openShippedModel, readShipped } from './shipped-models';
 
 /**
- * How far the forward pass may be from onnxruntime [eye heights]. Weights are the same 32-bit numbers in both, the 8-bit levels times their scale;
- * what differs is the order and width of sums and the exponential.
+ * How far the forward pass may be from onnxruntime [eye heights]. Weights are the same 32-bit numbers in both, the
+ * 8-bit levels times their scale; what differs is the order and width of sums and the exponential.
  */
 const tolerance = 1e-5;
 

@@ -20,7 +20,10 @@ import { ahead, at, bodyOf, calibration, hip } from './posed-body';
 
 describe('a hand that is lost', () => {
   const skeleton = skeletonFromCalibration(calibration);
-  /** A person who crouches or bows: the head at this height, so far ahead of where it was, looking down by so much [rad]. */
+  /**
+   * A person who crouches or bows: the head at this height, so far ahead of where it was, looking down by so much
+   * [rad].
+   */
   const lowered = (time: number, height: number, ahead: number, down: number): TrackingFrame => ({
     ...standing(calibration, hip.left, vec3(0.2, height - 0.3, -ahead - 0.3)),
     time,

@@ -25,8 +25,8 @@ export function wristOrientation(fingers: Vec3, back: Vec3): Quat {
 }
 
 /**
- * A person who leans, turns, crouches and moves the arms as a body of this calibration can: the frame at any time. Made of
- * sines of a seed, with its own simple body, so that it is no mirror image of what is tested.
+ * A person who leans, turns, crouches and moves the arms as a body of this calibration can: the frame at any time. Made
+ * of sines of a seed, with its own simple body, so that it is no mirror image of what is tested.
  */
 export function movingPerson(
   seed: number,

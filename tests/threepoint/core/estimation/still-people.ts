@@ -20,11 +20,16 @@ export const settled = 144;
 export const watched = 30;
 /** The largest step of a joint of a still person from frame to frame after two seconds [m]. */
 const mostTremble = 1e-4;
-/** An elbow whose side is hardly defined still settles then, with a half-life of at most 0.35 s: the largest of its first steps [m]. */
+/**
+ * An elbow whose side is hardly defined still settles then, with a half-life of at most 0.35 s: the largest of its
+ * first steps [m].
+ */
 const mostSettling = 5e-4;
 /** The largest distance of a hand within reach from its controller [m]. */
 const mostOff = 1e-3;
-/** A joint of a person whose hands move slowly goes at most this much further [m] in a frame than three times the hands. */
+/**
+ * A joint of a person whose hands move slowly goes at most this much further [m] in a frame than three times the hands.
+ */
 const mostBeyond = 0.002;
 
 const tracked = (position: Vec3, orientation: Quat): TrackedPose => ({ position, orientation, tracking: 'tracked' });
@@ -37,7 +42,9 @@ export interface StillPerson {
   frame(time: number): TrackingFrame;
 }
 
-/** A hand about its upright shoulder: direction ahead or aside, distance [arm lengths], orientation in the body's frame. */
+/**
+ * A hand about its upright shoulder: direction ahead or aside, distance [arm lengths], orientation in the body's frame.
+ */
 const heldHand = fc.record({
   direction: fc.tuple(evenly(-1, 1), evenly(-1, 1), evenly(-1, 0.3)),
   far: evenly(0.2, 0.95),
@@ -47,7 +54,10 @@ const heldHand = fc.record({
   ),
 });
 
-/** People of any size who hold still anywhere, in any posture whose hands a straight arm of an upright trunk reaches; crossed hands among them. */
+/**
+ * People of any size who hold still anywhere, in any posture whose hands a straight arm of an upright trunk reaches;
+ * crossed hands among them.
+ */
 const reaching = fc
   .record({
     calibration: calibrationOf,
@@ -111,7 +121,10 @@ const reach = fc.record({ x: evenly(0.05, 0.35), y: evenly(-0.35, 0.15), z: even
 /** The furthest that a hand of `slowPerson` goes in a frame [m]. */
 export const slowStep = 0.004;
 
-/** People who stand still anywhere, then move both hands slowly and straight: `frame(i)` of the frames from 0 to `count`, at rest before. */
+/**
+ * People who stand still anywhere, then move both hands slowly and straight: `frame(i)` of the frames from 0 to
+ * `count`, at rest before.
+ */
 export const slowPerson = fc
   .record({ standpoint, left: fc.tuple(reach, reach), right: fc.tuple(reach, reach) })
   .map(({ standpoint: stance, left, right }) => {
@@ -129,7 +142,10 @@ export const slowPerson = fc
     return { calibration: { eyeHeight: 1.62, armSpan: 1.53 } as Calibration, count, frame };
   });
 
-/** Fails unless the joints of these frames, drawn of one still person after two seconds, are still and hands within reach on their controllers. */
+/**
+ * Fails unless the joints of these frames, drawn of one still person after two seconds, are still and hands within
+ * reach on their controllers.
+ */
 export function expectStill(drawn: readonly Joints[], { withinReach, frame }: StillPerson): void {
   for (const joint of jointNames) {
     const steps = drawn.slice(1).map((joints, i) => distance(joints[joint].position, drawn[i]![joint].position));
@@ -143,7 +159,9 @@ export function expectStill(drawn: readonly Joints[], { withinReach, frame }: St
   expect(distance(drawn[0]!.rightHand.position, rightHand!.position)).toBeLessThan(mostOff);
 }
 
-/** Fails where a joint goes further from one of these frames to the next than hands that move by `slowStep` account for. */
+/**
+ * Fails where a joint goes further from one of these frames to the next than hands that move by `slowStep` account for.
+ */
 export function expectSlow(drawn: readonly Joints[]): void {
   const steps = drawn.slice(1).map((joints, i) => apart(joints, drawn[i]!));
   expect(Math.max(...steps)).toBeLessThan(3 * slowStep + mostBeyond);

@@ -25,7 +25,8 @@ describe('elbow and trunk', () => {
         const elbow = subtract(at(joints, 'rightLowerArm'), at(joints, 'hips'));
         const share = Math.max(0, Math.min(1, dot(elbow, trunk) / dot(trunk, trunk)));
         const off = addScaled(elbow, trunk, -share);
-        // The shoulder's own line turns the ellipse a little: its narrow half decides. A hand in the trunk has no free elbow.
+        // The shoulder's own line turns the ellipse a little: its narrow half decides. A hand in the trunk has no free
+        // elbow.
         const handOff = subtract(at(joints, 'rightHand'), at(joints, 'hips'));
         const handShare = Math.max(0, Math.min(1, dot(handOff, trunk) / dot(trunk, trunk)));
         const handAside = addScaled(handOff, trunk, -handShare);

@@ -69,7 +69,8 @@ describe.each(Object.entries(people))('the %s person in a VRM Animation', (_, { 
 
   test('is found without fault by the validator', async () => {
     const { issues } = await validateBytes(bytes, { format: 'glb', writeTimestamp: false });
-    // Below faults (0) and warnings (1) it notes that finger tips hold nothing, and that it does not know VRM's extension.
+    // Below faults (0) and warnings (1) it notes that finger tips hold nothing, and that it does not know VRM's
+    // extension.
     expect(issues.messages.filter(({ severity }) => severity < 2)).toEqual([]);
   });
 });

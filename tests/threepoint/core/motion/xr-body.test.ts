@@ -22,7 +22,10 @@ const leg = (side: string) =>
   ['upper-leg', 'lower-leg', 'foot-ankle-twist', 'foot-ankle', 'foot-subtalar', 'foot-transverse', 'foot-ball'].map(
     (joint) => `${side}-${joint}`,
   );
-/** The specification's list (WebXR Body Tracking Module, XRBodyJoint), with one spelling for the middle fingers of both hands. */
+/**
+ * The specification's list (WebXR Body Tracking Module, XRBodyJoint), with one spelling for the middle fingers of both
+ * hands.
+ */
 const listed = [
   ...['hips', 'spine-lower', 'spine-middle', 'spine-upper', 'chest', 'neck', 'head'],
   ...['left', 'right'].flatMap(arm),

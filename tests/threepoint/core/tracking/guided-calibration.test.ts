@@ -21,7 +21,10 @@ const pose = (position: Vec3, orientation: Quat = identity): TrackedPose => ({
   tracking: 'tracked',
 });
 
-/** A person of this body, upright at the origin, with both arms straight along `direction` (right side) from the shoulders. */
+/**
+ * A person of this body, upright at the origin, with both arms straight along `direction` (right side) from the
+ * shoulders.
+ */
 function stretched(
   calibration: Calibration,
   direction: 'forward' | 'sideways',

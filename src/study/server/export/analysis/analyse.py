@@ -4,8 +4,8 @@
     python analysis/analyse.py
 
 The script is independent of the program that made the export: the tests are SciPy's, sums of squares are those of
-linear models. The computed tables are written to analysis/python/. Change the script as you like: it is a start for your
-own analysis, and is one file for that reason.
+linear models. The computed tables are written to analysis/python/. Change the script as you like: it is a start for
+your own analysis, and is one file for that reason.
 """
 
 import csv
@@ -30,7 +30,8 @@ CONSTANT_SQUARES = 1e-20
 EQUAL_WITHIN = 1e-9
 # The confidence for a share of the variance, which is one-sided.
 ETA_CONFIDENCE = 0.9
-# F times its degrees of freedom beyond which the export has no interval, nor where an end of it lies beyond this noncentrality.
+# F times its degrees of freedom beyond which the export has no interval, nor where an end of it lies beyond this
+# noncentrality.
 LARGEST_F = 700
 LARGEST_LAMBDA = 1400
 # The limits of t and its noncentrality.
@@ -57,7 +58,9 @@ def mean_interval(values):
 
 
 def noncentrality_of_t(t, df, share):
-    """Returns the noncentrality, at least 0, at which the noncentral t is below t with this probability; None: out of reach."""
+    """Returns the noncentrality, at least 0, at which the noncentral t is below t with this probability; None: out of
+    reach.
+    """
 
     def above(noncentrality):
         return stats.nct.cdf(t, df, noncentrality) - share
@@ -74,7 +77,9 @@ def noncentrality_of_t(t, df, share):
 
 
 def effect_interval(t, df, unit, name):
-    """The noncentralities of t under which one as far out is not surprising, times unit; nothing where they are out of reach."""
+    """The noncentralities of t under which one as far out is not surprising, times unit; nothing where they are out of
+    reach.
+    """
     if abs(t) > LARGEST_T:
         return {}
     ends = [noncentrality_of_t(abs(t), df, (1 + side * CONFIDENCE) / 2) for side in (1, -1)]
@@ -99,7 +104,8 @@ def rounding_of(values):
 
 
 def levels_of(values, rounding=None):
-    """Which of the values each is, 1 the smallest: those that are equal but for rounding are one, which ties depend on."""
+    """Which of the values each is, 1 the smallest: those that are equal but for rounding are one, which ties depend on.
+    """
     values = np.asarray(values, float)
     if rounding is None:
         rounding = rounding_of(values)
@@ -146,7 +152,8 @@ def signed_rank(first, second):
 
 
 def welch_t(first, second):
-    """Welch's two-sided t-test of first − second, of different participants; what does not vary has a difference alone."""
+    """Welch's two-sided t-test of first − second, of different participants; what does not vary has a difference alone.
+    """
     m, n = len(first), len(second)
     difference = np.mean(first) - np.mean(second)
     result = {"difference": difference}
@@ -215,7 +222,9 @@ def measure(rows, value, cohort_of, begun):
 
 
 def places_of(rows, value):
-    """What was asked with a number, in the order first met: its place, and its name (the id where that is of one place alone)."""
+    """What was asked with a number, in the order first met: its place, and its name (the id where that is of one place
+    alone).
+    """
     places = list(dict.fromkeys((r["task"], r["questionnaire"], r["id"]) for r in rows if r[value] != ""))
     times = Counter(place[2] for place in places)
     return [(place, place[2] if times[place[2]] == 1 else "/".join(place)) for place in places]
@@ -289,7 +298,9 @@ def complete_values(found, conditions):
 
 
 def between(measures, first, second, conditions):
-    """One family: each of the measures in two cohorts, first − second, by the mean of what each had under all these conditions."""
+    """One family: each of the measures in two cohorts, first − second, by the mean of what each had under all these
+    conditions.
+    """
     rows = []
     for found in measures:
         values = complete_values(found, conditions)
@@ -343,7 +354,9 @@ def effect(squares, error, df, epsilon, scale):
 
 
 def variance_analysis(cohorts):
-    """Effects of conditions, cohorts and both, type III: differences of linear models with sum-coded cohorts, contrast by contrast."""
+    """Effects of conditions, cohorts and both, type III: differences of linear models with sum-coded cohorts, contrast
+    by contrast.
+    """
     values = np.array([row for members in cohorts for row in members], float)
     sizes = [len(members) for members in cohorts]
     count, conditions = values.shape
