@@ -90,7 +90,8 @@ function answerAll(server: HttpServer, listener: RequestListener, upgrade: Upgra
     listener(request, response);
   };
 
-  // reason: missing in the types, but an option of http.Server: a client that has closed its side still receives the answer.
+  // reason: missing in the types, but an option of http.Server: a client that has closed its side still receives the
+  // answer.
   (server as HttpServer & { httpAllowHalfOpen: boolean }).httpAllowHalfOpen = true;
   server.on('request', guarded);
   server.on('checkExpectation', (request: IncomingMessage, response: ServerResponse) => {

@@ -44,7 +44,8 @@ export function createRoomLink({ main }: { readonly main: boolean }) {
       await navigator.clipboard.writeText(link.value);
       status.textContent = 'The link is copied.';
     } catch {
-      // reason: pages without a secure context and browsers that ask first have no clipboard; the link is selected instead.
+      // reason: pages without a secure context and browsers that ask first have no clipboard; the link is selected
+      // instead.
       status.textContent = 'This browser does not let the page copy. The link is selected: copy it by hand.';
     }
   }

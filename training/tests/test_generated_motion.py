@@ -7,7 +7,11 @@ from threepoint_training.prepared_corpus import JOINTS, Person, PreparedCorpus
 PERSON = Person("test", 1.6, 1.55)
 BONES = (
     ("hips", "spine"), ("chest", "neck"), ("neck", "head"),
-    *((f"{side}{a}", f"{side}{b}") for side in ("left", "right") for a, b in (("UpperArm", "LowerArm"), ("LowerArm", "Hand"))),
+    *(
+        (f"{side}{a}", f"{side}{b}")
+        for side in ("left", "right")
+        for a, b in (("UpperArm", "LowerArm"), ("LowerArm", "Hand"))
+    ),
 )  # fmt: skip
 
 

@@ -48,7 +48,7 @@ export interface HeadsetListener {
 
 interface Session {
   readonly xr: XRSession;
-  /** What the device's boundary leaves [m]; null: it does not tell. */
+  /** What the device's boundary leaves [m]; null: the device does not report it. */
   readonly room: PlayRoom | null;
   readonly tracking: TrackedSession;
 }
@@ -89,7 +89,7 @@ export class Headset {
     return this.#fault;
   }
 
-  /** The room that the boundary of the headset leaves; null: it does not tell, or is not worn. */
+  /** The room that the boundary of the headset leaves; null: the device does not report it, or is not worn. */
   get room(): PlayRoom | null {
     return this.#session?.room ?? null;
   }
@@ -111,7 +111,7 @@ export class Headset {
     return this.#session?.tracking ?? null;
   }
 
-  /** Of the device [Hz]; null: it does not say, or there is none. */
+  /** The frame rate of the device [Hz]; null: it reports none, or there is no device. */
   get rateHz(): number | null {
     return this.#session?.xr.frameRate ?? (this.#emulator ? windowRateHz : null);
   }

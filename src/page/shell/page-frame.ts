@@ -49,7 +49,7 @@ export class PageFrame implements FrameParts<XRFrame> {
   #embodied: TrackingFrame | null = null;
   #count = 0;
   #lastFault = '';
-  /** Those who wait for the next picture. */
+  /** Callbacks that wait for the next picture. */
   #waiting: (() => void)[] = [];
 
   constructor(options: PageFrameOptions) {

@@ -22,8 +22,10 @@ const zenith = new Color('#121722');
 const ground = new Color('#1c2431');
 const floorRadius = 24;
 
-/** A level square about the origin. Its vertices lie far from where heads are: one right below a level camera has w = 0, and
- * SwiftShader clips the triangles of such a vertex wrongly. */
+/**
+ * A level square about the origin. Its vertices lie far from where heads are: one right below a level camera has w = 0,
+ * and SwiftShader clips the triangles of such a vertex wrongly.
+ */
 const levelSquare = (size: number) => new PlaneGeometry(size, size).rotateX(-Math.PI / 2);
 
 /** Everything around the people: a floor, a sky, light. The floor is y = 0 of the floor frame. */

@@ -8,8 +8,9 @@ import { numberView, textView } from './views/typed-view';
 const views = new Map<string, QuestionView>();
 
 /**
- * Adds the part of a kind of question that draws. The page registers it before it shows a question of this kind. Returns a
- * function that removes it; throws an Error if the name is taken. `registerQuestionKind` adds the part that checks.
+ * Adds the part of a kind of question that draws. The page registers it before it shows a question of this kind.
+ * Returns a function that removes it; throws an Error if the name is taken. `registerQuestionKind` adds the part that
+ * checks.
  *
  * @example
  * registerQuestionView({

@@ -42,7 +42,8 @@ export const viewsOfFile =
         const to = from + view.byteLength;
         if (!pictures.has(index)) return Promise.resolve(binary.slice(from, to).buffer);
         const part = file.slice(binary.byteOffset + from, binary.byteOffset + to);
-        // reason: a picture's view goes into a new Blob, which takes a blob as it takes bytes; the types know of bytes alone.
+        // reason: a picture's view goes into a new Blob, which takes a blob as it takes bytes; the types know of
+        // bytes alone.
         return Promise.resolve(part as unknown as ArrayBuffer);
       },
     };
