@@ -1,12 +1,18 @@
 """The command line of `npm run train`."""
 
-import argparse import sys from collections.abc import Sequence from dataclasses import replace from pathlib import Path
+import argparse
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
 
-from . import pipeline from .motion import MocapError from .splits import FOLDS from .training_config import Task,
-TrainConfig, quick
+from . import pipeline
+from .motion import MocapError
+from .splits import FOLDS
+from .training_config import Task, TrainConfig, quick
 
-# Options that ask for something else instead of training the networks, and what that is. _TASKS: dict[str, tuple[Task,
-str]] = {
+# Options that ask for something else instead of training the networks, and what that is.
+_TASKS: dict[str, tuple[Task, str]] = {
     "--select": ("selection", "the recipe judged by the selection metric, and compared with earlier ones"),
     "--noticed": (
         "noticed wear",
@@ -80,8 +86,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def config_of(arguments: Sequence[str]) -> TrainConfig:
-    """The run that a command line asks for; one that contradicts itself ends the program with a sentence.
-"""
+    """The run that a command line asks for; one that contradicts itself ends the program with a sentence."""
     parser = _parser()
     given = parser.parse_args(arguments)
     tasks = list(dict.fromkeys(given.tasks or []))

@@ -1,17 +1,23 @@
 """Renews the tables of docs/accuracy.md between its marks, and its figures. `npm run report` calls this."""
 
-import argparse import json from dataclasses import dataclass from pathlib import Path from typing import Any
+import argparse
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 from . import accuracy_tables as tables
 
 REPOSITORY = Path(__file__).parents[2]
 
 
-@dataclass(frozen=True) class AccuracyPageConfig:
+@dataclass(frozen=True)
+class AccuracyPageConfig:
     """Files of the evaluation, of its figures, of the models evaluated and of the page.
 
-    home, elsewhere: evaluations of the held-out people and of evaluation-only subjects, each without hand tilts and with measured ones.
-"""
+    home, elsewhere: evaluations of the held-out people and of evaluation-only subjects, each without hand tilts and
+    with measured ones.
+    """
 
     evaluation: Path
     figures: Path

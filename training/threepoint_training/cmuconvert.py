@@ -1,9 +1,10 @@
 """
 Bones that cmuconvert lost when it made BVH files of the CMU database: the thorax, and the wrist bone of either arm.
 
-Its skeletons have `LowerBack, Spine, Spine1, Neck, Neck1, Head` and `LeftForeArm, LeftHand, LeftFingerBase`, where neck and shoulders lie on
-Spine1 and the finger base on the hand: the rotations of thorax and wrist are there, their lengths are not. Head and shoulders are 11 cm
-too low, and "LeftHand" is where the radius ends in these skeletons, in mid-forearm.
+Its skeletons have `LowerBack, Spine, Spine1, Neck, Neck1, Head` and `LeftForeArm, LeftHand, LeftFingerBase`, where neck
+and shoulders lie on Spine1 and the finger base on the hand: the rotations of thorax and wrist are there, their lengths
+are not. Head and shoulders are 11 cm too low, and "LeftHand" is where the radius ends in these skeletons, in
+mid-forearm.
 """
 
 import numpy as np

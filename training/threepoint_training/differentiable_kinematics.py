@@ -42,7 +42,8 @@ LOSS = FittingConfig()
 
 
 def as_the_page_fits(eye_height: float) -> FittingConfig:
-    """All that the page does, for a body of this eye height [m].""" return FittingConfig(
+    """All that the page does, for a body of this eye height [m]."""
+    return FittingConfig(
         reach_passes=REACH["anatomicalPasses"] + REACH["extremePasses"],
         reach=LIMB["straightest"],
         least_missing=1e-5 / eye_height,
@@ -52,9 +53,10 @@ def as_the_page_fits(eye_height: float) -> FittingConfig:
     )
 
 
-    @dataclass(frozen=True) class _FittingInput: """What fitting starts from, frame and unit as above: estimated joints
-    [N, 6, 3], wrists [N, 2, 3], head joint [N, 3], the heading's right axis [N, 3], and the lengths of the arm [N, 1,
-    1] and of the upper arms [N, 2, 1].
+@dataclass(frozen=True)
+class _FittingInput:
+    """What fitting starts from, frame and unit as above: estimated joints [N, 6, 3], wrists [N, 2, 3], head joint [N,
+    3], the heading's right axis [N, 3], and the lengths of the arm [N, 1, 1] and of the upper arms [N, 2, 1].
     """
 
     estimated: Tensor
@@ -148,18 +150,26 @@ class DifferentiableKinematics:
         return trunk, shoulders
 
     def _place_upright_neck(self, given: _FittingInput) -> _Unleaned:
-        """The neck below the head and the thorax below it as they are estimated, before any lean.""" estimated,
-        head_joint = given.estimated, given.head_joint middle = estimated[:, 2:4].mean(1) line = _unit(estimated[:, 3] -
-        estimated[:, 2]) up = _unit(middle - estimated[:, 4]) chest = self._aligned(self.thorax, up, line) implied_neck
-        = middle - chest @ self.shoulders_from_neck neck_bone = self.rest["head"] anatomical = _limit("neckBend",
-        torch.zeros_like(up[:, :1])) neck_to_head = _swung(chest @ neck_bone, head_joint - implied_neck, anatomical) #
-        Chest joint and hips follow a share of what the neck is moved by. shift = head_joint - neck_to_head -
-        implied_neck moved = shift * TORSO["neckShiftShare"] * (neck_bone.norm() / _length(shift)).clamp_max(1.0) return
-        _Unleaned(line, up, neck_to_head, moved)
+        """The neck below the head and the thorax below it as they are estimated, before any lean."""
+        estimated, head_joint = given.estimated, given.head_joint
+        middle = estimated[:, 2:4].mean(1)
+        line = _unit(estimated[:, 3] - estimated[:, 2])
+        up = _unit(middle - estimated[:, 4])
+        chest = self._aligned(self.thorax, up, line)
+        implied_neck = middle - chest @ self.shoulders_from_neck
+        neck_bone = self.rest["head"]
+        anatomical = _limit("neckBend", torch.zeros_like(up[:, :1]))
+        neck_to_head = _swung(chest @ neck_bone, head_joint - implied_neck, anatomical)
+        # Chest joint and hips follow a share of what the neck is moved by.
+        shift = head_joint - neck_to_head - implied_neck
+        moved = shift * TORSO["neckShiftShare"] * (neck_bone.norm() / _length(shift)).clamp_max(1.0)
+        return _Unleaned(line, up, neck_to_head, moved)
 
-        def _place_trunk( self, given: _FittingInput, upright: _Unleaned, leans: Tensor, extremity: Tensor ) ->
-        tuple[Trunk, Tensor]: """Chest joint, hips and shoulders on their bones below the head, for estimated shoulders
-        that lean by these offsets [N, 2, 3].
+    def _place_trunk(
+        self, given: _FittingInput, upright: _Unleaned, leans: Tensor, extremity: Tensor
+    ) -> tuple[Trunk, Tensor]:
+        """Chest joint, hips and shoulders on their bones below the head, for estimated shoulders that lean by these
+        offsets [N, 2, 3].
 
         A lean turns neck, thorax and shoulder line by less than a right angle each; what it asks back along them is
         left to the clavicles. extremity: of each side, how far on the way from anatomical limits to extreme ones [N, 2,

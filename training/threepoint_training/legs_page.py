@@ -1,14 +1,20 @@
 """Renews the table of legs in docs/accuracy.md. `npm run report -- --legs` measures and calls this."""
 
-import argparse import json from collections.abc import Iterable from pathlib import Path from typing import Any
+import argparse
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
 
-from .accuracy_page import REPOSITORY from .accuracy_tables import renew, table from .splits import evaluation_only,
-trainable
+from .accuracy_page import REPOSITORY
+from .accuracy_tables import renew, table
+from .splits import evaluation_only, trainable
 
 Json = dict[str, Any]
 
-DRIVERS = {"truth": "the true pelvis", "ik": "IK", "learned": "learned"} _FIGURES = ("pelvisCm", "kneeCm", "footCm",
-"skateCmS", "slideCmS", "floatCm", "sinkCm", "agreed") _HEAD = (
+DRIVERS = {"truth": "the true pelvis", "ik": "IK", "learned": "learned"}
+_FIGURES = ("pelvisCm", "kneeCm", "footCm", "skateCmS", "slideCmS", "floatCm", "sinkCm", "agreed")
+_HEAD = (
     "pelvis [cm]", "knee [cm]", "foot [cm]", "skate [cm/s]", "drawn skate [cm/s]", "floating [cm]", "sinking [cm]", "contact agreed",
 )  # fmt: skip
 
@@ -35,7 +41,7 @@ def _cells(people: list[Json], driver: str) -> list[str]:
 def drivers(legs: Json) -> str:
     """Returns the table by source of the pelvis: means over people, equally weighted; evaluation-only subjects have
     separate rows.
-"""
+    """
     people = legs["people"]
     groups = {"": trainable(list(people)), ", another laboratory": evaluation_only(list(people))}
     rows = [

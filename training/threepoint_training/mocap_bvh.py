@@ -17,8 +17,9 @@ _AXES = {"X": np.array([1.0, 0, 0]), "Y": np.array([0, 1.0, 0]), "Z": np.array([
 
 def parse_bvh(path: Path, rest_pose: Mapping[str, tuple[float, ...]] | None = None) -> Motion:
     """
-    Reads skeleton and motion; what is malformed raises MocapError with the line. The rest is the pose of all angles zero, or that of
-    `rest_pose`: the angles [degrees] of joints in the order of their rotation channels; joints it leaves out have zeros.
+    Reads skeleton and motion; what is malformed raises MocapError with the line. The rest is the pose of all angles
+    zero, or that of `rest_pose`: the angles [degrees] of joints in the order of their rotation channels; joints it
+    leaves out have zeros.
     """
     lines = path.read_text(errors="replace").splitlines()
     hierarchy, motion_line = _read_hierarchy(path, lines)
@@ -125,11 +126,12 @@ def _read_frames(path: Path, lines: list[str], motion_line: int, width: int) -> 
 def _channels_of(
     path: Path, hierarchy: BvhHierarchy, rest_pose: Mapping[str, tuple[float, ...]]
 ) -> NDArray[np.float64]:
-    """One frame [1, channels] of these angles, the root at the origin, every other joint at its offset.""" for name in
-    rest_pose:
+    """One frame [1, channels] of these angles, the root at the origin, every other joint at its offset."""
+    for name in rest_pose:
         if name not in hierarchy.names:
             raise MocapError(f"{path.name}: no joint “{name}”, which the map's restPose turns")
-    row: list[float] = [] for joint, channels in enumerate(hierarchy.channels):
+    row: list[float] = []
+    for joint, channels in enumerate(hierarchy.channels):
         angles = rest_pose.get(hierarchy.names[joint], ())
         turning = sum(channel.lower().endswith("rotation") for channel in channels)
         if angles and len(angles) != turning:
@@ -144,10 +146,10 @@ def _channels_of(
     return np.array([row])
 
 
-    def _pose( path: Path, hierarchy: BvhHierarchy, values: NDArray[np.float64] ) -> tuple[NDArray[np.float64],
-    NDArray[np.float64]]: """Forward kinematics of the channels: positions [frames, joints, 3] and global rotations
-    [frames, joints, 4].
-    """
+def _pose(
+    path: Path, hierarchy: BvhHierarchy, values: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Forward kinematics of the channels: positions [frames, joints, 3] and global rotations [frames, joints, 4]."""
     frames, count = len(values), len(hierarchy.names)
     positions = np.zeros((frames, count, 3))
     rotations = np.zeros((frames, count, 4))

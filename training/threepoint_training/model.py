@@ -1,22 +1,28 @@
 """The two networks. Normalisation lives inside both: SI units or ratios go in and come out."""
 
-import numpy as np import torch from torch import Tensor, nn from torch.nn import functional
+import numpy as np
+import torch
+from torch import Tensor, nn
+from torch.nn import functional
 
-from . import mirror from .chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, CHEST_HEAD_AXES, CHEST_JOINT,
-REACH_LENGTHS, UP from .features import ARM_LENGTH, FEATURES, HANDS, HEAD_AXES, IK_JOINTS, SEEN from .residual import
-OUTPUTS
+from . import mirror
+from .chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, CHEST_HEAD_AXES, CHEST_JOINT, REACH_LENGTHS, UP
+from .features import ARM_LENGTH, FEATURES, HANDS, HEAD_AXES, IK_JOINTS, SEEN
+from .residual import OUTPUTS
 
 
 # Inputs of the people trained on lie within so many standard deviations of their mean; what lies beyond is held there,
-# here as in the page's Perceptron. MOST_DEVIATIONS = 4.0
+# here as in the page's Perceptron.
+MOST_DEVIATIONS = 4.0
 
 
 class PaperNetwork(nn.Module):
     """Section 3.3 of the paper: [N, 2, 3, 3] -> [N, 18].
 
-    Four 3×3 convolutions of 2^(4+layer) channels (32, 64, 128, 256), stride 1, zero padding, ReLU; dropout 0.3 after the first
-    convolution and the first fully connected layer. Its width, 512, is the one that gives the 1.58 million parameters of a 6 MB file.
-"""
+    Four 3×3 convolutions of 2^(4+layer) channels (32, 64, 128, 256), stride 1, zero padding, ReLU; dropout 0.3 after
+    the first convolution and the first fully connected layer. Its width, 512, is the one that gives the 1.58 million
+    parameters of a 6 MB file.
+    """
 
     def __init__(self) -> None:
         super().__init__()

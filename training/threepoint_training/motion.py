@@ -13,8 +13,8 @@ class MocapError(ValueError):
 @dataclass(frozen=True)
 class Motion:
     """
-    positions [frames, joints, 3] and global rotations [frames, joints, 4] (xyzw; identity is the rest pose). notes: what was put right, a
-    sentence each.
+    positions [frames, joints, 3] and global rotations [frames, joints, 4] (xyzw; identity is the rest pose). notes:
+    what was put right, a sentence each.
     """
 
     names: tuple[str, ...]

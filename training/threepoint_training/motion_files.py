@@ -28,8 +28,9 @@ class Source:
 
 def _folders(top: Path) -> Iterator[tuple[Path, list[str]]]:
     """
-    Folders with the names of their files, links to folders followed; a folder that two ways lead to is read once, so that no one is two
-    people and no circle is endless. What is no link comes first: a person is named by the folder itself where it lies in here.
+    Folders with the names of their files, links to folders followed; a folder that two ways lead to is read once, so
+    that no one is two people and no circle is endless. What is no link comes first: a person is named by the folder
+    itself where it lies in here.
     """
     seen: set[Path] = set()
     links: list[Path] = []

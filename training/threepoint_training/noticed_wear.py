@@ -58,16 +58,25 @@ COLUMNS = ("IK", "corrected", "learned", "corrected", "learned, another laborato
 class NoticedWearConfig:
     """Groups that are held out, who has enough recording time, and which frames and simulated wearers are used."""
 
-    # The number of groups that are held out in turn. groups: int = 4 # People with less recording time are left out: it
-    takes minutes to notice anything. fewest_minutes: float = 1.3 # Every how many-th frame (of 60 a second) is used for
-    reaches, and for errors. stride: int = 6 judged_stride: int = 24 # Simulated wearers of each person, for the usual
-    reach. wearers: int = 3 # No more of each clip is used for errors, as in all figures of the page [s]. longest_clip:
-    float = 15.0 seed: int = 77
+    # The number of groups that are held out in turn.
+    groups: int = 4
+    # People with less recording time are left out: it takes minutes to notice anything.
+    fewest_minutes: float = 1.3
+    # Every how many-th frame (of 60 a second) is used for reaches, and for errors.
+    stride: int = 6
+    judged_stride: int = 24
+    # Simulated wearers of each person, for the usual reach.
+    wearers: int = 3
+    # No more of each clip is used for errors, as in all figures of the page [s].
+    longest_clip: float = 15.0
+    seed: int = 77
 
 
-    def usual_reach( corpus: PreparedCorpus, people: tuple[str, ...], config: NoticedWearConfig = NoticedWearConfig() )
-    -> float: """Mean distance from IK's shoulders to the wrists while arms hang [arm lengths], over these people's
-    simulated wearers; without people of enough recording time that of headset-rise.json.
+def usual_reach(
+    corpus: PreparedCorpus, people: tuple[str, ...], config: NoticedWearConfig = NoticedWearConfig()
+) -> float:
+    """Mean distance from IK's shoulders to the wrists while arms hang [arm lengths], over these people's simulated
+    wearers; without people of enough recording time that of headset-rise.json.
     """
     known = [name for name in people if corpus.minutes_of({name}) >= config.fewest_minutes]
     worn = [_draw_worn(name, Fault(), number, config) for name in known for number in range(1, 1 + config.wearers)]
@@ -120,12 +129,19 @@ class _Worn:
 class _Network:
     """Our network, and the ages of the frames in its input [s]."""
 
-    network: CorrectionNetwork window_seconds: tuple[float, ...]
+    network: CorrectionNetwork
+    window_seconds: tuple[float, ...]
 
 
-    def _judged( corpus: PreparedCorpus, group: tuple[str, ...], recipe: TrainLearnedConfig, ik: FitIkConfig, config:
-    NoticedWearConfig, ) -> Array: """Errors [P, faults, 2, 2] in cm for each person of `group` with enough recording
-    time, with IK and network trained on everyone else; last axes: (IK, learned), (as worn, corrected).
+def _judged(
+    corpus: PreparedCorpus,
+    group: tuple[str, ...],
+    recipe: TrainLearnedConfig,
+    ik: FitIkConfig,
+    config: NoticedWearConfig,
+) -> Array:
+    """Errors [P, faults, 2, 2] in cm for each person of `group` with enough recording time, with IK and network trained
+    on everyone else; last axes: (IK, learned), (as worn, corrected).
     """
     others = tuple(name for name in splits.trainable(tuple(corpus.people)) if name not in group)
     with fitted_kinematics.used(fitted_kinematics.fit(corpus, others, ik)):

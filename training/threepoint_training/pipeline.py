@@ -47,17 +47,20 @@ def main(config: TrainConfig, console: Console | None = None) -> Rows:
 
 def _train(run: TrainingRun) -> Rows:
     """Trains the networks of each fold, then those of the page, and renews the golden vectors with the latter."""
-    config = run.config folds = cross_validate.usable_folds(run) if "cross-validation" in config.stages and folds:
+    config = run.config
+    folds = cross_validate.usable_folds(run)
+    if "cross-validation" in config.stages and folds:
         cross_validate.main(run, folds)
     if "all-subjects" in config.stages:
         _train_on_all_subjects(run)
         if config.out.resolve() == (REPOSITORY / "public/models").resolve():
             golden.main(golden.GoldenConfig(config.out))
-    run.report.table(TITLE, ("mean", *LABELS), run.report.rows) return run.report.rows
+    run.report.table(TITLE, ("mean", *LABELS), run.report.rows)
+    return run.report.rows
 
 
-    def _train_on_all_subjects(run: TrainingRun) -> None: """Trains and writes the page's networks, each on its subset
-    of all trainable people (`splits.trained_on`).
+def _train_on_all_subjects(run: TrainingRun) -> None:
+    """Trains and writes the page's networks, each on its subset of all trainable people (`splits.trained_on`).
 
     Their contracts carry the errors of cross-validation: on held-out people, of networks trained in the same way
     without them.

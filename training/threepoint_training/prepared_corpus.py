@@ -62,8 +62,8 @@ class Person:
 @dataclass(frozen=True)
 class PreparedCorpus:
     """
-    positions [F, 11, 3] (JOINTS) in the floor frame [m]; rotations [F, 3, 4] (ROTATIONS) global, xyzw; 60 Hz. legs [F, 8, 3] (LEG_JOINTS), NaN
-    where a file has no such joint; None: motion without legs.
+    positions [F, 11, 3] (JOINTS) in the floor frame [m]; rotations [F, 3, 4] (ROTATIONS) global, xyzw; 60 Hz. legs [F,
+    8, 3] (LEG_JOINTS), NaN where a file has no such joint; None: motion without legs.
     """
 
     VERSION: ClassVar[int] = 2

@@ -1,17 +1,22 @@
 """Which people of a folder `npm run report` evaluates; it runs this and passes the names on."""
 
-import argparse import json import sys from pathlib import Path
+import argparse
+import json
+import sys
+from pathlib import Path
 
-from .motion import MocapError from .motion_files import motion_files from .splits import FOLDS, LOCKBOX, VARIED,
-evaluation_only, trainable
+from .motion import MocapError
+from .motion_files import motion_files
+from .splits import FOLDS, LOCKBOX, VARIED, evaluation_only, trainable
 
 
 def main(mocap: Path) -> dict[str, list[str]]:
-    """tables: the people of the tables of docs/accuracy.md: the VARIED subjects outside the lockbox; all people outside the lockbox where one of
-    those is missing.
+    """tables: the people of the tables of docs/accuracy.md: the VARIED subjects outside the lockbox; all people outside
+    the lockbox where one of those is missing.
 
-    home: the first fold's held-out people, elsewhere: evaluation-only subjects (never trained on); of both, those in the folder.
-"""
+    home: the first fold's held-out people, elsewhere: evaluation-only subjects (never trained on); of both, those in
+    the folder.
+    """
     people = {source.person for source in motion_files(mocap, None)}
     varied = trainable(VARIED)
     return {

@@ -70,8 +70,9 @@ def _described(v: NDArray[np.float64]) -> str:
 
 def check_rest(rest: Points, joints: Mapping[str, str], where: str) -> None:
     """
-    Raises MocapError where joints at rest [m], +Y up, facing −Z, are no person in T-pose, with arms anywhere between level and hanging:
-    a bone of no length, a trunk that lies, shoulders that are not left and right, raised or folded arms, legs that do not stand.
+    Raises MocapError where joints at rest [m], +Y up, facing −Z, are no person in T-pose, with arms anywhere between
+    level and hanging: a bone of no length, a trunk that lies, shoulders that are not left and right, raised or folded
+    arms, legs that do not stand.
     """
     for near, far in (("hips", "chest"), ("chest", "neck"), ("neck", "head")):
         if np.linalg.norm(rest[far] - rest[near]) < RULES["shortestBone"]:

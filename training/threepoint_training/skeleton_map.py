@@ -28,8 +28,9 @@ _AXES = {"+x": (1, 0, 0), "-x": (-1, 0, 0), "+y": (0, 1, 0), "-y": (0, -1, 0), "
 @dataclass(frozen=True)
 class SkeletonMap:
     """
-    joints: our name to the file's. scale [m per unit] is None where it must be guessed. rotations: whose turn head and hands follow.
-    rest_frame: a frame in T-pose (from 1), of each file or of rest_file; rest_pose: its angles [degrees] by joint; neither: all angles 0.
+    joints: our name to the file's. scale [m per unit] is None where it must be guessed. rotations: whose turn head and
+    hands follow. rest_frame: a frame in T-pose (from 1), of each file or of rest_file; rest_pose: its angles [degrees]
+    by joint; neither: all angles 0.
     """
 
     name: str

@@ -77,15 +77,16 @@ class _Points:
 
     @property
     def across(self) -> Array:
-        """From the left to the right hand [F, 3].""" return self.right - self.left
+        """From the left to the right hand [F, 3]."""
+        return self.right - self.left
 
 
-        def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, Any] | None = None) -> Array:
-        """The six estimated joints [F, 6, 3] from tracked points in the heading frame, hands turned by their tilts;
-        body: one for all, or one per frame.
+def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, Any] | None = None) -> Array:
+    """The six estimated joints [F, 6, 3] from tracked points in the heading frame, hands turned by their tilts; body:
+    one for all, or one per frame.
 
-        The numbered steps are those of docs/estimation.md.
-        """
+    The numbered steps are those of docs/estimation.md.
+    """
     k = parameters or load_parameters()
     points = _points(positions, rotations, body)
     turn = _turn_chest(points, k)

@@ -25,13 +25,15 @@ _PARTNERS = {"019": "018", "061": "060"}
 
 
 def draw_lockbox() -> tuple[str, ...]:
-    """Draws LOCKBOX again.""" return tuple(
+    """Draws LOCKBOX again."""
+    return tuple(
         sorted(str(person) for person in np.random.default_rng(_LOCKBOX_SEED).choice(sorted(VARIED), 4, replace=False))
     )
 
 
-    def groups_in_turn(people: tuple[str, ...], count: int | None = None) -> list[tuple[str, ...]]: """`count` groups of
-    nearly equal size that are held out in turn; neighbours in the list are in different ones, partners in the same.
+def groups_in_turn(people: tuple[str, ...], count: int | None = None) -> list[tuple[str, ...]]:
+    """`count` groups of nearly equal size that are held out in turn; neighbours in the list are in different ones,
+    partners in the same.
 
     None, or more than there are people: each person alone, but for partners.
     """

@@ -185,8 +185,9 @@ def game_bvh(
     rest: dict[str, Array], turns: list[dict[str, Array]], hips: list[Array]
 ) -> tuple[str, dict[str, list[float]]]:
     """
-    A BVH whose joints are turned by `rest` when the person is in T-pose; its frames turn the joints of the T-pose by global rotations
-    `turns` (others as their parents). Also returns the angles of the T-pose, as a skeleton map's restPose wants them.
+    A BVH whose joints are turned by `rest` when the person is in T-pose; its frames turn the joints of the T-pose by
+    global rotations `turns` (others as their parents). Also returns the angles of the T-pose, as a skeleton map's
+    restPose wants them.
     """
     parent_of = {name: parent for name, parent, _ in GAME}
     joints = []

@@ -68,20 +68,24 @@ class HeldOut:
     clips: NDArray[np.int64]
 
     def subset(self, frames: NDArray[np.int64]) -> "HeldOut":
-        """These frames alone.""" return HeldOut(*(getattr(self, each.name)[frames] for each in fields(self)))
+        """These frames alone."""
+        return HeldOut(*(getattr(self, each.name)[frames] for each in fields(self)))
 
 
-        # One for all evaluations, so that errors of different networks are compared on the same wearers and noise.
-        _HELD_OUT_SEED = 1 _TRACKERS = TrackerConfig()
+# One for all evaluations, so that errors of different networks are compared on the same wearers and noise.
+_HELD_OUT_SEED = 1
+_TRACKERS = TrackerConfig()
 
 
-        def held_out( corpus: PreparedCorpus, people: tuple[str, ...], window_seconds: tuple[float, ...],
-        hands_measured: bool = True ) -> HeldOut: """All frames of these people as trackers report them, with the
-        calibration that they would have; without hands_measured no hand tilt is in it.
+def held_out(
+    corpus: PreparedCorpus, people: tuple[str, ...], window_seconds: tuple[float, ...], hands_measured: bool = True
+) -> HeldOut:
+    """All frames of these people as trackers report them, with the calibration that they would have; without
+    hands_measured no hand tilt is in it.
 
-        Hand tilts are measured on the true forearms of the same person's other clips (of a single clip: on its own),
-        with the calibration's error.
-        """
+    Hand tilts are measured on the true forearms of the same person's other clips (of a single clip: on its own), with
+    the calibration's error.
+    """
     forearms = hand_tilt.ForearmMeans(corpus, people)
     rows = []
     for name in people:
@@ -204,13 +208,17 @@ def train_frame_random(
     config: TrainFrameRandomConfig,
     report: Callable[[int, float], None] = lambda *_: None,
 ) -> CorrectionNetwork:
-    """Trains on the chosen frames as they are; report(step, loss).""" torch.manual_seed(config.seed) x, y =
-    torch.from_numpy(frames.inputs[chosen]), torch.from_numpy(frames.targets[chosen]) network =
-    CorrectionNetwork((x.shape[1] - CHEST_FEATURES) // FEATURES, config.width, 0.0, config.hidden_layers)
-    network.normalise(x, y) optimiser = torch.optim.AdamW(network.parameters(), lr=config.learning_rate,
-    weight_decay=config.weight_decay) schedule = torch.optim.lr_scheduler.OneCycleLR(
+    """Trains on the chosen frames as they are; report(step, loss)."""
+    torch.manual_seed(config.seed)
+    x, y = torch.from_numpy(frames.inputs[chosen]), torch.from_numpy(frames.targets[chosen])
+    network = CorrectionNetwork((x.shape[1] - CHEST_FEATURES) // FEATURES, config.width, 0.0, config.hidden_layers)
+    network.normalise(x, y)
+    optimiser = torch.optim.AdamW(network.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(
         optimiser, config.learning_rate, total_steps=config.steps, pct_start=0.1
-    ) network.train() for step in range(config.steps):
+    )
+    network.train()
+    for step in range(config.steps):
         batch = torch.randint(len(x), (config.batch,))
         loss = mean_distances(network(x[batch]).view(-1, 6, 3), y[batch].view(-1, 6, 3)).mean() / _RESIDUAL
         optimiser.zero_grad()
@@ -221,10 +229,11 @@ def train_frame_random(
     return network.eval()
 
 
-    # A typical residual [eye heights]; divides the loss, which so stays near one. _RESIDUAL = 0.025
+# A typical residual [eye heights]; divides the loss, which so stays near one.
+_RESIDUAL = 0.025
 
 
-    def mean_distances(corrections: torch.Tensor, truth: torch.Tensor, elbow_share: float = 1 / 3) -> torch.Tensor:
+def mean_distances(corrections: torch.Tensor, truth: torch.Tensor, elbow_share: float = 1 / 3) -> torch.Tensor:
     """Mean distance [N] of the joints [N, 6, 3] (ESTIMATED_JOINTS), both elbows together counting for so much; a third:
     every joint alike.
 

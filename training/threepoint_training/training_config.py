@@ -1,20 +1,25 @@
 """The configuration of one run of `npm run train`."""
 
-from dataclasses import dataclass, replace from pathlib import Path from typing import Literal
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal
 
 from . import fit_ik, train_learned, train_paper
 
 REPOSITORY = Path(__file__).parents[2]
 
-# What a run does: trains the networks, or instead makes the tables of one study, or evaluates the lockbox. Task =
-Literal["train", "selection", "noticed wear", "lockbox"]
+# What a run does: trains the networks, or instead makes the tables of one study, or evaluates the lockbox.
+Task = Literal["train", "selection", "noticed wear", "lockbox"]
 
 
-@dataclass(frozen=True) class TrainConfig:
-    """mocap None: generated motion, for trying the pipeline out. refit_kinematics also replaces the page's proportions and IK.
+@dataclass(frozen=True)
+class TrainConfig:
+    """mocap None: generated motion, for trying the pipeline out. refit_kinematics also replaces the page's proportions
+    and IK.
 
-    First the folds, whose errors are what is claimed; then the networks of the page, trained on all subjects, which carry those errors.
-"""
+    First the folds, whose errors are what is claimed; then the networks of the page, trained on all subjects, which
+    carry those errors.
+    """
 
     mocap: Path | None
     out: Path = REPOSITORY / "public/models"
