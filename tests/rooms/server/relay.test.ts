@@ -14,18 +14,29 @@ beforeAll(async () => {
 afterAll(() => server.close());
 
 describe('a relay', () => {
-  test('tells a page from before an update that it is one, and shows it to no one in the room', async () => {
+  // A page that stayed open or was kept offline over an update, and a page of a newer server that meets this one.
+  test.each([
+    // The join of version 3, when the pose packet had another layout: without an avatar.
+    ['an older', { version: 3 }],
+    ['a newer', { version: protocolVersion + 1, avatar: { name: 'of the future' }, posture: 'seated' }],
+  ])('reports to the page of %s version that it is one, and shows it to no one in the room', async (_, ofVersion) => {
     const ann = arrive(server.url, 'versions', 'Ann');
     try {
       await until('ann in', () => ann.connection.room !== null);
       const token = await tokenFor(server.url, 'versions');
-      const older = rawSocket(server.url, token, 'versions');
+      const stranger = rawSocket(server.url, token, 'versions');
       const heard: { type?: string; reason?: string }[] = [];
-      older.on(messageEvent, (message) => heard.push(message));
-      // As pages said it when the pose packet had another layout: without an avatar, in version 3.
-      const join = { type: 'join', version: 3, name: 'Old', calibration: defaultCalibration, spectate: false };
-      older.on('connect', () => older.emit(messageEvent, { ...join, bot: false, seat: null }));
-      await until('the farewell', () => heard.length > 0 && older.disconnected);
+      stranger.on(messageEvent, (message) => heard.push(message));
+      const join = {
+        type: 'join',
+        name: 'Old',
+        calibration: defaultCalibration,
+        spectate: false,
+        bot: false,
+        seat: null,
+      };
+      stranger.on('connect', () => stranger.emit(messageEvent, { ...join, ...ofVersion }));
+      await until('the farewell', () => heard.length > 0 && stranger.disconnected);
       expect(heard).toEqual([{ type: 'farewell', reason: 'old-page' }]);
       const status: ConnectionStatus = { phase: 'ended', attempt: 0, retryIn: null, reason: 'old-page' };
       expect(bannerText(status)).toBe('This page and the server have different versions. Reload the page.');
