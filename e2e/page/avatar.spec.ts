@@ -23,7 +23,7 @@ test('a VRM from a local file takes the place of ours, with the hands still on t
       return 1000 * Math.hypot(now[0] - hand[0], now[1] - hand[1], now[2] - hand[2]);
     })
     .toBeLessThan(1);
-  await page.getByRole('button', { name: 'Back to ours' }).click();
+  await page.getByRole('button', { name: 'Back to the page’s avatar' }).click();
   await expect.poll(async () => (await probe(page)).avatar.name).not.toMatch(/another-person/);
 });
 

@@ -2,6 +2,7 @@ import { defaultCalibration } from 'threepoint/core/body/calibration';
 import type { BallState } from 'threepoint-games/ball/ball-state';
 import { bannerText } from 'threepoint-rooms/client/banner';
 import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
+import { protocolVersion } from 'threepoint-rooms/protocol/messages';
 import { messageEvent } from 'threepoint-rooms/protocol/socket-parsers';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { atRack, fists, holding, opening, releaseOf } from '../client/people';
