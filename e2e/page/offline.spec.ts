@@ -129,7 +129,7 @@ for (const [where, host] of Object.entries(hosts)) {
     await keepPicture(page, 'offline-archery');
     await headset.endSession();
     await page.getByRole('button', { name: 'Ball game' }).click();
-    await expect(page.getByText('which does not answer now')).toBeVisible();
+    await expect(page.getByText('does not answer. Try again later.')).toBeVisible();
     await keepPicture(page, 'offline-rooms');
     expect(
       errors.filter((text) => !unreachable.test(text)),

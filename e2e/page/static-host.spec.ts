@@ -56,7 +56,7 @@ test('from a folder of a host of files: the learned body in VR, archery, and a s
   await headset.endSession();
 
   await page.getByRole('button', { name: 'Ball game' }).click();
-  await expect(page.getByText('comes from a host without a threepoint server')).toBeVisible();
+  await expect(page.getByText('host has no threepoint server')).toBeVisible();
   await expect(page.getByRole('button', { name: 'Play with others' })).toBeHidden();
 });
 
@@ -95,7 +95,7 @@ test.describe('built for one folder @realtime', () => {
     await page.goto('?play=ball&room=friends&quality=low&panel=off');
     await page.waitForFunction(() => window.threepoint?.probe().game, undefined, { timeout: 60_000 });
     await expect(page.getByText('Your own room')).toBeVisible();
-    await expect(page.getByText('comes from a host without a threepoint server')).toBeVisible();
+    await expect(page.getByText('host has no threepoint server')).toBeVisible();
     await keepPicture(page, 'static-host-rooms');
   });
 });
