@@ -5,6 +5,7 @@ import { join } from 'node:path';
 import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/study-record';
 import { openStudyStore } from 'threepoint-study/server/storage/store';
 import { expect, onTestFinished, test } from 'vitest';
+import { withSourceCondition } from '../../../scripts/source-condition.mjs';
 import { reportFigures } from '../../reliability/report-figures';
 import { experimenterToken, forkServer } from '../../server/server-child';
 import { directoryWith } from '../../temporary-directory';
@@ -57,10 +58,10 @@ test('a heap of 64 MB refuses what does not fit with a sentence, and the server 
   tags: ['full'],
 }, async () => {
   const { directory } = studyWith(30_000);
-  const server = await forkServer({ NODE_OPTIONS: '--max-old-space-size=64' }, { directory });
+  const server = await forkServer({ NODE_OPTIONS: withSourceCondition('--max-old-space-size=64') }, { directory });
   const exported = await ask(server, 'GET', '/export');
   expect(exported.status).toBe(507);
-  expect(exported.error).toMatch(/^The memory of the server does not suffice\. Give it more: .*one by one\.$/);
+  expect(exported.error).toMatch(/^The server is out of memory\. Give it more: .*one by one\.$/);
   const records = await ask(server, 'GET', '/records');
   expect(JSON.parse(records.bytes.toString()).records).toHaveLength(30_007);
   expect((await remark(server)).status).toBe(201);
@@ -88,7 +89,7 @@ test('a limit of files that strangers’ connections use up leaves the studies w
   for (const stranger of strangers) stranger.destroy();
   expect(answers.map(({ status }) => status)).toEqual([201, 201]);
   expect(exported.status).toBe(507);
-  expect(exported.error).toMatch(/^The server may not have more files open\. Raise the limit: ulimit -n 1024\./);
+  expect(exported.error).toMatch(/^The server has too many files open\. Raise the limit: ulimit -n 1024\./);
   await expect.poll(async () => (await ask(server, 'GET', '/export')).status).toBe(200);
   expect((await server.inspect()).faults).toEqual([]);
   reportFigures('study-shortage', { '200 connections, 100 files': `writes 201, an export ${exported.status}` });
