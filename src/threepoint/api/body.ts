@@ -1,4 +1,5 @@
 import type { NetworkName } from '../core/estimation/estimators';
+import type { EstimatorName } from '../core/estimation/pose-estimator';
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import { BodySolver, type BodySolverOptions } from './body-solver';
 import { learnedAlone } from './load-learned';
@@ -9,6 +10,13 @@ export interface BodyOptions extends Partial<BodySolverOptions> {
    * both.
    */
   readonly networks?: (name: NetworkName) => Promise<PoseRegressor>;
+}
+
+/** Warns that another estimator draws than the one selected, for a page that handles no `fallback`. */
+export function warnOfFallback(estimator: EstimatorName, reason: string): void {
+  console.warn(
+    `threepoint: inverse kinematics draws the body instead of “${estimator}”: ${reason}. Handle “fallback” to report it yourself.`,
+  );
 }
 
 /**
@@ -22,6 +30,7 @@ export interface BodyOptions extends Partial<BodySolverOptions> {
 export class Body extends BodySolver {
   /** Throws a RangeError where the calibration is not human or the estimator is unknown. */
   constructor(options: BodyOptions = {}) {
-    super({ ...options, networks: options.networks ?? learnedAlone });
+    const events = { fallback: warnOfFallback, ...options.events };
+    super({ ...options, events, networks: options.networks ?? learnedAlone });
   }
 }

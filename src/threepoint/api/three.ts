@@ -1,5 +1,5 @@
 // "threepoint/three": the body on an avatar of three.js, driven by a WebXR session.
-import { EventDispatcher, Group, type Object3D, type WebGLRenderer } from 'three';
+import { EventDispatcher, type EventListener, Group, type Object3D, type WebGLRenderer } from 'three';
 import { type Avatar, createAvatar } from '../avatar/avatar';
 import type { BoneMap } from '../avatar/humanoid/bone-names';
 import { parseAvatar } from '../avatar/load-avatar';
@@ -10,7 +10,7 @@ import type { EstimatorName } from '../core/estimation/pose-estimator';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { DeviceBodyReader } from '../xr/device-body-reader';
 import { TrackedSession } from '../xr/tracked-session';
-import { Body, type BodyOptions } from './body';
+import { Body, type BodyOptions, warnOfFallback } from './body';
 import type { CalibrationSource, TrackedPoint } from './body-solver';
 import { loadLearned } from './load-learned';
 import type { MotionWriter } from './motion-export';
@@ -116,6 +116,8 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   /** Whether the avatar's head is hidden from the wearer's eyes. */
   #firstPerson = false;
   #disposed = false;
+  /** Whether the page listens to `fallback`; without a listener a failed network is a warning. */
+  #handlesFallback = false;
 
   /** Throws a RangeError where the calibration is not human or the estimator is unknown. */
   constructor(renderer: WebGLRenderer, { avatar, modelUrl, deviceBody = false, ...options }: BodyTrackerOptions) {
@@ -138,7 +140,10 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
         heightmismatch: (difference) => this.dispatchEvent({ type: 'heightmismatch', difference }),
         changed: () => this.dispatchEvent({ type: 'changed' }),
         discontinuity: () => this.dispatchEvent({ type: 'discontinuity' }),
-        fallback: (estimator, reason) => this.dispatchEvent({ type: 'fallback', estimator, reason }),
+        fallback: (estimator, reason) => {
+          if (this.#handlesFallback) this.dispatchEvent({ type: 'fallback', estimator, reason });
+          else warnOfFallback(estimator, reason);
+        },
         trackinglost: (point) => this.dispatchEvent({ type: 'trackinglost', point }),
         trackingfound: (point) => this.dispatchEvent({ type: 'trackingfound', point }),
       },
@@ -147,6 +152,14 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     this.#object.name = 'body';
     this.#object.add(avatar.object);
     this.#object.visible = false;
+  }
+
+  override addEventListener<T extends keyof BodyTrackerEvents>(
+    type: T,
+    listener: EventListener<BodyTrackerEvents[T], T, this>,
+  ): void {
+    if (type === 'fallback') this.#handlesFallback = true;
+    super.addEventListener(type, listener);
   }
 
   /**

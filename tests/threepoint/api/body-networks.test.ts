@@ -1,6 +1,6 @@
 import { Body } from 'threepoint/api/body';
 import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
-import { describe, expect, test } from 'vitest';
+import { describe, expect, test, vi } from 'vitest';
 import { openPlainModel } from '../core/estimation/shipped-models';
 import { at, calibration, observed } from './observed-body';
 import { openPorts } from './open-ports';
@@ -11,6 +11,15 @@ describe('a body whose network is unavailable', () => {
     expect(told).toEqual(['fallback learned learned.bin: gone']);
     expect(body.update(at(0))?.body).not.toBeNull();
     expect(body.estimator).toBe('ik');
+  });
+
+  test('warns once with reason and remedy where the page handles no fallback', async () => {
+    const warn = vi.spyOn(console, 'warn').mockImplementation(() => undefined);
+    const body = new Body({ networks: async () => Promise.reject(new Error('learned.bin: gone')) });
+    await body.setEstimator('learned').catch(() => undefined);
+    body.update(at(0));
+    body.update(at(1 / 30));
+    expect(warn.mock.calls).toEqual([[expect.stringMatching(/“learned”: learned\.bin: gone\. Handle “fallback”/)]]);
   });
 
   test('goes over to it when the network breaks in a frame', async () => {
