@@ -98,7 +98,7 @@ test('markup in names of files is text in what pages say of them @full', async (
 test('markup in the name of another player is text @full', async ({ page, origin }) => {
   await page.goto(`${origin}/?play=ball&room=foreign&bots=off&panel=off&quality=low&estimator=ik&overlay=off`);
   await joinedRoom(page);
-  const script = fileURLToPath(new URL('guest-process.ts', import.meta.url));
+  const script = fileURLToPath(new URL('../guest-process.ts', import.meta.url));
   const guest = fork(script, [origin, 'foreign', mark], { execArgv: ['--import', 'tsx'], serialization: 'advanced' });
   try {
     await once(guest, 'message');

@@ -94,7 +94,7 @@ async function enter(page: Page, origin: string, room: string, query = ''): Prom
 
 /** Another person in the room, who comes without a page. */
 async function comes(origin: string, room: string, name: string) {
-  const script = fileURLToPath(new URL('guest-process.ts', import.meta.url));
+  const script = fileURLToPath(new URL('../guest-process.ts', import.meta.url));
   const child = fork(script, [origin, room, name], { execArgv: ['--import', 'tsx'], serialization: 'advanced' });
   const answers = new Map<number, (answer: GuestAnswer) => void>();
   const answerTo = (id: number) => new Promise<GuestAnswer>((resolve) => answers.set(id, resolve));
