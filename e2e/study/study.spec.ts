@@ -145,7 +145,7 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
   const exported = await experimenter(origin).ask('/short/export');
   await writeFile(zip, Buffer.from(await exported.arrayBuffer()));
   const { stdout } = await promisify(execFile)('npm', ['run', '-s', 'study:verify', '--', zip]);
-  expect(stdout).toMatch(/: sound: \d+ files, computed anew from \d+ records\./);
+  expect(stdout).toMatch(/: sound: \d+ files, recomputed from \d+ records\./);
 
   await openResults(page, 'short');
   await expect(page.getByText('SIMULATED: a program made these data')).toBeVisible();
