@@ -55,7 +55,7 @@ test.describe('examples of the package @realtime', () => {
   test('are short @realtime', () => {
     for (const name of exampleNames) {
       const main = readFileSync(
-        new URL(`../examples/${name}/main.${name === 'react-three-fiber' ? 'jsx' : 'js'}`, import.meta.url),
+        new URL(`../../examples/${name}/main.${name === 'react-three-fiber' ? 'jsx' : 'js'}`, import.meta.url),
         'utf8',
       );
       expect(main.trimEnd().split('\n').length, name).toBeLessThanOrEqual(40);
