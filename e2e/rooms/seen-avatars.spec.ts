@@ -274,7 +274,9 @@ freshTest(
       );
       await last.putOn(swapped);
       await expect(
-        page.getByText(/Eve is not shown.*the server sent a different file than the player announced/),
+        page.getByText(
+          /The avatar of Eve could not be shown.*the server sent a different file than the player announced/,
+        ),
       ).toBeVisible();
       expect(await drawnAs(page, 'Eve')).toBe('mannequin');
 
