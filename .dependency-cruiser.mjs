@@ -95,7 +95,7 @@ const studyServerRooms = {
 const knownStudyRooms = Object.keys(studyRooms).map((room) =>
   room === 'model' ? `model/(${Object.keys(modelRooms).join('|')})` : room,
 );
-const activity = { shell: 'archery|ball|mocap|studio' };
+const activities = 'archery|ball|mocap|studio';
 
 /** `import 'three'` resolves into node_modules; a package that is not installed keeps its bare name. */
 const packagePath = (...names) => `(^|node_modules/)(${names.join('|')})(/|$)`;
@@ -174,7 +174,7 @@ export default {
       comment:
         'Each activity of the page can be removed: activities import neither each other nor the shell. They know the shell by activity/.',
       severity: 'error',
-      from: { path: `^src/page/(${activity.shell})/` },
+      from: { path: `^src/page/(${activities})/` },
       to: { path: '^src/page/', pathNot: '^src/page/($1|scene|activity)/' },
     },
     {

@@ -40,8 +40,9 @@ const manifestIn = (folder) => JSON.parse(readFileSync(join(root, folder, 'packa
  */
 export async function buildServer(out) {
   const { version, type } = manifestIn('.');
-  const dependencies = Object.assign({}, ...packages.map((folder) => manifestIn(folder).dependencies));
-  for (const own of packages.map((folder) => manifestIn(folder).name)) delete dependencies[own];
+  const manifests = packages.map(manifestIn);
+  const dependencies = Object.assign({}, ...manifests.map((manifest) => manifest.dependencies));
+  for (const { name } of manifests) delete dependencies[name];
   const packageOf = (id) => Object.keys(dependencies).find((known) => id === known || id.startsWith(`${known}/`));
   const bundle = await rolldown({
     input: entries(),

@@ -37,21 +37,14 @@ function commentsOfScript(text) {
   };
   const source = ts.createSourceFile('file.ts', text, ts.ScriptTarget.Latest, true);
   const seen = new Set();
+  // Tokens are children, too: a comment before a closing bracket belongs to none of the nodes.
   const visit = (node) => {
     for (const range of ts.getLeadingCommentRanges(text, node.getFullStart()) ?? []) {
       if (seen.has(range.pos)) continue;
       seen.add(range.pos);
       add(range.pos, text.slice(range.pos, range.end));
     }
-    ts.forEachChild(node, visit);
-    for (const child of node.getChildren(source)) if (child.kind < ts.SyntaxKind.FirstNode) visitToken(child);
-  };
-  const visitToken = (token) => {
-    for (const range of ts.getLeadingCommentRanges(text, token.getFullStart()) ?? []) {
-      if (seen.has(range.pos)) continue;
-      seen.add(range.pos);
-      add(range.pos, text.slice(range.pos, range.end));
-    }
+    for (const child of node.getChildren(source)) visit(child);
   };
   visit(source);
   return joined(found, text);

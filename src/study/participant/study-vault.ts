@@ -82,15 +82,19 @@ export async function openStudyVault(name = 'threepoint-studies'): Promise<Study
       }),
     ),
   );
+  const bounded =
+    <Args extends readonly unknown[], Answer>(request: (...args: Args) => Promise<Answer>) =>
+    (...args: Args): Promise<Answer> =>
+      patience.answer(() => request(...args));
   return {
-    session: (study, participant) => patience.answer(() => vault.session(study, participant)),
-    save: (session, records, again) => patience.answer(() => vault.save(session, records, again)),
-    records: (study, participant) => patience.answer(() => vault.records(study, participant)),
-    removeRecords: (study, participant, ids) => patience.answer(() => vault.removeRecords(study, participant, ids)),
-    saveMotion: (study, participant, motion) => patience.answer(() => vault.saveMotion(study, participant, motion)),
-    motion: (study, participant) => patience.answer(() => vault.motion(study, participant)),
-    removeMotion: (study, participant, trial) => patience.answer(() => vault.removeMotion(study, participant, trial)),
-    forget: (study, participant) => patience.answer(() => vault.forget(study, participant)),
+    session: bounded(vault.session),
+    save: bounded(vault.save),
+    records: bounded(vault.records),
+    removeRecords: bounded(vault.removeRecords),
+    saveMotion: bounded(vault.saveMotion),
+    motion: bounded(vault.motion),
+    removeMotion: bounded(vault.removeMotion),
+    forget: bounded(vault.forget),
     close: () => vault.close(),
   };
 }

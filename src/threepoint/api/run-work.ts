@@ -15,7 +15,7 @@ export interface WorkOptions {
   readonly signal?: AbortSignal | undefined;
 }
 
-const tellEveryMs = 100;
+const reportEveryMs = 100;
 
 const host: WorkHost = {
   now: () => performance.now(),
@@ -35,12 +35,12 @@ const host: WorkHost = {
 export async function runWork<Result>(work: Work<Result>, { onProgress, signal }: WorkOptions = {}): Promise<Result> {
   signal?.throwIfAborted();
   const begun = host.now();
-  let told = Number.NEGATIVE_INFINITY;
+  let reportedAt = Number.NEGATIVE_INFINITY;
   const result = await runInTurns(work, host, (share) => {
     signal?.throwIfAborted();
     const now = host.now();
-    if (now - told < tellEveryMs) return;
-    told = now;
+    if (now - reportedAt < reportEveryMs) return;
+    reportedAt = now;
     onProgress?.({ share, secondsLeft: secondsLeft(share, (now - begun) / 1000) });
   });
   signal?.throwIfAborted();
