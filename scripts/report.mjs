@@ -13,10 +13,11 @@ const usage =
   'npm run report -- --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]\n' +
   'npm run report -- --redraw [--models DIR]\n' +
   'npm run report -- --legs --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR]\n' +
-  'DIR holds .asf and .amc or .bvh files; people whom the tables are of (the varied ones outside the lockbox where DIR has them all, else all outside the lockbox; of ' +
-  'legs: all), beside whom 005 and another laboratory (901, 902, 903) are measured with and without their hands where DIR has them; ' +
-  'models the networks of a cross-validation (.cache/cross-validation, where npm run train leaves them); fp32 what npm run train -- --fp32 ' +
-  'wrote. docs/accuracy.md is renewed.';
+  'DIR holds .asf and .amc or .bvh files. --people names the people of the tables (default: the varied ones outside ' +
+  'the lockbox if DIR has them all, else everyone outside the lockbox; --legs: everyone). 005 and another laboratory ' +
+  '(901, 902, 903) are also measured with and without calibrated hands if DIR has them. --models names the folder of ' +
+  'the networks (default: .cache/cross-validation, which npm run train writes), --fp32 what npm run train -- --fp32 ' +
+  'wrote. The command renews docs/accuracy.md.';
 const sixHours = 6 * 3600;
 // Poses are motion data: they stay in the cache, and only figures of them go into docs.
 const measured = join(root, '.cache/report');

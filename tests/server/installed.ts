@@ -2,7 +2,7 @@ import { existsSync } from 'node:fs';
 import { join } from 'node:path';
 
 /**
- * Where a program of the distribution is; null: it is not installed, and its tests are left out. With
+ * Returns the path of a program of the distribution; null: it is not installed, and its tests are left out. With
  * THREEPOINT_PROGRAMS=required none may be left out: then a program that is missing throws.
  */
 export function installed(name: string): string | null {

@@ -130,8 +130,8 @@ export interface ActivityRunner extends TaskRunner {
 
 /**
  * Something to do on the page besides looking in the mirror. Implementations are listed in
- * `shell/activity-registry.ts`, which is the only part of the
- * shell that names them. `load` imports the code on first use, so an implementation of this interface must be small.
+ * `shell/activity-registry.ts`, which is the only part of the shell that names them. `load` imports the code on first
+ * use, so an implementation of this interface must be small.
  *
  * @example
  * export const darts: Activity = {

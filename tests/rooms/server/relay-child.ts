@@ -2,11 +2,11 @@ import { fork } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import { heardFrom, kill } from '../../server/child-process';
 
-/** What a relay's process tells of itself. */
+/** The measurements that a relay's process reports about itself. */
 export interface RelayMeasure {
   /** What is alive after garbage is collected. */
   readonly heldBytes: number;
-  /** Of the process, without what V8 keeps for new objects. */
+  /** The memory of the process without the space that V8 reserves for new objects. */
   readonly rssBytes: number;
   readonly lagP99Ms: number;
   readonly lagMaxMs: number;
