@@ -23,6 +23,14 @@ async function backAndForward(page: Page, origin: string): Promise<void> {
   await page.waitForFunction(() => (window.threepoint?.probe().study?.screen ?? 'opening') !== 'opening');
 }
 
+/** The session goes on after the code. One that was noted in the moment of leaving is shown again: saving takes a moment. */
+async function pastTheCode(page: Page): Promise<void> {
+  const noted = page.getByRole('button', { name: 'I have noted it' });
+  await expect(page.getByLabel(/Age/).or(noted)).toBeVisible();
+  if (await noted.isVisible()) await noted.click();
+  await expect(page.getByLabel(/Age/)).toBeVisible();
+}
+
 test('the back button leads out of a study and the forward button back to where it was, at every kind of step @realtime', async ({
   page,
   origin,
@@ -51,7 +59,7 @@ test('the back button leads out of a study and the forward button back to where 
 
   await page.getByLabel(/Age/).fill('26');
   await returns();
-  await expect(page.getByLabel(/Age/)).toBeVisible();
+  await pastTheCode(page);
   await fillInDemographics(page);
   await page.getByRole('button', { name: 'Continue' }).click();
 
@@ -124,8 +132,7 @@ test('back to an invitation that was wrong changes nothing of a session that is 
   await page.getByRole('button', { name: 'I have noted it' }).click();
   await expect(page.getByLabel(/Age/)).toBeVisible();
   await backAndForward(page, origin);
-  // The session goes on. A code that was noted in the moment of leaving may be shown once more: saving takes a moment.
-  await expect(page.getByLabel(/Age/).or(page.getByRole('button', { name: 'I have noted it' }))).toBeVisible();
+  await pastTheCode(page);
   await expect
     .poll(async () => (await recordsOf(origin, 'wrong')).filter(({ kind }) => kind === 'consent').length)
     .toBe(1);

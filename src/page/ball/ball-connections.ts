@@ -70,8 +70,8 @@ export async function connectionsFor(
       room,
       visitor,
       clock,
-      // Each bot is a guest with its own pass.
-      pass: visitor.bot ? createRoomPass(server, room, 'ball') : person,
+      // Each bot is a guest with its own pass. It may be the first that comes back after the room was closed.
+      pass: visitor.bot ? createRoomPass(server, room, 'ball', undefined, terms) : person,
     });
   return {
     connect,
