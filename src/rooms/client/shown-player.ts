@@ -11,7 +11,7 @@ import { type MutablePose, makePose, type TrackedPose } from 'threepoint/core/ma
 import { copyQuat, type MutableQuat, normaliseQuat, type Quat, quat, setQuat, slerp } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { addScaled, copyVec3, lerp, type MutableVec3, setVec3, vec3 } from 'threepoint/core/math/vec3';
-import type { PosePacket } from '../protocol/pose-packet';
+import type { FloorPlacement, PosePacket } from '../protocol/pose-packet';
 import type { PathFit, PathSample } from './path-fit';
 
 /** The pose of a player in one frame. */
@@ -45,8 +45,10 @@ export class ShownPlayer implements Shown {
     body: MutableBody | null;
   };
   readonly fingers: Record<Side, HandShape | null> = { left: null, right: null };
+  placement: FloorPlacement | null = null;
   private readonly hands: Readonly<Record<Side, MutableTrackedPose>> = { left: makeTracked(), right: makeTracked() };
   private readonly body = makeBody();
+  private readonly placed = { position: vec3(0, 0, 0), heading: 0 };
   private readonly shapes = { left: makeHandShape(), right: makeHandShape() };
 
   constructor() {
@@ -54,13 +56,14 @@ export class ShownPlayer implements Shown {
   }
 
   /** Copies a pose. */
-  copy({ pose, fingers }: Shown): this {
+  copy({ pose, fingers, placement }: Shown): this {
     copyTracked(pose.head, this.pose.head);
     this.pose.leftHand = pose.leftHand && copyTracked(pose.leftHand, this.hands.left);
     this.pose.rightHand = pose.rightHand && copyTracked(pose.rightHand, this.hands.right);
     this.pose.body = pose.body && copyBody(pose.body, this.body);
     this.fingers.left = fingers.left && copyHandShape(fingers.left, this.shapes.left);
     this.fingers.right = fingers.right && copyHandShape(fingers.right, this.shapes.right);
+    this.placement = mixPlacement(placement, placement, 1, this.placed);
     return this;
   }
 
@@ -83,6 +86,7 @@ export class ShownPlayer implements Shown {
     else pose.body = mixBody(a.pose.body, b.pose.body, t, this.body);
     fingers.left = mixFingers(a.fingers.left, b.fingers.left, t, shapes.left);
     fingers.right = mixFingers(a.fingers.right, b.fingers.right, t, shapes.right);
+    this.placement = mixPlacement(a.placement, b.placement, Math.min(t, 1), this.placed);
     return this;
   }
 
@@ -94,6 +98,7 @@ export class ShownPlayer implements Shown {
     this.pose.body = mixBody(a.pose.body, b.pose.body, t, this.body);
     this.fingers.left = mixFingers(a.fingers.left, b.fingers.left, t, this.shapes.left);
     this.fingers.right = mixFingers(a.fingers.right, b.fingers.right, t, this.shapes.right);
+    this.placement = mixPlacement(a.placement, b.placement, Math.min(t, 1), this.placed);
     return this;
   }
 }
@@ -213,4 +218,26 @@ function mixFingers(
   if (a && b) return mixHandShape(a, b, Math.min(t, 1), target);
   const held = t < 1 ? a : b;
   return held && copyHandShape(held, target);
+}
+
+interface MutablePlacement {
+  readonly position: MutableVec3;
+  heading: number;
+}
+
+/** Interpolates between two placements, with the heading the shorter way round. */
+function mixPlacement(
+  a: FloorPlacement | null | undefined,
+  b: FloorPlacement | null | undefined,
+  t: number,
+  target: MutablePlacement,
+): FloorPlacement | null {
+  if (!a || !b) {
+    const held = (t < 1 ? a : b) ?? null;
+    return held && mixPlacement(held, held, 1, target);
+  }
+  const turn = b.heading - a.heading;
+  target.heading = a.heading + t * Math.atan2(Math.sin(turn), Math.cos(turn));
+  lerp(a.position, b.position, t, target.position);
+  return target;
 }

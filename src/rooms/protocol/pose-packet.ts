@@ -1,5 +1,6 @@
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import type { Fingers } from 'threepoint/core/body/hand-shape';
+import type { Vec3 } from 'threepoint/core/math/vec3';
 
 /**
  * Rises with every change of the layout, or of the body proportions that packets are relative to. Other versions are
@@ -10,6 +11,14 @@ export const poseVersion = 4;
 /** The longest packet [bytes]. */
 export const longestPose = 64;
 
+/** Where the sender's floor lies in the scene: the page has moved its wearer there. */
+export interface FloorPlacement {
+  /** The floor's origin in the scene [m]. */
+  readonly position: Vec3;
+  /** The turn about the scene's +Y [rad]. */
+  readonly heading: number;
+}
+
 /** A pose packet. All poses are in the sender's floor frame. */
 export interface PosePacket {
   /** Time of the frame by the sender's clock [ms], modulo 16,384. */
@@ -19,9 +28,11 @@ export interface PosePacket {
   readonly pose: AvatarPose;
   /** The bends of the fingers; null: unknown (a lost hand, or one at which its arm does not end). */
   readonly fingers: Fingers;
+  /** Absent: the floor's origin is the scene's. A pose packet of a room has none; the packet around it may. */
+  readonly placement?: FloorPlacement | null;
 }
 
 /** Head and hands of a packet, floor frame, without body and fingers. */
-export type PointsPacket = Omit<PosePacket, 'pose' | 'fingers'> & {
+export type PointsPacket = Omit<PosePacket, 'pose' | 'fingers' | 'placement'> & {
   readonly pose: AvatarPose & { readonly body: null };
 };

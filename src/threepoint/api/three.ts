@@ -14,6 +14,7 @@ import { Body, type BodyOptions, warnOfFallback } from './body';
 import type { CalibrationSource, TrackedPoint } from './body-solver';
 import { loadLearned } from './load-learned';
 import type { MotionWriter } from './motion-export';
+import { readOwnMannequin } from './own-mannequin';
 
 export type { Avatar } from '../avatar/avatar';
 export type { BoneMap } from '../avatar/humanoid/bone-names';
@@ -40,6 +41,11 @@ export type AvatarSource = string | URL | Blob | ArrayBuffer | ArrayBufferView;
 export async function loadAvatar(source: AvatarSource, { bones }: LoadAvatarOptions = {}): Promise<Avatar> {
   const { name, bytes } = await read(source);
   return createAvatar(await parseAvatar(bytes, name, { bones }));
+}
+
+/** Loads the mannequin that comes with this package; each call returns another one. */
+export async function loadMannequin(): Promise<Avatar> {
+  return createAvatar(await parseAvatar(await readOwnMannequin(), 'mannequin.vrm', {}));
 }
 
 /**

@@ -1,0 +1,131 @@
+import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import { type Calibration, demandPerson, sameMeasures } from 'threepoint/core/body/calibration';
+import { type Fingers, unknownFingers } from 'threepoint/core/body/hand-shape';
+import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { toMillimetres } from '../protocol/messages';
+import { encodePeerPose, encodeProfile } from '../protocol/peer-packet';
+import { encodePose } from '../protocol/pose-codec';
+import type { FloorPlacement } from '../protocol/pose-packet';
+
+/** The person whose body is sent: a `BodyTracker` or `BodySolver` of threepoint is one. */
+export interface SentBody {
+  /** The pose of the newest frame, floor frame [m]; null: there is none, and the others see nobody. */
+  readonly pose: AvatarPose | null;
+  readonly calibration: Calibration;
+  /** The bends of the fingers. Absent: unknown. */
+  readonly fingers?: Fingers;
+}
+
+/** What a packet has beyond the body. */
+export interface SentFrame {
+  /** The opening of the mouth, 0 to 1. Default: 0. */
+  readonly mouth?: number;
+  /** Where the floor lies in the scene. Default: at its origin. */
+  readonly placement?: FloorPlacement | null;
+}
+
+export interface PoseSenderOptions {
+  /** The name that the others see; at most 20 characters of it. */
+  readonly name: string;
+  /** A reference that the other pages turn into an avatar, at most 200 characters. Default: null, theirs. */
+  readonly avatar?: string | null;
+  /** Poses a second, 1 to 60. Default: 30. */
+  readonly rate?: number;
+}
+
+/** The profile is sent again this often [ms]: whoever has joined since, or has missed it, then has it. */
+const profileMs = 1000;
+
+/**
+ * Makes the packets of one person's body for any transport: a WebSocket, a data channel, the state of another
+ * multiplayer framework. Packets may be lost or change their order; none is longer than `longestPeerPacket`, and most
+ * have 70 bytes or less.
+ *
+ * @example
+ * const sender = new PoseSender((bytes) => channel.send(bytes), { name: 'Ada' });
+ * renderer.setAnimationLoop((timeMs, frame) => {
+ *   tracker.update(timeMs, frame);
+ *   sender.update(timeMs, tracker);
+ * });
+ */
+export class PoseSender {
+  readonly #send: (bytes: Uint8Array<ArrayBuffer>) => void;
+  readonly #intervalMs: number;
+  #name: string;
+  #avatar: string | null;
+  #calibration: Calibration | null = null;
+  #skeleton: Skeleton | null = null;
+  #visible = false;
+  #nextPoseMs = Number.NEGATIVE_INFINITY;
+  #nextProfileMs = Number.NEGATIVE_INFINITY;
+  #jump = false;
+
+  /**
+   * `send` passes the bytes of a packet on; the array is its own. Throws a RangeError for a rate outside 1 to 60.
+   */
+  constructor(send: (bytes: Uint8Array<ArrayBuffer>) => void, { name, avatar = null, rate = 30 }: PoseSenderOptions) {
+    if (!(rate >= 1 && rate <= 60)) throw new RangeError(`A rate of ${rate} poses a second is outside 1 to 60.`);
+    this.#send = send;
+    this.#intervalMs = 1000 / rate;
+    this.#name = name;
+    this.#avatar = avatar;
+    // Throws here, rather than in the first frame, where the reference is too long.
+    encodeProfile({ name, avatar, visible: false, calibration: { eyeHeight: 1.6, armSpan: 1.5 } });
+  }
+
+  /**
+   * Sends what is due; to be called in every frame, with its time [ms] by any monotonic clock. Without a pose it tells
+   * the others once a second that nobody is there. Throws a RangeError where the measures are not human.
+   */
+  update(timeMs: number, { pose, calibration, fingers = unknownFingers }: SentBody, frame: SentFrame = {}): void {
+    this.#setCalibration(calibration);
+    if (this.#visible !== (pose !== null)) this.introduce();
+    this.#visible = pose !== null;
+    if (timeMs >= this.#nextProfileMs) this.#sendProfile(timeMs);
+    if (!pose || (timeMs < this.#nextPoseMs && !this.#jump)) return;
+    // Frames have their own rate; this keeps the average.
+    this.#nextPoseMs = Math.max(this.#nextPoseMs + this.#intervalMs, timeMs + this.#intervalMs / 2);
+    const bytes = encodePose({ timeMs, jump: this.#jump, pose, fingers }, this.#skeleton!);
+    if (!bytes) return;
+    this.#jump = false;
+    this.#send(encodePeerPose(bytes, frame.mouth ?? 0, frame.placement ?? null));
+  }
+
+  /** Sends the profile with the next `update`, for a peer who has just joined; otherwise that takes up to a second. */
+  introduce(): void {
+    this.#nextProfileMs = Number.NEGATIVE_INFINITY;
+  }
+
+  /** The space was re-anchored or the wearer teleported: nobody draws the way from the last pose to the next. */
+  discontinuity(): void {
+    this.#jump = true;
+  }
+
+  /** Changes the name. */
+  rename(name: string): void {
+    this.#name = name;
+    this.introduce();
+  }
+
+  /** Changes the reference to the avatar. Throws a RangeError if it is too long. */
+  wear(avatar: string | null): void {
+    encodeProfile({ name: '', avatar, visible: false, calibration: { eyeHeight: 1.6, armSpan: 1.5 } });
+    this.#avatar = avatar;
+    this.introduce();
+  }
+
+  #setCalibration(calibration: Calibration): void {
+    if (this.#calibration && sameMeasures(calibration, this.#calibration)) return;
+    demandPerson(calibration);
+    this.#calibration = calibration;
+    // The others know the measures rounded to millimetres.
+    this.#skeleton = skeletonFromCalibration(toMillimetres(calibration));
+    this.introduce();
+  }
+
+  #sendProfile(timeMs: number): void {
+    this.#nextProfileMs = timeMs + profileMs;
+    const profile = { name: this.#name, calibration: this.#calibration!, avatar: this.#avatar, visible: this.#visible };
+    this.#send(encodeProfile(profile));
+  }
+}

@@ -1,0 +1,87 @@
+import { type Object3D, Quaternion, Vector3 } from 'three';
+import type { PlaybackReport } from '../client/playback';
+import type { FloorPlacement } from '../protocol/pose-packet';
+import { type AvatarLoader, DrawnBodies } from './drawn-bodies';
+import { type RemotePose, RemotePoses, type RemotePosesOptions } from './remote-poses';
+
+export interface RemoteBodiesOptions extends RemotePosesOptions {
+  /**
+   * Returns the avatar for the reference that a person sent (null: none). Each call must return an avatar that nothing
+   * else draws. The reference is a stranger's text: load only what the page expects. Default: the mannequin.
+   */
+  readonly avatar?: AvatarLoader;
+}
+
+/**
+ * Draws the bodies of other people in a three.js scene from the packets of their `PoseSender`, over any transport.
+ *
+ * @example
+ * const others = new RemoteBodies();
+ * scene.add(others.object);
+ * channel.onmessage = ({ data }) => others.receive('ada', data);
+ * channel.onclose = () => others.remove('ada');
+ * renderer.setAnimationLoop((timeMs) => {
+ *   others.update(timeMs);
+ *   renderer.render(scene, camera);
+ * });
+ */
+export class RemoteBodies {
+  readonly #poses: RemotePoses;
+  readonly #drawn: DrawnBodies;
+
+  constructor({ avatar, ...options }: RemoteBodiesOptions = {}) {
+    this.#poses = new RemotePoses(options);
+    this.#drawn = new DrawnBodies(avatar);
+  }
+
+  /** The object to add to the scene; its origin is that of the scene in which the others move. */
+  get object(): Object3D {
+    return this.#drawn.object;
+  }
+
+  /**
+   * Takes a packet of a peer. `peer` is the name by which the transport knows the sender: never one that the packet
+   * states. `timeMs`: its arrival, on the clock of `update`. Returns whether it was taken.
+   */
+  receive(peer: string, bytes: Uint8Array | ArrayBuffer, timeMs: number = performance.now()): boolean {
+    return this.#poses.receive(peer, bytes, timeMs);
+  }
+
+  /** Draws the bodies of this time [ms], on the page's clock; to be called in every frame. Returns who is drawn. */
+  update(timeMs: number): readonly RemotePose[] {
+    const poses = this.#poses.update(timeMs);
+    this.#drawn.draw(poses, timeMs / 1000);
+    return poses;
+  }
+
+  /** Removes a peer who has left, and disposes of the avatar. */
+  remove(peer: string): void {
+    this.#poses.remove(peer);
+    this.#drawn.remove(peer);
+  }
+
+  /** Returns the measurements of a peer's playback; null: nothing has arrived from it. */
+  report(peer: string): PlaybackReport | null {
+    return this.#poses.report(peer);
+  }
+
+  /** Removes all peers and takes the object out of the scene. */
+  dispose(): void {
+    this.#drawn.dispose();
+  }
+}
+
+const position = new Vector3();
+const orientation = new Quaternion();
+const scale = new Vector3();
+
+/**
+ * Returns where the floor of an object lies in the scene, as a `PoseSender` sends it: pass `tracker.avatar.object`
+ * where the page moves its wearer about. An object that is tilted is taken for upright.
+ */
+export function placementOf(object: Object3D): FloorPlacement {
+  object.updateWorldMatrix(true, false);
+  object.matrixWorld.decompose(position, orientation, scale);
+  const { x, y, z } = position;
+  return { position: { x, y, z }, heading: 2 * Math.atan2(orientation.y, orientation.w) };
+}

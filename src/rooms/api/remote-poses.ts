@@ -1,0 +1,210 @@
+import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import { type Calibration, sameMeasures } from 'threepoint/core/body/calibration';
+import { forwardKinematics, type JointPoses, makeJointPoses } from 'threepoint/core/body/forward-kinematics';
+import type { Fingers } from 'threepoint/core/body/hand-shape';
+import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { Playback, type PlaybackReport } from '../client/playback';
+import { type PeerPacket, type PeerProfile, readPeerPacket } from '../protocol/peer-packet';
+import { decodePose } from '../protocol/pose-codec';
+import type { FloorPlacement } from '../protocol/pose-packet';
+import { TokenBucket } from '../room/token-bucket';
+
+/** Another person in one frame. The next `update` overwrites the object: copy what you keep. */
+export interface RemotePose {
+  readonly peer: string;
+  readonly name: string;
+  /** The reference to the avatar that the person sent; null: none. It is a stranger's text: check it before use. */
+  readonly avatar: string | null;
+  readonly calibration: Calibration;
+  /** Head, hands and body in the sender's floor frame [m]. */
+  readonly pose: AvatarPose;
+  /** Every joint in the sender's floor frame [m]; null: the pose has no body (hands only). */
+  readonly joints: JointPoses | null;
+  readonly fingers: Fingers;
+  /** The opening of the mouth, 0 to 1. */
+  readonly mouth: number;
+  /** Where the sender's floor lies in the scene; null: at its origin. */
+  readonly placement: FloorPlacement | null;
+  /** 1: live. Less: a ghost, because no packet has arrived for over a second. */
+  readonly opacity: number;
+}
+
+export interface RemotePosesOptions {
+  /**
+   * Called with a sentence for every packet that is refused. Default: the first of each peer is reported on the
+   * console.
+   */
+  readonly onRefused?: (peer: string, reason: string) => void;
+  /** The most peers at a time; further ones are refused. Default: 64. */
+  readonly mostPeers?: number;
+}
+
+/** Packets of a peer: three times what a `PoseSender` of 30 Hz sends, and a second of them at once. */
+const packetsPerSecond = 90;
+/** A peer that sends nothing for this long [s] is removed. */
+const forgetAfter = 30;
+
+/** Creates the poses of the other people from their packets, whichever way those come. It needs no three.js. */
+export class RemotePoses {
+  readonly #peers = new Map<string, Peer>();
+  readonly #drawn: RemotePose[] = [];
+  readonly #onRefused: (peer: string, reason: string) => void;
+  readonly #mostPeers: number;
+  readonly #warned = new Set<string>();
+
+  constructor({ onRefused, mostPeers = 64 }: RemotePosesOptions = {}) {
+    this.#onRefused = onRefused ?? ((peer, reason) => this.#warnOnce(peer, reason));
+    this.#mostPeers = mostPeers;
+  }
+
+  /**
+   * Takes a packet of a peer. `peer` is the name by which the transport knows the sender: never one that the packet
+   * states. `timeMs`: its arrival, on the clock of `update`. Returns whether it was taken; what is malformed, too
+   * frequent or of another version is refused, and never throws.
+   */
+  receive(peer: string, bytes: Uint8Array | ArrayBuffer, timeMs: number = performance.now()): boolean {
+    const known = this.#peers.get(peer);
+    if (!known && this.#peers.size >= this.#mostPeers) {
+      return this.#refuse(peer, `there are ${this.#mostPeers} peers, as many as may be`);
+    }
+    const person = known ?? new Peer(peer, timeMs / 1000);
+    // Also where its first packet is refused: a flood of bad packets is counted too.
+    this.#peers.set(peer, person);
+    if (!person.takesPacket(timeMs / 1000)) return this.#refuse(peer, 'it sends too many packets');
+    const packet = readPeerPacket(bytes instanceof Uint8Array ? bytes : new Uint8Array(bytes));
+    if (typeof packet === 'string') return this.#refuse(peer, packet);
+    const refusal = person.receive(packet, timeMs / 1000);
+    return refusal === null || this.#refuse(peer, refusal);
+  }
+
+  /**
+   * Returns the people to draw at this time [ms] by the page's clock, without those who show no pose. The list is the
+   * same in every frame.
+   */
+  update(timeMs: number): readonly RemotePose[] {
+    const time = timeMs / 1000;
+    this.#drawn.length = 0;
+    for (const peer of this.#peers.values()) {
+      if (peer.isForgotten(time)) this.remove(peer.peer);
+      else if (peer.follow(time)) this.#drawn.push(peer);
+    }
+    return this.#drawn;
+  }
+
+  /** Forgets a peer who has left. A later packet of that name begins anew. */
+  remove(peer: string): void {
+    this.#peers.delete(peer);
+    this.#warned.delete(peer);
+  }
+
+  /** Returns the measurements of a peer's playback; null: nothing has arrived from it. */
+  report(peer: string): PlaybackReport | null {
+    return this.#peers.get(peer)?.report() ?? null;
+  }
+
+  #refuse(peer: string, reason: string): false {
+    this.#onRefused(peer, reason);
+    return false;
+  }
+
+  #warnOnce(peer: string, reason: string): void {
+    // A stranger cannot fill the memory with names.
+    if (this.#warned.has(peer) || this.#warned.size >= this.#mostPeers) return;
+    this.#warned.add(peer);
+    console.warn(`threepoint-rooms: a packet of ${JSON.stringify(peer)} was refused: ${reason}.`);
+  }
+}
+
+/** One other person: the profile, the playback of the poses, and what is drawn of them. */
+class Peer implements RemotePose {
+  readonly #bucket = new TokenBucket(packetsPerSecond);
+  readonly #playback = new Playback();
+  readonly #joints = makeJointPoses();
+  #profile: PeerProfile | null = null;
+  #skeleton: Skeleton | null = null;
+  #lastPacketAt: number;
+  #hasPose = false;
+  mouth = 0;
+  opacity = 1;
+
+  constructor(
+    readonly peer: string,
+    firstPacketAt: number,
+  ) {
+    this.#lastPacketAt = firstPacketAt;
+  }
+
+  get name(): string {
+    return this.#profile?.name ?? '';
+  }
+
+  get avatar(): string | null {
+    return this.#profile?.avatar ?? null;
+  }
+
+  get calibration(): Calibration {
+    return this.#profile!.calibration;
+  }
+
+  get pose(): AvatarPose {
+    return this.#playback.shown.pose;
+  }
+
+  get fingers(): Fingers {
+    return this.#playback.shown.fingers;
+  }
+
+  get placement(): FloorPlacement | null {
+    return this.#playback.shown.placement;
+  }
+
+  get joints(): JointPoses | null {
+    const { body } = this.pose;
+    return body && forwardKinematics(this.#skeleton!, body, this.#joints);
+  }
+
+  takesPacket(time: number): boolean {
+    return this.#bucket.take(time);
+  }
+
+  isForgotten(time: number): boolean {
+    return time - this.#lastPacketAt > forgetAfter;
+  }
+
+  /** Handles a packet; returns why it is refused, or null. */
+  receive(packet: PeerPacket, time: number): string | null {
+    if (packet.kind === 'profile') {
+      this.#setProfile(packet.profile);
+    } else {
+      // Poses are relative to the sender's measures: those before the profile cannot be drawn.
+      if (!this.#skeleton) return null;
+      const pose = decodePose(packet.pose, this.#skeleton);
+      if (!pose) return 'its pose is malformed';
+      this.#playback.receive({ ...pose, placement: packet.placement }, time);
+      this.mouth = packet.mouth;
+      this.#hasPose = true;
+    }
+    this.#lastPacketAt = time;
+    return null;
+  }
+
+  /** Writes the pose of this time [s]; returns whether there is one to draw. */
+  follow(time: number): boolean {
+    if (!this.#hasPose) return false;
+    const opacity = this.#playback.follow(time);
+    this.opacity = opacity ?? 0;
+    return opacity !== null;
+  }
+
+  report(): PlaybackReport {
+    return this.#playback.report();
+  }
+
+  #setProfile(profile: PeerProfile): void {
+    if (!this.#profile || !sameMeasures(profile.calibration, this.#profile.calibration)) {
+      this.#skeleton = skeletonFromCalibration(profile.calibration);
+    }
+    this.#profile = profile;
+    if (!profile.visible) this.#hasPose = false;
+  }
+}

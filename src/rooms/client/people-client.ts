@@ -1,0 +1,15 @@
+import * as v from 'valibot';
+import { roomMessageReader } from '../protocol/messages';
+import { nobody, type People, peopleKind, sharedFloor } from '../room/people-policy';
+import type { ClientPolicy } from './client-policy';
+
+/** A room without a game, for its clients. */
+export const peopleClientPolicy: ClientPolicy<People> = {
+  readMessage: roomMessageReader<People>(peopleKind, v.null(), v.never()),
+  unpack: () => nobody,
+  follow: (state) => state,
+  at: (state) => state,
+  predict: (state) => state,
+  answers: () => false,
+  arenaFromFloor: () => sharedFloor,
+};

@@ -1,0 +1,150 @@
+import { type Calibration, calibrationComplaint } from 'threepoint/core/body/calibration';
+import * as v from 'valibot';
+import { toMillimetres } from './messages';
+import { cleanName } from './names';
+import { type FloorPlacement, longestPose, poseVersion } from './pose-packet';
+
+/**
+ * The first byte of a peer packet: the version of the pose packet, and of the layout around it. Rises with every
+ * incompatible change; other versions are refused.
+ */
+export const peerVersion = poseVersion * 16 + 1;
+
+/** The second byte: what follows. */
+const kinds = { profile: 0, pose: 1, placedPose: 2 } as const;
+
+/** Bytes before a pose packet without and with a placement: version, kind, mouth; x, y, z, heading as Float32. */
+const poseHeader = 3;
+const placementBytes = 16;
+
+/** The longest profile as JSON [bytes of UTF-8]. */
+const longestProfile = 512;
+
+/** The longest reference to an avatar [characters]: an address, a hash or a name that the pages agree on. */
+export const longestAvatarReference = 200;
+
+/** The longest peer packet [bytes]. */
+export const longestPeerPacket = 2 + longestProfile;
+
+/** What others must know of a person before they can draw a pose. */
+export interface PeerProfile {
+  readonly name: string;
+  readonly calibration: Calibration;
+  /** A reference that the receiving page turns into an avatar; null: its default. */
+  readonly avatar: string | null;
+  /** false: the person shows no pose at present, for example because their session has ended. */
+  readonly visible: boolean;
+}
+
+/** A peer packet, taken apart; the pose packet's bytes are not decoded yet. */
+export type PeerPacket =
+  | { readonly kind: 'profile'; readonly profile: PeerProfile }
+  | {
+      readonly kind: 'pose';
+      /** The opening of the mouth, 0 to 1. */
+      readonly mouth: number;
+      readonly placement: FloorPlacement | null;
+      readonly pose: Uint8Array;
+    };
+
+/** Far beyond any scene [m]: Float32 has steps of 1 mm there. */
+const furthest = 10_000;
+
+const measure = v.pipe(v.number(), v.finite());
+const profile = v.pipe(
+  v.strictObject({
+    name: v.pipe(v.string(), v.maxLength(200), v.transform(cleanName)),
+    calibration: v.strictObject({ eyeHeight: measure, armSpan: measure, forearm: v.exactOptional(measure) }),
+    avatar: v.nullable(v.pipe(v.string(), v.maxLength(longestAvatarReference))),
+    visible: v.boolean(),
+  }),
+  v.check(({ calibration }) => calibrationComplaint(calibration) === null),
+);
+
+const encoder = new TextEncoder();
+const decoder = new TextDecoder('utf-8', { fatal: true });
+
+/** Returns the packet of a profile, with lengths rounded to millimetres. Throws a RangeError if it is too long. */
+export function encodeProfile({ name, calibration, avatar, visible }: PeerProfile): Uint8Array<ArrayBuffer> {
+  if (avatar !== null && avatar.length > longestAvatarReference) {
+    throw new RangeError(
+      `The reference to an avatar has ${avatar.length} characters. At most ${longestAvatarReference} are sent.`,
+    );
+  }
+  const text = { name: cleanName(name), calibration: toMillimetres(calibration), avatar, visible };
+  const json = encoder.encode(JSON.stringify(text));
+  if (json.length > longestProfile) {
+    throw new RangeError(`A profile of ${json.length} bytes is too long. Shorten the reference to the avatar.`);
+  }
+  const bytes = new Uint8Array(2 + json.length);
+  bytes[0] = peerVersion;
+  bytes[1] = kinds.profile;
+  bytes.set(json, 2);
+  return bytes;
+}
+
+/** Returns the packet around the bytes of a pose packet. `mouth`: 0 to 1. `placement` null: the scene's origin. */
+export function encodePeerPose(pose: Uint8Array, mouth: number, placement: FloorPlacement | null) {
+  const start = poseHeader + (placement ? placementBytes : 0);
+  const bytes = new Uint8Array(start + pose.length);
+  bytes[0] = peerVersion;
+  bytes[1] = placement ? kinds.placedPose : kinds.pose;
+  bytes[2] = Math.round(Math.min(Math.max(mouth, 0), 1) * 255);
+  if (placement) {
+    const view = new DataView(bytes.buffer, poseHeader);
+    const { position, heading } = placement;
+    for (const [i, value] of [position.x, position.y, position.z, heading].entries()) view.setFloat32(4 * i, value);
+  }
+  bytes.set(pose, start);
+  return bytes;
+}
+
+/**
+ * Takes a packet apart. Returns a sentence for bytes that no `PoseSender` of this version writes; never throws. The
+ * pose packet inside is not validated: `decodePose` does that.
+ */
+export function readPeerPacket(bytes: Uint8Array): PeerPacket | string {
+  const version = bytes[0];
+  if (version === undefined) return 'it is empty';
+  if (version !== peerVersion) {
+    return `it has version ${version}, and this page reads version ${peerVersion}: use the same release of threepoint-rooms in both`;
+  }
+  if (bytes.length > longestPeerPacket) return `it has ${bytes.length} bytes, more than ${longestPeerPacket}`;
+  switch (bytes[1]) {
+    case kinds.profile:
+      return readProfile(bytes);
+    case kinds.pose:
+      return readPose(bytes, null);
+    case kinds.placedPose: {
+      const placement = readPlacement(bytes);
+      return typeof placement === 'string' ? placement : readPose(bytes, placement);
+    }
+    default:
+      return 'its kind is unknown';
+  }
+}
+
+function readProfile(bytes: Uint8Array): PeerPacket | string {
+  let value: unknown;
+  try {
+    value = JSON.parse(decoder.decode(bytes.subarray(2)));
+  } catch {
+    return 'its profile is not JSON';
+  }
+  const result = v.safeParse(profile, value, { abortEarly: true });
+  return result.success ? { kind: 'profile', profile: result.output } : 'its profile has an invalid field';
+}
+
+function readPlacement(bytes: Uint8Array): FloorPlacement | string {
+  if (bytes.length < poseHeader + placementBytes) return 'its placement is cut short';
+  const view = new DataView(bytes.buffer, bytes.byteOffset + poseHeader, placementBytes);
+  const [x, y, z, heading] = [0, 4, 8, 12].map((at) => view.getFloat32(at)) as [number, number, number, number];
+  const within = [x, y, z].every((value) => Math.abs(value) <= furthest) && Math.abs(heading) <= 2 * Math.PI;
+  return within ? { position: { x, y, z }, heading } : 'its placement is not finite, or too far away';
+}
+
+function readPose(bytes: Uint8Array, placement: FloorPlacement | null): PeerPacket | string {
+  const start = poseHeader + (placement ? placementBytes : 0);
+  if (bytes.length > start + longestPose) return 'its pose is too long';
+  return { kind: 'pose', mouth: bytes[2]! / 255, placement, pose: bytes.subarray(start) };
+}

@@ -1,0 +1,46 @@
+import { identity } from 'threepoint/core/math/quat';
+import { vec3 } from 'threepoint/core/math/vec3';
+import { mostSeats } from '../protocol/messages';
+import type { HostedGame, HostedMatch, MatchAction, MatchPolicy, MatchState } from './match-policy';
+
+/** A room without a game: people who see each other. It has no actions and no events. */
+export interface People extends HostedGame {
+  readonly state: MatchState;
+  readonly action: never;
+  readonly event: never;
+  readonly snapshot: null;
+}
+
+/** The name by which pages request a room without a game. */
+export const peopleKind = 'people';
+
+/** The floors of all seats lie where the scene's origin is. */
+export const sharedFloor = { position: vec3(0, 0, 0), orientation: identity } as const;
+
+export const nobody: MatchState = { tick: 0, phase: 'ready', players: [] };
+
+/** Nothing happens in it: its state is that of its seats. */
+class NoMatch implements HostedMatch<People> {
+  readonly state = nobody;
+  readonly lead = 0;
+
+  advance(_time: number, _actions: readonly MatchAction<People>[]): readonly never[] {
+    return [];
+  }
+}
+
+/** The policy of a room without a game, with so many seats (16 at most). */
+export const peoplePolicy = (seats: number = mostSeats): MatchPolicy<People> => ({
+  kind: peopleKind,
+  seats,
+  tickSeconds: 1,
+  start: () => new NoMatch(),
+  nextRoles: () => null,
+  snapshot: () => null,
+  readAction: () => null,
+  refusalInPause: () => {
+    throw new Error('A room without a game has no actions to refuse.');
+  },
+  refusalOf: () => null,
+  arenaFromFloor: () => sharedFloor,
+});

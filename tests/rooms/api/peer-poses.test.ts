@@ -1,0 +1,216 @@
+import fc from 'fast-check';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { distance } from 'threepoint/core/math/vec3';
+import { PoseSender } from 'threepoint-rooms/api/pose-sender';
+import { RemotePoses } from 'threepoint-rooms/api/remote-poses';
+import { longestPeerPacket, peerVersion } from 'threepoint-rooms/protocol/peer-packet';
+import { afterEach, expect, test, vi } from 'vitest';
+import { solvedActor } from './solved-actor';
+
+afterEach(() => vi.restoreAllMocks());
+
+const frameMs = 1000 / 60;
+const skeleton = skeletonFromCalibration(defaultCalibration);
+
+/** A sender and what it has sent, by time. */
+function sending(options: { readonly rate?: number } = {}) {
+  const sent: { readonly at: number; readonly bytes: Uint8Array }[] = [];
+  let now = 0;
+  const sender = new PoseSender((bytes) => sent.push({ at: now, bytes }), { name: ' Ada\u202e ', ...options });
+  const actor = solvedActor();
+  return {
+    sender,
+    actor,
+    sent,
+    /** Sends the frames up to this time [ms]. */
+    until(timeMs: number, frame = {}) {
+      for (; now < timeMs; now += frameMs) {
+        actor.moveTo(now);
+        sender.update(now, actor, frame);
+      }
+    },
+  };
+}
+
+test('another page shows head, hands and elbows of a moving person as they were, 2 % of the packets lost', () => {
+  const { until, sent } = sending();
+  until(10_000);
+  const others = new RemotePoses();
+  const truth = solvedActor();
+  let lost = 0;
+  let worst = 0;
+  let drawn = 0;
+  let next = 0;
+  for (let time = 0; time < 10_000; time += frameMs) {
+    // A round trip of 60 ms, other clocks on both sides.
+    for (; next < sent.length && sent[next]!.at + 30 <= time; next++) {
+      if (next % 50 === 49) lost += 1;
+      else others.receive('ada', sent[next]!.bytes, 5000 + sent[next]!.at + 30);
+    }
+    const [ada] = others.update(5000 + time);
+    if (!ada || time < 500) continue;
+    expect(ada).toMatchObject({ peer: 'ada', name: 'Ada', avatar: null, placement: null, opacity: 1 });
+    truth.moveTo(others.report('ada')!.shownTime * 1000);
+    const joints = forwardKinematics(skeleton, truth.pose!.body!);
+    drawn += 1;
+    for (const joint of ['head', 'leftHand', 'rightHand', 'leftLowerArm', 'rightLowerArm'] as const)
+      worst = Math.max(worst, distance(ada.joints![joint].position, joints[joint].position));
+  }
+  expect(lost).toBeGreaterThan(3);
+  expect(drawn).toBeGreaterThan(500);
+  // The actor's hands move by up to 2 m/s; a lost packet is bridged.
+  expect(worst).toBeLessThan(0.03);
+});
+
+test('thirty packets a second of at most 70 bytes, and a profile a second', () => {
+  const { until, sent } = sending();
+  until(10_000);
+  const profiles = sent.filter(({ bytes }) => bytes[1] === 0);
+  expect(profiles).toHaveLength(10);
+  expect(sent.length - profiles.length).toBeGreaterThanOrEqual(299);
+  expect(sent.length - profiles.length).toBeLessThanOrEqual(302);
+  const total = sent.reduce((sum, { bytes }) => sum + bytes.length, 0);
+  expect(total / 10).toBeLessThan(2200);
+  expect(Math.max(...sent.map(({ bytes }) => bytes.length))).toBeLessThanOrEqual(longestPeerPacket);
+});
+
+test('whoever joins later sees the person within a second, or at once after introduce', () => {
+  const { until, sent, sender } = sending();
+  until(4500);
+  const late = new RemotePoses();
+  const from = sent.length;
+  until(6000);
+  const shownAt = sent.slice(from).find(({ at, bytes }) => {
+    late.receive('ada', bytes, at);
+    return late.update(at).length > 0;
+  })?.at;
+  expect(shownAt).toBeLessThan(5600);
+  const later = new RemotePoses();
+  sender.introduce();
+  const again = sent.length;
+  until(6100);
+  for (const { at, bytes } of sent.slice(again)) later.receive('ada', bytes, at);
+  expect(later.update(6100)).toHaveLength(1);
+});
+
+test('a person whose session ends is not shown until poses come again', () => {
+  const { until, sent, sender, actor } = sending();
+  const others = new RemotePoses();
+  until(1000);
+  for (const { at, bytes } of sent) others.receive('ada', bytes, at);
+  expect(others.update(1000)).toHaveLength(1);
+  const from = sent.length;
+  sender.update(1010, { pose: null, calibration: actor.calibration });
+  for (const { bytes } of sent.slice(from)) others.receive('ada', bytes, 1010);
+  expect(others.update(1020)).toHaveLength(0);
+  until(1200);
+  for (const { at, bytes } of sent.slice(from)) others.receive('ada', bytes, at);
+  expect(others.update(1200)).toHaveLength(1);
+});
+
+test('a floor that the page moves is part of the packet, far beyond what a pose packet reaches', () => {
+  const { until, sent } = sending();
+  until(500, { placement: { position: { x: 312.5, y: 2, z: -90 }, heading: 3 }, mouth: 0.5 });
+  until(1000, { placement: { position: { x: 312.5, y: 2, z: -90 }, heading: -3 }, mouth: 1 });
+  const others = new RemotePoses();
+  let between = false;
+  for (const { at, bytes } of sent) {
+    others.receive('ada', bytes, at);
+    const [ada] = others.update(at);
+    if (!ada) continue;
+    expect(ada.placement?.position).toEqual({ x: 312.5, y: 2, z: -90 });
+    const heading = ada.placement?.heading ?? 0;
+    // The shorter way round: through half a turn, never through 0.
+    expect(Math.cos(heading)).toBeLessThan(-0.98);
+    between ||= Math.abs(Math.abs(heading) - Math.PI) < 0.13;
+  }
+  expect(between).toBe(true);
+  expect(others.update(1000)[0]?.mouth).toBe(1);
+});
+
+test('a peer with another version is refused with a sentence that names both', () => {
+  const warn = vi.spyOn(console, 'warn').mockImplementation(() => undefined);
+  const { until, sent } = sending();
+  until(100);
+  const other = sent[0]!.bytes.slice();
+  other[0] = 17;
+  const others = new RemotePoses();
+  expect(others.receive('old', other, 0)).toBe(false);
+  expect(others.receive('old', other, 10)).toBe(false);
+  expect(warn.mock.calls).toEqual([
+    [
+      `threepoint-rooms: a packet of "old" was refused: it has version 17, and this page reads version ${peerVersion}: use the same release of threepoint-rooms in both.`,
+    ],
+  ]);
+});
+
+test('a flood costs its sender the packets beyond three times the usual rate, and nobody else any', () => {
+  const { until, sent } = sending();
+  until(2000);
+  const reasons = new Set<string>();
+  const others = new RemotePoses({ onRefused: (peer, reason) => reasons.add(`${peer}: ${reason}`) });
+  let taken = 0;
+  for (const { at, bytes } of sent) {
+    for (let i = 0; i < 100; i++) if (others.receive('flood', bytes, at)) taken += 1;
+    expect(others.receive('ada', bytes, at)).toBe(true);
+  }
+  expect(taken).toBeLessThanOrEqual(90 * 3 + 1);
+  expect([...reasons]).toEqual(['flood: it sends too many packets']);
+});
+
+test('so many peers and no more, and one that is silent for 30 s is forgotten', () => {
+  const { until, sent } = sending();
+  until(50);
+  const refused: string[] = [];
+  const others = new RemotePoses({ mostPeers: 2, onRefused: (peer) => refused.push(peer) });
+  for (const peer of ['ada', 'ben', 'cy']) others.receive(peer, sent[0]!.bytes, 0);
+  expect(refused).toEqual(['cy']);
+  others.update(31_000);
+  expect(others.receive('cy', sent[0]!.bytes, 31_000)).toBe(true);
+});
+
+test('a rate, measures or a reference that cannot be are refused with a sentence', () => {
+  const make = (options: object) => () => new PoseSender(() => undefined, { name: 'Ada', ...options });
+  expect(make({ rate: 0 })).toThrow(/0 poses a second/);
+  expect(make({ avatar: 'x'.repeat(201) })).toThrow(/201 characters/);
+  const sender = make({})();
+  expect(() => sender.update(0, { pose: null, calibration: { eyeHeight: 170, armSpan: 150 } })).toThrow(RangeError);
+});
+
+const runs = process.env.THREEPOINT_TESTS === 'full' ? 1_000_000 : 20_000;
+
+test('mutated and random packets never throw, and show nobody who is not finite', () => {
+  const { until, sent } = sending();
+  until(1000, { placement: { position: { x: 1, y: 0, z: 1 }, heading: 1 } });
+  const good = sent.map(({ bytes }) => bytes);
+  const others = new RemotePoses({ onRefused: () => undefined });
+  let now = 0;
+  let shown = 0;
+  const mutation = fc.record({
+    packet: fc.nat(good.length - 1),
+    at: fc.nat(longestPeerPacket),
+    value: fc.nat(255),
+    length: fc.option(fc.nat(longestPeerPacket + 10), { nil: null }),
+    random: fc.option(fc.uint8Array({ maxLength: 90 }), { nil: null, freq: 8 }),
+  });
+  fc.assert(
+    fc.property(mutation, ({ packet, at, value, length, random }) => {
+      let bytes = good[packet]!.slice();
+      if (at < bytes.length) bytes[at] = value;
+      if (length !== null) bytes = bytes.slice(0, length);
+      now += 20;
+      others.receive('mallory', random ?? bytes, now);
+      for (const { joints, pose, placement, mouth, name } of others.update(now)) {
+        shown += 1;
+        const numbers = [pose.head.position, placement?.position, joints?.leftHand.position, joints?.hips.position];
+        for (const place of numbers) if (place) expect(Number.isFinite(place.x + place.y + place.z)).toBe(true);
+        expect(mouth).toBeLessThanOrEqual(1);
+        expect(name.length).toBeLessThanOrEqual(40);
+      }
+    }),
+    { seed: 47, numRuns: runs },
+  );
+  expect(shown).toBeGreaterThan(100);
+}, 600_000);

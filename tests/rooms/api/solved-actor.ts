@@ -1,0 +1,24 @@
+import { BodySolver } from 'threepoint/api/body-solver';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import type { SentBody } from 'threepoint-rooms/api/pose-sender';
+
+/** An actor whose body the library solves by inverse kinematics. */
+export function solvedActor(): SentBody & { moveTo(timeMs: number): void } {
+  const body = new BodySolver({
+    estimator: 'ik',
+    calibration: defaultCalibration,
+    networks: () => Promise.reject(new Error('inverse kinematics needs no network')),
+  });
+  return {
+    get pose() {
+      return body.pose;
+    },
+    get calibration() {
+      return body.calibration;
+    },
+    moveTo(timeMs) {
+      body.update(actorFrame(timeMs / 1000, defaultCalibration));
+    },
+  };
+}
