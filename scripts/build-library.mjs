@@ -47,30 +47,41 @@ function published() {
   };
 }
 
-const weightsModule = '\0learned-weights';
-
 /**
- * Embeds the weights in a JavaScript module that loads on demand. Some bundlers drop files that code references by URL;
- * the page would then never leave its fallback, inverse kinematics.
+ * The modules of the sources that read a file of the package, the function of each that returns the bytes, and the
+ * file. Some bundlers drop files that code references by URL; a page would then never leave its fallback.
  */
-const weightsInModule = {
-  name: 'weights-in-module',
-  resolveId: { filter: { id: /^\0learned-weights$/ }, handler: (id) => id },
+const readers = [
+  {
+    module: 'own-weights',
+    file: 'public/models/learned.bin',
+    code: (bytes) => `export async function readOwnWeights(_stated, onProgress) {
+      const read = await ${bytes};
+      onProgress?.(1);
+      return read;
+    }`,
+  },
+  {
+    module: 'own-mannequin',
+    file: 'public/avatars/mannequin.vrm',
+    code: (bytes) => `export const readOwnMannequin = async () => (await ${bytes}).buffer;`,
+  },
+];
+const embedded = (module) => `\0embedded-${module}`;
+
+/** Embeds these files in JavaScript modules that load on demand. */
+const filesInModules = {
+  name: 'files-in-modules',
+  resolveId: { filter: { id: /^\0embedded-/ }, handler: (id) => id },
   load: {
-    filter: { id: /^\0learned-weights$|\/api\/own-weights\.ts$/ },
+    filter: { id: /^\0embedded-|\/api\/own-\w+\.ts$/ },
     handler(id) {
-      if (id === weightsModule) {
-        const bytes = readFileSync(join(root, 'public/models/learned.bin'));
-        return `export default ${JSON.stringify(bytes.toString('base64'))};`;
+      const { module, file, code } = readers.find((reader) => id.includes(reader.module));
+      if (id === embedded(module)) {
+        return `export default ${JSON.stringify(readFileSync(join(root, file)).toString('base64'))};`;
       }
-      return {
-        moduleType: 'js',
-        code: `export async function readOwnWeights(_stated, onProgress) {
-          const { default: text } = await import(${JSON.stringify(weightsModule)});
-          onProgress?.(1);
-          return Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
-        }`,
-      };
+      const bytes = `import(${JSON.stringify(embedded(module))}).then(({ default: text }) => Uint8Array.from(atob(text), (character) => character.charCodeAt(0)))`;
+      return { moduleType: 'js', code: code(bytes) };
     },
   },
 };
@@ -93,11 +104,12 @@ async function bundle(input, plugins) {
 /** Chunks lie in the entries' folder, so that paths relative to one hold for all. */
 const output = {
   format: 'esm',
-  chunkFileNames: ({ name }) => (name.includes('learned-weights') ? 'learned-weights.js' : 'shared-[hash].js'),
+  chunkFileNames: ({ name }) =>
+    name.includes('embedded') ? `${name.replace('_embedded-', '')}.js` : 'shared-[hash].js',
 };
 
 async function writeCode() {
-  const build = await bundle(Object.fromEntries(entries.map((name) => [name, sourceOf(name)])), [weightsInModule]);
+  const build = await bundle(Object.fromEntries(entries.map((name) => [name, sourceOf(name)])), [filesInModules]);
   await build.write({ ...output, dir: out, sourcemap: true });
   await build.close();
 }
@@ -105,12 +117,12 @@ async function writeCode() {
 /**
  * Writes the compiler's declarations, a file for each module, with the full file names that Node's resolution requires.
  */
-async function writeTypes() {
-  const { code } = await run(process.execPath, ['node_modules/typescript/bin/tsc', '-p', 'tsconfig.library.json']);
-  if (code !== 0) throw new SetupError(`The library's types could not be written: exit code ${code}.`);
-  for (const file of readdirSync(join(out, 'types'), { recursive: true })) {
+export async function writeTypes(config, types) {
+  const { code } = await run(process.execPath, ['node_modules/typescript/bin/tsc', '-p', config]);
+  if (code !== 0) throw new SetupError(`The types of ${config} could not be written: exit code ${code}.`);
+  for (const file of readdirSync(types, { recursive: true })) {
     if (!file.endsWith('.d.ts')) continue;
-    const path = join(out, 'types', file);
+    const path = join(types, file);
     writeFileSync(
       path,
       readFileSync(path, 'utf8').replace(/(\b(?:from|import)\s*\(?\s*['"])(\.{1,2}\/[^'"]+?)(?=['"])/g, '$1$2.js'),
@@ -139,7 +151,7 @@ const trackerAlone = {
 /**
  * Returns the bytes of minified code with its static imports, plain and by brotli; without dynamic imports and peers.
  */
-async function weigh(input, plugins = [weightsInModule]) {
+async function weigh(input, plugins = [filesInModules]) {
   const build = await bundle({ entry: input }, plugins);
   const { output: files } = await build.generate({ ...output, minify: true });
   await build.close();
@@ -158,7 +170,7 @@ async function weigh(input, plugins = [weightsInModule]) {
 export async function buildLibrary() {
   rmSync(out, { recursive: true, force: true });
   await writeCode();
-  await writeTypes();
+  await writeTypes('tsconfig.library.json', join(out, 'types'));
   writeFiles();
 }
 

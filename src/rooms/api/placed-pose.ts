@@ -1,13 +1,22 @@
 import { type AvatarPose, makeUpperBodyPose } from 'threepoint/core/body/avatar-pose';
 import { jointNames } from 'threepoint/core/body/joints';
-import { makePose, type TrackedPose, type Transform, transformPoint, transformPose } from 'threepoint/core/math/pose';
+import {
+  type MutablePose,
+  makePose,
+  type TrackedPose,
+  type Transform,
+  transformPoint,
+  transformPose,
+} from 'threepoint/core/math/pose';
 import { copyQuat, multiply } from 'threepoint/core/math/quat';
 
-const makeTracked = () => ({ ...makePose<'floor'>(), tracking: 'tracked' as TrackedPose['tracking'] });
+type MutableTracked = MutablePose<'floor'> & { tracking: TrackedPose['tracking'] };
+
+const makeTracked = (): MutableTracked => ({ ...makePose<'floor'>(), tracking: 'tracked' });
 
 /** A buffer for a pose on a floor that the page has moved. */
 export class PlacedPose implements AvatarPose {
-  readonly head = makeTracked();
+  readonly head: MutableTracked = makeTracked();
   leftHand: TrackedPose | null = null;
   rightHand: TrackedPose | null = null;
   body: AvatarPose['body'] = null;
@@ -30,8 +39,6 @@ export class PlacedPose implements AvatarPose {
     return this;
   }
 }
-
-type MutableTracked = ReturnType<typeof makeTracked>;
 
 function placeTracked(
   sceneFromFloor: Transform<'floor', 'floor'>,

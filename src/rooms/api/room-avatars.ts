@@ -1,5 +1,5 @@
-import { type AvatarHash, isAvatarHash, mostAvatarBytes } from 'threepoint/core/body/avatar-ref';
 import { hashOf } from 'threepoint/avatar/file/file-hash';
+import { type AvatarHash, isAvatarHash, mostAvatarBytes } from 'threepoint/core/body/avatar-ref';
 import { type Avatar, loadAvatar, loadMannequin } from 'threepoint/three';
 import type { AvatarExchange } from '../client/avatar-exchange';
 

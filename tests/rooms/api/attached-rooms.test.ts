@@ -1,6 +1,6 @@
+import { readFile } from 'node:fs/promises';
 import { createServer, type Server } from 'node:http';
 import type { AddressInfo } from 'node:net';
-import { readFile } from 'node:fs/promises';
 import { Vector3 } from 'three';
 import { loadAvatar } from 'threepoint/api/three';
 import { distance } from 'threepoint/core/math/vec3';
@@ -28,7 +28,10 @@ async function served(options: AttachRoomsOptions = {}) {
 /** A tab's storage. */
 function storage() {
   const kept = new Map<string, string>();
-  return { getItem: (key: string) => kept.get(key) ?? null, setItem: (key: string, value: string) => kept.set(key, value) };
+  return {
+    getItem: (key: string) => kept.get(key) ?? null,
+    setItem: (key: string, value: string) => kept.set(key, value),
+  };
 }
 
 /** A page that joins with an actor's body. */

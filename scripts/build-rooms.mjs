@@ -1,0 +1,76 @@
+// Builds the package “threepoint-rooms” into dist-rooms/: ESM with source maps and types. Its parts of the library that
+// the library does not export are bundled. `npm pack ./dist-rooms` makes the tarball.
+import { copyFileSync, mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { rolldown } from 'rolldown';
+import { writeTypes } from './build-library.mjs';
+import { main, root } from './run-command.mjs';
+import { sourceResolution } from './source-condition.mjs';
+
+const out = join(root, 'dist-rooms');
+/** The entries, by the platform that they are for. */
+const entries = { browser: ['index', 'three'], node: ['server'] };
+const own = JSON.parse(readFileSync(join(root, 'src/rooms/package.json'), 'utf8'));
+
+/** What the package imports at run time; the rest is bundled. */
+const bundled = ['threepoint', 'threepoint-http', 'valibot'];
+const imported = [...Object.keys(own.dependencies), ...Object.keys(own.peerDependencies)].filter(
+  (name) => !bundled.includes(name),
+);
+const external = (id) =>
+  id.startsWith('node:') ||
+  id === 'threepoint/three' ||
+  imported.some((name) => id === name || id.startsWith(`${name}/`));
+
+async function writeCode(platform, names) {
+  const build = await rolldown({
+    input: Object.fromEntries(names.map((name) => [name, join(root, `src/rooms/api/${name}.ts`)])),
+    cwd: root,
+    platform,
+    resolve: sourceResolution(platform),
+    external,
+    tsconfig: join(root, 'tsconfig.json'),
+  });
+  await build.write({ dir: out, format: 'esm', chunkFileNames: 'shared-[hash].js', sourcemap: true });
+  await build.close();
+}
+
+/** Keeps the declarations of this package: those of the library come with it. */
+async function writeDeclarations() {
+  const types = join(out, 'types');
+  await writeTypes('tsconfig.rooms.json', types);
+  renameSync(join(types, 'rooms'), join(out, 'rooms'));
+  rmSync(types, { recursive: true });
+  renameSync(join(out, 'rooms'), types);
+}
+
+/** Returns the manifest to publish: without sources and internal modules. */
+function published() {
+  const { private: _, devDependencies: __, exports, dependencies, ...rest } = own;
+  return {
+    ...rest,
+    sideEffects: false,
+    exports: {
+      ...Object.fromEntries(
+        Object.entries(exports).flatMap(([name, { source: _source, ...built }]) =>
+          Object.keys(built).length > 0 ? [[name, built]] : [],
+        ),
+      ),
+      './package.json': './package.json',
+    },
+    dependencies: Object.fromEntries(Object.entries(dependencies).filter(([name]) => !bundled.includes(name))),
+  };
+}
+
+export async function buildRooms() {
+  rmSync(out, { recursive: true, force: true });
+  mkdirSync(out);
+  for (const [platform, names] of Object.entries(entries)) await writeCode(platform, names);
+  await writeDeclarations();
+  copyFileSync(join(root, 'LICENSE'), join(out, 'LICENSE'));
+  copyFileSync(join(root, 'src/rooms/README.md'), join(out, 'README.md'));
+  writeFileSync(join(out, 'package.json'), `${JSON.stringify(published(), null, 2)}\n`);
+}
+
+if (import.meta.url === pathToFileURL(process.argv[1]).href) await main(buildRooms);
