@@ -56,6 +56,8 @@ const roomsRooms = {
   protocol: [],
   room: ['protocol'],
   client: ['protocol', 'room'],
+  peers: ['protocol', 'room', 'client'],
+  drawing: ['protocol', 'room', 'client', 'peers'],
   voices: ['protocol', 'client'],
   server: ['protocol', 'room'],
 };
@@ -197,7 +199,7 @@ export default {
       severity: 'error',
       from: {
         path: '^(src|server)/',
-        pathNot: '^src/(threepoint/(xr|avatar)|ui|page|study/participant)/|^src/threepoint/api/three\\.ts$',
+        pathNot: '^src/(threepoint/(xr|avatar)|rooms/drawing|ui|page|study/participant)/|^src/threepoint/api/three\\.ts$',
       },
       to: { path: packagePath('three', '@types/three', '@pixiv/[^/]+') },
     },

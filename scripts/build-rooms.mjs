@@ -9,8 +9,8 @@ import { main, root } from './run-command.mjs';
 import { sourceResolution } from './source-condition.mjs';
 
 const out = join(root, 'dist-rooms');
-/** The entries, by the platform that they are for. */
-const entries = { browser: ['index', 'three'], node: ['server'] };
+/** The entries and their folders, by the platform that they are for. */
+const entries = { browser: { index: 'peers', three: 'drawing' }, node: { server: 'server' } };
 const own = JSON.parse(readFileSync(join(root, 'src/rooms/package.json'), 'utf8'));
 
 /** What the package imports at run time; the rest is bundled. */
@@ -23,9 +23,11 @@ const external = (id) =>
   id === 'threepoint/three' ||
   imported.some((name) => id === name || id.startsWith(`${name}/`));
 
-async function writeCode(platform, names) {
+async function writeCode(platform, folders) {
   const build = await rolldown({
-    input: Object.fromEntries(names.map((name) => [name, join(root, `src/rooms/api/${name}.ts`)])),
+    input: Object.fromEntries(
+      Object.entries(folders).map(([name, folder]) => [name, join(root, `src/rooms/${folder}/index.ts`)]),
+    ),
     cwd: root,
     platform,
     resolve: sourceResolution(platform),
@@ -66,7 +68,7 @@ function published() {
 export async function buildRooms() {
   rmSync(out, { recursive: true, force: true });
   mkdirSync(out);
-  for (const [platform, names] of Object.entries(entries)) await writeCode(platform, names);
+  for (const [platform, folders] of Object.entries(entries)) await writeCode(platform, folders);
   await writeDeclarations();
   copyFileSync(join(root, 'LICENSE'), join(out, 'LICENSE'));
   copyFileSync(join(root, 'src/rooms/README.md'), join(out, 'README.md'));

@@ -5,9 +5,9 @@ import { createConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { createRouter, noPage } from 'threepoint-http/router';
 import { createSitePolicy, type SitePolicy } from 'threepoint-http/site-policy';
 import { peopleKind, peoplePolicy } from '../room/people-policy';
-import type { RoomKinds } from '../server/hosting/room-kinds';
-import { createRelay } from '../server/relay';
-import { type RelayConfiguration, relayConfigurationFrom } from '../server/settings/relay-configuration';
+import type { RoomKinds } from './hosting/room-kinds';
+import { createRelay } from './relay';
+import { type RelayConfiguration, relayConfigurationFrom } from './settings/relay-configuration';
 
 export interface AttachRoomsOptions extends Partial<Omit<RelayConfiguration, 'secret' | 'hosts' | 'host'>> {
   /** Signs the passes; at least 32 characters, the same in all processes. Default: a new one in every process. */

@@ -1,8 +1,8 @@
 import { type Calibration, calibrationComplaint } from 'threepoint/core/body/calibration';
 import * as v from 'valibot';
-import { toMillimetres } from './messages';
-import { cleanName } from './names';
-import { type FloorPlacement, longestPose, poseVersion } from './pose-packet';
+import { toMillimetres } from '../protocol/messages';
+import { cleanName } from '../protocol/names';
+import { type FloorPlacement, longestPose, poseVersion } from '../protocol/pose-packet';
 
 /**
  * The first byte of a peer packet: the version of the pose packet, and of the layout around it. Rises with every

@@ -3,9 +3,9 @@ import { type Calibration, demandPerson, sameMeasures } from 'threepoint/core/bo
 import { type Fingers, unknownFingers } from 'threepoint/core/body/hand-shape';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { toMillimetres } from '../protocol/messages';
-import { encodePeerPose, encodeProfile } from '../protocol/peer-packet';
 import { encodePose } from '../protocol/pose-codec';
 import type { FloorPlacement } from '../protocol/pose-packet';
+import { encodePeerPose, encodeProfile } from './peer-packet';
 
 /** The person whose body is sent: a `BodyTracker` or `BodySolver` of threepoint is one. */
 export interface SentBody {

@@ -4,10 +4,10 @@ import { forwardKinematics, type JointPoses, makeJointPoses } from 'threepoint/c
 import type { Fingers } from 'threepoint/core/body/hand-shape';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { Playback, type PlaybackReport } from '../client/playback';
-import { type PeerPacket, type PeerProfile, readPeerPacket } from '../protocol/peer-packet';
 import { decodePose } from '../protocol/pose-codec';
 import type { FloorPlacement } from '../protocol/pose-packet';
 import { TokenBucket } from '../room/token-bucket';
+import { type PeerPacket, type PeerProfile, readPeerPacket } from './peer-packet';
 
 /** Another person in one frame. The next `update` overwrites the object: copy what you keep. */
 export interface RemotePose {

@@ -1,8 +1,8 @@
 import { type Object3D, Quaternion, Vector3 } from 'three';
 import type { PlaybackReport } from '../client/playback';
+import { type RemotePose, RemotePoses, type RemotePosesOptions } from '../peers/remote-poses';
 import type { FloorPlacement } from '../protocol/pose-packet';
 import { type AvatarLoader, DrawnBodies } from './drawn-bodies';
-import { type RemotePose, RemotePoses, type RemotePosesOptions } from './remote-poses';
 
 export interface RemoteBodiesOptions extends RemotePosesOptions {
   /**

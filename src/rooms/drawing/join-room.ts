@@ -9,11 +9,11 @@ import { peopleClientPolicy } from '../client/people-client';
 import { createRemotePlayers, type RemotePlayer } from '../client/remote-players';
 import { createRoomPass, type Keep } from '../client/room-pass';
 import { createSocketConnection } from '../client/socket-connection';
+import type { SentBody } from '../peers/pose-sender';
 import type { SeatInfo } from '../protocol/messages';
 import { type People, peopleKind } from '../room/people-policy';
 import { type AvatarLoader, DrawnBodies, type DrawnPose } from './drawn-bodies';
 import { PlacedPose } from './placed-pose';
-import type { SentBody } from './pose-sender';
 import { loadRoomAvatar, uploadAvatar } from './room-avatars';
 
 /** The wearer's body: a `BodyTracker` of threepoint is one. */

@@ -3,9 +3,9 @@ import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { distance } from 'threepoint/core/math/vec3';
-import { PoseSender } from 'threepoint-rooms/api/pose-sender';
-import { RemotePoses } from 'threepoint-rooms/api/remote-poses';
-import { longestPeerPacket, peerVersion } from 'threepoint-rooms/protocol/peer-packet';
+import { longestPeerPacket, peerVersion } from 'threepoint-rooms/peers/peer-packet';
+import { PoseSender } from 'threepoint-rooms/peers/pose-sender';
+import { RemotePoses } from 'threepoint-rooms/peers/remote-poses';
 import { afterEach, expect, test, vi } from 'vitest';
 import { solvedActor } from './solved-actor';
 

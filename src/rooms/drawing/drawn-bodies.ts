@@ -3,7 +3,7 @@ import type { Calibration } from 'threepoint/core/body/calibration';
 import { sameMeasures } from 'threepoint/core/body/calibration';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { type Avatar, loadMannequin } from 'threepoint/three';
-import type { RemotePose } from './remote-poses';
+import type { RemotePose } from '../peers/remote-poses';
 
 /**
  * Returns the avatar for the reference that a person sent; null: the person sent none. It must be an avatar that

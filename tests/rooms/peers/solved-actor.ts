@@ -1,7 +1,7 @@
 import { BodySolver } from 'threepoint/api/body-solver';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import type { SentBody } from 'threepoint-rooms/api/pose-sender';
+import type { SentBody } from 'threepoint-rooms/peers/pose-sender';
 
 /** An actor whose body the library solves by inverse kinematics. */
 export function solvedActor(): SentBody & { moveTo(timeMs: number): void } {
