@@ -100,6 +100,12 @@ export const stages = {
       [process.execPath, 'scripts/check-library-use.mjs'],
     ],
   },
+  // The reference of all public packages: every link in a comment leads somewhere.
+  reference: {
+    suite: 'full',
+    singleCore: true,
+    commands: () => [node('typedoc/bin/typedoc', '--treatWarningsAsErrors')],
+  },
   'unit-full': {
     suite: 'full',
     runner: 'vitest',
