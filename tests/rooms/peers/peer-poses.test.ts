@@ -215,5 +215,4 @@ test('mutated and random packets never throw, and show nobody who is not finite'
   expect(shown).toBeGreaterThan(packets / 10);
   // Every check is met, and not the first alone.
   expect(reasons.size).toBeGreaterThanOrEqual(6);
-  reportFigures('peer-packets', { packets, 'frames with a body': shown, 'reasons for a refusal': reasons.size });
 });
