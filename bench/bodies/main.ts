@@ -48,7 +48,7 @@ function record(durationMs: number): readonly (readonly Vec3[])[] {
 /** Sends the motion, and returns its packets in the order of their arrival, with all bytes that were sent. */
 function transmit(format: BodyFormat, durationMs: number): { packets: readonly Sent[]; bytes: number } {
   const body = actor();
-  // The same delays and losses in every format, by the number of the packet.
+  // All formats have the same delays and losses, by the number of the packet.
   const delays = randomNumbers(47);
   const losses = randomNumbers(48);
   const packets: Sent[] = [];

@@ -20,7 +20,7 @@ export interface SentBody {
 export interface SentFrame {
   /** The opening of the mouth, 0 to 1. Default: 0. */
   readonly mouth?: number;
-  /** Where the floor lies in the scene. Default: at its origin. */
+  /** The place of the floor in the scene. Default: at its origin. */
   readonly placement?: FloorPlacement | null;
 }
 
@@ -74,8 +74,8 @@ export class PoseSender {
   }
 
   /**
-   * Sends what is due; to be called in every frame, with its time [ms] by any monotonic clock. Without a pose it tells
-   * the others once a second that nobody is there. Throws a RangeError where the measures are not human.
+   * Sends what is due; to be called in every frame, with its time [ms] by any monotonic clock. Without a pose it
+   * sends once a second that nobody is there. Throws a RangeError where the measures are not human.
    */
   update(timeMs: number, { pose, calibration, fingers = unknownFingers }: SentBody, frame: SentFrame = {}): void {
     this.#setCalibration(calibration);

@@ -23,7 +23,7 @@ export interface RemotePose {
   readonly fingers: Fingers;
   /** The opening of the mouth, 0 to 1. */
   readonly mouth: number;
-  /** Where the sender's floor lies in the scene; null: at its origin. */
+  /** The place of the sender's floor in the scene; null: at its origin. */
   readonly placement: FloorPlacement | null;
   /** 1: live. Less: a ghost, because no packet has arrived for over a second. */
   readonly opacity: number;
@@ -91,7 +91,7 @@ export class RemotePoses {
     return this.#drawn;
   }
 
-  /** Forgets a peer who has left. A later packet of that name begins anew. */
+  /** Forgets a peer who has left. A later packet of that name adds the peer again. */
   remove(peer: string): void {
     this.#peers.delete(peer);
     this.#warned.delete(peer);

@@ -11,7 +11,7 @@ export const poseVersion = 4;
 /** The longest packet [bytes]. */
 export const longestPose = 64;
 
-/** Where the sender's floor lies in the scene: the page has moved its wearer there. */
+/** The place of the sender's floor in the scene, to which the page has moved its wearer. */
 export interface FloorPlacement {
   /** The floor's origin in the scene [m]. */
   readonly position: Vec3;
