@@ -47,6 +47,10 @@ export interface BodyEvents {
   trackinglost?(point: TrackedPoint): void;
   /** The point is tracked, for the first time or again. */
   trackingfound?(point: TrackedPoint): void;
+  /** A session starts: frames of its wearer follow. */
+  sessionstart?(): void;
+  /** The session is over: `pose` is null. Others must not be shown the last pose any longer. */
+  sessionend?(): void;
 }
 
 export interface BodySolverOptions {
@@ -104,6 +108,7 @@ export class BodySolver {
   /** Whether a stand-in moved the body in the newest frame. */
   #standsIn = false;
   #pose: AvatarPose | null = null;
+  #inSession = false;
   /** The newest frame's request to a network that answers later. */
   #request: InferenceRequest | null = null;
   readonly #askNow = () => {
@@ -142,8 +147,8 @@ export class BodySolver {
   }
 
   /**
-   * The pose of the newest frame, floor frame [m]; null before the first. The next frame overwrites it: keep it with
-   * `copyAvatarPose`.
+   * The pose of the newest frame, floor frame [m]; null before the first, after a session and after `dispose`. The next
+   * frame overwrites it: keep it with `copyAvatarPose`.
    */
   get pose(): AvatarPose | null {
     return this.#pose;
@@ -201,8 +206,24 @@ export class BodySolver {
 
   /** Starts a session: a headset was put on, and the wearer's height is estimated again. */
   startSession(): void {
+    this.#inSession = true;
     this.#height.startSession();
     this.discontinuity();
+    this.#events.sessionstart?.();
+  }
+
+  /**
+   * Ends the session: `pose` is null, and every point counts as not tracked, without a call of `trackinglost`. Calls
+   * `sessionend` if a session was started.
+   */
+  endSession(): void {
+    const ends = this.#inSession;
+    this.#inSession = false;
+    this.#request = null;
+    this.#pose = null;
+    this.#gate.reset();
+    this.#choice.reset();
+    if (ends) this.#events.sessionend?.();
   }
 
   /** Resets the body because the floor lies elsewhere from the next frame on (recentre, teleport, pause). */
@@ -225,8 +246,8 @@ export class BodySolver {
   }
 
   /**
-   * Solves one tracking frame, floor frame [m, s]. Returns the body's pose; null before the first frame. Without a head
-   * (null) the pose stays as it is. A point with a number that is not finite counts as lost; an invalid time counts as
+   * Solves one tracking frame, floor frame [m, s]. Returns the body's pose; null before the first frame of a session.
+   * Without a head (null) the pose stays as it is: `trackinglost` reports it. A point with a number that is not finite counts as lost; an invalid time counts as
    * that of the frame before. `standIn`: the measures of someone else who moves the body in this frame, such as an
    * actor or a recording; they are in force then, and nothing is estimated about the wearer. Never waits and never
    * returns NaN. Throws a RangeError where a stand-in's measures are not human, or what a callback throws.
@@ -261,13 +282,9 @@ export class BodySolver {
   dispose(): Promise<void> {
     this.#events = {};
     this.#request = null;
+    this.#pose = null;
     this.#afterFrame?.close();
     return this.#choice.dispose();
-  }
-
-  /** Ends the session: every point counts as not tracked, without a call of `trackinglost`. */
-  endSession(): void {
-    this.#gate.reset();
   }
 
   /** Returns a copy of the measures of a page, or the measures themselves where the body returned them before. */

@@ -89,6 +89,8 @@ export interface BodyTrackerEvents {
   readonly discontinuity: object;
   readonly trackinglost: { readonly point: TrackedPoint };
   readonly trackingfound: { readonly point: TrackedPoint };
+  readonly sessionstart: object;
+  readonly sessionend: object;
 }
 
 /**
@@ -146,6 +148,8 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
         },
         trackinglost: (point) => this.dispatchEvent({ type: 'trackinglost', point }),
         trackingfound: (point) => this.dispatchEvent({ type: 'trackingfound', point }),
+        sessionstart: () => this.dispatchEvent({ type: 'sessionstart' }),
+        sessionend: () => this.dispatchEvent({ type: 'sessionend' }),
       },
     });
     avatar.setCalibration(this.body.calibration);
@@ -171,8 +175,9 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   }
 
   /**
-   * The pose of the newest frame, floor frame [m]; null before the first. The floor is the space that the renderer
-   * requested, or where `recentre` moved it. The next frame overwrites the pose: keep it with `copyAvatarPose`.
+   * The pose of the newest frame, floor frame [m]; null before the first, after a session and after `dispose`. The floor
+   * is the space that the renderer requested, or where `recentre` moved it. The next frame overwrites the pose: keep it
+   * with `copyAvatarPose`.
    */
   get pose(): AvatarPose | null {
     return this.body.pose;
@@ -279,11 +284,11 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     this.#tracked?.dispose();
     this.#tracked = null;
     this.#session = null;
-    this.body.endSession();
     this.#setFirstPerson(false);
     this.avatar.object.position.set(0, 0, 0);
     this.avatar.object.quaternion.identity();
     this.#object.visible = false;
+    this.body.endSession();
   }
 
   /** Sets the first-person view only where it changes: a page may control it as well. */

@@ -183,6 +183,22 @@ describe('a body', () => {
     ]);
   });
 
+  test('has no pose after a session, and reports start and end once each', async () => {
+    const told: (string | null)[] = [];
+    const body = new Body({
+      calibration,
+      estimator: 'ik',
+      events: { sessionstart: () => told.push('start'), sessionend: () => told.push('end', body.pose && 'pose') },
+    });
+    body.startSession();
+    body.update(at(0));
+    body.endSession();
+    body.endSession();
+    expect(body.pose).toBeNull();
+    expect(told).toEqual(['start', 'end', null]);
+    expect(body.update(null)).toBeNull();
+  });
+
   test.each(['ik', 'learned', 'device'] as const)('by %s says nothing before a page has it', async (estimator) => {
     const told: string[] = [];
     const body = new Body({

@@ -54,7 +54,37 @@ describe('a body in a session of three.js', () => {
     expect(ownHeadSeen(tracker)).toBe(true);
     run(1);
     expect(tracker.object.visible).toBe(false);
-    expect(told).toEqual(['found head', 'found left', 'found right']);
+    expect(told).toEqual(['session start', 'found head', 'found left', 'found right', 'session end']);
+  });
+
+  test('has no pose after its session, so that a page that sends it leaves no frozen body with others', async () => {
+    const { headset, tracker, run } = await begin({ calibration: defaultCalibration });
+    const atEnd: unknown[] = [];
+    tracker.addEventListener('sessionend', () => atEnd.push(tracker.pose));
+    headset.putOn();
+    run(3);
+    expect(tracker.pose).not.toBeNull();
+    headset.takeOff();
+    expect(tracker.pose).toBeNull();
+    run(3);
+    expect(tracker.pose).toBeNull();
+    expect(atEnd).toEqual([null]);
+    // The next session has a pose once it sees a head.
+    headset.putOn();
+    headset.setHead(null);
+    run(3);
+    expect(tracker.pose).toBeNull();
+    headset.setHead({ position: { x: 0, y: 1.6, z: 0 }, orientation: identity });
+    run(1);
+    expect(tracker.pose).not.toBeNull();
+  });
+
+  test('reports no end of a session whose frames it never read', async () => {
+    const { headset, tracker, told } = await begin({ calibration: defaultCalibration });
+    headset.putOn();
+    tracker.updateFrom(standing);
+    headset.takeOff();
+    expect(told.filter((line) => line.startsWith('session'))).toEqual([]);
   });
 
   test.each([true, false])('draws the body that the device tracks where it is asked to (%s)', async (deviceBody) => {
@@ -128,7 +158,7 @@ describe('a body in a session of three.js', () => {
     run(2);
     headset.setInputs(controller('left', left), controller('right', right));
     run(2);
-    expect(told.slice(3)).toEqual(['lost left', 'found left']);
+    expect(told.slice(4)).toEqual(['lost left', 'found left']);
   });
 
   test('a frame of the page’s own moves it without a session', async () => {
@@ -156,16 +186,16 @@ describe('a body in a session of three.js', () => {
     headset.putOn();
     run(2);
     const space = headset.xr.getReferenceSpace();
-    const pose = structuredClone(tracker.pose);
-    told.length = 0;
     await tracker.dispose();
+    expect(told.at(-1)).toBe('session end');
+    told.length = 0;
     headset.setHead({ position: { x: 1, y: 1.6, z: 0 }, orientation: identity });
     run(2);
     tracker.updateFrom(standing);
     tracker.recentre();
     expect(scene.children).toEqual([]);
     expect(tracker.object.visible).toBe(false);
-    expect(tracker.pose).toEqual(pose);
+    expect(tracker.pose).toBeNull();
     expect(headset.xr.getReferenceSpace()).toBe(space);
     expect(told).toEqual([]);
     await tracker.dispose();
