@@ -7,6 +7,7 @@ import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { admittedFrames, type TrackedPoint, TrackingGate } from '../core/tracking/tracking-gate';
 import { type AfterFrame, createAfterFrame } from './after-frame';
+import { demandOptions, optionNames, warnOfDisposed } from './demand-options';
 import { EstimatorChoice } from './estimator-choice';
 import { HeightPolicy } from './height-policy';
 import { type InferenceProfiler, profiled } from './inference-profiler';
@@ -75,6 +76,17 @@ export interface BodySolverOptions {
   readonly events?: BodyEvents;
 }
 
+/** The names of a body's options. */
+export const bodyOptions = optionNames<BodySolverOptions>({
+  estimator: true,
+  calibration: true,
+  autoGrow: true,
+  networks: true,
+  clock: true,
+  profiler: true,
+  events: true,
+});
+
 /** Returns a copy that the page cannot change. Throws a RangeError where the measures are not human. */
 function copyChecked(calibration: Calibration): Calibration {
   demandPerson(calibration);
@@ -109,6 +121,7 @@ export class BodySolver {
   #standsIn = false;
   #pose: AvatarPose | null = null;
   #inSession = false;
+  #disposed = false;
   /** The newest frame's request to a network that answers later. */
   #request: InferenceRequest | null = null;
   readonly #askNow = () => {
@@ -120,8 +133,11 @@ export class BodySolver {
     this.#profiler?.mark('features');
   };
 
-  /** Throws a RangeError where the calibration is not human or the estimator is unknown. */
+  /**
+   * Throws a RangeError where the calibration is not human or the estimator is unknown, a TypeError where an option is.
+   */
   constructor(options: BodySolverOptions) {
+    demandOptions('Body', options, bodyOptions);
     const { estimator = 'learned', calibration = 'auto', networks, profiler = null } = options;
     this.#events = options.events ?? {};
     this.#clock = options.clock ?? createPageClock(() => performance.now());
@@ -250,9 +266,14 @@ export class BodySolver {
    * Without a head (null) the pose stays as it is: `trackinglost` reports it. A point with a number that is not finite counts as lost; an invalid time counts as
    * that of the frame before. `standIn`: the measures of someone else who moves the body in this frame, such as an
    * actor or a recording; they are in force then, and nothing is estimated about the wearer. Never waits and never
-   * returns NaN. Throws a RangeError where a stand-in's measures are not human, or what a callback throws.
+   * returns NaN. After `dispose` it returns null and warns once. Throws a RangeError where a stand-in's measures are not
+   * human, or what a callback throws.
    */
   update(tracked: TrackingFrame | null, standIn: Calibration | null = null): AvatarPose | null {
+    if (this.#disposed) {
+      warnOfDisposed(this, 'Body');
+      return null;
+    }
     const frame = this.#gate.admit(tracked);
     if (frame === null) {
       this.#height.lose();
@@ -278,8 +299,9 @@ export class BodySolver {
     });
   }
 
-  /** Removes all callbacks. Resolves when every network that was loaded for this body is released. */
+  /** Removes all callbacks; later frames have no effect. Resolves when every network that was loaded for this body is released. */
   dispose(): Promise<void> {
+    this.#disposed = true;
     this.#events = {};
     this.#request = null;
     this.#pose = null;

@@ -1,11 +1,11 @@
-import { Body } from 'threepoint/api/body';
+import { Body, type BodyOptions } from 'threepoint/api/body';
 import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { distance } from 'threepoint/core/math/vec3';
 import { createPageClock } from 'threepoint/core/tracking/page-clock';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { describe, expect, test } from 'vitest';
+import { describe, expect, test, vi } from 'vitest';
 import { at, calibration, observed } from './observed-body';
 
 /** Stands upright at this height of the eyes [m]. */
@@ -218,6 +218,35 @@ describe('a body', () => {
     expect(() => new Body({ calibration: { eyeHeight: 165, armSpan: 156 } })).toThrow(RangeError);
     const { body } = await observed({ estimator: 'ik' });
     expect(() => body.calibrate({ eyeHeight: Number.NaN, armSpan: 1.5 })).toThrow(RangeError);
+    // reason: what a page without types may pass
+    for (const measures of [null, 1.7, 'Auto'] as unknown as Calibration[])
+      expect(() => new Body({ calibration: measures })).toThrow(
+        'calibration is no object of measures. Pass {eyeHeight, armSpan} in metres, or “auto”.',
+      );
+  });
+
+  test('refuses an option that it does not know, and names those that it does', () => {
+    // reason: what a page without types may pass
+    expect(() => new Body({ calibraton: calibration } as BodyOptions)).toThrow(
+      '“calibraton” is not an option of Body. Use estimator, calibration, autoGrow, networks, clock, profiler, events.',
+    );
+  });
+
+  test('that is disposed of has no pose, and warns once of a page that goes on using it', async () => {
+    const { body } = await observed({ estimator: 'ik' });
+    body.update(at(0));
+    await body.dispose();
+    const warn = vi.spyOn(console, 'warn').mockImplementation(() => undefined);
+    expect(body.pose).toBeNull();
+    for (let frame = 1; frame < 4; frame++) expect(body.update(at(frame / 60))).toBeNull();
+    expect(warn.mock.calls).toEqual([
+      [
+        expect.stringMatching(
+          /^threepoint: “update” has no effect after “dispose”\. Stop calling it, or create another/,
+        ),
+      ],
+    ]);
+    warn.mockRestore();
   });
 });
 
