@@ -6,6 +6,7 @@ import {
   type BodyEvents,
   BodySolver,
   type Calibration,
+  copyAvatarPose,
   createPageClock,
   forwardKinematics,
   loadLearned,
@@ -29,6 +30,7 @@ export async function inTheHeadset(renderer: WebGLRenderer, scene: Scene): Promi
     console.log(estimator, reason),
   );
   body.addEventListener('trackinglost', ({ point }) => console.log(point));
+  body.addEventListener('sessionend', () => console.log(body.pose));
   scene.add(body.object);
   renderer.setAnimationLoop((timeMs, frame) => {
     body.update(timeMs, frame);
@@ -53,6 +55,7 @@ export function withoutThree(options: OnnxOptions, recorded: TrackingFrame, pers
   });
   const time = body.tick(performance.now());
   const pose: AvatarPose | null = body.update({ ...recorded, time }, person);
+  console.log(pose?.fingers?.left?.index.knuckle, pose && copyAvatarPose(pose));
   return pose?.body
     ? forwardKinematics(skeletonFromCalibration(body.calibration), pose.body).head.position.y
     : undefined;

@@ -300,8 +300,6 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     const pose = this.body.update(tracked, standIn);
     this.#setFirstPerson(this.#session !== null && standIn === null);
     if (!tracked || !pose) return;
-    this.avatar.setFingers('left', tracked.fingers?.left ?? null);
-    this.avatar.setFingers('right', tracked.fingers?.right ?? null);
     this.avatar.setPose(pose, tracked.time);
     this.#object.visible = true;
   }

@@ -1,11 +1,16 @@
 import { Body, type BodyOptions } from 'threepoint/api/body';
+import { copyAvatarPose } from 'threepoint/core/body/avatar-pose';
 import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { closedHand, type Fingers, flatHand, makeHandShape } from 'threepoint/core/body/hand-shape';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import type { NetworkName } from 'threepoint/core/estimation/estimators';
+import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
 import { distance } from 'threepoint/core/math/vec3';
 import { createPageClock } from 'threepoint/core/tracking/page-clock';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { describe, expect, test, vi } from 'vitest';
+import { openPlainModel, openShippedModel } from '../core/estimation/shipped-models';
 import { at, calibration, observed } from './observed-body';
 
 /** Stands upright at this height of the eyes [m]. */
@@ -34,6 +39,28 @@ describe('a body', () => {
     }
     expect(body.estimator).toBe('learned');
     expect(told).toEqual(['found head', 'found left', 'found right']);
+  });
+
+  test('has the fingers of its frame in the pose, where they are known, and a copy keeps them', async () => {
+    const { body } = await observed({ calibration, estimator: 'ik' });
+    const fingers = { left: makeHandShape(), right: null };
+    expect(body.update({ ...at(0), fingers })!.fingers).toEqual({ left: flatHand, right: null });
+    const kept = copyAvatarPose(body.pose!);
+    fingers.left.index.knuckle = 1;
+    expect(body.update({ ...at(1 / 60), fingers })!.fingers!.left!.index.knuckle).toBe(1);
+    expect(kept.fingers).toEqual({ left: flatHand, right: null });
+    expect(body.update(at(2 / 60))!.fingers).toEqual({ left: null, right: null });
+  });
+
+  test.each(estimatorNames)('never has a finger in the pose that is not finite (%s)', async (estimator) => {
+    const networks = async (name: NetworkName) => (name === 'learned' ? openPlainModel() : openShippedModel(name));
+    const { body } = await observed({ calibration, estimator, networks });
+    const fingers = { left: closedHand, right: makeHandShape() };
+    fingers.right.thumb.end = Number.NaN;
+    expect(body.update({ ...at(0), fingers })!.fingers).toEqual({ left: closedHand, right: null });
+    // reason: what a page without types may leave out
+    const leftAlone = { left: closedHand } as unknown as Fingers;
+    expect(body.update({ ...at(1 / 60), fingers: leftAlone })!.fingers).toEqual({ left: closedHand, right: null });
   });
 
   test('says once which point is lost and once that it is found', async () => {
