@@ -1,8 +1,8 @@
 // Builds the package “threepoint” into dist-library/: ESM with source maps, types, the learned network's weights, the
-// models for the runtime, and the mannequin. Prints the size of each entry and fails if a document states another size.
-// `npm pack ./dist-library` makes the tarball.
+// models for the runtime with their model card, the mannequin, and the sources that editors open. Prints the size of each
+// entry and fails if a document states another size. `npm pack ./dist-library` makes the tarball.
 import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { dirname, join } from 'node:path';
+import { dirname, join, relative } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { brotliCompressSync } from 'node:zlib';
 import { rolldown } from 'rolldown';
@@ -25,7 +25,13 @@ const copied = {
   'models/paper.onnx': 'public/models/paper.onnx',
   'avatars/mannequin.vrm': 'public/avatars/mannequin.vrm',
   LICENSE: 'LICENSE',
+};
+
+/** The documents of the package: path in the package to path in the repository. */
+const documents = {
   'README.md': 'src/threepoint/README.md',
+  'models/README.md': 'src/threepoint/model-card.md',
+  'models/accuracy.md': 'docs/accuracy.md',
 };
 
 /**
@@ -34,6 +40,7 @@ const copied = {
  */
 function published() {
   const { private: _, devDependencies: __, dependencies: ___, exports, ...rest } = own;
+  const { engines } = JSON.parse(readFileSync(join(root, 'package.json'), 'utf8'));
   const outside = Object.entries(exports).flatMap(([name, target]) => {
     if (typeof target === 'string') return [[name, target]];
     const { source: ____, ...built } = target;
@@ -41,8 +48,9 @@ function published() {
   });
   return {
     ...rest,
-    // The sources also have workers with side effects, which a bundler would drop.
-    sideEffects: ['./onnx-worker.js'],
+    engines,
+    // The worker's modules answer messages; a bundler would drop the others' imports for side effects.
+    sideEffects: ['./onnx-worker.js', './onnx/inference-worker.js'],
     exports: Object.fromEntries(outside),
   };
 }
@@ -90,16 +98,38 @@ async function bundle(input, plugins) {
   });
 }
 
-/** Chunks lie in the entries' folder, so that paths relative to one hold for all. */
-const output = {
-  format: 'esm',
-  chunkFileNames: ({ name }) => (name.includes('learned-weights') ? 'learned-weights.js' : 'shared-[hash].js'),
+/** Modules from outside the library's folder, by their names in the build: npm packs no folder node_modules. */
+const movedModules = {
+  '_virtual/_learned-weights': 'learned-weights',
+  'public/models/learned.json': 'api/learned-contract',
+  'node_modules/valibot/dist/index': 'bundled/valibot',
 };
 
+/** The path of the built package's folder in the paths of source maps. */
+const sourcesFolder = 'src/threepoint';
+
+/**
+ * Writes a file for each module. A bundler drops modules that a page does not use; it would keep the top level of a
+ * larger file.
+ */
 async function writeCode() {
   const build = await bundle(Object.fromEntries(entries.map((name) => [name, sourceOf(name)])), [weightsInModule]);
-  await build.write({ ...output, dir: out, sourcemap: true });
+  await build.write({
+    format: 'esm',
+    dir: out,
+    preserveModules: true,
+    preserveModulesRoot: join(root, sourcesFolder),
+    entryFileNames: ({ name }) => `${movedModules[name] ?? name}.js`,
+    sourcemap: true,
+    sourcemapPathTransform: (source, map) => sourceInPackage(join(dirname(map), source), map),
+  });
   await build.close();
+}
+
+/** Returns the path of a source file in the package, relative to the map that names it; others keep their path. */
+function sourceInPackage(source, map) {
+  const own = relative(join(root, sourcesFolder), source);
+  return own.startsWith('..') ? relative(dirname(map), source) : relative(dirname(map), join(out, 'src', own));
 }
 
 /**
@@ -109,8 +139,9 @@ async function writeTypes() {
   const { code } = await run(process.execPath, ['node_modules/typescript/bin/tsc', '-p', 'tsconfig.library.json']);
   if (code !== 0) throw new SetupError(`The library's types could not be written: exit code ${code}.`);
   for (const file of readdirSync(join(out, 'types'), { recursive: true })) {
-    if (!file.endsWith('.d.ts')) continue;
     const path = join(out, 'types', file);
+    if (file.endsWith('.d.ts.map')) writeDeclarationMap(path);
+    if (!file.endsWith('.d.ts')) continue;
     writeFileSync(
       path,
       readFileSync(path, 'utf8').replace(/(\b(?:from|import)\s*\(?\s*['"])(\.{1,2}\/[^'"]+?)(?=['"])/g, '$1$2.js'),
@@ -118,10 +149,58 @@ async function writeTypes() {
   }
 }
 
+/** Copies the sources of a declaration map into the package, where editors open them, and lets the map name them. */
+function writeDeclarationMap(path) {
+  const map = JSON.parse(readFileSync(path, 'utf8'));
+  const sources = map.sources.map((source) => join(dirname(path), source));
+  for (const source of sources) {
+    const copy = join(dirname(path), sourceInPackage(source, path));
+    mkdirSync(dirname(copy), { recursive: true });
+    copyFileSync(source, copy);
+  }
+  writeFileSync(path, JSON.stringify({ ...map, sources: sources.map((source) => sourceInPackage(source, path)) }));
+}
+
+/**
+ * Returns a document with links that lead to files of the package. What a link names that the package lacks stays as
+ * text.
+ */
+export function documentInPackage(text, to) {
+  const inPackage = Object.fromEntries(
+    Object.entries({ ...copied, ...documents }).map(([target, source]) => [source, target]),
+  );
+  return text.replace(/!?\[([^\]]*)\]\(([^)\s]+)\)/g, (link, label, target) => {
+    if (/^([a-z]+:|#)/.test(target)) return link;
+    const [path, anchor] = target.split('#');
+    const found = inPackage[relative(root, join(root, dirname(documents[to]), path))];
+    if (found === undefined) return label;
+    return `[${label}](${relative(dirname(to), found)}${anchor === undefined ? '' : `#${anchor}`})`;
+  });
+}
+
+/** Returns the table of the networks' errors, as their contracts state them. */
+function errorTable() {
+  const contracts = ['learned', 'paper'].map((name) =>
+    JSON.parse(readFileSync(join(root, `public/models/${name}.json`), 'utf8')),
+  );
+  const rows = contracts.flatMap(({ errors }) => Object.entries(errors));
+  const joints = Object.keys(rows[0][1]);
+  const line = (cells) => `| ${cells.join(' | ')} |`;
+  return [
+    line(['error [cm]', ...joints]),
+    line(['---', ...joints.map(() => '---')]),
+    ...new Map(rows.map(([what, errors]) => [what, line([what, ...joints.map((joint) => errors[joint])])])).values(),
+  ].join('\n');
+}
+
 function writeFiles() {
   for (const [to, from] of Object.entries(copied)) {
     mkdirSync(dirname(join(out, to)), { recursive: true });
     copyFileSync(join(root, from), join(out, to));
+  }
+  for (const [to, from] of Object.entries(documents)) {
+    const text = readFileSync(join(root, from), 'utf8').replace('<!-- errors -->', errorTable);
+    writeFileSync(join(out, to), documentInPackage(text, to));
   }
   writeFileSync(join(out, 'package.json'), `${JSON.stringify(published(), null, 2)}\n`);
 }
@@ -141,7 +220,7 @@ const trackerAlone = {
  */
 async function weigh(input, plugins = [weightsInModule]) {
   const build = await bundle({ entry: input }, plugins);
-  const { output: files } = await build.generate({ ...output, minify: true });
+  const { output: files } = await build.generate({ format: 'esm', minify: true });
   await build.close();
   const needed = new Set();
   const add = (file) => {
