@@ -1,6 +1,6 @@
 // Builds the package “threepoint” into dist-library/: ESM with source maps, types, the learned network's weights, the
-// models for the runtime with their model card, the mannequin, and the sources that editors open. Prints the size of each
-// entry and fails if a document states another size. `npm pack ./dist-library` makes the tarball.
+// models for the runtime with their model card, the mannequin, and the sources that editors open. Prints the size of
+// each entry and fails if a document states another size. `npm pack ./dist-library` makes the tarball.
 import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { dirname, join, relative } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -11,7 +11,7 @@ import { main, root, run, SetupError } from './run-command.mjs';
 import { sourceResolution } from './source-condition.mjs';
 
 const out = join(root, 'dist-library');
-const entries = ['index', 'motion', 'three', 'onnx', 'onnx-worker', 'polyfill'];
+const entries = ['index', 'motion', 'three', 'react', 'onnx', 'onnx-worker', 'polyfill'];
 /** The manifest of the workspace; the published one omits what only this repository can resolve. */
 const own = JSON.parse(readFileSync(join(root, 'src/threepoint/package.json'), 'utf8'));
 const external = (id) => Object.keys(own.peerDependencies).some((name) => id === name || id.startsWith(`${name}/`));

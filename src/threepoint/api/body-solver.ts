@@ -263,11 +263,11 @@ export class BodySolver {
 
   /**
    * Solves one tracking frame, floor frame [m, s]. Returns the body's pose; null before the first frame of a session.
-   * Without a head (null) the pose stays as it is: `trackinglost` reports it. A point with a number that is not finite counts as lost; an invalid time counts as
-   * that of the frame before. `standIn`: the measures of someone else who moves the body in this frame, such as an
-   * actor or a recording; they are in force then, and nothing is estimated about the wearer. Never waits and never
-   * returns NaN. After `dispose` it returns null and warns once. Throws a RangeError where a stand-in's measures are not
-   * human, or what a callback throws.
+   * Without a head (null) the pose stays as it is: `trackinglost` reports it. A point with a number that is not finite
+   * counts as lost; an invalid time counts as that of the frame before. `standIn`: the measures of someone else who
+   * moves the body in this frame, such as an actor or a recording; they are in force then, and nothing is estimated
+   * about the wearer. Never waits and never returns NaN. After `dispose` it returns null and warns once. Throws a
+   * RangeError where a stand-in's measures are not human, or what a callback throws.
    */
   update(tracked: TrackingFrame | null, standIn: Calibration | null = null): AvatarPose | null {
     if (this.#disposed) {
@@ -299,7 +299,10 @@ export class BodySolver {
     });
   }
 
-  /** Removes all callbacks; later frames have no effect. Resolves when every network that was loaded for this body is released. */
+  /**
+   * Removes all callbacks; later frames have no effect. Resolves when every network that was loaded for this body is
+   * released.
+   */
   dispose(): Promise<void> {
     this.#disposed = true;
     this.#events = {};

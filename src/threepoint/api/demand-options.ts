@@ -15,8 +15,8 @@ export const optionNames = <Options extends object>(names: Record<keyof Required
 const warned = new WeakSet<object>();
 
 /**
- * Warns once for each object that is used after its `dispose`: a frame must not throw. `what`: its class, which bundlers
- * rename.
+ * Warns once for each object that is used after its `dispose`: a frame must not throw. `what`: the name of its class,
+ * which bundlers change.
  */
 export function warnOfDisposed(object: object, what: string): void {
   if (warned.has(object)) return;

@@ -75,7 +75,10 @@ async function read(source: AvatarSource): Promise<{ name: string; bytes: ArrayB
 }
 
 export interface BodyTrackerOptions extends Omit<BodyOptions, 'events'> {
-  /** The avatar, from `loadAvatar`; one for each tracker, which disposes of it. Add `tracker.object` to the scene, or to the group that moves the cameras. */
+  /**
+   * The avatar, from `loadAvatar`; one for each tracker, which disposes of it. Add `tracker.object` to the scene, or to
+   * the group that moves the cameras.
+   */
   readonly avatar: Avatar;
   /**
    * Whether frames contain the body that the device tracks (WebXR Body Tracking), which the estimator 'device' draws.
@@ -213,9 +216,9 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   }
 
   /**
-   * The pose of the newest frame, floor frame [m]; null before the first, after a session and after `dispose`. The floor
-   * is the space that the renderer requested, or where `recentre` moved it. The next frame overwrites the pose: keep it
-   * with `copyAvatarPose`.
+   * The pose of the newest frame, floor frame [m]; null before the first, after a session and after `dispose`. The
+   * floor is the space that the renderer requested, or where `recentre` moved it. The next frame overwrites the pose:
+   * keep it with `copyAvatarPose`.
    */
   get pose(): AvatarPose | null {
     return this.body.pose;

@@ -63,9 +63,9 @@ export class TrackingGate {
 
   /**
    * Returns the frame itself, or a copy in which an invalid hand is null, every point has a tracking state, rotations
-   * have length 1, fingers that are not finite are unknown, an invalid device body is absent, and an invalid time is that of the frame before. Returns null
-   * while the head is not seen or no time is known. A head counts as tracked in each frame that has one, because the
-   * body follows a guessed head too.
+   * have length 1, fingers that are not finite are unknown, an invalid device body is absent, and an invalid time is
+   * that of the frame before. Returns null while the head is not seen or no time is known. A head counts as tracked in
+   * each frame that has one, because the body follows a guessed head too.
    */
   admit(frame: TrackingFrame | null | undefined): TrackingFrame | null {
     const admitted = this.#check(frame);
