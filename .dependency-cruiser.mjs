@@ -147,9 +147,9 @@ export default {
         'threepoint has neither three nor onnxruntime in it: what draws is reached through api/three alone, the runtime through api/onnx and its ' +
         'worker alone; the others take of onnx what fetches and computes without a runtime.',
       severity: 'error',
-      from: { path: '^src/threepoint/api/', pathNot: '/(three|onnx|onnx-worker|polyfill)\\.ts$' },
+      from: { path: '^src/threepoint/api/', pathNot: '/(three|react|onnx|onnx-worker|polyfill)\\.ts$' },
       to: {
-        path: '^src/threepoint/(xr|avatar|onnx|api/(three|onnx|onnx-worker))',
+        path: '^src/threepoint/(xr|avatar|onnx|api/(three|react|onnx|onnx-worker))',
         pathNot: '^src/threepoint/onnx/(load-plain-regressor|model-files)\\.ts$',
       },
     },
@@ -159,7 +159,7 @@ export default {
         'threepoint/polyfill serves pages of any engine: it reads sessions, and has neither three nor a runtime.',
       severity: 'error',
       from: { path: '^src/threepoint/api/polyfill\\.ts$' },
-      to: { path: '^src/threepoint/(avatar|onnx|xr/(?!tracked-session)|api/(three|onnx|onnx-worker))' },
+      to: { path: '^src/threepoint/(avatar|onnx|xr/(?!tracked-session)|api/(three|react|onnx|onnx-worker))' },
     },
     {
       name: 'library-draws-without-runtime',

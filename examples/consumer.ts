@@ -1,4 +1,5 @@
 // Every entry of the package in TypeScript: compiled against the packed package by `npm run test:full`, run by no page.
+import { createElement, type RefObject } from 'react';
 import type { Scene, WebGLRenderer } from 'three';
 import {
   type AvatarPose,
@@ -6,7 +7,9 @@ import {
   type BodyEvents,
   BodySolver,
   type Calibration,
+  copyAvatarPose,
   createPageClock,
+  defaultCalibration,
   forwardKinematics,
   loadLearned,
   type PoseRegressor,
@@ -18,6 +21,7 @@ import { exportMotion, toXRBody, type XRBodyJoints } from 'threepoint/motion';
 import { type OnnxOptions, onnxNetworks } from 'threepoint/onnx';
 import 'threepoint/onnx-worker';
 import { type EmulatedBody, installBodyTracking } from 'threepoint/polyfill';
+import { RemoteAvatar, SelfAvatar } from 'threepoint/react';
 import { type Avatar, avatarMotion, BodyTracker, type BodyTrackerEvents, loadAvatar } from 'threepoint/three';
 
 /** With three.js, its session and an avatar. */
@@ -29,6 +33,7 @@ export async function inTheHeadset(renderer: WebGLRenderer, scene: Scene): Promi
     console.log(estimator, reason),
   );
   body.addEventListener('trackinglost', ({ point }) => console.log(point));
+  body.addEventListener('sessionend', () => console.log(body.pose));
   scene.add(body.object);
   renderer.setAnimationLoop((timeMs, frame) => {
     body.update(timeMs, frame);
@@ -37,6 +42,18 @@ export async function inTheHeadset(renderer: WebGLRenderer, scene: Scene): Promi
   });
   return body;
 }
+
+/** In react-three-fiber: the user's body, and one by the poses that another page sends. */
+export const inReact = (send: (pose: AvatarPose | null) => void, received: RefObject<AvatarPose | null>) => [
+  createElement(SelfAvatar, {
+    avatar: '/avatars/me.vrm',
+    estimator: 'ik',
+    onPose: send,
+    onSessionEnd: () => send(null),
+    onTrackingLost: ({ point }) => console.log(point),
+  }),
+  createElement(RemoteAvatar, { avatar: '/avatars/them.vrm', pose: received, calibration: defaultCalibration }),
+];
 
 /** Without three.js, by the runtime, with a clock that the page shares and frame times that it measures. */
 export function withoutThree(options: OnnxOptions, recorded: TrackingFrame, person: Calibration): number | undefined {
@@ -53,6 +70,7 @@ export function withoutThree(options: OnnxOptions, recorded: TrackingFrame, pers
   });
   const time = body.tick(performance.now());
   const pose: AvatarPose | null = body.update({ ...recorded, time }, person);
+  console.log(pose?.fingers?.left?.index.knuckle, pose && copyAvatarPose(pose));
   return pose?.body
     ? forwardKinematics(skeletonFromCalibration(body.calibration), pose.body).head.position.y
     : undefined;

@@ -1,8 +1,8 @@
 // Builds the package “threepoint” into dist-library/: ESM with source maps, types, the learned network's weights, the
-// models for the runtime, and the mannequin. Prints the size of each entry and fails if a document states another size.
-// `npm pack ./dist-library` makes the tarball.
+// models for the runtime with their model card, the mannequin, and the sources that editors open. Prints the size of
+// each entry and fails if a document states another size. `npm pack ./dist-library` makes the tarball.
 import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { dirname, join } from 'node:path';
+import { dirname, join, relative } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { brotliCompressSync } from 'node:zlib';
 import { rolldown } from 'rolldown';
@@ -11,7 +11,7 @@ import { main, root, run, SetupError } from './run-command.mjs';
 import { sourceResolution } from './source-condition.mjs';
 
 const out = join(root, 'dist-library');
-const entries = ['index', 'motion', 'three', 'onnx', 'onnx-worker', 'polyfill'];
+const entries = ['index', 'motion', 'three', 'react', 'onnx', 'onnx-worker', 'polyfill'];
 /** The manifest of the workspace; the published one omits what only this repository can resolve. */
 const own = JSON.parse(readFileSync(join(root, 'src/threepoint/package.json'), 'utf8'));
 const external = (id) => Object.keys(own.peerDependencies).some((name) => id === name || id.startsWith(`${name}/`));
@@ -25,7 +25,13 @@ const copied = {
   'models/paper.onnx': 'public/models/paper.onnx',
   'avatars/mannequin.vrm': 'public/avatars/mannequin.vrm',
   LICENSE: 'LICENSE',
+};
+
+/** The documents of the package: path in the package to path in the repository. */
+const documents = {
   'README.md': 'src/threepoint/README.md',
+  'models/README.md': 'src/threepoint/model-card.md',
+  'models/accuracy.md': 'docs/accuracy.md',
 };
 
 /**
@@ -34,6 +40,7 @@ const copied = {
  */
 function published() {
   const { private: _, devDependencies: __, dependencies: ___, exports, ...rest } = own;
+  const { engines } = JSON.parse(readFileSync(join(root, 'package.json'), 'utf8'));
   const outside = Object.entries(exports).flatMap(([name, target]) => {
     if (typeof target === 'string') return [[name, target]];
     const { source: ____, ...built } = target;
@@ -41,8 +48,9 @@ function published() {
   });
   return {
     ...rest,
-    // The sources also have workers with side effects, which a bundler would drop.
-    sideEffects: ['./onnx-worker.js'],
+    engines,
+    // The worker's modules answer messages; a bundler would drop the others' imports for side effects.
+    sideEffects: ['./onnx-worker.js', './onnx/inference-worker.js'],
     exports: Object.fromEntries(outside),
   };
 }
@@ -101,28 +109,57 @@ async function bundle(input, plugins) {
   });
 }
 
-/** Chunks lie in the entries' folder, so that paths relative to one hold for all. */
-const output = {
-  format: 'esm',
-  chunkFileNames: ({ name }) =>
-    name.includes('embedded') ? `${name.replace('_embedded-', '')}.js` : 'shared-[hash].js',
+/** Modules from outside the library's folder, by their names in the build: npm packs no folder node_modules. */
+const movedModules = {
+  '_virtual/_embedded-own-weights': 'learned-weights',
+  '_virtual/_embedded-own-mannequin': 'mannequin',
+  'public/models/learned.json': 'api/learned-contract',
+  'node_modules/valibot/dist/index': 'bundled/valibot',
 };
 
+/** The path of the built package's folder in the paths of source maps. */
+const sourcesFolder = 'src/threepoint';
+
+/**
+ * Writes a file for each module. A bundler drops modules that a page does not use; it would keep the top level of a
+ * larger file.
+ */
 async function writeCode() {
   const build = await bundle(Object.fromEntries(entries.map((name) => [name, sourceOf(name)])), [filesInModules]);
-  await build.write({ ...output, dir: out, sourcemap: true });
+  await build.write({
+    format: 'esm',
+    dir: out,
+    preserveModules: true,
+    preserveModulesRoot: join(root, sourcesFolder),
+    entryFileNames: ({ name }) => `${movedModules[name] ?? name}.js`,
+    sourcemap: true,
+    sourcemapPathTransform: (source, map) => sourceInPackage(join(dirname(map), source), map),
+  });
   await build.close();
 }
 
-/**
- * Writes the compiler's declarations, a file for each module, with the full file names that Node's resolution requires.
- */
-export async function writeTypes(config, types) {
+/** Returns the path of a source file in the package, relative to the map that names it; others keep their path. */
+function sourceInPackage(source, map) {
+  const own = relative(join(root, sourcesFolder), source);
+  return own.startsWith('..') ? relative(dirname(map), source) : relative(dirname(map), join(out, 'src', own));
+}
+
+/** Writes the compiler's declarations, a file for each module, and the sources that their maps name. */
+async function writeTypes() {
+  const types = join(out, 'types');
+  await writeDeclarations('tsconfig.library.json', types);
+  for (const file of readdirSync(types, { recursive: true })) {
+    if (file.endsWith('.d.ts.map')) writeDeclarationMap(join(types, file));
+  }
+}
+
+/** Writes the declarations of a project into `types`, with the full file names that Node's resolution requires. */
+export async function writeDeclarations(config, types) {
   const { code } = await run(process.execPath, ['node_modules/typescript/bin/tsc', '-p', config]);
   if (code !== 0) throw new SetupError(`The types of ${config} could not be written: exit code ${code}.`);
   for (const file of readdirSync(types, { recursive: true })) {
-    if (!file.endsWith('.d.ts')) continue;
     const path = join(types, file);
+    if (!file.endsWith('.d.ts')) continue;
     writeFileSync(
       path,
       readFileSync(path, 'utf8').replace(/(\b(?:from|import)\s*\(?\s*['"])(\.{1,2}\/[^'"]+?)(?=['"])/g, '$1$2.js'),
@@ -130,10 +167,58 @@ export async function writeTypes(config, types) {
   }
 }
 
+/** Copies the sources of a declaration map into the package, where editors open them, and lets the map name them. */
+function writeDeclarationMap(path) {
+  const map = JSON.parse(readFileSync(path, 'utf8'));
+  const sources = map.sources.map((source) => join(dirname(path), source));
+  for (const source of sources) {
+    const copy = join(dirname(path), sourceInPackage(source, path));
+    mkdirSync(dirname(copy), { recursive: true });
+    copyFileSync(source, copy);
+  }
+  writeFileSync(path, JSON.stringify({ ...map, sources: sources.map((source) => sourceInPackage(source, path)) }));
+}
+
+/**
+ * Returns a document with links that lead to files of the package. What a link names that the package lacks stays as
+ * text.
+ */
+export function documentInPackage(text, to) {
+  const inPackage = Object.fromEntries(
+    Object.entries({ ...copied, ...documents }).map(([target, source]) => [source, target]),
+  );
+  return text.replace(/!?\[([^\]]*)\]\(([^)\s]+)\)/g, (link, label, target) => {
+    if (/^([a-z]+:|#)/.test(target)) return link;
+    const [path, anchor] = target.split('#');
+    const found = inPackage[relative(root, join(root, dirname(documents[to]), path))];
+    if (found === undefined) return label;
+    return `[${label}](${relative(dirname(to), found)}${anchor === undefined ? '' : `#${anchor}`})`;
+  });
+}
+
+/** Returns the table of the networks' errors, as their contracts state them. */
+function errorTable() {
+  const contracts = ['learned', 'paper'].map((name) =>
+    JSON.parse(readFileSync(join(root, `public/models/${name}.json`), 'utf8')),
+  );
+  const rows = contracts.flatMap(({ errors }) => Object.entries(errors));
+  const joints = Object.keys(rows[0][1]);
+  const line = (cells) => `| ${cells.join(' | ')} |`;
+  return [
+    line(['error [cm]', ...joints]),
+    line(['---', ...joints.map(() => '---')]),
+    ...new Map(rows.map(([what, errors]) => [what, line([what, ...joints.map((joint) => errors[joint])])])).values(),
+  ].join('\n');
+}
+
 function writeFiles() {
   for (const [to, from] of Object.entries(copied)) {
     mkdirSync(dirname(join(out, to)), { recursive: true });
     copyFileSync(join(root, from), join(out, to));
+  }
+  for (const [to, from] of Object.entries(documents)) {
+    const text = readFileSync(join(root, from), 'utf8').replace('<!-- errors -->', errorTable);
+    writeFileSync(join(out, to), documentInPackage(text, to));
   }
   writeFileSync(join(out, 'package.json'), `${JSON.stringify(published(), null, 2)}\n`);
 }
@@ -153,7 +238,7 @@ const trackerAlone = {
  */
 async function weigh(input, plugins = [filesInModules]) {
   const build = await bundle({ entry: input }, plugins);
-  const { output: files } = await build.generate({ ...output, minify: true });
+  const { output: files } = await build.generate({ format: 'esm', minify: true });
   await build.close();
   const needed = new Set();
   const add = (file) => {
@@ -170,7 +255,7 @@ async function weigh(input, plugins = [filesInModules]) {
 export async function buildLibrary() {
   rmSync(out, { recursive: true, force: true });
   await writeCode();
-  await writeTypes('tsconfig.library.json', join(out, 'types'));
+  await writeTypes();
   writeFiles();
 }
 

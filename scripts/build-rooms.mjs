@@ -4,7 +4,7 @@ import { copyFileSync, mkdirSync, readFileSync, renameSync, rmSync, writeFileSyn
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { rolldown } from 'rolldown';
-import { writeTypes } from './build-library.mjs';
+import { writeDeclarations } from './build-library.mjs';
 import { main, root } from './run-command.mjs';
 import { sourceResolution } from './source-condition.mjs';
 
@@ -39,9 +39,9 @@ async function writeCode(platform, folders) {
 }
 
 /** Keeps the declarations of this package: those of the library come with it. */
-async function writeDeclarations() {
+async function writeTypes() {
   const types = join(out, 'types');
-  await writeTypes('tsconfig.rooms.json', types);
+  await writeDeclarations('tsconfig.rooms.json', types);
   renameSync(join(types, 'rooms'), join(out, 'rooms'));
   rmSync(types, { recursive: true });
   renameSync(join(out, 'rooms'), types);
@@ -69,7 +69,7 @@ export async function buildRooms() {
   rmSync(out, { recursive: true, force: true });
   mkdirSync(out);
   for (const [platform, folders] of Object.entries(entries)) await writeCode(platform, folders);
-  await writeDeclarations();
+  await writeTypes();
   copyFileSync(join(root, 'LICENSE'), join(out, 'LICENSE'));
   copyFileSync(join(root, 'src/rooms/README.md'), join(out, 'README.md'));
   writeFileSync(join(out, 'package.json'), `${JSON.stringify(published(), null, 2)}\n`);

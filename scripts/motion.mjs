@@ -10,13 +10,18 @@ const usage =
   'FILE is a recording that the page made; docs/motion.md says the rest.';
 const twoHours = 2 * 3600;
 
+/** Returns the recording and the options; null: the usage was requested. */
 function options() {
   const text = { type: 'string' };
   try {
     const { values, positionals } = parseArgs({
-      options: { to: text, estimator: text, out: text, unit: text, rate: text, avatar: text },
+      options: {
+        ...{ to: text, estimator: text, out: text, unit: text, rate: text, avatar: text },
+        help: { type: 'boolean', short: 'h' },
+      },
       allowPositionals: true,
     });
+    if (values.help) return null;
     if (positionals.length !== 1) throw new Error(`one recording is needed, not ${positionals.length}`);
     if (!values.to) throw new Error('--to is needed');
     return { file: positionals[0], values };
@@ -26,13 +31,18 @@ function options() {
 }
 
 await main(async () => {
-  const { file, values } = options();
+  const given = options();
+  if (!given) {
+    console.log(usage);
+    return 0;
+  }
+  const { file, values } = given;
   await ensureInstalled();
   // Paths are relative to the directory in which the command was typed.
   const path = (name) => resolve(process.env.INIT_CWD ?? process.cwd(), name);
-  const given = { ...values, file: path(file) };
-  for (const name of ['out', 'avatar']) if (given[name]) given[name] = path(given[name]);
-  const args = ['--import', 'tsx', 'scripts/motion/main.ts', JSON.stringify(given)];
+  const request = { ...values, file: path(file) };
+  for (const name of ['out', 'avatar']) if (request[name]) request[name] = path(request[name]);
+  const args = ['--import', 'tsx', 'scripts/motion/main.ts', JSON.stringify(request)];
   const { code } = await run(process.execPath, args, { limitSeconds: twoHours });
   return code;
 });

@@ -34,12 +34,13 @@ const playwright = (tests) => async (report) => {
  */
 export const stages = {
   // The longest stages come first: two single-core stages run at the same time.
-  // The package, built as it is published: its parts, its types, and the size of each entry.
+  // The package, built as it is published: its parts, its types, its documents, and the size of each entry.
   library: {
     suite: 'day',
     singleCore: true,
     commands: () => [
       [process.execPath, 'scripts/build-library.mjs'],
+      [process.execPath, 'scripts/check-library-package.mjs'],
       node('publint/src/cli.js', 'dist-library', '--strict'),
       node('@arethetypeswrong/cli/dist/index.js', '--pack', 'dist-library', '--profile', 'esm-only', '--quiet'),
     ],

@@ -24,9 +24,16 @@ interface SelfAvatar {
   readonly avatar: { jointPositions(): Record<string, { x: number; y: number; z: number }> };
 }
 
+/** What the example of @react-three/xr leaves at hand: the avatar of a RemoteAvatar. */
+interface ShownAvatar {
+  readonly object: Drawn;
+  jointPositions(): Record<string, { x: number; y: number; z: number }>;
+}
+
 declare global {
   interface Window {
-    selfAvatar?: SelfAvatar;
+    selfAvatar?: SelfAvatar | null;
+    remoteAvatar?: ShownAvatar | null;
     /** The global of iwer's script. */
     IWER: {
       readonly metaQuest3: object;
@@ -42,6 +49,25 @@ const wristOf = (page: Page, side: 'left' | 'right'): Promise<Point> =>
     return [at.x, at.y, at.z] as const;
   }, wristName[side]);
 
+/** The second body has the pose of the first, and goes with its session. */
+async function sharesItsBody(page: Page, headset: Awaited<ReturnType<typeof emulatedHeadset>>): Promise<void> {
+  const apart = () =>
+    page.evaluate(() => {
+      const [mine, other] = [window.selfAvatar?.avatar, window.remoteAvatar].map((avatar) => avatar?.jointPositions());
+      return Math.max(
+        ...['leftHand', 'rightLowerArm', 'head'].map((name) => {
+          const [a, b] = [mine?.[name], other?.[name]];
+          return a && b ? 1000 * Math.hypot(a.x - b.x, a.y - b.y, a.z - b.z) : Number.NaN;
+        }),
+      );
+    });
+  await expect.poll(apart, { message: 'the joints of both bodies [mm]' }).toBeLessThan(30);
+  const shown = () => page.evaluate(() => [window.remoteAvatar?.object.visible, window.selfAvatar?.pose != null]);
+  expect(await shown()).toEqual([true, true]);
+  await headset.endSession();
+  await expect.poll(shown).toEqual([false, false]);
+}
+
 test.describe('examples of the package @realtime', () => {
   let folder = '';
   test.beforeAll(async () => {
@@ -55,7 +81,7 @@ test.describe('examples of the package @realtime', () => {
   test('are short @realtime', () => {
     for (const name of exampleNames) {
       const main = readFileSync(
-        new URL(`../../examples/${name}/main.${name === 'react-three-fiber' ? 'jsx' : 'js'}`, import.meta.url),
+        new URL(`../../examples/${name}/main.${name.startsWith('react') ? 'jsx' : 'js'}`, import.meta.url),
         'utf8',
       );
       expect(main.trimEnd().split('\n').length, name).toBeLessThanOrEqual(40);
@@ -104,6 +130,7 @@ test.describe('examples of the package @realtime', () => {
           .toBeLessThan(1);
       }
       await page.screenshot({ path: `artifacts/examples/${name}.png` });
+      if (name === 'react-three-xr') await sharesItsBody(page, headset);
       expect(faults).toEqual([]);
       await server.close();
     });

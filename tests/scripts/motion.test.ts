@@ -1,3 +1,4 @@
+import { spawnSync } from 'node:child_process';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
@@ -25,6 +26,12 @@ function folderWith(seconds: number) {
 }
 
 describe('npm run motion', () => {
+  test.each(['--help', '-h'])('%s prints how it is used, and is no error', (flag) => {
+    const { status, stdout } = spawnSync(process.execPath, ['scripts/motion.mjs', flag], { encoding: 'utf8' });
+    expect(stdout).toMatch(/^npm run motion -- FILE --to bvh\|csv\|vrma\|glb /);
+    expect(status).toBe(0);
+  });
+
   test.each([
     ['bvh', 'learned'],
     ['csv', 'ik'],

@@ -44,6 +44,7 @@ export class PageFrame implements FrameParts<XRFrame> {
   readonly #options: PageFrameOptions;
   readonly #replayed: ReplayedBody;
   readonly #fingers: Record<Side, HandShape | null> = { left: null, right: null };
+  readonly #drawn: { -readonly [Key in keyof AvatarPose]?: AvatarPose[Key] } = { fingers: this.#fingers };
   readonly #shapes = { left: makeHandShape(), right: makeHandShape() };
   /** The newest tracked frame as the body has it. */
   #embodied: TrackingFrame | null = null;
@@ -99,7 +100,7 @@ export class PageFrame implements FrameParts<XRFrame> {
     this.#bendFingers('left', frame);
     this.#bendFingers('right', frame);
     avatar.current?.setMouth(activities.current?.mouth ?? 0);
-    avatar.current?.setPose(pose, frame.time);
+    avatar.current?.setPose(this.#withFingers(pose), frame.time);
     activities.current?.send?.(frame, pose, this.#fingers);
     mocap.frame(frame, pose);
   }
@@ -135,7 +136,16 @@ export class PageFrame implements FrameParts<XRFrame> {
     const held = wrist && activities.grasp(side, wrist, hand, target) ? target : null;
     const shape = held ?? (fingers ? fingers[side] : shapeOfButtons(source.buttons[side], target));
     this.#fingers[side] = shape;
-    avatar.current?.setFingers(side, shape);
+  }
+
+  /** Returns the pose with the drawn fingers, in an object that the next frame overwrites. */
+  #withFingers({ head, leftHand, rightHand, body }: AvatarPose): AvatarPose {
+    const drawn = this.#drawn;
+    drawn.head = head;
+    drawn.leftHand = leftHand;
+    drawn.rightHand = rightHand;
+    drawn.body = body;
+    return drawn as AvatarPose;
   }
 
   /** Hands behind a menu of the device point at nothing. */

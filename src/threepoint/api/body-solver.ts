@@ -7,6 +7,7 @@ import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { admittedFrames, type TrackedPoint, TrackingGate } from '../core/tracking/tracking-gate';
 import { type AfterFrame, createAfterFrame } from './after-frame';
+import { demandOptions, optionNames, warnOfDisposed } from './demand-options';
 import { EstimatorChoice } from './estimator-choice';
 import { HeightPolicy } from './height-policy';
 import { type InferenceProfiler, profiled } from './inference-profiler';
@@ -47,6 +48,10 @@ export interface BodyEvents {
   trackinglost?(point: TrackedPoint): void;
   /** The point is tracked, for the first time or again. */
   trackingfound?(point: TrackedPoint): void;
+  /** A session starts: frames of its wearer follow. */
+  sessionstart?(): void;
+  /** The session is over: `pose` is null. Others must not be shown the last pose any longer. */
+  sessionend?(): void;
 }
 
 export interface BodySolverOptions {
@@ -70,6 +75,17 @@ export interface BodySolverOptions {
   readonly profiler?: InferenceProfiler;
   readonly events?: BodyEvents;
 }
+
+/** The names of a body's options. */
+export const bodyOptions = optionNames<BodySolverOptions>({
+  estimator: true,
+  calibration: true,
+  autoGrow: true,
+  networks: true,
+  clock: true,
+  profiler: true,
+  events: true,
+});
 
 /** Returns a copy that the page cannot change. Throws a RangeError where the measures are not human. */
 function copyChecked(calibration: Calibration): Calibration {
@@ -104,6 +120,8 @@ export class BodySolver {
   /** Whether a stand-in moved the body in the newest frame. */
   #standsIn = false;
   #pose: AvatarPose | null = null;
+  #inSession = false;
+  #disposed = false;
   /** The newest frame's request to a network that answers later. */
   #request: InferenceRequest | null = null;
   readonly #askNow = () => {
@@ -115,8 +133,11 @@ export class BodySolver {
     this.#profiler?.mark('features');
   };
 
-  /** Throws a RangeError where the calibration is not human or the estimator is unknown. */
+  /**
+   * Throws a RangeError where the calibration is not human or the estimator is unknown, a TypeError where an option is.
+   */
   constructor(options: BodySolverOptions) {
+    demandOptions('Body', options, bodyOptions);
     const { estimator = 'learned', calibration = 'auto', networks, profiler = null } = options;
     this.#events = options.events ?? {};
     this.#clock = options.clock ?? createPageClock(() => performance.now());
@@ -142,8 +163,8 @@ export class BodySolver {
   }
 
   /**
-   * The pose of the newest frame, floor frame [m]; null before the first. The next frame overwrites it: keep it with
-   * `copyAvatarPose`.
+   * The pose of the newest frame, floor frame [m]; null before the first, after a session and after `dispose`. The next
+   * frame overwrites it: keep it with `copyAvatarPose`.
    */
   get pose(): AvatarPose | null {
     return this.#pose;
@@ -201,8 +222,24 @@ export class BodySolver {
 
   /** Starts a session: a headset was put on, and the wearer's height is estimated again. */
   startSession(): void {
+    this.#inSession = true;
     this.#height.startSession();
     this.discontinuity();
+    this.#events.sessionstart?.();
+  }
+
+  /**
+   * Ends the session: `pose` is null, and every point counts as not tracked, without a call of `trackinglost`. Calls
+   * `sessionend` if a session was started.
+   */
+  endSession(): void {
+    const ends = this.#inSession;
+    this.#inSession = false;
+    this.#request = null;
+    this.#pose = null;
+    this.#gate.reset();
+    this.#choice.reset();
+    if (ends) this.#events.sessionend?.();
   }
 
   /** Resets the body because the floor lies elsewhere from the next frame on (recentre, teleport, pause). */
@@ -225,13 +262,18 @@ export class BodySolver {
   }
 
   /**
-   * Solves one tracking frame, floor frame [m, s]. Returns the body's pose; null before the first frame. Without a head
-   * (null) the pose stays as it is. A point with a number that is not finite counts as lost; an invalid time counts as
-   * that of the frame before. `standIn`: the measures of someone else who moves the body in this frame, such as an
-   * actor or a recording; they are in force then, and nothing is estimated about the wearer. Never waits and never
-   * returns NaN. Throws a RangeError where a stand-in's measures are not human, or what a callback throws.
+   * Solves one tracking frame, floor frame [m, s]. Returns the body's pose; null before the first frame of a session.
+   * Without a head (null) the pose stays as it is: `trackinglost` reports it. A point with a number that is not finite
+   * counts as lost; an invalid time counts as that of the frame before. `standIn`: the measures of someone else who
+   * moves the body in this frame, such as an actor or a recording; they are in force then, and nothing is estimated
+   * about the wearer. Never waits and never returns NaN. After `dispose` it returns null and warns once. Throws a
+   * RangeError where a stand-in's measures are not human, or what a callback throws.
    */
   update(tracked: TrackingFrame | null, standIn: Calibration | null = null): AvatarPose | null {
+    if (this.#disposed) {
+      warnOfDisposed(this, 'Body');
+      return null;
+    }
     const frame = this.#gate.admit(tracked);
     if (frame === null) {
       this.#height.lose();
@@ -257,17 +299,17 @@ export class BodySolver {
     });
   }
 
-  /** Removes all callbacks. Resolves when every network that was loaded for this body is released. */
+  /**
+   * Removes all callbacks; later frames have no effect. Resolves when every network that was loaded for this body is
+   * released.
+   */
   dispose(): Promise<void> {
+    this.#disposed = true;
     this.#events = {};
     this.#request = null;
+    this.#pose = null;
     this.#afterFrame?.close();
     return this.#choice.dispose();
-  }
-
-  /** Ends the session: every point counts as not tracked, without a call of `trackinglost`. */
-  endSession(): void {
-    this.#gate.reset();
   }
 
   /** Returns a copy of the measures of a page, or the measures themselves where the body returned them before. */

@@ -28,7 +28,9 @@ export function warnOfFallback(estimator: EstimatorName, reason: string): void {
  * const pose = body.update({ time, head, leftHand, rightHand });
  */
 export class Body extends BodySolver {
-  /** Throws a RangeError where the calibration is not human or the estimator is unknown. */
+  /**
+   * Throws a RangeError where the calibration is not human or the estimator is unknown, a TypeError where an option is.
+   */
   constructor(options: BodyOptions = {}) {
     const events = { fallback: warnOfFallback, ...options.events };
     super({ ...options, events, networks: options.networks ?? learnedAlone });

@@ -11,7 +11,7 @@ export {
 } from '../core/body/calibration';
 export type { JointPoses } from '../core/body/forward-kinematics';
 export { forwardKinematics, makeJointPoses } from '../core/body/forward-kinematics';
-export type { Fingers, HandShape } from '../core/body/hand-shape';
+export type { FingerBend, FingerName, Fingers, HandShape } from '../core/body/hand-shape';
 export type { JointName } from '../core/body/joints';
 export { jointNames } from '../core/body/joints';
 export type { Skeleton } from '../core/body/skeleton';

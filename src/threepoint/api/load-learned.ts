@@ -2,6 +2,7 @@ import contract from '../../../public/models/learned.json';
 import type { NetworkName } from '../core/estimation/estimators';
 import { createPlainRegressor, weightsOf } from '../core/estimation/learned-network';
 import type { ModelContract, PoseRegressor } from '../core/estimation/pose-regressor';
+import { demandOptions } from './demand-options';
 import { readOwnWeights } from './own-weights';
 
 export interface LearnedOptions {
@@ -18,7 +19,9 @@ export interface LearnedOptions {
  * The learned network without a runtime: 91 kB, answered within the frame. Rejects with a sentence that says what is
  * wrong with which file.
  */
-export async function loadLearned({ modelUrl, onProgress }: LearnedOptions = {}): Promise<PoseRegressor> {
+export async function loadLearned(options: LearnedOptions = {}): Promise<PoseRegressor> {
+  demandOptions('loadLearned', options, ['modelUrl', 'onProgress']);
+  const { modelUrl, onProgress } = options;
   const progress = onProgress ? { onProgress } : {};
   if (modelUrl !== undefined) {
     const { loadPlainRegressor } = await import('../onnx/load-plain-regressor');

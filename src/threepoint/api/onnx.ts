@@ -3,6 +3,7 @@ import type { NetworkName } from '../core/estimation/estimators';
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import { loadRegressor } from '../onnx/load-regressor';
 import type { ExecutionProvider, WasmPaths } from '../onnx/session';
+import { demandOptions, optionNames } from './demand-options';
 
 export type { ExecutionProvider, WasmPaths } from '../onnx/session';
 
@@ -30,14 +31,30 @@ export interface OnnxOptions {
   readonly onProviderFallback?: (reason: string) => void;
 }
 
+const onnxOptions = optionNames<OnnxOptions>({
+  modelUrl: true,
+  provider: true,
+  wasmPaths: true,
+  createWorker: true,
+  onProgress: true,
+  onProviderFallback: true,
+});
+
 /**
  * Returns a loader of networks by onnxruntime-web, for `networks` of a Body or BodyTracker. Its networks answer one
- * frame later.
+ * frame later. Throws a TypeError where an option is unknown or `modelUrl` is not a function.
  *
  * @example
  * const networks = onnxNetworks({ modelUrl: (name) => `/models/${name}.json`, wasmPaths: '/ort/' });
  * const body = new Body({ estimator: 'paper', networks });
  */
-export function onnxNetworks({ modelUrl, ...options }: OnnxOptions): (name: NetworkName) => Promise<PoseRegressor> {
-  return (name) => loadRegressor(String(modelUrl(name)), options);
+export function onnxNetworks(options: OnnxOptions): (name: NetworkName) => Promise<PoseRegressor> {
+  demandOptions('onnxNetworks', options, onnxOptions);
+  const { modelUrl, ...others } = options;
+  if (typeof modelUrl !== 'function') {
+    throw new TypeError(
+      "modelUrl is not a function. Pass one that returns a contract's address: (name) => '/models/' + name + '.json'.",
+    );
+  }
+  return (name) => loadRegressor(String(modelUrl(name)), others);
 }

@@ -5,8 +5,10 @@ import { copyPose, invertTransform, makePose, type Pose, type Transform, transfo
 import { type XRBodyJoints, XRBodyPoser } from '../core/motion/xr-body';
 import { TrackedSession } from '../xr/tracked-session';
 import { Body, type BodyOptions } from './body';
+import { bodyOptions } from './body-solver';
+import { demandOptions } from './demand-options';
 
-export interface BodyTrackingOptions extends Omit<BodyOptions, 'events' | 'clock' | 'timing'> {
+export interface BodyTrackingOptions extends Omit<BodyOptions, 'events' | 'clock'> {
   /**
    * Called with the reason when a session has no body: it has no floor, or the estimator is unavailable (inverse
    * kinematics draws then).
@@ -294,19 +296,27 @@ function patchClock(bodies: WeakMap<XRSession, SessionBody>): () => void {
   });
 }
 
+/** The names of the options that are passed on to the body. */
+const trackingOptions = ['onFault', ...bodyOptions.filter((name) => name !== 'events' && name !== 'clock')];
+
 /**
  * Adds `frame.body` to every session that requests the feature “body-tracking”: the device's own body, else one that is
  * estimated from head and hands. An estimated body is marked by `emulated`, its poses by `emulatedPosition`. Call it
  * before the first session is requested, and after a WebXR emulator was installed. Returns a function that uninstalls
- * it. Throws an Error where the page has no WebXR, a RangeError where the calibration is not human.
+ * it. Throws an Error where the page has no WebXR (or Node runs it), a RangeError where the calibration is not human, a
+ * TypeError where an option is unknown.
  *
  * @example
  * const uninstall = installBodyTracking({ onFault: console.warn });
  */
 export function installBodyTracking({ onFault, ...options }: BodyTrackingOptions = {}): () => void {
-  const { xr } = navigator;
-  if (!xr)
-    throw new Error('installBodyTracking: this page has no WebXR. Call it in a browser with WebXR, on a secure page.');
+  const xr = globalThis.navigator?.xr;
+  if (!xr) {
+    throw new Error(
+      'installBodyTracking: there is no navigator.xr here. Call it in a browser with WebXR, on a page of https: or localhost.',
+    );
+  }
+  demandOptions('installBodyTracking', options, trackingOptions);
   const body = new Body({ ...options, events: { fallback: (_, reason) => onFault?.(reason) } });
   const jointNames = [...new XRBodyPoser(body.calibration).names];
   const bodies = new WeakMap<XRSession, SessionBody>();

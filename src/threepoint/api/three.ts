@@ -11,7 +11,8 @@ import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { DeviceBodyReader } from '../xr/device-body-reader';
 import { TrackedSession } from '../xr/tracked-session';
 import { Body, type BodyOptions, warnOfFallback } from './body';
-import type { CalibrationSource, TrackedPoint } from './body-solver';
+import { bodyOptions, type CalibrationSource, type TrackedPoint } from './body-solver';
+import { demandOptions, warnOfDisposed } from './demand-options';
 import { loadLearned } from './load-learned';
 import type { MotionWriter } from './motion-export';
 import { readOwnMannequin } from './own-mannequin';
@@ -38,7 +39,9 @@ export type AvatarSource = string | URL | Blob | ArrayBuffer | ArrayBufferView;
  * @example
  * const avatar = await loadAvatar('/avatars/robot.glb', { bones: { hips: 'Hips', head: 'Head' } });
  */
-export async function loadAvatar(source: AvatarSource, { bones }: LoadAvatarOptions = {}): Promise<Avatar> {
+export async function loadAvatar(source: AvatarSource, options: LoadAvatarOptions = {}): Promise<Avatar> {
+  demandOptions('loadAvatar', options, ['bones']);
+  const { bones } = options;
   const { name, bytes } = await read(source);
   return createAvatar(await parseAvatar(bytes, name, { bones }));
 }
@@ -52,7 +55,9 @@ export async function loadMannequin(): Promise<Avatar> {
  * Returns a writer of animated GLB files for `to` of `exportMotion`. The avatar's file is kept, its bones turn as the
  * person's, and its steps fit the length of its legs. Rejects as `loadAvatar` does.
  */
-export async function avatarMotion(source: AvatarSource, { bones }: LoadAvatarOptions = {}): Promise<MotionWriter> {
+export async function avatarMotion(source: AvatarSource, options: LoadAvatarOptions = {}): Promise<MotionWriter> {
+  demandOptions('avatarMotion', options, ['bones']);
+  const { bones } = options;
   const [{ avatarClip }, { name, bytes }] = await Promise.all([import('../avatar/avatar-clip'), read(source)]);
   return avatarClip(bytes, name, { bones });
 }
@@ -76,7 +81,10 @@ async function read(source: AvatarSource): Promise<{ name: string; bytes: ArrayB
 }
 
 export interface BodyTrackerOptions extends Omit<BodyOptions, 'events'> {
-  /** The avatar, from `loadAvatar`. Add `tracker.object` to the scene, or to the group that moves the cameras. */
+  /**
+   * The avatar, from `loadAvatar`; one for each tracker, which disposes of it. Add `tracker.object` to the scene, or to
+   * the group that moves the cameras.
+   */
   readonly avatar: Avatar;
   /**
    * Whether frames contain the body that the device tracks (WebXR Body Tracking), which the estimator 'device' draws.
@@ -95,6 +103,35 @@ export interface BodyTrackerEvents {
   readonly discontinuity: object;
   readonly trackinglost: { readonly point: TrackedPoint };
   readonly trackingfound: { readonly point: TrackedPoint };
+  readonly sessionstart: object;
+  readonly sessionend: object;
+}
+
+const trackerOptions = ['avatar', 'deviceBody', 'modelUrl', ...bodyOptions.filter((name) => name !== 'events')];
+
+/** The avatars that trackers draw, or have disposed of. */
+const ownedAvatars = new WeakMap<Avatar, 'drawn' | 'disposed'>();
+
+/** Throws a sentence where `avatar` is no avatar, or is one of another tracker. */
+function demandAvatar(avatar: unknown): asserts avatar is Avatar {
+  const load = "avatar: await loadAvatar('/avatars/me.vrm')";
+  if (avatar === undefined || avatar === null) throw new TypeError(`avatar is missing. Load one: ${load}.`);
+  if (typeof avatar === 'string' || avatar instanceof URL) {
+    throw new TypeError(`avatar is an address. Load it first: ${load}.`);
+  }
+  if (typeof (avatar as PromiseLike<unknown>).then === 'function') {
+    throw new TypeError(`avatar is a promise. Await it: ${load}.`);
+  }
+  if (typeof (avatar as Avatar).setPose !== 'function') {
+    throw new TypeError(`avatar is not from loadAvatar. Load one: ${load}.`);
+  }
+  const owned = ownedAvatars.get(avatar as Avatar);
+  if (owned === 'drawn') {
+    throw new Error('This avatar belongs to another BodyTracker. Load one for each tracker: await loadAvatar(source).');
+  }
+  if (owned === 'disposed') {
+    throw new Error('This avatar was disposed of with its BodyTracker. Load it again: await loadAvatar(source).');
+  }
 }
 
 /**
@@ -125,9 +162,14 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   /** Whether the page listens to `fallback`; without a listener a failed network is a warning. */
   #handlesFallback = false;
 
-  /** Throws a RangeError where the calibration is not human or the estimator is unknown. */
+  /**
+   * Throws a RangeError where the calibration is not human or the estimator is unknown, a TypeError where `avatar` is
+   * none or an option is unknown, an Error where another tracker has the avatar.
+   */
   constructor(renderer: WebGLRenderer, { avatar, modelUrl, deviceBody = false, ...options }: BodyTrackerOptions) {
     super();
+    demandAvatar(avatar);
+    demandOptions('BodyTracker', options, trackerOptions);
     this.avatar = avatar;
     this.#deviceBody = deviceBody;
     this.#renderer = renderer;
@@ -152,8 +194,11 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
         },
         trackinglost: (point) => this.dispatchEvent({ type: 'trackinglost', point }),
         trackingfound: (point) => this.dispatchEvent({ type: 'trackingfound', point }),
+        sessionstart: () => this.dispatchEvent({ type: 'sessionstart' }),
+        sessionend: () => this.dispatchEvent({ type: 'sessionend' }),
       },
     });
+    ownedAvatars.set(avatar, 'drawn');
     avatar.setCalibration(this.body.calibration);
     this.#object.name = 'body';
     this.#object.add(avatar.object);
@@ -177,8 +222,9 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   }
 
   /**
-   * The pose of the newest frame, floor frame [m]; null before the first. The floor is the space that the renderer
-   * requested, or where `recentre` moved it. The next frame overwrites the pose: keep it with `copyAvatarPose`.
+   * The pose of the newest frame, floor frame [m]; null before the first, after a session and after `dispose`. The
+   * floor is the space that the renderer requested, or where `recentre` moved it. The next frame overwrites the pose:
+   * keep it with `copyAvatarPose`.
    */
   get pose(): AvatarPose | null {
     return this.body.pose;
@@ -208,7 +254,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
    * the avatar is hidden. Call it before any await of the frame: throws an InvalidStateError afterwards.
    */
   update(timeMs: number, frame: XRFrame | null | undefined): void {
-    if (this.#disposed) return;
+    if (this.#isDisposed()) return;
     const time = this.body.tick(timeMs);
     this.#attend();
     const session = this.#tracked;
@@ -226,7 +272,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
    * stand-in with these measures (an actor, a recording).
    */
   updateFrom(frame: TrackingFrame | null, standIn: Calibration | null = null): void {
-    if (this.#disposed) return;
+    if (this.#isDisposed()) return;
     this.#attend();
     this.#apply(frame, standIn);
   }
@@ -241,23 +287,28 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   }
 
   /**
-   * Removes the listeners and disposes of the avatar; later frames have no effect. Resolves when every network that was
-   * loaded for this body is released.
+   * Removes the listeners and disposes of the avatar; later frames have no effect, and the first of them warns.
+   * Resolves when every network that was loaded for this body is released.
    */
   dispose(): Promise<void> {
     this.#disposed = true;
     this.#leave();
     this.#object.removeFromParent();
     this.avatar.dispose();
+    ownedAvatars.set(this.avatar, 'disposed');
     return this.body.dispose();
+  }
+
+  /** Returns whether the tracker was disposed of, and warns once of a page that still updates it. */
+  #isDisposed(): boolean {
+    if (this.#disposed) warnOfDisposed(this, 'BodyTracker');
+    return this.#disposed;
   }
 
   #apply(tracked: TrackingFrame | null, standIn: Calibration | null): void {
     const pose = this.body.update(tracked, standIn);
     this.#setFirstPerson(this.#session !== null && standIn === null);
     if (!tracked || !pose) return;
-    this.avatar.setFingers('left', tracked.fingers?.left ?? null);
-    this.avatar.setFingers('right', tracked.fingers?.right ?? null);
     this.avatar.setPose(pose, tracked.time);
     this.#object.visible = true;
   }
@@ -285,11 +336,11 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     this.#tracked?.dispose();
     this.#tracked = null;
     this.#session = null;
-    this.body.endSession();
     this.#setFirstPerson(false);
     this.avatar.object.position.set(0, 0, 0);
     this.avatar.object.quaternion.identity();
     this.#object.visible = false;
+    this.body.endSession();
   }
 
   /** Sets the first-person view only where it changes: a page may control it as well. */

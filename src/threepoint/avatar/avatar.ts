@@ -40,7 +40,9 @@ export interface Avatar {
   readonly height: number;
   /** Scales the rig limb by limb to these measures, not by its own proportions. May be called at any time. */
   setCalibration(calibration: Calibration): void;
-  /** Bends the body to a pose. time: [s], on the clock of the tracking frames. */
+  /**
+   * Bends the body to a pose, and the fingers where the pose has them. time: [s], on the clock of the tracking frames.
+   */
   setPose(pose: AvatarPose, time: number): void;
   /** Hides the own head from the wearer's eyes; mirrors and other people still see it. */
   setFirstPerson(on: boolean): void;
@@ -56,8 +58,8 @@ export interface Avatar {
    */
   setMouth(open: number): void;
   /**
-   * Sets the bend of a hand's fingers from the next `setPose` on; the shape is copied. null: not seen, they keep their
-   * bend for a while and relax.
+   * Sets the bend of a hand's fingers for poses that have none, from the next `setPose` on; the shape is copied. null:
+   * not seen, they keep their bend for a while and relax.
    */
   setFingers(side: Side, shape: HandShape | null): void;
   /**
@@ -189,6 +191,10 @@ class VrmAvatar implements Avatar {
     if (this.meshes.show(shown)) this.rig.forgetJoints();
     if (pose.body) this.applyBody(pose.head, pose.body, deltaSeconds);
     else this.applyHands(pose);
+    if (pose.fingers) {
+      this.fingers.set('left', pose.fingers.left);
+      this.fingers.set('right', pose.fingers.right);
+    }
     this.fingers.update(deltaSeconds);
     this.live(pose.head, deltaSeconds);
   }

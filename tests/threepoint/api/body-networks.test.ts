@@ -111,7 +111,9 @@ describe('a network that answers later', () => {
     body.update(at(0));
     expect(openPorts()).toBeGreaterThan(open);
     await body.dispose();
+    const warn = vi.spyOn(console, 'warn').mockImplementation(() => undefined);
     body.update(at(1 / 60));
+    warn.mockRestore();
     await expect.poll(openPorts).toBe(open);
   });
 

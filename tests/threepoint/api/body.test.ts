@@ -1,11 +1,16 @@
-import { Body } from 'threepoint/api/body';
+import { Body, type BodyOptions } from 'threepoint/api/body';
+import { copyAvatarPose } from 'threepoint/core/body/avatar-pose';
 import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { closedHand, type Fingers, flatHand, makeHandShape } from 'threepoint/core/body/hand-shape';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import type { NetworkName } from 'threepoint/core/estimation/estimators';
+import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
 import { distance } from 'threepoint/core/math/vec3';
 import { createPageClock } from 'threepoint/core/tracking/page-clock';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { describe, expect, test } from 'vitest';
+import { describe, expect, test, vi } from 'vitest';
+import { openPlainModel, openShippedModel } from '../core/estimation/shipped-models';
 import { at, calibration, observed } from './observed-body';
 
 /** Stands upright at this height of the eyes [m]. */
@@ -34,6 +39,28 @@ describe('a body', () => {
     }
     expect(body.estimator).toBe('learned');
     expect(told).toEqual(['found head', 'found left', 'found right']);
+  });
+
+  test('has the fingers of its frame in the pose, where they are known, and a copy keeps them', async () => {
+    const { body } = await observed({ calibration, estimator: 'ik' });
+    const fingers = { left: makeHandShape(), right: null };
+    expect(body.update({ ...at(0), fingers })!.fingers).toEqual({ left: flatHand, right: null });
+    const kept = copyAvatarPose(body.pose!);
+    fingers.left.index.knuckle = 1;
+    expect(body.update({ ...at(1 / 60), fingers })!.fingers!.left!.index.knuckle).toBe(1);
+    expect(kept.fingers).toEqual({ left: flatHand, right: null });
+    expect(body.update(at(2 / 60))!.fingers).toEqual({ left: null, right: null });
+  });
+
+  test.each(estimatorNames)('never has a finger in the pose that is not finite (%s)', async (estimator) => {
+    const networks = async (name: NetworkName) => (name === 'learned' ? openPlainModel() : openShippedModel(name));
+    const { body } = await observed({ calibration, estimator, networks });
+    const fingers = { left: closedHand, right: makeHandShape() };
+    fingers.right.thumb.end = Number.NaN;
+    expect(body.update({ ...at(0), fingers })!.fingers).toEqual({ left: closedHand, right: null });
+    // reason: what a page without types may leave out
+    const leftAlone = { left: closedHand } as unknown as Fingers;
+    expect(body.update({ ...at(1 / 60), fingers: leftAlone })!.fingers).toEqual({ left: closedHand, right: null });
   });
 
   test('says once which point is lost and once that it is found', async () => {
@@ -183,6 +210,22 @@ describe('a body', () => {
     ]);
   });
 
+  test('has no pose after a session, and reports start and end once each', async () => {
+    const told: (string | null)[] = [];
+    const body = new Body({
+      calibration,
+      estimator: 'ik',
+      events: { sessionstart: () => told.push('start'), sessionend: () => told.push('end', body.pose && 'pose') },
+    });
+    body.startSession();
+    body.update(at(0));
+    body.endSession();
+    body.endSession();
+    expect(body.pose).toBeNull();
+    expect(told).toEqual(['start', 'end', null]);
+    expect(body.update(null)).toBeNull();
+  });
+
   test.each(['ik', 'learned', 'device'] as const)('by %s says nothing before a page has it', async (estimator) => {
     const told: string[] = [];
     const body = new Body({
@@ -202,6 +245,35 @@ describe('a body', () => {
     expect(() => new Body({ calibration: { eyeHeight: 165, armSpan: 156 } })).toThrow(RangeError);
     const { body } = await observed({ estimator: 'ik' });
     expect(() => body.calibrate({ eyeHeight: Number.NaN, armSpan: 1.5 })).toThrow(RangeError);
+    // reason: what a page without types may pass
+    for (const measures of [null, 1.7, 'Auto'] as unknown as Calibration[])
+      expect(() => new Body({ calibration: measures })).toThrow(
+        'calibration is no object of measures. Pass {eyeHeight, armSpan} in metres, or “auto”.',
+      );
+  });
+
+  test('refuses an option that it does not know, and names those that it does', () => {
+    // reason: what a page without types may pass
+    expect(() => new Body({ calibraton: calibration } as BodyOptions)).toThrow(
+      '“calibraton” is not an option of Body. Use estimator, calibration, autoGrow, networks, clock, profiler, events.',
+    );
+  });
+
+  test('that is disposed of has no pose, and warns once of a page that goes on using it', async () => {
+    const { body } = await observed({ estimator: 'ik' });
+    body.update(at(0));
+    await body.dispose();
+    const warn = vi.spyOn(console, 'warn').mockImplementation(() => undefined);
+    expect(body.pose).toBeNull();
+    for (let frame = 1; frame < 4; frame++) expect(body.update(at(frame / 60))).toBeNull();
+    expect(warn.mock.calls).toEqual([
+      [
+        expect.stringMatching(
+          /^threepoint: “update” has no effect after “dispose”\. Stop calling it, or create another/,
+        ),
+      ],
+    ]);
+    warn.mockRestore();
   });
 });
 

@@ -100,6 +100,12 @@ describe('a recording', () => {
       /^A height of 170\.94 m is outside/,
     ],
     [
+      'with an option that there is not',
+      // reason: what a page without types may pass
+      () => exportMotion(recording, { to: 'csv', format: 'csv' } as Parameters<typeof exportMotion>[1]),
+      /^“format” is not an option of exportMotion\. Use to, estimator, /,
+    ],
+    [
       'of no frames',
       () => exportMotion({ ...recording, frames: [] }, { to: 'bvh', estimator: 'ik' }),
       /^The recording has no frame in which the head is seen\.$/,

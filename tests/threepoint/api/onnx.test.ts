@@ -60,3 +60,12 @@ test('another contract’s weights are taken from beside it', async () => {
   const regressor = await loadLearned({ modelUrl: `${models}/learned.json?version=2` });
   expect(regressor.runNow?.(new Float32Array(regressor.contract.inputs[0]!.shape.at(-1)!))).toHaveLength(18);
 });
+
+test('options that it does not know, and an address in place of a function, are refused in a sentence', () => {
+  // reason: what a page without types may pass
+  const create = (options: object) => () => onnxNetworks(options as Parameters<typeof onnxNetworks>[0]);
+  expect(create({ modelURL: () => '/models/learned.json' })).toThrow('“modelURL” is not an option of onnxNetworks');
+  expect(create({ modelUrl: '/models/' })).toThrow(
+    "modelUrl is not a function. Pass one that returns a contract's address",
+  );
+});

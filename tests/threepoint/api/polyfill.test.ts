@@ -139,3 +139,19 @@ test('all joints at once are where they are one by one, and no number where they
   for (const [i, pose] of poses.entries())
     for (const [k, value] of pose!.transform.matrix.entries()) expect(matrices[16 * i + k]).toBeCloseTo(value, 6);
 });
+
+test('a program without a window, such as one of Node, is refused in a sentence', () => {
+  for (const navigator of [undefined, {}]) {
+    vi.stubGlobal('navigator', navigator);
+    expect(() => installBodyTracking()).toThrow(
+      'installBodyTracking: there is no navigator.xr here. Call it in a browser with WebXR, on a page of https: or localhost.',
+    );
+  }
+});
+
+test('an option that it does not know is refused', () => {
+  // reason: what a page without types may pass
+  expect(() => installBodyTracking({ onfault: () => undefined } as object)).toThrow(
+    '“onfault” is not an option of installBodyTracking. Use onFault, ',
+  );
+});

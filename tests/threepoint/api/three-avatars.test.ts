@@ -1,5 +1,6 @@
 import { avatarMotion, loadAvatar } from 'threepoint/api/three';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { closedHand, type Fingers, flatHand } from 'threepoint/core/body/hand-shape';
 import { createIk } from 'threepoint/core/estimation/estimators';
 import { distance } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
@@ -45,6 +46,20 @@ describe('an avatar', () => {
     };
     expect(distance(wrist(own), pose.leftHand!.position)).toBeLessThan(0.001);
     expect(distance(wrist(other), wrist(own))).toBeLessThan(1e-6);
+  });
+
+  test('bends its fingers as the pose says, which another page may have sent', async () => {
+    const avatar = await loadAvatar(mannequin());
+    avatar.setCalibration(defaultCalibration);
+    const pose = poseOf(createIk(defaultCalibration), actorFrame(1, defaultCalibration));
+    const reach = (fingers: Fingers) => {
+      avatar.setPose(JSON.parse(JSON.stringify({ ...pose, fingers })), 1);
+      const { leftHand } = avatar.jointPositions();
+      return distance(avatar.fingertips('left').middle!, leftHand!);
+    };
+    const flat = reach({ left: flatHand, right: flatHand });
+    expect(flat).toBeGreaterThan(0.15);
+    expect(reach({ left: closedHand, right: flatHand })).toBeLessThan(0.6 * flat);
   });
 
   test('without a map it is refused, and a map with a name that is not there too', async () => {

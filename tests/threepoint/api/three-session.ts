@@ -66,6 +66,8 @@ export async function begin(options: Partial<BodyTrackerOptions> = {}) {
   for (const type of ['trackinglost', 'trackingfound'] as const) {
     tracker.addEventListener(type, ({ point }) => told.push(`${type.slice('tracking'.length)} ${point}`));
   }
+  tracker.addEventListener('sessionstart', () => told.push('session start'));
+  tracker.addEventListener('sessionend', () => told.push('session end'));
   tracker.addEventListener('calibrated', ({ source }) => told.push(`calibrated ${source}`));
   tracker.addEventListener('fallback', ({ reason }) => told.push(`fallback ${reason}`));
   let timeMs = 1000;

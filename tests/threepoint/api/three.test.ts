@@ -1,5 +1,5 @@
-import { Group, type Mesh } from 'three';
-import type { BodyTracker } from 'threepoint/api/three';
+import { Group, type Mesh, type WebGLRenderer } from 'three';
+import { BodyTracker, type BodyTrackerOptions, loadAvatar } from 'threepoint/api/three';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
@@ -9,6 +9,7 @@ import { toXRBody } from 'threepoint/core/motion/xr-body';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { afterEach, describe, expect, test, vi } from 'vitest';
+import { mannequin } from '../avatar/glb';
 import { controller } from '../xr/fake-headset';
 import { begin, left, right } from './three-session';
 
@@ -54,7 +55,37 @@ describe('a body in a session of three.js', () => {
     expect(ownHeadSeen(tracker)).toBe(true);
     run(1);
     expect(tracker.object.visible).toBe(false);
-    expect(told).toEqual(['found head', 'found left', 'found right']);
+    expect(told).toEqual(['session start', 'found head', 'found left', 'found right', 'session end']);
+  });
+
+  test('has no pose after its session, so that a page that sends it leaves no frozen body with others', async () => {
+    const { headset, tracker, run } = await begin({ calibration: defaultCalibration });
+    const atEnd: unknown[] = [];
+    tracker.addEventListener('sessionend', () => atEnd.push(tracker.pose));
+    headset.putOn();
+    run(3);
+    expect(tracker.pose).not.toBeNull();
+    headset.takeOff();
+    expect(tracker.pose).toBeNull();
+    run(3);
+    expect(tracker.pose).toBeNull();
+    expect(atEnd).toEqual([null]);
+    // The next session has a pose once it sees a head.
+    headset.putOn();
+    headset.setHead(null);
+    run(3);
+    expect(tracker.pose).toBeNull();
+    headset.setHead({ position: { x: 0, y: 1.6, z: 0 }, orientation: identity });
+    run(1);
+    expect(tracker.pose).not.toBeNull();
+  });
+
+  test('reports no end of a session whose frames it never read', async () => {
+    const { headset, tracker, told } = await begin({ calibration: defaultCalibration });
+    headset.putOn();
+    tracker.updateFrom(standing);
+    headset.takeOff();
+    expect(told.filter((line) => line.startsWith('session'))).toEqual([]);
   });
 
   test.each([true, false])('draws the body that the device tracks where it is asked to (%s)', async (deviceBody) => {
@@ -128,7 +159,7 @@ describe('a body in a session of three.js', () => {
     run(2);
     headset.setInputs(controller('left', left), controller('right', right));
     run(2);
-    expect(told.slice(3)).toEqual(['lost left', 'found left']);
+    expect(told.slice(4)).toEqual(['lost left', 'found left']);
   });
 
   test('a frame of the page’s own moves it without a session', async () => {
@@ -156,18 +187,67 @@ describe('a body in a session of three.js', () => {
     headset.putOn();
     run(2);
     const space = headset.xr.getReferenceSpace();
-    const pose = structuredClone(tracker.pose);
-    told.length = 0;
     await tracker.dispose();
+    expect(told.at(-1)).toBe('session end');
+    told.length = 0;
     headset.setHead({ position: { x: 1, y: 1.6, z: 0 }, orientation: identity });
+    const warn = vi.spyOn(console, 'warn').mockImplementation(() => undefined);
     run(2);
     tracker.updateFrom(standing);
+    expect(warn.mock.calls).toEqual([[expect.stringContaining('“update” has no effect after “dispose”')]]);
+    warn.mockRestore();
     tracker.recentre();
     expect(scene.children).toEqual([]);
     expect(tracker.object.visible).toBe(false);
-    expect(tracker.pose).toEqual(pose);
+    expect(tracker.pose).toBeNull();
     expect(headset.xr.getReferenceSpace()).toBe(space);
     expect(told).toEqual([]);
     await tracker.dispose();
+  });
+});
+
+describe('a tracker that is given the wrong things', () => {
+  const create = (options: object) => () =>
+    // reason: what a page without types may pass
+    new BodyTracker({} as WebGLRenderer, options as BodyTrackerOptions);
+
+  test('refuses an avatar that another tracker draws, or has disposed of, and leaves the first its body', async () => {
+    const { tracker, headset, run } = await begin({ calibration: defaultCalibration });
+    const { avatar } = tracker;
+    expect(create({ avatar })).toThrow(
+      'This avatar belongs to another BodyTracker. Load one for each tracker: await loadAvatar(source).',
+    );
+    headset.putOn();
+    run(2);
+    expect(tracker.object.children).toEqual([avatar.object]);
+    await tracker.dispose();
+    expect(create({ avatar })).toThrow('This avatar was disposed of with its BodyTracker. Load it again:');
+  });
+
+  test('leaves the avatar free where its own options are refused', async () => {
+    const avatar = await loadAvatar(mannequin());
+    expect(create({ avatar, calibration: { eyeHeight: 160, armSpan: 150 } })).toThrow(RangeError);
+    await new BodyTracker({} as WebGLRenderer, { avatar, estimator: 'ik' }).dispose();
+  });
+
+  test.each([
+    ['an address', () => '/avatars/me.vrm', /^avatar is an address\. Load it first: avatar: await loadAvatar\(/],
+    ['a URL', () => new URL('https://example.org/me.vrm'), /^avatar is an address/],
+    ['a promise', () => loadAvatar(mannequin()), /^avatar is a promise\. Await it: avatar: await loadAvatar\(/],
+    ['nothing', () => undefined, /^avatar is missing\. Load one: avatar: await loadAvatar\(/],
+    ['an object of three.js', () => new Group(), /^avatar is not from loadAvatar\. Load one: /],
+  ])('refuses %s for an avatar', (_, avatar, sentence) => {
+    expect(create({ avatar: avatar() })).toThrow(sentence);
+  });
+
+  test('refuses an option that it does not know', async () => {
+    const avatar = await loadAvatar(mannequin());
+    expect(create({ avatar, deviceBoddy: true })).toThrow(
+      /^“deviceBoddy” is not an option of BodyTracker\. Use avatar, /,
+    );
+    // reason: what a page without types may pass
+    await expect(loadAvatar(mannequin(), { bone: {} } as object)).rejects.toThrow(
+      '“bone” is not an option of loadAvatar',
+    );
   });
 });

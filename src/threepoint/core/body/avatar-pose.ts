@@ -1,6 +1,7 @@
 import type { TrackedPose } from '../math/pose';
 import { copyQuat, type MutableQuat, type Quat, quat } from '../math/quat';
 import { copyVec3, type MutableVec3, type Vec3, vec3 } from '../math/vec3';
+import { copyFingers, type Fingers } from './hand-shape';
 import { type JointName, jointNames } from './joints';
 
 /**
@@ -28,19 +29,25 @@ export const makeUpperBodyPose = (): MutableUpperBodyPose => ({
 /**
  * What one frame shows: hands exactly as tracked in this frame, the head as its wearer holds it (as tracked, but for
  * how the headset sits on it), and the body between them. `body` is null for estimators that show no body (hands-only).
+ * It is plain data, which JSON keeps.
  */
 export interface AvatarPose {
   readonly head: TrackedPose;
   readonly leftHand: TrackedPose | null;
   readonly rightHand: TrackedPose | null;
   readonly body: UpperBodyPose | null;
+  /**
+   * The bends of each hand's fingers [rad], wrist's frame, as tracked in this frame or inferred from a controller's
+   * buttons; a hand is null while its fingers are unknown. Absent: the source of the pose knows no fingers.
+   */
+  readonly fingers?: Fingers | undefined;
 }
 
 const copyTracked = <T extends TrackedPose | null>(pose: T): T =>
   pose && { ...pose, position: copyVec3(pose.position), orientation: copyQuat(pose.orientation) };
 
 /** Returns a copy of the pose that can be kept: estimators and playback overwrite theirs with every frame. */
-export const copyAvatarPose = ({ head, leftHand, rightHand, body }: AvatarPose): AvatarPose => ({
+export const copyAvatarPose = ({ head, leftHand, rightHand, body, fingers }: AvatarPose): AvatarPose => ({
   head: copyTracked(head),
   leftHand: copyTracked(leftHand),
   rightHand: copyTracked(rightHand),
@@ -50,4 +57,5 @@ export const copyAvatarPose = ({ head, leftHand, rightHand, body }: AvatarPose):
       jointNames.map((joint) => [joint, copyQuat(body.localRotations[joint])]),
     ) as Record<JointName, Quat>,
   },
+  ...(fingers && { fingers: copyFingers(fingers) }),
 });

@@ -82,32 +82,56 @@ export const sameCalibration = (a: Calibration, b: Calibration): boolean =>
 export const calibrationComplaint = (calibration: Calibration): string | null =>
   bodyComplaint(calibration) ?? wornComplaint(calibration);
 
-/** Throws a RangeError with the sentence of `calibrationComplaint` where the measures are not human. */
+/**
+ * Throws a RangeError with the sentence of `calibrationComplaint` where the measures are not human, or are no measures.
+ */
 export function demandPerson(calibration: Calibration): void {
+  // A page without types may pass anything.
+  if (typeof calibration !== 'object' || calibration === null) {
+    throw new RangeError('calibration is no object of measures. Pass {eyeHeight, armSpan} in metres, or “auto”.');
+  }
   const complaint = calibrationComplaint(calibration);
   if (complaint) throw new RangeError(complaint);
 }
 
+const metres = (value: number): string => `${value.toFixed(2)} m`;
+
+/** From this value on [m], a measure is one in centimetres. */
+const leastCentimetres = 10;
+
+/** Returns the rest of a complaint about a measure: what to do where it is in centimetres. */
+const unitHint = (value: number): string =>
+  value >= leastCentimetres ? ` Give metres: ${value} cm are ${Number((value / 100).toPrecision(6))} m.` : '';
+
+/** Returns why a measure is no number; null: it is one. `how`: what to give. */
+function numberComplaint(name: string, value: unknown, how: string): string | null {
+  if (value === undefined) return `The ${name} is missing. Give ${how} in metres.`;
+  if (typeof value === 'number' && !Number.isNaN(value)) return null;
+  const shown = typeof value === 'string' ? `“${value}”` : String(value);
+  return `The ${name} is ${shown}, which is not a number. Give ${how} in metres.`;
+}
+
 /** Returns why the body's measures are implausible; null: they are plausible. */
-function bodyComplaint({ eyeHeight, armSpan, forearm }: Calibration): string | null {
-  // `Number` also handles measures that a page without types leaves out.
-  const metres = (value: number) => `${Number(value).toFixed(2)} m`;
-  // The comparisons are negated so that NaN is refused too.
-  if (!(eyeHeight >= eyeHeightRange.min && eyeHeight <= eyeHeightRange.max)) {
-    const stature = metres(statureFromEyeHeight(eyeHeight));
-    return `A height of ${stature} is outside ${metres(statureRange.min)} to ${metres(statureRange.max)}.`;
+function bodyComplaint({ eyeHeight, armSpan, forearm = armSpan * ORDINARY_FOREARM }: Calibration): string | null {
+  const complaint =
+    numberComplaint('eye height', eyeHeight, 'the height of the eyes above the floor') ??
+    numberComplaint('arm span', armSpan, 'the distance from wrist to wrist') ??
+    numberComplaint('forearm', forearm, 'the distance from elbow to wrist');
+  if (complaint) return complaint;
+  const stature = metres(statureFromEyeHeight(eyeHeight));
+  if (eyeHeight < eyeHeightRange.min || eyeHeight > eyeHeightRange.max) {
+    return `A height of ${stature} is outside ${metres(statureRange.min)} to ${metres(statureRange.max)}.${unitHint(eyeHeight)}`;
   }
-  if (!(armSpan >= armSpanRange.min && armSpan <= armSpanRange.max)) {
-    return `An arm span of ${metres(armSpan)} is outside ${metres(armSpanRange.min)} to ${metres(armSpanRange.max)}.`;
+  if (armSpan < armSpanRange.min || armSpan > armSpanRange.max) {
+    return `An arm span of ${metres(armSpan)} is outside ${metres(armSpanRange.min)} to ${metres(armSpanRange.max)}.${unitHint(armSpan)}`;
   }
   const ratio = armSpan / eyeHeight / ARM_SPAN_PER_EYE_HEIGHT;
   if (ratio < 0.72 || ratio > 1.35) {
-    return `An arm span of ${metres(armSpan)} from wrist to wrist does not match a height of ${metres(statureFromEyeHeight(eyeHeight))}.`;
+    return `An arm span of ${metres(armSpan)} from wrist to wrist does not match a height of ${stature}.`;
   }
-  const forearms = forearm === undefined ? ORDINARY_FOREARM : forearm / armSpan;
-  return forearms > 0.65 * ORDINARY_FOREARM && forearms < 1.35 * ORDINARY_FOREARM
-    ? null
-    : `A forearm of ${metres(forearm!)} does not match an arm span of ${metres(armSpan)} from wrist to wrist.`;
+  const share = forearm / armSpan / ORDINARY_FOREARM;
+  if (share > 0.65 && share < 1.35) return null;
+  return `A forearm of ${metres(forearm)} does not match an arm span of ${metres(armSpan)} from wrist to wrist.${unitHint(forearm)}`;
 }
 
 /** Returns why the tilts of headset or hands are implausible; null: they are plausible. */

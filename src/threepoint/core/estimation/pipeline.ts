@@ -1,5 +1,6 @@
 import { type MutableUpperBodyPose, makeUpperBodyPose } from '../body/avatar-pose';
 import { type Calibration, isSpanMeasured } from '../body/calibration';
+import { type Fingers, unknownFingers } from '../body/hand-shape';
 import { chestSpaceBody, skeletonFromCalibration } from '../body/skeleton';
 import { invertTransform, makePose, makeTransform, type TrackedPose, transformPose } from '../math/pose';
 import { rotate } from '../math/quat';
@@ -72,6 +73,7 @@ interface OwnedPose {
   leftHand: TrackedPose | null;
   rightHand: TrackedPose | null;
   readonly body: MutableUpperBodyPose;
+  fingers: Fingers;
 }
 
 /**
@@ -104,7 +106,7 @@ export class Pipeline implements PoseEstimator {
     this.#body = measure(calibration);
     this.#request = { ask: () => source.network?.ask(this.state.solved) ?? Promise.resolve() };
     this.#estimate = {
-      pose: { head: noHead, leftHand: null, rightHand: null, body: makeUpperBodyPose() },
+      pose: { head: noHead, leftHand: null, rightHand: null, body: makeUpperBodyPose(), fingers: unknownFingers },
       request: null,
     };
   }
@@ -157,6 +159,7 @@ export class Pipeline implements PoseEstimator {
     pose.head = head;
     pose.leftHand = frame.leftHand;
     pose.rightHand = frame.rightHand;
+    pose.fingers = frame.fingers ?? unknownFingers;
     composeBody(torso, arms, head.orientation, pose.body);
     return this.#estimate;
   }

@@ -1,3 +1,4 @@
+import { type Fingers, type HandShape, isFiniteHand } from '../body/hand-shape';
 import { isFinitePose, isTracked, type TrackedPose } from '../math/pose';
 import { normaliseQuat, type Quat } from '../math/quat';
 import { isFiniteDeviceBody } from './device-body';
@@ -22,6 +23,16 @@ function validPose(pose: TrackedPose | null | undefined): TrackedPose | null {
   const unit = isUnit(orientation);
   if (tracking !== undefined && unit) return pose;
   return { position, orientation: unit ? orientation : normaliseQuat(orientation), tracking: tracking ?? 'tracked' };
+}
+
+/** Returns the shape; null: it is absent or not finite. */
+const validHand = (shape: HandShape | null | undefined): HandShape | null =>
+  shape && isFiniteHand(shape) ? shape : null;
+
+/** Returns the fingers themselves, or a copy in which an invalid hand is null. */
+function validFingers(fingers: Fingers): Fingers {
+  const [left, right] = [validHand(fingers.left), validHand(fingers.right)];
+  return left === fingers.left && right === fingers.right ? fingers : { left, right };
 }
 
 export interface TrackingGateOptions {
@@ -52,9 +63,9 @@ export class TrackingGate {
 
   /**
    * Returns the frame itself, or a copy in which an invalid hand is null, every point has a tracking state, rotations
-   * have length 1, an invalid device body is absent, and an invalid time is that of the frame before. Returns null
-   * while the head is not seen or no time is known. A head counts as tracked in each frame that has one, because the
-   * body follows a guessed head too.
+   * have length 1, fingers that are not finite are unknown, an invalid device body is absent, and an invalid time is
+   * that of the frame before. Returns null while the head is not seen or no time is known. A head counts as tracked in
+   * each frame that has one, because the body follows a guessed head too.
    */
   admit(frame: TrackingFrame | null | undefined): TrackingFrame | null {
     const admitted = this.#check(frame);
@@ -78,9 +89,11 @@ export class TrackingGate {
     const leftHand = this.#checkPoint('left', frame.leftHand);
     const rightHand = this.#checkPoint('right', frame.rightHand);
     const validBody = frame.deviceBody === undefined || isFiniteDeviceBody(frame.deviceBody);
+    const fingers = frame.fingers && validFingers(frame.fingers);
     const same = head === frame.head && leftHand === frame.leftHand && rightHand === frame.rightHand;
-    if (validTime && validBody && same) return frame;
-    return { ...frame, time: this.#time, head, leftHand, rightHand, ...(!validBody && { deviceBody: undefined }) };
+    if (validTime && validBody && same && fingers === frame.fingers) return frame;
+    const valid = { ...frame, time: this.#time, head, leftHand, rightHand, fingers };
+    return validBody ? valid : { ...valid, deviceBody: undefined };
   }
 
   #checkPoint(point: TrackedPoint, pose: TrackedPose | null | undefined): TrackedPose | null {

@@ -54,8 +54,37 @@ describe('what is a person’s body', () => {
     ['a span of nothing', { eyeHeight: 1.6, armSpan: 0 }, /arm span of 0\.00 m/],
     ['no number for a span', { eyeHeight: 1.6, armSpan: Number.NaN }, /arm span/],
     // reason: what a page without types leaves out; the same holds for the next
-    ['a span that is left out', { eyeHeight: 1.6 } as Calibration, /arm span of NaN m is outside/],
-    ['a forearm of null', { ...defaultCalibration, forearm: null as unknown as number }, /forearm of 0\.00 m/],
+    [
+      'a span that is left out',
+      { eyeHeight: 1.6 } as Calibration,
+      /^The arm span is missing\. Give the distance from wrist to wrist in metres/,
+    ],
+    [
+      'a height that is a text',
+      { ...defaultCalibration, eyeHeight: '1.6' as unknown as number },
+      /^The eye height is “1\.6”, which is not a number/,
+    ],
+    [
+      'no number for a forearm',
+      { ...defaultCalibration, forearm: Number.NaN },
+      /^The forearm is NaN, which is not a number/,
+    ],
+    [
+      'centimetres',
+      { eyeHeight: 160, armSpan: 151 },
+      /^A height of 170\.94 m is outside .*Give metres: 160 cm are 1\.6 m\.$/,
+    ],
+    [
+      'a span in centimetres',
+      { eyeHeight: 1.6, armSpan: 151 },
+      /^An arm span of 151\.00 m .*Give metres: 151 cm are 1\.51 m\.$/,
+    ],
+    ['a forearm in centimetres', { ...defaultCalibration, forearm: 27.5 }, /Give metres: 27\.5 cm are 0\.275 m\.$/],
+    [
+      'a forearm of null',
+      { ...defaultCalibration, forearm: null as unknown as number },
+      /^The forearm is null, which is not a number/,
+    ],
     ['a giant with a child’s arms', { eyeHeight: 2.1, armSpan: 0.9 }, /does not match/],
     ['a forearm as long as an arm', { ...defaultCalibration, forearm: 0.5 }, /forearm of 0\.50 m/],
     ['a forearm of inches', { ...defaultCalibration, forearm: 0.11 }, /does not match an arm span of/],

@@ -1,0 +1,136 @@
+// Checks what the built package (dist-library) promises besides its types: the links of its documents, its source maps
+// and declaration maps, the paths that its licence names, and the size of a bundle that imports one name of it.
+import { existsSync, readdirSync, readFileSync } from 'node:fs';
+import { dirname, join, relative } from 'node:path';
+import { build } from 'esbuild';
+import { main, root, SetupError } from './run-command.mjs';
+
+const folder = join(root, 'dist-library');
+
+/** The largest minified bundle [kB] of a page that imports one name, without peers and what loads on demand. */
+const largestBundles = [
+  ['copyAvatarPose', 'index.js', 2],
+  ['calibrationComplaint', 'index.js', 3.3],
+  ['forwardKinematics', 'index.js', 2.2],
+  ['parseRecording', 'index.js', 6.5],
+  ['toXRBody', 'motion.js', 27],
+  ['BodyTracker', 'three.js', 117],
+  ['loadAvatar', 'three.js', 132],
+];
+
+const files = readdirSync(folder, { recursive: true }).map((file) => join(folder, file));
+const endingWith = (ending) => files.filter((file) => file.endsWith(ending));
+const named = (file) => relative(folder, file);
+const linksOf = (text) => [...text.matchAll(/\]\(([^)\s]+)\)/g)].map(([, target]) => target);
+
+/** Returns the anchors of a Markdown document's headings. */
+const anchorsOf = (text) =>
+  [...text.matchAll(/^#+ (.*)$/gm)].map(([, heading]) =>
+    heading
+      .toLowerCase()
+      .replace(/[^\p{L}\p{N}\s_-]/gu, '')
+      .trim()
+      .replaceAll(' ', '-'),
+  );
+
+function deadLinks() {
+  return endingWith('.md').flatMap((file) =>
+    linksOf(readFileSync(file, 'utf8')).flatMap((link) => {
+      if (/^[a-z]+:/.test(link)) return [];
+      const [path, anchor] = link.split('#');
+      const target = path === '' ? file : join(dirname(file), path);
+      if (!existsSync(target)) return [`${named(file)} links to ${link}, which is not in the package`];
+      if (anchor === undefined || anchorsOf(readFileSync(target, 'utf8')).includes(anchor)) return [];
+      return [`${named(file)} links to ${link}, which is no heading`];
+    }),
+  );
+}
+
+function faultyMaps() {
+  return endingWith('.map').flatMap((file) => {
+    const { sources, sourcesContent = [] } = JSON.parse(readFileSync(file, 'utf8'));
+    // Editors follow declaration maps to files; debuggers show the content that source maps bring along.
+    const missing = sources.filter((source, i) =>
+      file.endsWith('.d.ts.map') ? !existsSync(join(dirname(file), source)) : typeof sourcesContent[i] !== 'string',
+    );
+    return missing.map((source) => `${named(file)} has no source for ${source}`);
+  });
+}
+
+/** Whether a file has code besides imports and exports, for which bundlers write a map. */
+const hasCode = (file) =>
+  readFileSync(file, 'utf8')
+    .replace(/^(import|export) .*$/gm, '')
+    .trim() !== '';
+
+/** Returns a message for each declaration and each file of code without a map; the embedded weights need none. */
+function missingMaps() {
+  const code = [...endingWith('.js').filter(hasCode), ...endingWith('.d.ts')];
+  return code
+    .filter((file) => !existsSync(`${file}.map`) && named(file) !== 'learned-weights.js')
+    .map((file) => `${named(file)} has no map`);
+}
+
+function licencePaths() {
+  const text = readFileSync(join(folder, 'LICENSE'), 'utf8');
+  const paths = [...text.matchAll(/\b[\w-]+\/(?:[\w-]+\/)*(?:[\w-]+\.\w+|(?=\s))/g)].map(([path]) => path);
+  return paths
+    .filter((path) => !existsSync(join(folder, path)))
+    .map((path) => `LICENSE names ${path}, which is not there`);
+}
+
+function missingFields() {
+  const manifest = JSON.parse(readFileSync(join(folder, 'package.json'), 'utf8'));
+  const needed = ['name', 'version', 'description', 'license', 'engines', 'sideEffects', 'exports', 'peerDependencies'];
+  return needed.filter((field) => manifest[field] === undefined).map((field) => `package.json has no ${field}`);
+}
+
+/** Returns the bytes of a minified bundle of this code with its static imports. */
+async function weigh(contents) {
+  const { peerDependencies } = JSON.parse(readFileSync(join(folder, 'package.json'), 'utf8'));
+  const { outputFiles, metafile } = await build({
+    stdin: { contents, resolveDir: folder },
+    ...{ bundle: true, minify: true, format: 'esm', splitting: true, write: false, metafile: true, outdir: folder },
+    external: Object.keys(peerDependencies).flatMap((peer) => [peer, `${peer}/*`]),
+    logLevel: 'error',
+  });
+  const sizes = new Map(outputFiles.map(({ path, contents }) => [relative(root, path), contents.length]));
+  const needed = new Set();
+  const add = (path) => {
+    if (needed.has(path) || !sizes.has(path)) return;
+    needed.add(path);
+    for (const { path: imported, kind } of metafile.outputs[path].imports)
+      if (kind === 'import-statement') add(imported);
+  };
+  add('dist-library/stdin.js');
+  return [...needed].reduce((sum, path) => sum + sizes.get(path), 0);
+}
+
+async function largeBundles() {
+  const faults = [];
+  for (const [name, entry, largest] of largestBundles) {
+    const kilobytes = (await weigh(`export { ${name} } from './${entry}';`)) / 1000;
+    console.log(`${name.padEnd(24)}${kilobytes.toFixed(1).padStart(8)} kB of ${largest} kB`);
+    if (kilobytes > largest)
+      faults.push(`import { ${name} } costs ${kilobytes.toFixed(1)} kB, more than ${largest} kB`);
+  }
+  return faults;
+}
+
+/** Checks that a bundler keeps the module that answers a page's messages, though it exports nothing. */
+async function lostWorker() {
+  return (await weigh("import './onnx-worker.js';")) > 500 ? [] : ['a bundle of onnx-worker.js is empty'];
+}
+
+await main(async () => {
+  const faults = [
+    ...deadLinks(),
+    ...faultyMaps(),
+    ...missingMaps(),
+    ...licencePaths(),
+    ...missingFields(),
+    ...(await largeBundles()),
+    ...(await lostWorker()),
+  ];
+  if (faults.length > 0) throw new SetupError(`The package is not as it promises:\n${faults.join('\n')}`);
+});

@@ -1,0 +1,224 @@
+// "threepoint/react": the body of the user, and those of others, as components of react-three-fiber.
+import { useFrame, useThree } from '@react-three/fiber';
+import {
+  createElement,
+  type ReactElement,
+  type Ref,
+  type RefObject,
+  useEffect,
+  useImperativeHandle,
+  useRef,
+  useState,
+} from 'react';
+import type { Avatar } from '../avatar/avatar';
+import type { BoneMap } from '../avatar/humanoid/bone-names';
+import type { AvatarPose } from '../core/body/avatar-pose';
+import type { Calibration } from '../core/body/calibration';
+import { type AvatarSource, BodyTracker, type BodyTrackerEvents, type BodyTrackerOptions, loadAvatar } from './three';
+
+/** The prop that receives each event of a tracker. */
+const callbackNames = {
+  calibrated: 'onCalibrated',
+  heightmismatch: 'onHeightMismatch',
+  fallback: 'onFallback',
+  changed: 'onChanged',
+  discontinuity: 'onDiscontinuity',
+  trackinglost: 'onTrackingLost',
+  trackingfound: 'onTrackingFound',
+  sessionstart: 'onSessionStart',
+  sessionend: 'onSessionEnd',
+} as const satisfies Record<keyof BodyTrackerEvents, string>;
+
+type EventName = keyof typeof callbackNames;
+
+/** Callbacks of a tracker's events, each with the event's fields; the newest props are called. */
+export type SelfAvatarCallbacks = {
+  readonly [Name in EventName as (typeof callbackNames)[Name]]?: (event: BodyTrackerEvents[Name]) => void;
+};
+
+/** The avatar that a component loads. */
+export interface LoadedAvatarProps {
+  /** The avatar's address, file or bytes, as of `loadAvatar`. Another value loads another avatar. */
+  readonly avatar: AvatarSource;
+  /** The nodes of a humanoid's bones, as of `loadAvatar`; read when the avatar is loaded. */
+  readonly bones?: BoneMap;
+}
+
+/**
+ * Props of `SelfAvatar`: the avatar, the options of a BodyTracker and callbacks. `estimator` and `calibration` may
+ * change at any time; the other options are read when the avatar has loaded.
+ */
+export interface SelfAvatarProps extends LoadedAvatarProps, Omit<BodyTrackerOptions, 'avatar'>, SelfAvatarCallbacks {
+  /**
+   * Called after each frame of a session that has a pose, floor frame [m]. The next frame overwrites the pose: keep it
+   * with `copyAvatarPose`, or send it at once.
+   */
+  readonly onPose?: (pose: AvatarPose) => void;
+  /** Receives the tracker once the avatar has loaded; null before and afterwards. */
+  readonly ref?: Ref<BodyTracker>;
+}
+
+/** Props of `RemoteAvatar`. */
+export interface RemoteAvatarProps extends LoadedAvatarProps {
+  /**
+   * The pose to draw, floor frame [m], with fingers where it has them; null hides the body. A ref is read in each
+   * frame, so that a pose of 60 Hz renders no component.
+   */
+  readonly pose: AvatarPose | null | RefObject<AvatarPose | null>;
+  /** The measures of the person behind the pose [m]: `tracker.calibration` of their page. Default: an average adult. */
+  readonly calibration?: Calibration;
+  /** Receives the avatar once it has loaded; null before and afterwards. */
+  readonly ref?: Ref<Avatar>;
+}
+
+interface Disposable {
+  dispose(): unknown;
+}
+
+/**
+ * Loads an avatar and makes an object of it, which is disposed of with the component or with another source. Returns
+ * the object for rendering, and a ref for frames, which is null as soon as the object is disposed of. Throws the error
+ * of loading in rendering: an error boundary receives it.
+ */
+function useLoaded<Made extends Disposable>(
+  { avatar: source, bones }: LoadedAvatarProps,
+  owner: object,
+  make: (avatar: Avatar) => Made,
+): readonly [Made | null, RefObject<Made | null>] {
+  const [made, setMade] = useState<Made | null>(null);
+  const [fault, setFault] = useState<unknown>(null);
+  const live = useRef<Made | null>(null);
+  const newest = useRef({ bones, make });
+  useEffect(() => {
+    newest.current = { bones, make };
+  });
+  // biome-ignore lint/correctness/useExhaustiveDependencies: reason: the owner, a renderer, is what `make` binds
+  useEffect(() => {
+    let mounted = true;
+    const finish = (avatar: Avatar): void => {
+      if (!mounted) {
+        avatar.dispose();
+        return;
+      }
+      try {
+        live.current = newest.current.make(avatar);
+      } catch (error) {
+        avatar.dispose();
+        throw error;
+      }
+      setMade(live.current);
+    };
+    const options = newest.current.bones ? { bones: newest.current.bones } : {};
+    loadAvatar(source, options)
+      .then(finish)
+      .catch((error: unknown) => mounted && setFault(error));
+    return () => {
+      mounted = false;
+      const gone = live.current;
+      live.current = null;
+      setMade(null);
+      gone?.dispose();
+    };
+  }, [source, owner]);
+  if (fault !== null) throw fault;
+  return [made, live];
+}
+
+/**
+ * Draws the body of the user in a Canvas of react-three-fiber, also within `<XR>` of @react-three/xr: hidden without a
+ * session. Place it where the camera is: in the scene, or in the `<XROrigin>` that moves the user. An avatar that
+ * cannot be loaded throws to the nearest error boundary, as do options that a BodyTracker refuses.
+ *
+ * @example
+ * <Canvas>
+ *   <XR store={store}>
+ *     <SelfAvatar avatar="/avatars/me.vrm" onPose={send} onSessionEnd={() => send(null)} />
+ *   </XR>
+ * </Canvas>
+ */
+export function SelfAvatar(props: SelfAvatarProps): ReactElement | null {
+  const renderer = useThree(({ gl }) => gl);
+  const newest = useRef(props);
+  useEffect(() => {
+    newest.current = props;
+  });
+  const [tracker, live] = useLoaded(props, renderer, (avatar) => {
+    const created = new BodyTracker(renderer, { ...optionsOf(newest.current), avatar });
+    listen(created, newest);
+    return created;
+  });
+  const { estimator = 'learned', calibration = 'auto' } = props;
+  // Equal measures in another object are no change.
+  const measures = JSON.stringify(calibration);
+  useEffect(() => {
+    if (tracker && tracker.body.wanted !== estimator) void tracker.setEstimator(estimator);
+  }, [tracker, estimator]);
+  const given = useRef(measures);
+  // biome-ignore lint/correctness/useExhaustiveDependencies: reason: `measures` stands for the calibration
+  useEffect(() => {
+    if (tracker && given.current !== measures) tracker.calibrate(calibration);
+    given.current = measures;
+  }, [tracker, measures]);
+  useImperativeHandle(props.ref, () => tracker as BodyTracker, [tracker]);
+  useFrame((_state, _delta, frame) => {
+    const current = live.current;
+    if (!current) return;
+    current.update(performance.now(), frame);
+    if (frame && current.pose) newest.current.onPose?.(current.pose);
+  });
+  return tracker && createElement('primitive', { object: tracker.object });
+}
+
+/** Returns the props that are options of a tracker. */
+function optionsOf(props: SelfAvatarProps): Omit<BodyTrackerOptions, 'avatar'> {
+  const { avatar: _, bones: __, ref: ___, onPose: ____, ...others } = props;
+  const callbacks: readonly string[] = Object.values(callbackNames);
+  return Object.fromEntries(Object.entries(others).filter(([name]) => !callbacks.includes(name)));
+}
+
+/** Passes the tracker's events to the newest callbacks. Without `onFallback` the tracker itself warns. */
+function listen(tracker: BodyTracker, props: RefObject<SelfAvatarProps>): void {
+  for (const type of Object.keys(callbackNames) as EventName[]) {
+    if (type === 'fallback' && !props.current.onFallback) continue;
+    tracker.addEventListener(type, (event) => {
+      const callback = props.current[callbackNames[type]] as ((event: unknown) => void) | undefined;
+      callback?.(event);
+    });
+  }
+}
+
+/**
+ * Draws the body of someone else from a pose that their page sent, in the frame of the component's parent. The fingers
+ * bend as the pose has them, and the avatar is scaled to `calibration`. An avatar that cannot be loaded throws to the
+ * nearest error boundary.
+ *
+ * @example
+ * const pose = useRef(null);
+ * useEffect(() => socket.on('pose', (received) => { pose.current = received; }), []);
+ * return <RemoteAvatar avatar="/avatars/them.vrm" pose={pose} calibration={theirs} />;
+ */
+export function RemoteAvatar(props: RemoteAvatarProps): ReactElement | null {
+  const newest = useRef(props);
+  useEffect(() => {
+    newest.current = props;
+  });
+  const [avatar, live] = useLoaded(props, RemoteAvatar, (loaded) => {
+    loaded.object.visible = false;
+    return loaded;
+  });
+  const measures = JSON.stringify(props.calibration);
+  // biome-ignore lint/correctness/useExhaustiveDependencies: reason: `measures` stands for the calibration
+  useEffect(() => {
+    if (avatar && props.calibration) avatar.setCalibration(props.calibration);
+  }, [avatar, measures]);
+  useImperativeHandle(props.ref, () => avatar as Avatar, [avatar]);
+  useFrame(() => {
+    const current = live.current;
+    if (!current) return;
+    const { pose } = newest.current;
+    const shown = pose && 'current' in pose ? pose.current : pose;
+    current.object.visible = shown !== null;
+    if (shown) current.setPose(shown, performance.now() / 1000);
+  });
+  return avatar && createElement('primitive', { object: avatar.object });
+}
