@@ -76,7 +76,7 @@ class DrawnBody {
     this.#parent = parent;
   }
 
-  draw({ avatar: reference, calibration, pose, fingers, mouth, placement, opacity }: DrawnPose, time: number): void {
+  draw({ avatar: reference, calibration, pose, mouth, placement, opacity }: DrawnPose, time: number): void {
     if (reference !== this.#reference && !this.#loading && time >= this.#nextChange) {
       this.#nextChange = time + changeSeconds;
       void this.#change(reference);
@@ -95,8 +95,6 @@ class DrawnBody {
     if (placement) object.position.copy(placement.position);
     else object.position.set(0, 0, 0);
     object.rotation.set(0, placement?.heading ?? 0, 0);
-    avatar.setFingers('left', fingers.left);
-    avatar.setFingers('right', fingers.right);
     avatar.setMouth(mouth);
     avatar.setPose(pose, time);
     object.visible = true;

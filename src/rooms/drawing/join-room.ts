@@ -10,6 +10,7 @@ import { createRemotePlayers, type RemotePlayer } from '../client/remote-players
 import { createRoomPass, type Keep } from '../client/room-pass';
 import { createSocketConnection } from '../client/socket-connection';
 import type { SentBody } from '../peers/pose-sender';
+import { withFingers } from '../peers/posed-fingers';
 import type { SeatInfo } from '../protocol/messages';
 import { type People, peopleKind } from '../room/people-policy';
 import { type AvatarLoader, DrawnBodies, type DrawnPose } from './drawn-bodies';
@@ -237,7 +238,7 @@ class LiveRoom implements JoinedRoom {
     }
     if (!body.pose) return;
     const pose = this.#placed.place(this.#sceneFromFloor(body), body.pose);
-    this.#connection.sendPose(time, { jump: this.#jump, pose, fingers: body.fingers ?? unknownFingers });
+    this.#connection.sendPose(time, { jump: this.#jump, pose, fingers: body.pose.fingers ?? unknownFingers });
     this.#jump = false;
   }
 
@@ -280,15 +281,13 @@ class SeatPose implements DrawnPose {
   readonly placement = null;
   readonly mouth = 0;
   readonly pose: DrawnPose['pose'];
-  readonly fingers: DrawnPose['fingers'];
   avatar: string | null = null;
   calibration = standIn;
   opacity = 1;
 
-  constructor({ seat, pose, fingers }: RemotePlayer) {
-    this.peer = peerOf(seat);
-    this.pose = pose;
-    this.fingers = fingers;
+  constructor(player: RemotePlayer) {
+    this.peer = peerOf(player.seat);
+    this.pose = withFingers(player);
   }
 
   of({ opacity }: RemotePlayer, { avatar, calibration }: SeatInfo): this {

@@ -1,6 +1,6 @@
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { type Calibration, demandPerson, sameMeasures } from 'threepoint/core/body/calibration';
-import { type Fingers, unknownFingers } from 'threepoint/core/body/hand-shape';
+import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { toMillimetres } from '../protocol/messages';
 import { encodePose } from '../protocol/pose-codec';
@@ -9,11 +9,9 @@ import { encodePeerPose, encodeProfile } from './peer-packet';
 
 /** The person whose body is sent: a `BodyTracker` or `BodySolver` of threepoint is one. */
 export interface SentBody {
-  /** The pose of the newest frame, floor frame [m]; null: there is none, and the others see nobody. */
+  /** The pose of the newest frame with its fingers, floor frame [m]; null: there is none, and the others see nobody. */
   readonly pose: AvatarPose | null;
   readonly calibration: Calibration;
-  /** The bends of the fingers. Absent: unknown. */
-  readonly fingers?: Fingers;
 }
 
 /** What a packet has beyond the body. */
@@ -77,7 +75,7 @@ export class PoseSender {
    * Sends what is due; to be called in every frame, with its time [ms] by any monotonic clock. Without a pose it
    * sends once a second that nobody is there. Throws a RangeError where the measures are not human.
    */
-  update(timeMs: number, { pose, calibration, fingers = unknownFingers }: SentBody, frame: SentFrame = {}): void {
+  update(timeMs: number, { pose, calibration }: SentBody, frame: SentFrame = {}): void {
     this.#setCalibration(calibration);
     if (this.#visible !== (pose !== null)) this.introduce();
     this.#visible = pose !== null;
@@ -85,7 +83,10 @@ export class PoseSender {
     if (!pose || (timeMs < this.#nextPoseMs && !this.#jump)) return;
     // Frames have their own rate; this keeps the average.
     this.#nextPoseMs = Math.max(this.#nextPoseMs + this.#intervalMs, timeMs + this.#intervalMs / 2);
-    const bytes = encodePose({ timeMs, jump: this.#jump, pose, fingers }, this.#skeleton!);
+    const bytes = encodePose(
+      { timeMs, jump: this.#jump, pose, fingers: pose.fingers ?? unknownFingers },
+      this.#skeleton!,
+    );
     if (!bytes) return;
     this.#jump = false;
     this.#send(encodePeerPose(bytes, frame.mouth ?? 0, frame.placement ?? null));

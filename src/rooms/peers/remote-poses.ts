@@ -1,13 +1,13 @@
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { type Calibration, sameMeasures } from 'threepoint/core/body/calibration';
 import { forwardKinematics, type JointPoses, makeJointPoses } from 'threepoint/core/body/forward-kinematics';
-import type { Fingers } from 'threepoint/core/body/hand-shape';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { Playback, type PlaybackReport } from '../client/playback';
 import { decodePose } from '../protocol/pose-codec';
 import type { FloorPlacement } from '../protocol/pose-packet';
 import { TokenBucket } from '../room/token-bucket';
 import { type PeerPacket, type PeerProfile, readPeerPacket } from './peer-packet';
+import { withFingers } from './posed-fingers';
 
 /** Another person in one frame. The next `update` overwrites the object: copy what you keep. */
 export interface RemotePose {
@@ -16,11 +16,10 @@ export interface RemotePose {
   /** The reference to the avatar that the person sent; null: none. It is a stranger's text: check it before use. */
   readonly avatar: string | null;
   readonly calibration: Calibration;
-  /** Head, hands and body in the sender's floor frame [m]. */
+  /** Head, hands, body and fingers in the sender's floor frame [m]. */
   readonly pose: AvatarPose;
   /** Every joint in the sender's floor frame [m]; null: the pose has no body (hands only). */
   readonly joints: JointPoses | null;
-  readonly fingers: Fingers;
   /** The opening of the mouth, 0 to 1. */
   readonly mouth: number;
   /** The place of the sender's floor in the scene; null: at its origin. */
@@ -119,6 +118,7 @@ export class RemotePoses {
 class Peer implements RemotePose {
   readonly #bucket = new TokenBucket(packetsPerSecond);
   readonly #playback = new Playback();
+  readonly pose: AvatarPose = withFingers(this.#playback.shown);
   readonly #joints = makeJointPoses();
   #profile: PeerProfile | null = null;
   #skeleton: Skeleton | null = null;
@@ -144,14 +144,6 @@ class Peer implements RemotePose {
 
   get calibration(): Calibration {
     return this.#profile!.calibration;
-  }
-
-  get pose(): AvatarPose {
-    return this.#playback.shown.pose;
-  }
-
-  get fingers(): Fingers {
-    return this.#playback.shown.fingers;
   }
 
   get placement(): FloorPlacement | null {

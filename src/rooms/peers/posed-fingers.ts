@@ -1,0 +1,19 @@
+import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import type { Fingers } from 'threepoint/core/body/hand-shape';
+
+/** Returns a view of a pose and its fingers that changes with them. */
+export const withFingers = (of: { readonly pose: AvatarPose; readonly fingers: Fingers }): AvatarPose => ({
+  get head() {
+    return of.pose.head;
+  },
+  get leftHand() {
+    return of.pose.leftHand;
+  },
+  get rightHand() {
+    return of.pose.rightHand;
+  },
+  get body() {
+    return of.pose.body;
+  },
+  fingers: of.fingers,
+});
