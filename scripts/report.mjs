@@ -3,7 +3,7 @@
 // renews the tables and figures of docs/accuracy.md. npm run report -- --redraw: renews them from the last measurement.
 // npm run report -- --legs --mocap DIR: renews the table of legs alone, with the page's network for the body and the
 // cross-validation networks of npm run train:gait.
-import { existsSync, mkdirSync, rmSync } from 'node:fs';
+import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { pythonEnvironment } from './python-environment.mjs';
@@ -14,10 +14,10 @@ const usage =
   'npm run report -- --redraw [--models DIR]\n' +
   'npm run report -- --legs --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR]\n' +
   'DIR holds .asf and .amc or .bvh files. --people names the people of the tables (default: the varied ones outside ' +
-  'the lockbox if DIR has them all, else everyone outside the lockbox; --legs: everyone). 005 and another laboratory ' +
-  '(901, 902, 903) are also measured with and without calibrated hands if DIR has them. --models names the folder of ' +
-  'the networks (default: .cache/cross-validation, which npm run train writes), --fp32 what npm run train -- --fp32 ' +
-  'wrote. The command renews docs/accuracy.md.';
+  'the lockbox if DIR has them all, else everyone outside the lockbox; --legs: everyone). Those that the networks were ' +
+  'not trained on, and another laboratory (901, 902, 903) if DIR has it, are measured with and without calibrated ' +
+  'hands. --models names the folder of the networks (default: .cache/cross-validation, which npm run train writes), ' +
+  '--fp32 what npm run train -- --fp32 wrote. The command renews docs/accuracy.md.';
 const sixHours = 6 * 3600;
 // Poses are motion data: they stay in the cache, and only figures of them go into docs.
 const measured = join(root, '.cache/report');
@@ -76,7 +76,7 @@ const laboratories = Object.fromEntries(
   ]),
 );
 
-/** Returns the people of the tables and of both laboratories; Python maps files to people. */
+/** Returns the people of the tables and of another laboratory; Python maps files to people. */
 async function peopleIn(mocap) {
   const list = ['-m', 'threepoint_training.report_people', '--mocap', mocap];
   const python = await pythonEnvironment();
@@ -92,16 +92,19 @@ async function measure(given, models, { evaluation, figures }) {
   // Earlier results are deleted, because they may be from other networks or people.
   for (const file of Object.values(laboratories).flat()) rmSync(file, { force: true });
   const tables = ['--models', models, '--robustness', '--json', evaluation, '--figures', figures];
-  const people = given.people ?? there.tables.join(',');
-  if (people) tables.push('--people', people);
+  const people = given.people?.split(',') ?? there.tables;
+  if (people.length > 0) tables.push('--people', people.join(','));
   if (given.fp32) tables.push('--fp32', path(given.fp32));
   const code = await evaluate(given, ...tables);
   if (code !== 0) return code;
+  const { trainedOn } = JSON.parse(readFileSync(join(models, 'learned.json'), 'utf8'));
+  const groups = { home: people.filter((name) => !trainedOn.people.includes(name)), elsewhere: there.elsewhere };
   for (const [group, [asRecorded, handsMeasured]] of Object.entries(laboratories)) {
-    if (there[group].length === 0) continue;
-    const beside = ['--people', there[group].join(','), '--models', models, '--json'];
+    const names = groups[group].join(',');
+    if (names === '') continue;
+    const beside = ['--people', names, '--models', models, '--json'];
     for (const hands of [[asRecorded], [handsMeasured, '--hands-measured']]) {
-      console.log(`\n${there[group].join(', ')}, hands ${hands.length > 1 ? 'measured' : 'as recorded'}`);
+      console.log(`\n${names}, hands ${hands.length > 1 ? 'measured' : 'as recorded'}`);
       const code = await evaluate(given, ...beside, ...hands);
       if (code !== 0) return code;
     }

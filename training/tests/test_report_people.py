@@ -18,12 +18,12 @@ def folder_of(folder: Path, *people: str) -> Path:
 
 def test_tables_are_of_the_varied_people_outside_the_lockbox_where_they_are_all_there(tmp_path: Path) -> None:
     there = report_people.main(folder_of(tmp_path, *VARIED, "132", "901", "903"))
-    assert there == {"tables": list(trainable(VARIED)), "home": ["005"], "elsewhere": ["901", "903"]}
+    assert there == {"tables": list(trainable(VARIED)), "elsewhere": ["901", "903"]}
 
 
 def test_tables_are_of_everyone_outside_the_lockbox_where_one_of_them_is_missing(tmp_path: Path) -> None:
     there = report_people.main(folder_of(tmp_path, *LOCKBOX, "005", "anna"))
-    assert there == {"tables": ["005", "anna"], "home": ["005"], "elsewhere": []}
+    assert there == {"tables": ["005", "anna"], "elsewhere": []}
 
 
 def test_the_program_answers_in_json_or_says_what_is_wrong(tmp_path: Path) -> None:
@@ -32,6 +32,6 @@ def test_the_program_answers_in_json_or_says_what_is_wrong(tmp_path: Path) -> No
         command = [sys.executable, "-m", "threepoint_training.report_people", "--mocap", str(mocap)]
         return subprocess.run(command, cwd=training, capture_output=True, text=True, check=False)
 
-    assert json.loads(ask(folder_of(tmp_path, "005")).stdout)["home"] == ["005"]
+    assert json.loads(ask(folder_of(tmp_path, "005")).stdout)["tables"] == ["005"]
     refused = ask(tmp_path / "nowhere")
     assert (refused.returncode, refused.stderr) == (1, f"{tmp_path / 'nowhere'}: no such folder\n")

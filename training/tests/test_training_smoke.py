@@ -160,6 +160,23 @@ def test_the_paper_s_network_is_made_of_the_varied_people_alone_and_says_so(conf
     assert "learned, all subjects: trained on all 6 people" in lines
 
 
+def test_kinematics_are_refitted_on_all_trainable_people(config, tmp_path, monkeypatch):
+    from threepoint_training import fitted_kinematics, pipeline, skeleton, solve_ik
+    from threepoint_training.generated_motion import generate_corpus
+
+    files = {}
+    for module, name in ((skeleton, "PROPORTIONS_FILE"), (solve_ik, "PARAMETERS_FILE")):
+        files[name] = tmp_path / name
+        files[name].write_bytes(getattr(module, name).read_bytes())
+        monkeypatch.setattr(module, name, files[name])
+    pipeline.main(replace(config, refit_kinematics=True, networks=(), frame_random=False))
+    corpus = generate_corpus(people=6, clips=4, frames=600, seed=SEED)
+    assert "005" in corpus.people
+    fitted = fitted_kinematics.fit(corpus, tuple(corpus.people), config.ik)
+    assert json.loads(files["PROPORTIONS_FILE"].read_text()) == fitted.proportions
+    assert json.loads(files["PARAMETERS_FILE"].read_text()) == fitted.parameters
+
+
 def test_errors_from_other_motion_are_refused(config, run, tmp_path):
     from threepoint_training import pipeline
     from threepoint_training.motion import MocapError

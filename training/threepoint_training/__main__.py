@@ -69,7 +69,9 @@ def _parser() -> argparse.ArgumentParser:
         help="leave the paper's own protocol out; what an earlier run found stays",
     )
     parser.add_argument(
-        "--refit-kinematics", action="store_true", help="also fit the page's body proportions and IK parameters"
+        "--refit-kinematics",
+        action="store_true",
+        help="first fit the page's body proportions and IK parameters on all trainable people",
     )
     for option, (_, what) in _TASKS.items():
         parser.add_argument(

@@ -3,14 +3,13 @@ protocol.
 """
 
 import json
-import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
 import torch
 
-from . import fit_networks, fitted_kinematics, skeleton, solve_ik, train_learned, train_paper
+from . import fit_networks, fitted_kinematics, train_learned, train_paper
 from .fit_networks import Destination, TrainingRun
 from .motion import MocapError
 from .splits import FOLDS, evaluation_only, training_people
@@ -95,30 +94,14 @@ def _cross_validate(
 
 @contextmanager
 def _kinematics(run: TrainingRun, training: tuple[str, ...], fold: str, is_shipped: bool) -> Iterator[None]:
-    """A context with proportions and IK fitted on this fold's training people; for the shipped fold they are the page's
-    own, refitted or as they are.
+    """A context with proportions and IK fitted on this fold's training people; for the shipped fold they are the
+    page's own.
     """
-    if is_shipped and not run.config.refit_kinematics:
-        yield
-        return
-    with run.report.task(f"IK {fold}", run.config.ik.iterations) as advance:
-        fitted = fitted_kinematics.fit(run.corpus, training, run.config.ik, lambda done: advance(done, None))
     if is_shipped:
-        skeleton.PROPORTIONS_FILE.write_text(compact_json(fitted.proportions))
-        solve_ik.PARAMETERS_FILE.write_text(compact_json(fitted.parameters))
         yield
         return
-    with fitted_kinematics.used(fitted):
+    with fitted_kinematics.used(fit_networks.kinematics(run, training, fold)):
         yield
-
-
-def compact_json(content: Any) -> str:
-    """JSON with a line per innermost list, as the parameter files in src/threepoint/core are written."""
-
-    def on_one_line(match: re.Match[str]) -> str:
-        return f"[{' '.join(match[1].split())}]"
-
-    return re.sub(r"\[\s+([^\[\]{}]*?)\s+\]", on_one_line, json.dumps(content, indent=2)) + "\n"
 
 
 def _found_by_other_runs(run: TrainingRun, name: str) -> dict[str, dict[str, float]]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from . import export, train_learned, train_paper
+from . import export, fitted_kinematics, train_learned, train_paper
 from .model import PaperNetwork
 from .paper_features import paper_features
 from .prepared_corpus import TRACKED_COLUMNS, PreparedCorpus
@@ -25,6 +25,12 @@ class TrainingRun:
     config: TrainConfig
     corpus: PreparedCorpus
     report: TrainingReport
+
+
+def kinematics(run: TrainingRun, people: tuple[str, ...], label: str) -> fitted_kinematics.Kinematics:
+    """Body proportions and IK parameters fitted on these people."""
+    with run.report.task(f"IK {label}", run.config.ik.iterations) as advance:
+        return fitted_kinematics.fit(run.corpus, people, run.config.ik, lambda done: advance(done, None))
 
 
 def paper(

@@ -1,5 +1,7 @@
 """Fits body proportions and IK parameters without the people held out, so that errors are those of new people."""
 
+import json
+import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -36,3 +38,18 @@ def used(fitted: Kinematics) -> Iterator[None]:
         yield
     finally:
         skeleton.load_proportions, solve_ik.load_parameters = saved
+
+
+def write(fitted: Kinematics) -> None:
+    """Replaces the page's body proportions and IK parameters."""
+    skeleton.PROPORTIONS_FILE.write_text(_compact_json(fitted.proportions))
+    solve_ik.PARAMETERS_FILE.write_text(_compact_json(fitted.parameters))
+
+
+def _compact_json(content: Any) -> str:
+    """JSON with a line per innermost list."""
+
+    def on_one_line(match: re.Match[str]) -> str:
+        return f"[{' '.join(match[1].split())}]"
+
+    return re.sub(r"\[\s+([^\[\]{}]*?)\s+\]", on_one_line, json.dumps(content, indent=2)) + "\n"

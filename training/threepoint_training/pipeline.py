@@ -13,6 +13,7 @@ from rich.console import Console
 from . import (
     cross_validate,
     fit_networks,
+    fitted_kinematics,
     golden,
     lockbox,
     noticed_wear,
@@ -46,8 +47,14 @@ def main(config: TrainConfig, console: Console | None = None) -> Rows:
 
 
 def _train(run: TrainingRun) -> Rows:
-    """Trains the networks of each fold, then those of the page, and renews the golden vectors with the latter."""
+    """Trains the networks of each fold, then those of the page, and renews the golden vectors with the latter.
+
+    The page's kinematics are refitted first, where the run does so: all of these networks add to its IK.
+    """
     config = run.config
+    if config.refit_kinematics:
+        everyone = trainable(tuple(run.corpus.people))
+        fitted_kinematics.write(fit_networks.kinematics(run, everyone, "all subjects"))
     folds = cross_validate.usable_folds(run)
     if "cross-validation" in config.stages and folds:
         cross_validate.main(run, folds)

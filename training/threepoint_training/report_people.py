@@ -7,21 +7,19 @@ from pathlib import Path
 
 from .motion import MocapError
 from .motion_files import motion_files
-from .splits import FOLDS, LOCKBOX, VARIED, evaluation_only, trainable
+from .splits import LOCKBOX, VARIED, evaluation_only, trainable
 
 
 def main(mocap: Path) -> dict[str, list[str]]:
     """tables: the people of the tables of docs/accuracy.md: the VARIED subjects outside the lockbox; all people outside
     the lockbox where one of those is missing.
 
-    home: the first fold's held-out people, elsewhere: evaluation-only subjects (never trained on); of both, those in
-    the folder.
+    elsewhere: the evaluation-only subjects (never trained on) in the folder.
     """
     people = {source.person for source in motion_files(mocap, None)}
     varied = trainable(VARIED)
     return {
         "tables": sorted(varied if people >= set(varied) else people - set(LOCKBOX)),
-        "home": sorted(people & set(FOLDS["A"])),
         "elsewhere": list(evaluation_only(list(people))),
     }
 
