@@ -10,7 +10,7 @@ import { arrowLength } from 'threepoint-games/archery/bow';
 import { releaseTowards } from 'threepoint-games/archery/flight';
 import { archeryRules, delayed } from 'threepoint-games/archery/rules';
 import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
-import { createHandSpeed } from 'threepoint-games/ball/hand-speed';
+import { createHandSpeed } from 'threepoint-games/ball/hand-velocity';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { rackPosition } from 'threepoint-games/ball/stations';
 import { createMatch } from 'threepoint-games/match';

@@ -9,7 +9,7 @@ import { ballRoomMessageFrom } from './ball-messages';
 import { type BallGame, BallPolicy } from './ball-policy';
 import { unpackBall } from './ball-snapshot';
 import type { BallOptions } from './ball-state';
-import { answersBallAction, followBallEvent, predictBallAction, withMatchTime } from './replica';
+import { answersBallAction, followBallEvent, predictBallAction, withMatchTime } from './client-state';
 import { arenaFromSeatFloor } from './stations';
 
 export type BallConnection = Connection<BallGame>;

@@ -24,7 +24,7 @@ import { ballInPalm, fistOf } from '../fist';
 import { slowestThrow } from './actions';
 import type { BallAction, BallEvent, BallInput, BallState } from './ball-state';
 import { ballRadius } from './flight';
-import { createHandSpeed, type HandSpeed } from './hand-speed';
+import { createHandSpeed, type HandSpeed } from './hand-velocity';
 import { ballInHand } from './state-readings';
 import { rackPosition } from './stations';
 

@@ -1,4 +1,5 @@
 import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
+import { labelOf } from 'threepoint/avatar/built-in-bodies';
 import { decoders } from 'threepoint/avatar/decoders/decoders';
 import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
 import { checkInWorker } from 'threepoint/avatar/file/check-in-worker';
@@ -7,7 +8,6 @@ import { avatarLimits } from 'threepoint/avatar/file/inspect-avatar';
 import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
 import { withNamedBones } from 'threepoint/avatar/humanoid/name-bones';
 import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
-import { labelOf } from 'threepoint/avatar/own-bodies';
 import { type OwnBody, ownAvatarOf, type SkinTone } from 'threepoint/core/body/avatar-ref';
 import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
 import { pageFolder } from 'threepoint-ui/page-folder';

@@ -1,8 +1,8 @@
 import type { Object3D } from 'three';
 import type { BodySolver, BodySolverOptions } from 'threepoint/api/body-solver';
 import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
+import { labelOf } from 'threepoint/avatar/built-in-bodies';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { labelOf } from 'threepoint/avatar/own-bodies';
 import { palettes } from 'threepoint/avatar/palettes';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';

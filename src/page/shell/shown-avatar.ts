@@ -1,9 +1,9 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
 import type { Avatar } from 'threepoint/avatar/avatar';
+import { labelOf } from 'threepoint/avatar/built-in-bodies';
 import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
 import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
 import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones';
-import { labelOf } from 'threepoint/avatar/own-bodies';
 import { bodyOf, type OwnBody, plainAvatar, skinToneOf } from 'threepoint/core/body/avatar-ref';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { nameOf } from 'threepoint-ui/limited-files';

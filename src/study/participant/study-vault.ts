@@ -3,7 +3,7 @@ import type { StudyPlan } from '../model/plan/plan';
 import type { Progress } from '../model/progress/progress';
 import type { ParticipantProfile } from '../model/records/participant-profile';
 import type { StudyRecord } from '../model/records/study-record';
-import { StoragePatience } from './storage-patience';
+import { StoragePatience } from './storage-timeout';
 
 /** A session as this device stores it. */
 export interface KeptSession extends ParticipantProfile {

@@ -5,13 +5,13 @@ import type { EstimatorName, InferenceRequest } from '../core/estimation/pose-es
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
-import { admittedFrames, type TrackedPoint, TrackingGate } from '../core/tracking/tracking-gate';
+import { admittedFrames, type TrackedPoint, TrackingGate } from '../core/tracking/tracking-validator';
 import { type AfterFrame, createAfterFrame } from './after-frame';
 import { EstimatorChoice } from './estimator-choice';
 import { HeightPolicy } from './height-policy';
 import { type InferenceProfiler, profiled } from './inference-profiler';
 
-export type { TrackedPoint } from '../core/tracking/tracking-gate';
+export type { TrackedPoint } from '../core/tracking/tracking-validator';
 
 /**
  * The origin of a body's measures: given by the page, the headset's height at the start of a session, a wearer who

@@ -10,7 +10,7 @@ import { writeCsv } from '../core/motion/write-csv';
 import { writeVrma } from '../core/motion/write-vrma';
 import type { Replayable, TrackingFrames } from '../core/tracking/recording';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
-import { admittedFrames, TrackingGate } from '../core/tracking/tracking-gate';
+import { admittedFrames, TrackingGate } from '../core/tracking/tracking-validator';
 import { type MotionFormat, motionFormats } from './motion-formats';
 import { runWork, type WorkOptions } from './run-work';
 

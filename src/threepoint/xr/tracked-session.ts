@@ -3,7 +3,7 @@ import { conjugate, fromAxisAngle, identity, multiply, type Quat, rotate, setQua
 import { setVec3, subtract, up, type Vec3 } from '../core/math/vec3';
 import { headingOf } from '../core/tracking/heading';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
-import { TrackingGate } from '../core/tracking/tracking-gate';
+import { TrackingGate } from '../core/tracking/tracking-validator';
 import type { DeviceBodyReader } from './device-body-reader';
 import { InputReader } from './input-reader';
 import { toTrackedPose } from './tracked-pose';

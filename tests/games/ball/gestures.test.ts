@@ -7,7 +7,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import { ballRadius } from 'threepoint-games/ball/flight';
 import { createBallGestures, holdSeconds } from 'threepoint-games/ball/gestures';
-import { createHandSpeed, throwWindow } from 'threepoint-games/ball/hand-speed';
+import { createHandSpeed, throwWindow } from 'threepoint-games/ball/hand-velocity';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { rackPosition, stations } from 'threepoint-games/ball/stations';
 import { ballInPalm, fistOf, wristAround } from 'threepoint-games/fist';

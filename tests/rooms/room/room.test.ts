@@ -2,7 +2,7 @@ import fc from 'fast-check';
 import { BallPolicy } from 'threepoint-games/ball/ball-policy';
 import { packBall, unpackBall } from 'threepoint-games/ball/ball-snapshot';
 import type { BallState } from 'threepoint-games/ball/ball-state';
-import { followBallEvent } from 'threepoint-games/ball/replica';
+import { followBallEvent } from 'threepoint-games/ball/client-state';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { clientMessageFrom, protocolVersion, unpackSeatInfo } from 'threepoint-rooms/protocol/messages';
 import { Room } from 'threepoint-rooms/room/room';

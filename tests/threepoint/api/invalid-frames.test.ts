@@ -4,7 +4,7 @@ import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { TrackedPose } from 'threepoint/core/math/pose';
 import { deviceBodySize } from 'threepoint/core/tracking/device-body';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { TrackingGate } from 'threepoint/core/tracking/tracking-gate';
+import { TrackingGate } from 'threepoint/core/tracking/tracking-validator';
 import { describe, expect, test } from 'vitest';
 import { movingPerson } from '../core/estimation/moving-person';
 import { openPlainModel } from '../core/estimation/shipped-models';

@@ -1,6 +1,6 @@
 import type { Vector3 } from 'three';
+import { bodyLabels } from 'threepoint/avatar/built-in-bodies';
 import type { Holding } from 'threepoint/avatar/hands/holding';
-import { bodyLabels } from 'threepoint/avatar/own-bodies';
 import { fingerBonesOf } from 'threepoint/core/body/finger-bones';
 import { distanceToBall, distanceToRod } from 'threepoint/core/body/grasp';
 import { type FingerName, fingerNames, type MutableHandShape } from 'threepoint/core/body/hand-shape';

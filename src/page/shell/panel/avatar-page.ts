@@ -1,4 +1,4 @@
-import { bodyLabels } from 'threepoint/avatar/own-bodies';
+import { bodyLabels } from 'threepoint/avatar/built-in-bodies';
 import { skinColors } from 'threepoint/avatar/palettes';
 import { plainAvatar, skinTones } from 'threepoint/core/body/avatar-ref';
 import { button, element } from 'threepoint-ui/element';

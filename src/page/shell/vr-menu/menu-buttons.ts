@@ -1,4 +1,4 @@
-import { labelOf } from 'threepoint/avatar/own-bodies';
+import { labelOf } from 'threepoint/avatar/built-in-bodies';
 import { type OwnBody, ownBodies, plainAvatar, type SkinTone, skinTones } from 'threepoint/core/body/avatar-ref';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';

@@ -1,6 +1,6 @@
 import { identity } from 'threepoint/core/math/quat';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { admittedFrames, TrackingGate } from 'threepoint/core/tracking/tracking-gate';
+import { admittedFrames, TrackingGate } from 'threepoint/core/tracking/tracking-validator';
 import { expect, test } from 'vitest';
 
 const point = (x: number, tracking: 'tracked' | 'emulated' = 'tracked') => ({
