@@ -116,8 +116,8 @@ export class ArcheryActivity implements OpenActivity {
     return distance;
   }
 
-  jumped(): void {
-    this.play.jumped();
+  discontinuity(): void {
+    this.play.discontinuity();
   }
 
   sessionChanged(): void {

@@ -46,7 +46,7 @@ export interface BallPlay {
    * The user's floor frame changes with the next frame: others see a jump without interpolation, and hands throw
    * nothing.
    */
-  jumped(): void;
+  discontinuity(): void;
   ready(on: boolean): void;
   rotate(on: boolean): void;
   sit(seat: number | null): void;
@@ -199,9 +199,9 @@ class MatchPlay implements BallPlay {
     this.jump = false;
   }
 
-  jumped(): void {
+  discontinuity(): void {
     this.jump = true;
-    this.gestures?.jumped();
+    this.gestures?.discontinuity();
   }
 
   ready(on: boolean): void {

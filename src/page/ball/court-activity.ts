@@ -193,8 +193,8 @@ export class CourtActivity implements OpenActivity {
     return hit.distance;
   }
 
-  jumped(): void {
-    this.play.jumped();
+  discontinuity(): void {
+    this.play.discontinuity();
   }
 
   sessionChanged(): void {

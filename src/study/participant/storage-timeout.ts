@@ -1,36 +1,36 @@
-/** Why a request is given up: the storage neither carries it out nor refuses it. */
+/** The error of a request that the storage neither carries out nor refuses. */
 export const silentStorage = 'the storage of this browser does not answer';
 
 /**
- * A request that takes longer than this [ms] is given up; the strict write of a long recording takes a second on a slow
- * device.
+ * The time limit of a request [ms]: the strict write of a long recording takes a second on a slow device.
  */
-const patienceMs = 5000;
+const limitMs = 5000;
 
 /**
- * Gives up requests that a browser's storage does not answer, as where its disk hangs or another page occupies it.
- * While one that was given up is under way, others are refused at once: they would wait behind it.
+ * Limits the time of requests to a browser's storage, which does not answer while its disk hangs or another page
+ * occupies it. While a request that timed out is still open, further ones reject at once: they would wait behind it.
  */
-export class StoragePatience {
-  #silent = 0;
+export class StorageTimeout {
+  /** The number of open requests that timed out. */
+  #open = 0;
 
   /**
-   * The answer of a request; rejects with the sentence where there is none in time. What is given up may still be
-   * carried out.
+   * Returns the answer of a request, or rejects with `silentStorage` after the time limit. A request that timed out may
+   * still be carried out.
    */
-  async answer<Answer>(request: () => Promise<Answer>): Promise<Answer> {
-    if (this.#silent > 0) throw new Error(silentStorage);
+  async limit<Answer>(request: () => Promise<Answer>): Promise<Answer> {
+    if (this.#open > 0) throw new Error(silentStorage);
     const answer = request();
     let timer: ReturnType<typeof setTimeout> | undefined;
     const silence = new Promise<never>((_, reject) => {
       timer = setTimeout(() => {
-        this.#silent += 1;
+        this.#open += 1;
         const answered = () => {
-          this.#silent -= 1;
+          this.#open -= 1;
         };
         answer.then(answered, answered);
         reject(new Error(silentStorage));
-      }, patienceMs);
+      }, limitMs);
     });
     try {
       return await Promise.race([answer, silence]);

@@ -5,7 +5,7 @@ import type { EstimatorName, InferenceRequest } from '../core/estimation/pose-es
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
-import { admittedFrames, type TrackedPoint, TrackingGate } from '../core/tracking/tracking-validator';
+import { type TrackedPoint, TrackingValidator, validFrames } from '../core/tracking/tracking-validator';
 import { type AfterFrame, createAfterFrame } from './after-frame';
 import { EstimatorChoice } from './estimator-choice';
 import { HeightPolicy } from './height-policy';
@@ -93,7 +93,7 @@ export class BodySolver {
   #events: BodyEvents;
   readonly #clock: Pick<PageClock, 'tick' | 'paused'>;
   readonly #profiler: InferenceProfiler | null;
-  readonly #gate = new TrackingGate({
+  readonly #validator = new TrackingValidator({
     onChange: (point, tracked) => (tracked ? this.#events.trackingfound?.(point) : this.#events.trackinglost?.(point)),
   });
   #afterFrame: AfterFrame | null = null;
@@ -232,7 +232,7 @@ export class BodySolver {
    * returns NaN. Throws a RangeError where a stand-in's measures are not human, or what a callback throws.
    */
   update(tracked: TrackingFrame | null, standIn: Calibration | null = null): AvatarPose | null {
-    const frame = this.#gate.admit(tracked);
+    const frame = this.#validator.validate(tracked);
     if (frame === null) {
       this.#height.lose();
       return this.#pose;
@@ -252,7 +252,7 @@ export class BodySolver {
    * Has no effect if a discontinuity happens or another estimator is selected meanwhile.
    */
   warmUp(frames: Iterable<TrackingFrame>): Promise<void> {
-    return this.#choice.warmUp(admittedFrames(frames), (pose) => {
+    return this.#choice.warmUp(validFrames(frames), (pose) => {
       this.#pose = pose;
     });
   }
@@ -267,7 +267,7 @@ export class BodySolver {
 
   /** Ends the session: every point counts as not tracked, without a call of `trackinglost`. */
   endSession(): void {
-    this.#gate.reset();
+    this.#validator.reset();
   }
 
   /** Returns a copy of the measures of a page, or the measures themselves where the body returned them before. */

@@ -1,7 +1,7 @@
-import type { OwnBody } from '../core/body/avatar-ref';
+import type { BuiltInBody } from '../core/body/avatar-ref';
 
-/** The display names of the project's own bodies, in the order in which they are offered. */
-export const bodyLabels: readonly { readonly name: OwnBody; readonly label: string }[] = [
+/** The display names of the built-in bodies, in the order in which they are offered. */
+export const bodyLabels: readonly { readonly name: BuiltInBody; readonly label: string }[] = [
   { name: 'mannequin', label: 'Mannequin' },
   { name: 'woman', label: 'Woman' },
   { name: 'man', label: 'Man' },
@@ -9,4 +9,4 @@ export const bodyLabels: readonly { readonly name: OwnBody; readonly label: stri
   { name: 'child', label: 'Child' },
 ];
 
-export const labelOf = (name: OwnBody): string => bodyLabels.find((body) => body.name === name)?.label ?? name;
+export const labelOf = (name: BuiltInBody): string => bodyLabels.find((body) => body.name === name)?.label ?? name;

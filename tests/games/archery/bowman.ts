@@ -103,7 +103,7 @@ export function bowman(changes: Partial<ArcheryGestureSettings> = {}, rateHz = 9
     },
     /** The floor lies elsewhere from the next frame on. */
     jump() {
-      gestures.jumped();
+      gestures.discontinuity();
       return self;
     },
     get bow(): BowView | null {

@@ -69,7 +69,7 @@ async function page(draw: () => Promise<void> = () => Promise.resolve()) {
     entered: () => void happened.push('entered'),
     left: () => void happened.push('left'),
     refused: () => void happened.push('refused'),
-    jumped: () => undefined,
+    discontinuity: () => undefined,
     visibilityChanged: () => undefined,
     emulatorChanged: () => undefined,
   });

@@ -43,7 +43,7 @@ function drawn(change: Partial<ShownInvitation>) {
     calibration: null,
     overlay: false,
     deviceBody: false,
-    ownBody: 'mannequin',
+    builtInBody: 'mannequin',
     skinTone: undefined,
     places: [],
     activity: { entries: [], sheet: invitationSheet(invitation, () => undefined) },

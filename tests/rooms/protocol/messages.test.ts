@@ -1,6 +1,6 @@
 import { createHash } from 'node:crypto';
 import fc from 'fast-check';
-import { ownAvatarOf, ownBodies, plainAvatar, skinTones } from 'threepoint/core/body/avatar-ref';
+import { builtInAvatarOf, builtInBodies, plainAvatar, skinTones } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { ballActionFrom, ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
 import {
@@ -165,7 +165,11 @@ describe('control messages', () => {
           ),
           bot: fc.boolean(),
           presence: fc.constantFrom('here' as const, 'away' as const, 'gone' as const),
-          avatar: fc.constantFrom(...ownBodies, ...skinTones.map((tone) => ownAvatarOf('child', tone)), fileHash),
+          avatar: fc.constantFrom(
+            ...builtInBodies,
+            ...skinTones.map((tone) => builtInAvatarOf('child', tone)),
+            fileHash,
+          ),
           voice: fc.constantFrom(null, { session: 'annas-page', muted: true }, { session: 'annas-page', muted: false }),
         }),
         (info) => {
