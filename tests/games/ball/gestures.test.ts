@@ -20,7 +20,7 @@ const floorFromArena = invertTransform(arenaFromFloor);
 const other = { left: 'right', right: 'left' } as const;
 type Side = 'left' | 'right';
 
-/** A player whose one fist is told, in the arena; the other hangs. */
+/** A player with one fist at given places of the arena; the other hand hangs. */
 function throwing(options: { side?: Side; button?: Button; state?: BallState; player?: number } = {}) {
   const { side = 'right', button = 'trigger', player = leftThrower } = options;
   const match = told();

@@ -92,7 +92,7 @@ function headset() {
       step = next;
       controls.show();
     },
-    /** Where the middle of this canvas point of the menu's sheet (640 wide) lies in the world. */
+    /** Returns the place in the world of this canvas point of the menu's sheet (640 wide). */
     onMenu(x: number, y: number) {
       menu.updateWorldMatrix(true, true);
       const sheet = menu.children[0];

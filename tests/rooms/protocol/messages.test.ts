@@ -214,8 +214,8 @@ describe('control messages', () => {
 });
 
 test('a change of packets or frames is told to older pages as a change of messages is: by the version of the protocol', () => {
-  // A change of packets, or of the frames they come in, raises the first: pages that would not see each other are told
-  // so when they join.
+  // A change of packets, or of the frames they come in, raises the first: pages that would not see each other get a
+  // reason when they join.
   const frame = encodeFrame([{ seat: 5, bytes: Uint8Array.from({ length: 20 }, () => poseVersion << 4) }]);
   expect({ protocolVersion, poseVersion, seatAndFlags: frame[0] }).toEqual({
     protocolVersion: 9,
@@ -238,7 +238,7 @@ describe('the parser of small frames', () => {
   test('a pose is its bytes, nothing more', () => {
     const bytes = Uint8Array.of(16, 2, 3);
     expect(new pageParser.Encoder().encode({ type: 2, nsp: '/', data: ['pose', bytes] })).toEqual([bytes]);
-    // The relay hears it below socket.io.
+    // The relay receives it below socket.io.
     expect(throughPage({ type: 2, nsp: '/', data: ['pose', bytes] })).toBeUndefined();
   });
 
