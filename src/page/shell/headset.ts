@@ -125,7 +125,7 @@ export class Headset {
   get bodyComplaint(): string | null {
     if (!this.#session) return null;
     const { bodyReader } = this.#session.tracking;
-    return bodyReader ? bodyReader.complaint : 'the headset was not asked for its body';
+    return bodyReader ? bodyReader.complaint : 'the headset’s body tracking is off';
   }
 
   /** Asks the browser what there is; the emulator is loaded where it is wanted at once. */
