@@ -90,7 +90,8 @@ const modelRooms = {
 };
 const studyServerRooms = {
   storage: [],
-  export: ['storage'],
+  plugins: [],
+  export: ['storage', 'plugins'],
   routes: ['storage', 'export'],
 };
 /** Every file of the model is in one of its rooms. */

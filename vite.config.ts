@@ -1,6 +1,8 @@
+import { basename } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { defaultClientConditions, defineConfig, type Plugin } from 'vite';
 import { contentSecurityPolicy } from './src/http/security-headers.ts';
+import { studyPluginPaths } from './src/study/server/plugins/plugin-paths.ts';
 
 /**
  * The sources from which the page may load files by address: those of `npm run build -- --files-from`, otherwise any
@@ -40,10 +42,41 @@ const decodersWithoutNode: Plugin = {
   load: { filter: { id: /^\0decoders-without-node$/ }, handler: () => 'export {};' },
 };
 
+const studyPlugins = studyPluginPaths(process.env);
+const studyPluginModule = 'virtual:study-plugins';
+
+/** Builds the modules of THREEPOINT_STUDY_PLUGINS into the pages, which run them before their own scripts. */
+const studyPluginsInPages: Plugin = {
+  name: 'study-plugins-in-pages',
+  resolveId: (id) => (id === studyPluginModule ? `\0${id}` : undefined),
+  load(id) {
+    if (id !== `\0${studyPluginModule}`) return undefined;
+    return [
+      "import { installPagePlugin } from '/src/study/participant/questions/page-plugin.ts';",
+      ...studyPlugins.map((path, index) => `import * as plugin${index} from ${JSON.stringify(path)};`),
+      ...studyPlugins.map((path, index) => `installPagePlugin(plugin${index}, ${JSON.stringify(basename(path))});`),
+    ].join('\n');
+  },
+  transformIndexHtml: {
+    order: 'pre',
+    handler: () =>
+      studyPlugins.length === 0
+        ? []
+        : [
+            {
+              tag: 'script',
+              attrs: { type: 'module' },
+              children: `import '${studyPluginModule}';`,
+              injectTo: 'head-prepend',
+            },
+          ],
+  },
+};
+
 export default defineConfig({
   // The page can be served from any folder, unless `npm run build -- --base` names one (scripts/build.mjs).
   base: './',
-  plugins: [policyInPages],
+  plugins: [policyInPages, studyPluginsInPages],
   resolve: {
     conditions: ['source', ...defaultClientConditions],
     alias: {

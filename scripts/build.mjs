@@ -78,9 +78,16 @@ function emptied(out) {
   return directory;
 }
 
+/** Returns the paths of the plug-ins that are built into the pages, as src/study/server/plugins/plugin-paths.ts does. */
+const studyPlugins = () =>
+  (process.env.THREEPOINT_STUDY_PLUGINS ?? '')
+    .split(',')
+    .filter((path) => path.trim())
+    .map((path) => resolve(process.env.INIT_CWD ?? process.cwd(), path.trim()));
+
 function sourceHash({ base, filesFrom }) {
   const hash = createHash('sha256').update(`${base}\0${filesFrom}\0`);
-  for (const file of sources.flatMap((source) => filesUnder(join(root, source)))) {
+  for (const file of [...sources, ...studyPlugins()].flatMap((source) => filesUnder(resolve(root, source)))) {
     hash
       .update(`${relative(root, file)}\0`)
       .update(readFileSync(file))

@@ -3,6 +3,7 @@ import { fileURLToPath } from 'node:url';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { loadOrCreateSecret } from 'threepoint-rooms/server/relay';
 import { relayConfigurationFrom, relayEnvironment } from 'threepoint-rooms/server/settings/relay-configuration';
+import { loadStudyPlugins } from 'threepoint-study/server/plugins/load-plugins';
 import { certificateFor } from './certificate';
 import { configurationFrom, usage } from './configuration';
 import { lanAddresses } from './lan-addresses';
@@ -18,6 +19,8 @@ async function main(): Promise<void> {
     return;
   }
   const relay = relayConfigurationFrom(process.env);
+  // The thread of the studies loads them again; here a fault stops the start with a sentence.
+  await loadStudyPlugins(process.env);
   const addresses = configuration.lan ? lanAddresses() : null;
   const { studyDirectory, experimenterToken } = configuration;
   const server = await startServer({

@@ -1,8 +1,10 @@
 import { parentPort } from 'node:worker_threads';
 import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
+import { loadStudyPlugins } from 'threepoint-study/server/plugins/load-plugins';
 import { serveStudies } from 'threepoint-study/server/thread';
 
 // The thread of the studies: its seats are signed by the tokens that the rooms of this server accept.
 
 if (!parentPort) throw new Error('study-thread-work.ts runs in a worker thread, which the study service starts');
+await loadStudyPlugins(process.env);
 serveStudies(parentPort, (secret, now) => createRoomTokens(secret, now).sign);

@@ -1,7 +1,17 @@
 import { expect, test } from 'vitest';
 import { languageProblems } from '../scripts/check-language.mjs';
 
-test('comments of what ships, and documents, are in plain technical English', () => {
-  const problems = languageProblems(['src', 'server', 'training', 'bench', 'docs', 'README.md', 'SECURITY.md']);
+test('comments and documents are in plain technical English', () => {
+  const problems = languageProblems([
+    'src',
+    'server',
+    'training',
+    'bench',
+    'tests',
+    'e2e',
+    'docs',
+    'README.md',
+    'SECURITY.md',
+  ]);
   expect(problems.map(({ file, line, what }) => `${file}:${line} ${what}`)).toEqual([]);
 });

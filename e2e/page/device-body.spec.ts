@@ -91,7 +91,7 @@ test('a headset that was not asked, or has no body, is said to have none, and th
   await emulatedHeadset(page);
   await enterVr(page, { stepMs: null });
   await expect(page.locator('#about-device')).toContainText(
-    'Learned is used instead: the headset was not asked for its body.',
+    'Learned is used instead: the headset’s body tracking is off.',
   );
   expect((await probe(page)).estimator).toBe('device');
   await press(page, 'button', 'Exit VR');

@@ -17,7 +17,7 @@ const unmute = (page: Page) => bar(page).getByRole('button', { name: 'Unmute me'
 
 // A program of the distribution, not ours to install: apt-get install pulseaudio
 test.describe(`echo${loudspeakerInstalled ? '' : ' (PulseAudio is not installed)'}`, () => {
-  // biome-ignore lint/suspicious/noSkippedTests: a program of the distribution is missing, which the name of the suite says
+  // biome-ignore lint/suspicious/noSkippedTests: reason: a program that the suite's name mentions is missing
   test.skip(!loudspeakerInstalled, 'PulseAudio is not installed: apt-get install pulseaudio');
 
   test('a voice from a place, played by a loudspeaker into a microphone, comes back 20 dB softer than without cancelling @nightly', async ({

@@ -56,7 +56,7 @@ async function shortPasses(page: Page, url: string, seconds: number) {
 
 // A program of the distribution, not ours to install: apt-get install coturn
 test.describe(`voices by the relay only${turnProgram === null ? ' (coturn is not installed)' : ''}`, () => {
-  // biome-ignore lint/suspicious/noSkippedTests: a program of the distribution is missing, which the name of the suite says
+  // biome-ignore lint/suspicious/noSkippedTests: reason: a program that the suite's name mentions is missing
   test.skip(turnProgram === null, 'coturn is not installed: apt-get install coturn');
 
   test('two people hear each other, and no page learns an address but the relay’s; a pass is renewed in time @nightly', async ({

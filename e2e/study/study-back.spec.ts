@@ -23,7 +23,7 @@ async function backAndForward(page: Page, origin: string): Promise<void> {
   await page.waitForFunction(() => (window.threepoint?.probe().study?.screen ?? 'opening') !== 'opening');
 }
 
-/** The session goes on after the code. One that was noted in the moment of leaving is shown again: saving takes a moment. */
+/** Continues after the code, which is shown again if the page was left just after it was confirmed. */
 async function pastTheCode(page: Page): Promise<void> {
   const noted = page.getByRole('button', { name: 'I have noted it' });
   await expect(page.getByLabel(/Age/).or(noted)).toBeVisible();

@@ -12,7 +12,7 @@ test('the keyboard goes on within the card where another question takes the plac
     await expect(card.getByRole('group', { name: question })).toBeVisible();
     await card.getByRole('radio').first().focus();
     await page.keyboard.press('Space');
-    await card.getByRole('button', { name: last ? 'Hand in' : 'Next' }).focus();
+    await card.getByRole('button', { name: last ? 'Submit' : 'Next' }).focus();
     await page.keyboard.press('Enter');
   };
   for (const id of ['Q6', 'Q7']) {

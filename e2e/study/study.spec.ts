@@ -93,7 +93,7 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
       await expect(page.getByText(/No connection: .* kept on this device/)).toBeVisible();
       await expect(page.getByRole('button', { name: 'Question 2, answered' })).toBeVisible();
       await page.getByRole('button', { name: 'Question 7, needs an answer' }).click();
-      await page.getByRole('button', { name: 'Hand in' }).click();
+      await page.getByRole('button', { name: 'Submit' }).click();
       await reaches(page, 'question-Q3');
       await expect(page.getByText('* This question still needs an answer.')).toBeVisible();
       await keepPicture(page, 'study-question-desktop');
@@ -102,7 +102,7 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
         await page.getByRole('button', { name: 'Next' }).click();
       }
       await page.getByRole('radio', { name: '5' }).check();
-      await page.getByRole('button', { name: 'Hand in' }).click();
+      await page.getByRole('button', { name: 'Submit' }).click();
       await reaches(page, 'calibration-enter');
       expect((await study(page)).unsent).toBeGreaterThan(0);
       await expect.poll(async () => (await study(page)).unsaved).toBe(0);

@@ -29,7 +29,7 @@ function run({ controls, stage, frame, body, timing }: Page, { switches, setting
   stage.renderer.setAnimationLoop((timestampMs, deviceFrame) => loop(timestampMs, deviceFrame ?? undefined));
 }
 
-/** Shows the first body: the page's own avatar, moved by the best estimator that is available. */
+/** Shows the first body: the built-in avatar, moved by the best estimator that is available. */
 async function showFirstBody({ avatarShown, frame }: Page, loading: PageLoading): Promise<void> {
   await avatarShown;
   loading.mark('avatar');
@@ -84,7 +84,7 @@ async function start(): Promise<void> {
   const page = createPage({ context, notices, loading });
   const { avatar, body, controls, headset, timing } = page;
 
-  // The page's own avatar is shown until another one has been loaded, and stays if that fails.
+  // The built-in avatar is shown until another one has been loaded, and stays if that fails.
   if (switches.avatar) void avatar.open(switches.avatar);
   const enterButton = createEnterButton(pageElement('enter', HTMLDivElement), () => void headset.enter());
   run(page, context);

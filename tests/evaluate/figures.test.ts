@@ -56,7 +56,7 @@ describe('the six motions', () => {
 describe('the figures of an evaluation', () => {
   const drivenBy = async (seed: number) => {
     const ik = await drive('ik', person, null, recordedMotion(seed, 330));
-    // Where the methods come from does not matter here: three times the same one.
+    // The origin of the methods does not matter here: all three are the same.
     return { ik, paper: ik, learned: ik };
   };
 

@@ -159,7 +159,7 @@ test('the plan lets every estimator meet every situation, on people held out fir
 test('a driver forgets the past when the page does', async () => {
   const frames = piece.frames.slice(0, 60).map(({ frame }) => frame);
   const [fresh, used] = [createDriver('ik', person, null), createDriver('ik', person, null)];
-  // Of hands that are seen it would keep how they are held.
+  // Visible hands would change its estimate of their tilt.
   for (const frame of frames) await used.draw({ ...frame, leftHand: null, rightHand: null });
   used.reset();
   const later = piece.frames[300]!.frame;

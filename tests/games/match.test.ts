@@ -14,7 +14,7 @@ interface Word {
   readonly delay: number;
 }
 
-/** Writes down what it hears and when. */
+/** Records what it receives and when. */
 const tally: GameRules<Tally, Word, string, object> = {
   tickSeconds: 1 / 90,
   start: () => ({ ticks: 0, heard: [] }),

@@ -16,7 +16,7 @@ import { directoryWith } from '../temporary-directory';
 const upgradeRequest = (headers = '') =>
   `GET /relay/?EIO=4&transport=websocket HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n${headers}Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n`;
 
-/** What a connection hears; `said` grows. */
+/** Collects what a connection receives; `said` grows. */
 function listened(socket: Socket) {
   const connection = { socket, said: '', closed: false };
   socket.on('error', () => undefined);
@@ -30,7 +30,7 @@ function listened(socket: Socket) {
   return connection;
 }
 
-/** A connection that says this and no more, and hears what comes back. */
+/** Opens a connection that sends this text and no more, and collects the answer. */
 function raw(port: number, text: string, localAddress = '127.0.0.1') {
   const socket = connect({ port, host: '127.0.0.1', localAddress });
   if (text) socket.write(text);
@@ -77,7 +77,7 @@ describe('a body that is not wanted', () => {
     };
     expect(Object.values(poured).map(({ status }) => status)).toEqual(['405', '405', '413', '413', '405']);
     const most = Math.max(...Object.values(poured).map(({ bytes }) => bytes));
-    // The buffers of the system on both sides, and the mebibyte that the server hears out.
+    // The buffers of the system on both sides, and the mebibyte that the server drains.
     expect(most).toBeLessThan(32e6);
     reportFigures('unwanted-bodies', { 'most taken of 200 MB [MB]': most / 1e6 });
   });
@@ -192,7 +192,7 @@ test('a connection that does not say what it wants is ended at the deadline: tol
   await expect.poll(() => relay.relay.census).toMatchObject({ sockets: 1, connections: 3 });
   // None of them answers a closing frame.
   await expect.poll(() => connections.every(({ closed }) => closed), { timeout: 15_000 }).toBe(true);
-  // What is neither TLS nor HTTP yet has no language to be told in.
+  // A connection that has sent neither TLS nor HTTP gets no answer in a protocol.
   expect(connections.map(statusOf)).toEqual(['408', '408', '101', 'none', '408', '408']);
   expect(relay.relay.census).toMatchObject({ sockets: 0, connections: 0 });
 });

@@ -6,7 +6,7 @@ import { createPageClock } from 'threepoint/core/tracking/page-clock';
 import { ServerPresence } from 'threepoint-http/server-presence';
 import type { ActivityServices } from 'threepoint-page/activity/activity-context';
 import type { Surroundings } from 'threepoint-page/scene/surroundings';
-import { fetchOwnAvatar } from 'threepoint-page/shell/avatar-loader';
+import { fetchBuiltInAvatar } from 'threepoint-page/shell/avatar-loader';
 import { PageStudy } from 'threepoint-page/shell/page-study';
 import { createSettings, type LastingSettings, SettingsWriter } from 'threepoint-page/shell/settings';
 import { readSwitches } from 'threepoint-page/shell/switches';
@@ -54,8 +54,8 @@ export function activityServices(address = '?seed=5&quality=low') {
     },
     headset,
     body: { calibration: defaultCalibration },
-    avatar: { own: true, worn: plainAvatar },
-    fetchOwnAvatar,
+    avatar: { isBuiltIn: true, worn: plainAvatar },
+    fetchBuiltInAvatar,
     server: new ServerPresence('http://127.0.0.1:9', () => undefined),
     notices: { show: (level, text) => void notices.push({ level, text }) },
     study,

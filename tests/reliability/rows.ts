@@ -398,6 +398,12 @@ export const attackRows = {
     target: '0 players gone, 0 records refused',
     tests: ['tests/rooms/server/server-clock.test.ts'],
   },
+  'hidden-tab': {
+    inject: 'The tab of a player is behind another one for 12 s, 1 min and 5½ min, with its timers throttled',
+    sees: 'Others see “away”; the bots of the page leave their seats to bots of others; all is right with the first frames of the return',
+    target: '0 seats lost, 0 errors, the heap at most 4 MB larger',
+    tests: ['e2e/page/hidden-tab.spec.ts'],
+  },
   asleep: {
     inject:
       'The system of a player or participant sleeps in a match or a study, and its clocks have gone on by an hour: both, or that of the day alone',

@@ -64,7 +64,7 @@ test('every request line, method, header and body gets an answer from the server
       const status = /^HTTP\/1\.1 (\d{3}) /.exec(answer)?.[1] ?? 'none';
       const said = `seed ${seed}: ${JSON.stringify(bytes.toString('latin1').slice(0, 500))}`;
       expect(status, said).not.toBe('none');
-      // A fault of ours.
+      // A fault of the server.
       expect(status, said).not.toBe('500');
       if (!status.startsWith('1')) expect(answer, said).toContain('x-content-type-options: nosniff');
       statuses.set(status, (statuses.get(status) ?? 0) + 1);

@@ -38,7 +38,7 @@ const service = (name: string): Service => {
 };
 const dockerfile = textOf('Dockerfile');
 
-/** As compose reads `${NAME:-default}` and `${NAME:?message}`. */
+/** Replaces `${NAME:-default}` and `${NAME:?message}` as compose does. */
 function filled(text: string, given: Readonly<Record<string, string>>): string {
   return text.replace(/\$\{(\w+)(?::([-?])([^}]*))?\}/g, (_all, name: string, kind: string, rest: string) => {
     const value = given[name];

@@ -150,7 +150,7 @@ const bodies = fc.oneof(
   fc.json({ maxDepth: 3 }),
 );
 
-/** How the length of a body is told: by its length, in chunks, in bad chunks, not at all. */
+/** How the length of a body is declared: by its length, in chunks, in bad chunks, not at all. */
 type Framing = 'length' | 'chunked' | 'bad chunks' | 'none';
 const framings = usually<Framing>(fc.constantFrom('length', 'chunked'), fc.constantFrom('bad chunks', 'none'));
 
@@ -183,7 +183,7 @@ export function rawRequests(routes: readonly RouteLine[]): fc.Arbitrary<Buffer> 
       token: fc.constantFrom(true, false),
       body: bodies,
       framing: framings,
-      // Where the bytes are cut off or changed; null: not at all.
+      // The place at which the bytes are cut off or changed; null: unchanged.
       wound: usually(
         fc.constant(null),
         fc.record({ at: fc.nat(), byte: fc.oneof(fc.constant(null), fc.nat({ max: 255 })) }),

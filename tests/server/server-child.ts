@@ -75,8 +75,8 @@ export interface Health {
 }
 
 /**
- * Asks a server for its health until the test is over; tells of what was since the last question, once it has asked so
- * often.
+ * Requests a server's health until the test is over. Returns the measurements since the last call, after at least
+ * `atLeast` requests.
  */
 export function probeHealth(url: string): (atLeast?: number) => Promise<Health> {
   const script = fileURLToPath(new URL('./health-prober.ts', import.meta.url));

@@ -14,7 +14,7 @@ const directory = process.argv[2] as string;
 mkdirSync(join(directory, 'page'), { recursive: true });
 writeFileSync(join(directory, 'page/index.html'), '<!doctype html><title>page</title>');
 const other = createServer().listen(lastPort, '127.0.0.1').unref();
-// Where another program has the port, it is taken as well.
+// A port that another program has is taken as well.
 await Promise.race([once(other, 'listening'), once(other, 'error')]);
 try {
   await startServer({

@@ -2,7 +2,7 @@ import { recorderText } from 'threepoint-page/shell/panel/recording-page';
 import { createRunningLine } from 'threepoint-ui/running-line';
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
 
-/** As much of an element as a line of text needs; it counts how often its text was set. */
+/** The part of an element that a line of text needs; it counts how often its text was set. */
 class Element {
   readonly children: Element[] = [];
   readonly attributes: Record<string, string> = {};

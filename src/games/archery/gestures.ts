@@ -98,7 +98,7 @@ export interface ArcheryGestures {
   /** Processes a frame; times must rise, at any interval. The result is valid until the next call. */
   follow(frame: TrackingFrame, buttons: Buttons): GestureFrame;
   /** Announces that the floor frame jumps before the next frame. */
-  jumped(): void;
+  discontinuity(): void;
 }
 
 /** A press nocks within this distance of the fist from the nocking point [m]; the margin is hysteresis. */
@@ -172,9 +172,9 @@ class BowGestures implements ArcheryGestures {
     return this.#result;
   }
 
-  jumped(): void {
-    this.#bow.jumped();
-    this.#nocked?.jumped();
+  discontinuity(): void {
+    this.#bow.discontinuity();
+    this.#nocked?.discontinuity();
   }
 
   #begin({ time, head }: TrackingFrame, buttons: Buttons): void {

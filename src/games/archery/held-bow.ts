@@ -81,7 +81,7 @@ export class HeldBow {
   }
 
   /** Announces that the floor frame jumps: the return ends at once. */
-  jumped(): void {
+  discontinuity(): void {
     this.#settling = null;
   }
 

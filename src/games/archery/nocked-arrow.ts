@@ -65,7 +65,7 @@ export class NockedArrow {
    */
   opened = false;
   /** Whether `direction` dates from before a jump of the floor frame. */
-  #jumped = false;
+  #discontinuous = false;
   #drawSpeed = 0;
   /** How long the draw has been steady [s], and the draw at the anchor [m]. */
   #steady = 0;
@@ -112,8 +112,8 @@ export class NockedArrow {
   }
 
   /** Announces that the floor frame jumps: the next frame sets the direction without a filter. */
-  jumped(): void {
-    this.#jumped = true;
+  discontinuity(): void {
+    this.#discontinuous = true;
   }
 
   /** Resumes after a lost hand is tracked again. */
@@ -144,13 +144,13 @@ export class NockedArrow {
 
   /** Sets the direction to that of the bow hand after a jump of the floor frame. */
   #leap(held: Vec3): void {
-    if (this.#jumped) copyVec3(held, this.direction);
+    if (this.#discontinuous) copyVec3(held, this.direction);
   }
 
   /** Returns the filter's share for this frame; 1 after a jump. */
   #smoothing(halfLife: number, delta: number): number {
-    const share = this.#jumped ? 1 : smoothingFactor(halfLife, delta);
-    this.#jumped = false;
+    const share = this.#discontinuous ? 1 : smoothingFactor(halfLife, delta);
+    this.#discontinuous = false;
     return share;
   }
 

@@ -9,7 +9,7 @@ import { ballRoomMessageFrom } from './ball-messages';
 import { type BallGame, BallPolicy } from './ball-policy';
 import { unpackBall } from './ball-snapshot';
 import type { BallOptions } from './ball-state';
-import { answersBallAction, followBallEvent, predictBallAction, withMatchTime } from './replica';
+import { answersBallAction, applyBallEvent, predictBallAction, withMatchTime } from './client-state';
 import { arenaFromSeatFloor } from './stations';
 
 export type BallConnection = Connection<BallGame>;
@@ -21,7 +21,7 @@ export type BallLoopbackHost = LoopbackHost<BallGame>;
 export const ballClientPolicy: ClientPolicy<BallGame> = {
   readMessage: ballRoomMessageFrom,
   unpack: unpackBall,
-  follow: followBallEvent,
+  follow: applyBallEvent,
   at: withMatchTime,
   predict: predictBallAction,
   answers: answersBallAction,

@@ -24,7 +24,7 @@ import { ballInPalm, fistOf } from '../fist';
 import { slowestThrow } from './actions';
 import type { BallAction, BallEvent, BallInput, BallState } from './ball-state';
 import { ballRadius } from './flight';
-import { createHandSpeed, type HandSpeed } from './hand-speed';
+import { createHandVelocity, type HandVelocity } from './hand-velocity';
 import { ballInHand } from './state-readings';
 import { rackPosition } from './stations';
 
@@ -73,7 +73,7 @@ export interface BallGestures {
   /** Processes events of the match: a refused ball leaves the hand. */
   onEvents(events: readonly BallEvent[]): void;
   /** Announces that the floor frame jumps: velocities start over. */
-  jumped(): void;
+  discontinuity(): void;
   /**
    * Announces a new state of the match, which may lack actions of these hands. From the next frame on the hands release
    * balls that it has elsewhere, and return balls that only it has in them.
@@ -110,7 +110,7 @@ interface Holding {
 
 /** The state of one hand. */
 interface HandMemory {
-  readonly speed: HandSpeed;
+  readonly speed: HandVelocity;
   holding: Holding | null;
   /** The newest throw, until it is refused: then the match still has the ball in the hand. */
   thrown: { readonly sequence: number; readonly ball: number } | null;
@@ -127,7 +127,7 @@ interface HandMemory {
 }
 
 const makeHandMemory = (): HandMemory => ({
-  speed: createHandSpeed(),
+  speed: createHandVelocity(),
   holding: null,
   thrown: null,
   unthrown: false,
@@ -194,7 +194,7 @@ class PlayerGestures implements BallGestures {
     for (const event of events) for (const side of sides) this.onEvent(side, event, player);
   }
 
-  jumped(): void {
+  discontinuity(): void {
     for (const side of sides) this.hands[side].speed.reset();
   }
 

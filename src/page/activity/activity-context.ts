@@ -1,4 +1,4 @@
-import type { AvatarHash, OwnAvatar, OwnBody } from 'threepoint/core/body/avatar-ref';
+import type { AvatarHash, BuiltInAvatar, BuiltInBody } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { Pose } from 'threepoint/core/math/pose';
 import type { Ray } from 'threepoint/core/math/ray';
@@ -62,9 +62,9 @@ export interface ActivitySettingsWriter {
   keep(part: Partial<StoredActivitySettings>): void;
 }
 
-/** The avatar that the user shows to others: one of the page's own, or a file. */
+/** The avatar that the user shows to others: a built-in one, or a file. */
 export type UserAvatar =
-  | OwnAvatar
+  | BuiltInAvatar
   | {
       readonly name: string;
       readonly file: Blob;
@@ -91,10 +91,10 @@ export interface ActivityServices {
   readonly mouse: MouseAim;
   readonly headset: { readonly worn: boolean; readonly emulator: object | null };
   readonly body: { readonly calibration: Calibration };
-  /** The user's avatar; `own`: it is one of the page's own, not a file. */
-  readonly avatar: { readonly own: boolean; readonly worn: UserAvatar };
-  /** Downloads one of the page's own avatars. */
-  fetchOwnAvatar(name: OwnBody): Promise<ArrayBuffer>;
+  /** The user's avatar; `isBuiltIn`: it is a built-in one, not a file. */
+  readonly avatar: { readonly isBuiltIn: boolean; readonly worn: UserAvatar };
+  /** Downloads a built-in avatar. */
+  fetchBuiltInAvatar(name: BuiltInBody): Promise<ArrayBuffer>;
   readonly server: Pick<ServerPresence, 'state' | 'known' | 'ask'>;
   readonly notices: Pick<Notices, 'show'>;
   /**

@@ -87,7 +87,7 @@ export interface OpenActivity {
   /** Returns the distance [m] along a ray to a button in the scene, or null. `press`: also presses the button. */
   point?(ray: Ray, press: boolean): number | null;
   /** The user's floor frame changed: movement since the last frame is not a gesture. */
-  jumped?(): void;
+  discontinuity?(): void;
   /** A session started or ended: another input source moves the hands from now on. */
   sessionChanged?(): void;
   calibrate?(calibration: Calibration): void;

@@ -106,6 +106,7 @@ export class ArcheryActivity implements OpenActivity {
   show(_time: number, frame: TrackingFrame | null): void {
     const { newest } = this.play;
     if (!frame || !newest) return;
+    this.#view.showScoreboard(this.#context.headset.worn);
     this.#view.show(newest.state, this.#context.study.idle ? null : newest.bow, newest.time, frame.head);
   }
 
@@ -116,8 +117,8 @@ export class ArcheryActivity implements OpenActivity {
     return distance;
   }
 
-  jumped(): void {
-    this.play.jumped();
+  discontinuity(): void {
+    this.play.discontinuity();
   }
 
   sessionChanged(): void {

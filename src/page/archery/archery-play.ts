@@ -57,7 +57,7 @@ export interface ArcheryPlay {
    */
   restart(calibration: Calibration, eyeHeight?: number): void;
   /** The user's floor frame changes with the next frame. */
-  jumped(): void;
+  discontinuity(): void;
   /** Other hands hold the bow from the next frame on. They do not release the arrow that the previous hands drew. */
   handedOver(): void;
   /** The start signal: the clock of a round that waits runs from the next frame on, not from the first arrow. */
@@ -181,7 +181,7 @@ export function createArcheryPlay(
       return steered.follow(time, { target, ...wish });
     },
     restart,
-    jumped: () => gestures.jumped(),
+    discontinuity: () => gestures.discontinuity(),
     handedOver() {
       otherHands = true;
     },

@@ -30,6 +30,8 @@ export interface ArcheryView {
    * null.
    */
   show(state: ArcheryState, bow: BowView | null, matchTime: number, head: Pose<'floor'>): void;
+  /** Shows or hides the board beside the field. At a desk the play bar has its figures, and the logo would cover it. */
+  showScoreboard(visible: boolean): void;
   /** Plays and captions what happened since the last frame; cues of the bow are in the floor frame. */
   playEvents(events: readonly ArcheryEvent[], cues: readonly BowCue[]): void;
   readonly sound: AudibleStage;
@@ -85,6 +87,9 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
       bow.show(bowView);
       range.setZoneWarning(!state.inZone);
       range.animate(matchTime);
+    },
+    showScoreboard(visible) {
+      scoreboard.object.visible = visible;
     },
     playEvents(events, cues) {
       if (shown) sounds.playEvents(shown, events, cues);

@@ -157,6 +157,7 @@ export interface BotsOptions {
 export class BallBots {
   private bots: Bot[] = [];
   private lookedAt = Number.NEGATIVE_INFINITY;
+  private away = false;
 
   constructor(
     private readonly options: BotsOptions,
@@ -169,7 +170,7 @@ export class BallBots {
    */
   seat(connection: BallConnection, time: number): void {
     const { options } = this;
-    const wanted = options.bots();
+    const wanted = options.bots() && !this.away;
     let ended = false;
     for (const bot of this.bots) {
       const gone = bot.connection.status.phase === 'ended';
@@ -191,6 +192,15 @@ export class BallBots {
     for (const bot of this.bots) this.moveBot(bot, time);
   }
 
+  /**
+   * Leaves the seats to bots of other pages while `away`: a hidden page draws no frames, in which its bots would move.
+   */
+  setAway(away: boolean): void {
+    this.away = away;
+    if (away) this.leave();
+  }
+
+  /** Takes all bots out of their seats. */
   leave(): void {
     for (const bot of this.bots) bot.connection.leave();
     this.bots = [];

@@ -80,6 +80,8 @@ export interface BallFrame {
   readonly bodies: readonly BodyFrame[];
   readonly opening: Opening | null;
   readonly events: readonly BallEvent[];
+  /** The page was hidden before this frame, and the events are from that time: their sounds are over. */
+  readonly resumed: boolean;
   readonly cues: readonly BallCue[];
   readonly haptics: readonly BallPulse[];
   readonly held: Readonly<Record<Side, number | null>>;

@@ -18,7 +18,7 @@ export interface BallMenuState {
   readonly others: readonly OtherPlayer[];
   /** Other people can join this room. */
   readonly canInvite: boolean;
-  readonly voices: Pick<VoicesState, 'phase' | 'muted' | 'deaf'>;
+  readonly voices: Pick<VoicesState, 'phase' | 'muted' | 'microphoneMissing'>;
 }
 
 export interface BallMenuActions {
@@ -32,7 +32,10 @@ export interface BallMenuActions {
   mute(on: boolean): void;
 }
 
-function voiceEntries({ voices: { phase, muted, deaf } }: BallMenuState, actions: BallMenuActions): MenuEntry[] {
+function voiceEntries(
+  { voices: { phase, muted, microphoneMissing } }: BallMenuState,
+  actions: BallMenuActions,
+): MenuEntry[] {
   switch (phase) {
     case 'off':
       return [{ id: 'voices', label: 'Talk', act: () => actions.askVoices(true) }];
@@ -42,7 +45,7 @@ function voiceEntries({ voices: { phase, muted, deaf } }: BallMenuState, actions
         { id: 'no-voices', label: 'Not now', act: () => actions.askVoices(false) },
       ];
     case 'in': {
-      const label = deaf ? 'No microphone' : muted ? 'Unmute me' : 'Mute me';
+      const label = microphoneMissing ? 'No microphone' : muted ? 'Unmute me' : 'Mute me';
       return [{ id: 'voices', label, act: () => actions.mute(!muted) }];
     }
     default:
@@ -98,7 +101,7 @@ export class BallMenu {
     const { settings } = this.#context;
     const court = this.#court;
     const round = court.round();
-    const { phase, muted, deaf, message } = court.voices.state;
+    const { phase, muted, microphoneMissing, message } = court.voices.state;
     const isAsked = round !== null && round.ended === null && round.seat !== null && round.phase !== 'running';
     const others = round ? otherPlayers(round, phase === 'in') : [];
     const canInvite = this.#openRoom() !== null;
@@ -107,7 +110,7 @@ export class BallMenu {
       plainOthers: settings.plainOthers,
       others,
       canInvite,
-      voices: { phase, muted, deaf },
+      voices: { phase, muted, microphoneMissing },
     };
     return {
       entries: ballEntries(state, this.#actions()),

@@ -46,7 +46,7 @@ export interface BallPlay {
    * The user's floor frame changes with the next frame: others see a jump without interpolation, and hands throw
    * nothing.
    */
-  jumped(): void;
+  discontinuity(): void;
   ready(on: boolean): void;
   rotate(on: boolean): void;
   sit(seat: number | null): void;
@@ -93,6 +93,7 @@ class MatchPlay implements BallPlay {
   private events: readonly BallEvent[] = none;
   private gestures: BallGestures | null = null;
   private jump = false;
+  private resumed = false;
   /** Since when the match has been waiting in this phase for a player to be ready [s]. */
   private waitingSince: { readonly phase: string; readonly at: number } | null = null;
   /** The seats at the last check. */
@@ -134,6 +135,10 @@ class MatchPlay implements BallPlay {
     if (this.room?.paused && this.begunAt !== null) this.sight.pausedSeconds += time - this.begunAt;
     this.begunAt = time;
     const update = this.connection.update(time);
+    if (update.news.includes('resumed')) {
+      this.resumed = true;
+      this.remote.resume();
+    }
     for (const pose of update.poses) this.remote.receive(pose);
     if (update.events.length > 0) this.events = [...this.events, ...update.events];
     if (update.news.length > 0) this.gestures?.resume();
@@ -184,12 +189,14 @@ class MatchPlay implements BallPlay {
       bodies,
       opening,
       events: this.events,
+      resumed: this.resumed,
       cues: joined(missed.cues, played?.cues),
       haptics: joined(missed.haptics, played?.haptics),
       held: played?.held ?? emptyHands,
       aim: this.simulated.aim,
     };
     this.events = none;
+    this.resumed = false;
     return this.newest;
   }
 
@@ -199,9 +206,9 @@ class MatchPlay implements BallPlay {
     this.jump = false;
   }
 
-  jumped(): void {
+  discontinuity(): void {
     this.jump = true;
-    this.gestures?.jumped();
+    this.gestures?.discontinuity();
   }
 
   ready(on: boolean): void {
@@ -222,6 +229,7 @@ class MatchPlay implements BallPlay {
 
   away(on: boolean): void {
     this.connection?.away(on);
+    this.bots.setAway(on && this.othersPlay);
   }
 
   calibrate(next: Calibration): void {
@@ -240,6 +248,12 @@ class MatchPlay implements BallPlay {
   leave(): void {
     this.bots.leave();
     this.connection?.leave();
+  }
+
+  /** Whether another person is connected and has a seat. */
+  private get othersPlay(): boolean {
+    const { seats = none, mySeat = null } = this.room ?? {};
+    return seats.some((row, seat) => seat !== mySeat && row !== null && !row.bot && row.presence !== 'gone');
   }
 
   /** Prevents a person who takes a seat from gliding there from the previous person's position. */

@@ -39,6 +39,7 @@ export type CourtProbe = BallProbe & { readonly voices: VoicesProbe };
 type Players = BallFrame['players'];
 
 const noBodies: BallFrame['bodies'] = [];
+const noEvents: BallFrame['events'] = [];
 const noSeats: readonly never[] = [];
 /** How long the notice of a voided match is shown [s]. */
 const noticeSeconds = 8;
@@ -181,7 +182,7 @@ export class CourtActivity implements OpenActivity {
       voices: this.voices.seats,
       hidden: this.blocked.hidden,
     });
-    this.#view.playEvents(newest.events, newest.cues);
+    this.#view.playEvents(newest.resumed ? noEvents : newest.events, newest.cues);
   }
 
   point({ origin, direction }: Ray, press: boolean): number | null {
@@ -193,8 +194,8 @@ export class CourtActivity implements OpenActivity {
     return hit.distance;
   }
 
-  jumped(): void {
-    this.play.jumped();
+  discontinuity(): void {
+    this.play.discontinuity();
   }
 
   sessionChanged(): void {

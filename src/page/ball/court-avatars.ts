@@ -14,7 +14,7 @@ import { SharedAvatar } from './shared-avatar';
 import type { Voices } from './voices';
 
 export interface CourtAvatarsOptions {
-  readonly context: Pick<ActivityContext, 'settings' | 'avatar' | 'notices' | 'fetchOwnAvatar'>;
+  readonly context: Pick<ActivityContext, 'settings' | 'avatar' | 'notices' | 'fetchBuiltInAvatar'>;
   /** null: avatar files are not exchanged in this room. */
   readonly exchange: AvatarExchange | null;
   /** The file of the body that other players have. */
@@ -34,7 +34,7 @@ export class CourtAvatars {
     const { context, exchange, mannequin, play, voices } = options;
     const { settings, avatar, notices } = context;
     this.#options = options;
-    this.#seen = new SeenAvatars(mannequin, (name) => context.fetchOwnAvatar(name), exchange);
+    this.#seen = new SeenAvatars(mannequin, (name) => context.fetchBuiltInAvatar(name), exchange);
     this.#others = createRemoteAvatars({
       load: (worn) => this.#seen.load(worn),
       plain: () => settings.plainOthers,
@@ -43,7 +43,7 @@ export class CourtAvatars {
     });
     this.#shared = new SharedAvatar({
       exchange,
-      wear: () => (settings.shareAvatar || avatar.own ? avatar.worn : null),
+      wear: () => (settings.shareAvatar || avatar.isBuiltIn ? avatar.worn : null),
       send: (worn) => play.wear(worn),
       notify: (level, text) => notices.show(level, text),
     });

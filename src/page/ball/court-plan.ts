@@ -1,4 +1,4 @@
-import { ballsPerRack, holderStation, rackPosition, stations, throwingDistance } from 'threepoint-games/ball/stations';
+import { ballsPerRack, rackPosition } from 'threepoint-games/ball/stations';
 
 /** Positions on the court, arena frame [m]. The throwers stand around the origin and throw along −Z. */
 export const court = {
@@ -11,7 +11,6 @@ export const court = {
   laneFar: -6.1,
   /** The radius of each player's mark. */
   padRadius: 0.46,
-  holderZ: stations[holderStation]?.position.z ?? -throwingDistance,
   /**
    * One board for the throwers, one for the holder, who is further away from it. They hang high enough that no name
    * label hides a line.

@@ -18,6 +18,6 @@ async function roomFor({ place, switches, clock, server, layout }: ActivityConte
 
 /** Downloads the body of other players and connects to the room. Rejects with a reason. */
 export async function openCourt(context: ActivityContext): Promise<CourtActivity> {
-  const [mannequin, room] = await Promise.all([context.fetchOwnAvatar(plainAvatar), roomFor(context)]);
+  const [mannequin, room] = await Promise.all([context.fetchBuiltInAvatar(plainAvatar), roomFor(context)]);
   return new CourtActivity(context, room, mannequin);
 }

@@ -5,9 +5,9 @@ import { type LoadedAvatar, parseAvatar, parseChecked } from 'threepoint/avatar/
 import {
   type AvatarHash,
   type AvatarRef,
+  type BuiltInBody,
   bodyOf,
-  isOwnAvatar,
-  type OwnBody,
+  isBuiltInAvatar,
   plainAvatar,
 } from 'threepoint/core/body/avatar-ref';
 import { PassingFault } from 'threepoint/core/errors/passing-fault';
@@ -27,39 +27,39 @@ interface SeenAvatarsOptions {
  * names. It is refused if its hash differs, and is checked in a worker before it is parsed here.
  */
 export class SeenAvatars {
-  /** The files of our own bodies that were needed. */
-  readonly #own = new Map<OwnBody, Promise<ArrayBuffer>>();
-  readonly #fetchOwn: (name: OwnBody) => Promise<ArrayBuffer>;
+  /** The files of the built-in bodies that were needed. */
+  readonly #builtIn = new Map<BuiltInBody, Promise<ArrayBuffer>>();
+  readonly #fetchBuiltIn: (name: BuiltInBody) => Promise<ArrayBuffer>;
   readonly #exchange: AvatarExchange | null;
   readonly #patienceMs: number;
   readonly #leaving = new AbortController();
 
   /**
-   * `mannequin`: the file of the plain avatar; `fetchOwn`: downloads another of the page's own. `exchange`: null
+   * `mannequin`: the file of the plain avatar; `fetchBuiltIn`: downloads another built-in body. `exchange`: null
    * without a server, and in rooms of a study.
    */
   constructor(
     mannequin: ArrayBuffer,
-    fetchOwn: (name: OwnBody) => Promise<ArrayBuffer>,
+    fetchBuiltIn: (name: BuiltInBody) => Promise<ArrayBuffer>,
     exchange: AvatarExchange | null,
     { patienceMs = 60_000 }: SeenAvatarsOptions = {},
   ) {
-    this.#own.set(plainAvatar, Promise.resolve(mannequin));
-    this.#fetchOwn = fetchOwn;
+    this.#builtIn.set(plainAvatar, Promise.resolve(mannequin));
+    this.#fetchBuiltIn = fetchBuiltIn;
     this.#exchange = exchange;
     this.#patienceMs = patienceMs;
   }
 
   /** Rejects with a PassingFault where it could not be fetched. */
   async load(avatar: AvatarRef): Promise<LoadedAvatar> {
-    if (!isOwnAvatar(avatar)) return this.#loadFile(avatar);
+    if (!isBuiltInAvatar(avatar)) return this.#loadFile(avatar);
     const body = bodyOf(avatar);
-    const known = this.#own.get(body);
-    const file = known ?? this.#fetchOwn(body);
+    const known = this.#builtIn.get(body);
+    const file = known ?? this.#fetchBuiltIn(body);
     if (!known) {
-      this.#own.set(body, file);
+      this.#builtIn.set(body, file);
       // What was lost on the way is fetched again when it is needed again.
-      file.catch(() => this.#own.delete(body));
+      file.catch(() => this.#builtIn.delete(body));
     }
     return parseAvatar(await file, `${body}.vrm`);
   }

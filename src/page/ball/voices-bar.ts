@@ -105,14 +105,14 @@ export function createVoicesBar(actions: VoicesBarActions) {
   return {
     node,
     show(state: VoicesState, round: ListedPeople | null): void {
-      const { phase, deaf } = state;
+      const { phase, microphoneMissing } = state;
       muted = state.muted;
       const isIn = phase === 'in';
       ask.hidden = phase !== 'off' && phase !== 'joining';
       ask.disabled = phase === 'joining';
       ask.textContent = phase === 'joining' ? 'Joining voice chat …' : 'Talk with the others';
       mute.hidden = !isIn || round?.seat === null;
-      mute.textContent = deaf ? 'Find a microphone' : muted ? 'Unmute me (T)' : 'Mute me (T)';
+      mute.textContent = microphoneMissing ? 'Find a microphone' : muted ? 'Unmute me (T)' : 'Mute me (T)';
       mute.classList.toggle('primary', isIn && !muted);
       mute.setAttribute('aria-pressed', String(!muted));
       leave.hidden = !isIn;

@@ -9,7 +9,7 @@ export interface VoicesState {
   /** What a person should know of their voice; null: nothing. */
   readonly message: string | null;
   /** There is no microphone. The user can request it again. */
-  readonly deaf: boolean;
+  readonly microphoneMissing: boolean;
 }
 
 /** The voice of another player. */

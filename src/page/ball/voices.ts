@@ -62,7 +62,7 @@ export class Voices {
       relay,
       relayOnly: relay && relayOnly(),
       message: this.#message,
-      deaf: this.#phase === 'in' && this.#microphone.errorMessage !== null,
+      microphoneMissing: this.#phase === 'in' && this.#microphone.errorMessage !== null,
     };
   }
 

@@ -277,7 +277,7 @@ export class MocapView {
 
   #seek(seconds: number): void {
     this.#options.replay.seek(seconds);
-    this.#second?.jumped();
+    this.#second?.discontinuity();
   }
 
   #placeTruth(place: TruthPlace): void {

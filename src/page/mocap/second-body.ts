@@ -57,7 +57,7 @@ export class SecondBody {
   }
 
   /** The next frame is elsewhere in time. */
-  jumped(): void {
+  discontinuity(): void {
     this.#body.discontinuity();
   }
 

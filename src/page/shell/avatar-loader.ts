@@ -1,4 +1,5 @@
 import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
+import { labelOf } from 'threepoint/avatar/built-in-bodies';
 import { decoders } from 'threepoint/avatar/decoders/decoders';
 import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
 import { checkInWorker } from 'threepoint/avatar/file/check-in-worker';
@@ -7,8 +8,7 @@ import { avatarLimits } from 'threepoint/avatar/file/inspect-avatar';
 import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
 import { withNamedBones } from 'threepoint/avatar/humanoid/name-bones';
 import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
-import { labelOf } from 'threepoint/avatar/own-bodies';
-import { type OwnBody, ownAvatarOf, type SkinTone } from 'threepoint/core/body/avatar-ref';
+import { type BuiltInBody, builtInAvatarOf, type SkinTone } from 'threepoint/core/body/avatar-ref';
 import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import type { UserAvatar } from '../activity/activity-context';
@@ -16,8 +16,8 @@ import type { KnownBones } from './known-bones';
 
 export const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megabytes };
 
-/** Downloads one of the page's own avatars. `onProgress` is called with the share [0, 1] that has arrived. */
-export const fetchOwnAvatar = (name: OwnBody, onProgress?: (share: number) => void): Promise<ArrayBuffer> =>
+/** Downloads a built-in avatar. `onProgress` is called with the share [0, 1] that has arrived. */
+export const fetchBuiltInAvatar = (name: BuiltInBody, onProgress?: (share: number) => void): Promise<ArrayBuffer> =>
   readLimited(`${pageFolder()}/avatars/${name}.vrm`, avatarFile, onProgress && { onProgress });
 
 /** An avatar, and the reference by which other players see it. */
@@ -42,7 +42,7 @@ async function fileFor({ bytes, hash }: CheckedAvatar, bones: BoneMap | undefine
   return { file: new Blob([named]), hash: await hashOf(named) };
 }
 
-/** Loads avatars from files, addresses and the page's own folder. */
+/** Loads avatars from files, addresses and the page's folder. */
 export class AvatarLoader {
   readonly #options: AvatarLoaderOptions;
 
@@ -50,15 +50,15 @@ export class AvatarLoader {
     this.#options = options;
   }
 
-  /** Loads one of the page's own avatars. `bytes`: its file, if the download has started already. */
-  async loadOwn(
-    body: OwnBody,
+  /** Loads a built-in avatar. `bytes`: its file, if the download has started already. */
+  async loadBuiltIn(
+    body: BuiltInBody,
     skinTone: SkinTone | undefined,
-    bytes: Promise<ArrayBuffer> = fetchOwnAvatar(body),
+    bytes: Promise<ArrayBuffer> = fetchBuiltInAvatar(body),
   ): Promise<LoadedUserAvatar> {
     return {
       avatar: await createAvatarBetweenFrames(await parseAvatar(await bytes, labelOf(body))),
-      worn: ownAvatarOf(body, skinTone),
+      worn: builtInAvatarOf(body, skinTone),
     };
   }
 

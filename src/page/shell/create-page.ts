@@ -12,7 +12,7 @@ import { affordableQuality } from '../scene/renderer';
 import { Recorder } from '../studio/recorder';
 import { Activities } from './activities';
 import { activities as registeredActivities } from './activity-registry';
-import { fetchOwnAvatar } from './avatar-loader';
+import { fetchBuiltInAvatar } from './avatar-loader';
 import { Controls } from './controls/controls';
 import { DeviceDifference } from './device-difference';
 import { Emitter } from './emitter';
@@ -45,7 +45,7 @@ function createBase({ context, notices, loading }: PageOptions) {
   const { switches, settings, store, changes } = context;
   const timing = createFrameTiming(() => performance.now());
   // Downloads start before anything is built.
-  const ownAvatar = fetchOwnAvatar(settings.ownBody, (part) => loading.report('the avatar', part));
+  const builtInAvatar = fetchBuiltInAvatar(settings.builtInBody, (part) => loading.report('the avatar', part));
   const pageBody = createPageBody({ context, notices, loading, timing });
   const { body } = pageBody;
 
@@ -60,7 +60,7 @@ function createBase({ context, notices, loading }: PageOptions) {
   const prepare = (object: Object3D) => prepareFirstPicture(renderer, scene, object);
   const knownBones = new KnownBones(store);
   const avatar = new ShownAvatar({ scene, settings, body, notices, knownBones, prepare, onChange: changes.emit });
-  const avatarShown = avatar.openOwn(ownAvatar);
+  const avatarShown = avatar.openBuiltIn(builtInAvatar);
   const recorder = new Recorder(changes.emit);
   const headset = new Headset({ renderer, quality, switches, settings, notices });
   return { pageBody, canvas, quality, timing, stage, recorder, avatar, avatarShown, headset, prepare };
@@ -93,7 +93,7 @@ function createPlay({ context, notices }: PageOptions, base: Base) {
       headset,
       body,
       avatar,
-      fetchOwnAvatar,
+      fetchBuiltInAvatar,
       server,
       notices,
       study,
@@ -119,9 +119,9 @@ function createPlay({ context, notices }: PageOptions, base: Base) {
     avatar.current?.setCalibration(calibration);
   });
   pageBody.outgrown.listen((difference) => userCalibration.outgrown(difference));
-  pageBody.jumped.listen(() => {
+  pageBody.discontinuity.listen(() => {
     impaired.reset();
-    activities.current?.jumped?.();
+    activities.current?.discontinuity?.();
   });
   return { study, impaired, server, activities, captions, arrivals, userCalibration, source };
 }

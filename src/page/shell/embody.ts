@@ -8,7 +8,7 @@ import type { ShownAvatar } from './shown-avatar';
 /** The parts of the page that a study's condition changes. */
 export interface EmbodyingParts {
   readonly writer: Pick<SettingsWriter, 'change'>;
-  readonly avatar: Pick<ShownAvatar, 'openOwn' | 'ownBody'>;
+  readonly avatar: Pick<ShownAvatar, 'openBuiltIn' | 'builtInBody'>;
   readonly body: Pick<BodySolver, 'setEstimator' | 'estimator'>;
   readonly impaired: Pick<TrackingDegradation, 'configure'>;
 }
@@ -20,14 +20,14 @@ export interface EmbodyingParts {
  */
 export async function embody(parts: EmbodyingParts, embodiment: Embodiment, seed: number): Promise<void> {
   const { writer, avatar, body, impaired } = parts;
-  const { estimator, avatar: ownBody, mirror, upperBodyOnly, ...impairments } = embodiment;
+  const { estimator, avatar: builtInBody, mirror, upperBodyOnly, ...impairments } = embodiment;
   writer.change({
     ...(mirror !== undefined && { mirror }),
     ...(upperBodyOnly !== undefined && { upperBodyOnly }),
-    ...(ownBody !== undefined && { ownBody }),
+    ...(builtInBody !== undefined && { builtInBody }),
   });
   impaired.configure(impairments, seed);
-  const wears = ownBody === undefined || ownBody === avatar.ownBody || avatar.openOwn();
+  const wears = builtInBody === undefined || builtInBody === avatar.builtInBody || avatar.openBuiltIn();
   const [worn] = await Promise.all([wears, body.setEstimator(estimator)]);
   if (!worn || body.estimator !== estimator) throw new PhrasedError('round.body');
 }

@@ -39,7 +39,7 @@ export interface HeadsetListener {
   /** Entering failed; the notice is already there. */
   refused(): void;
   /** The floor lies elsewhere from one frame to the next. */
-  jumped(): void;
+  discontinuity(): void;
   /** The session went behind a menu of the device, or came back. */
   visibilityChanged(): void;
   /** The emulator is there now, or could not be loaded. */
@@ -125,7 +125,7 @@ export class Headset {
   get bodyComplaint(): string | null {
     if (!this.#session) return null;
     const { bodyReader } = this.#session.tracking;
-    return bodyReader ? bodyReader.complaint : 'the headset was not asked for its body';
+    return bodyReader ? bodyReader.complaint : 'the headset’s body tracking is off';
   }
 
   /** Asks the browser what there is; the emulator is loaded where it is wanted at once. */
@@ -237,7 +237,7 @@ export class Headset {
       session: xr,
       drawing: renderer.xr,
       bodyReader: settings.deviceBody ? new DeviceBodyReader() : null,
-      onDiscontinuity: () => this.#listener?.jumped(),
+      onDiscontinuity: () => this.#listener?.discontinuity(),
       onEnd: () => {
         this.#session = null;
         this.#listener?.left();

@@ -18,7 +18,7 @@ export interface PageBody {
   readonly calibrated: Emitter<[calibration: Calibration, source: CalibrationSource]>;
   /** The user is taller than their calibration by this much [m]. */
   readonly outgrown: Emitter<[difference: number]>;
-  readonly jumped: Emitter;
+  readonly discontinuity: Emitter;
 }
 
 export interface PageBodyOptions {
@@ -34,7 +34,7 @@ export function createPageBody({ context, notices, loading, timing }: PageBodyOp
   const clock = createPageClock(() => performance.now());
   const calibrated: PageBody['calibrated'] = new Emitter();
   const outgrown: PageBody['outgrown'] = new Emitter();
-  const jumped = new Emitter();
+  const discontinuity = new Emitter();
   const networks = createNetworkLoader({ provider: switches.executionProvider, notices, loading });
   const body = new BodySolver({
     estimator: 'ik',
@@ -47,7 +47,7 @@ export function createPageBody({ context, notices, loading, timing }: PageBodyOp
     events: {
       calibrated: calibrated.emit,
       heightmismatch: outgrown.emit,
-      discontinuity: jumped.emit,
+      discontinuity: discontinuity.emit,
       changed: changes.emit,
       fallback(name, reason) {
         const { label } = estimatorTexts[name];
@@ -58,5 +58,5 @@ export function createPageBody({ context, notices, loading, timing }: PageBodyOp
       },
     },
   });
-  return { body, networks, clock, calibrated, outgrown, jumped };
+  return { body, networks, clock, calibrated, outgrown, discontinuity };
 }

@@ -1,8 +1,8 @@
 import type { Object3D } from 'three';
 import type { BodySolver, BodySolverOptions } from 'threepoint/api/body-solver';
 import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
+import { labelOf } from 'threepoint/avatar/built-in-bodies';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { labelOf } from 'threepoint/avatar/own-bodies';
 import { palettes } from 'threepoint/avatar/palettes';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
@@ -11,7 +11,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Notices } from 'threepoint-ui/notices';
 import type { MocapView, Outlook, Replay } from '../mocap/mocap-view';
 import type { Recorder } from '../studio/recorder';
-import { fetchOwnAvatar } from './avatar-loader';
+import { fetchBuiltInAvatar } from './avatar-loader';
 import { estimatorTexts } from './estimator-texts';
 import type { PreferenceStore } from './preferences';
 import type { Settings } from './settings';
@@ -19,7 +19,7 @@ import type { Settings } from './settings';
 export interface PageMocapOptions {
   readonly scene: Object3D;
   readonly recorder: Recorder;
-  readonly settings: Pick<Settings, 'ownBody' | 'palette'>;
+  readonly settings: Pick<Settings, 'builtInBody' | 'palette'>;
   readonly body: Pick<BodySolver, 'wanted' | 'setEstimator' | 'discontinuity'>;
   readonly networks: BodySolverOptions['networks'];
   readonly store: Pick<PreferenceStore, 'remember'>;
@@ -109,10 +109,12 @@ export class PageMocap {
     });
   }
 
-  /** One of our own, in other colours than those of the first. */
+  /** A built-in avatar in other colours than those of the first. */
   async #loadAvatar(): Promise<Avatar> {
-    const { ownBody, palette } = this.#options.settings;
-    const avatar = await createAvatarBetweenFrames(await parseAvatar(await fetchOwnAvatar(ownBody), labelOf(ownBody)));
+    const { builtInBody, palette } = this.#options.settings;
+    const avatar = await createAvatarBetweenFrames(
+      await parseAvatar(await fetchBuiltInAvatar(builtInBody), labelOf(builtInBody)),
+    );
     avatar.setPalette(palettes.find(({ name }) => name !== palette)!.name);
     await this.#options.prepare(avatar.object);
     return avatar;

@@ -1,5 +1,5 @@
 import { type BoneName, boneNames } from 'threepoint/avatar/humanoid/bone-names';
-import { avatarHash, ownBodies, skinTones } from 'threepoint/core/body/avatar-ref';
+import { avatarHash, builtInBodies, skinTones } from 'threepoint/core/body/avatar-ref';
 import { calibrationComplaint } from 'threepoint/core/body/calibration';
 import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
 import { handTiltsSchema } from 'threepoint/core/validation/validation';
@@ -30,7 +30,7 @@ const schema = v.object({
   calibration: v.optional(calibration),
   estimator: v.optional(v.picklist(estimatorNames)),
   palette: v.optional(v.pipe(v.string(), v.maxLength(32))),
-  ownBody: v.optional(v.picklist(ownBodies)),
+  builtInBody: v.optional(v.picklist(builtInBodies)),
   skinTone: v.optional(v.picklist(skinTones)),
   upperBodyOnly: v.optional(v.boolean()),
   mirror: v.optional(v.boolean()),

@@ -50,7 +50,7 @@ export class SessionChanges implements HeadsetListener {
     this.#changed();
   }
 
-  jumped(): void {
+  discontinuity(): void {
     this.#options.body.discontinuity();
   }
 

@@ -1,4 +1,4 @@
-import { type OwnBody, plainAvatar, type SkinTone } from 'threepoint/core/body/avatar-ref';
+import { type BuiltInBody, plainAvatar, type SkinTone } from 'threepoint/core/body/avatar-ref';
 import type { ActivitySettings, StoredActivitySettings } from '../activity/activity-context';
 import type { PreferenceStore } from './preferences';
 import type { Switches } from './switches';
@@ -17,8 +17,8 @@ export interface Settings extends ActivitySettings {
   /** Whether the controls are open if there is space for them beside the picture. */
   readonly panel: boolean;
   readonly palette: string;
-  /** The page's own avatar that is worn unless another one is. */
-  readonly ownBody: OwnBody;
+  /** The built-in avatar that is worn unless another one is. */
+  readonly builtInBody: BuiltInBody;
   /** The skin tone of a human avatar; undefined: the avatar's own. */
   readonly skinTone: SkinTone | undefined;
   readonly emulatorPanel: boolean;
@@ -43,7 +43,7 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
     singleKeys: preferences.singleKeys ?? true,
     panel: switches.panel ?? preferences.panel ?? true,
     palette: preferences.palette ?? 'porcelain',
-    ownBody: preferences.ownBody ?? plainAvatar,
+    builtInBody: preferences.builtInBody ?? plainAvatar,
     skinTone: preferences.skinTone,
     shareAvatar: preferences.shareAvatar ?? true,
     plainOthers: preferences.plainOthers ?? false,
@@ -77,7 +77,7 @@ export type LastingSettings = Partial<
       | 'singleKeys'
       | 'panel'
       | 'palette'
-      | 'ownBody'
+      | 'builtInBody'
       | 'skinTone'
     >
 >;

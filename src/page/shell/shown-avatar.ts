@@ -1,21 +1,21 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
 import type { Avatar } from 'threepoint/avatar/avatar';
+import { labelOf } from 'threepoint/avatar/built-in-bodies';
 import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
 import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
 import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones';
-import { labelOf } from 'threepoint/avatar/own-bodies';
-import { bodyOf, type OwnBody, plainAvatar, skinToneOf } from 'threepoint/core/body/avatar-ref';
+import { type BuiltInBody, bodyOf, plainAvatar, skinToneOf } from 'threepoint/core/body/avatar-ref';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { nameOf } from 'threepoint-ui/limited-files';
 import type { Notices } from 'threepoint-ui/notices';
 import type { UserAvatar } from '../activity/activity-context';
 import type { Studio } from '../studio/studio';
-import { AvatarLoader, type AvatarLoaderOptions, fetchOwnAvatar, type LoadedUserAvatar } from './avatar-loader';
+import { AvatarLoader, type AvatarLoaderOptions, fetchBuiltInAvatar, type LoadedUserAvatar } from './avatar-loader';
 import type { Settings } from './settings';
 
 export interface ShownAvatarOptions extends AvatarLoaderOptions {
   readonly scene: Studio['scene'];
-  readonly settings: Pick<Settings, 'palette' | 'upperBodyOnly' | 'ownBody' | 'skinTone'>;
+  readonly settings: Pick<Settings, 'palette' | 'upperBodyOnly' | 'builtInBody' | 'skinTone'>;
   readonly body: Pick<BodySolver, 'calibration'>;
   readonly notices: Pick<Notices, 'show'>;
   onChange(): void;
@@ -36,10 +36,10 @@ export interface WaitingForBones {
 interface Request {
   readonly turn: number;
   readonly name: string;
-  /** It is one of the page's own. */
-  readonly own: boolean;
+  /** It is a built-in avatar. */
+  readonly isBuiltIn: boolean;
   readonly cancellation: AbortController;
-  /** The checked file; null: not loaded yet, or one of the page's own. */
+  /** The checked file; null: not loaded yet, or a built-in avatar. */
   checked: CheckedAvatar | null;
 }
 
@@ -76,13 +76,13 @@ export class ShownAvatar {
     return this.#name;
   }
 
-  /** Whether it is one of the page's own, whose colours can be chosen. */
-  get own(): boolean {
+  /** Whether it is a built-in avatar, whose colours can be chosen. */
+  get isBuiltIn(): boolean {
     return typeof this.#worn === 'string';
   }
 
-  /** The page's own avatar that is shown; null: it is a file. */
-  get ownBody(): OwnBody | null {
+  /** The built-in avatar that is shown; null: it is a file. */
+  get builtInBody(): BuiltInBody | null {
     return typeof this.#worn === 'string' ? bodyOf(this.#worn) : null;
   }
 
@@ -93,7 +93,7 @@ export class ShownAvatar {
 
   /** Returns the file of the avatar. Rejects with a reason if it can no longer be read. */
   file(): Promise<ArrayBuffer> {
-    return typeof this.#worn === 'string' ? fetchOwnAvatar(bodyOf(this.#worn)) : this.#worn.file.arrayBuffer();
+    return typeof this.#worn === 'string' ? fetchBuiltInAvatar(bodyOf(this.#worn)) : this.#worn.file.arrayBuffer();
   }
 
   /** The state of the last request in words; null: it is shown. */
@@ -117,9 +117,9 @@ export class ShownAvatar {
     this.recolour();
   }
 
-  /** Applies the palette of the seat, else the user's, to one of the page's own avatars. */
+  /** Applies the palette of the seat, else the user's, to a built-in avatar. */
   recolour(): void {
-    if (this.own) this.#avatar?.setPalette(this.#seatPalette ?? this.#options.settings.palette);
+    if (this.isBuiltIn) this.#avatar?.setPalette(this.#seatPalette ?? this.#options.settings.palette);
   }
 
   /** Cancels the file that is loading or waits for its bones. The shown avatar stays. */
@@ -132,13 +132,13 @@ export class ShownAvatar {
   }
 
   /**
-   * Shows the page's own avatar that the user chose. Requests before this are ignored when they arrive. `bytes`: its
+   * Shows the built-in avatar that the user chose. Requests before this are ignored when they arrive. `bytes`: its
    * file, if the download has started already. Returns false after a notice if it fails.
    */
-  openOwn(bytes?: Promise<ArrayBuffer>): Promise<boolean> {
-    const { ownBody, skinTone } = this.#options.settings;
-    const request = this.#request(labelOf(ownBody), true);
-    return this.#arrive(request, () => this.#loader.loadOwn(ownBody, skinTone, bytes));
+  openBuiltIn(bytes?: Promise<ArrayBuffer>): Promise<boolean> {
+    const { builtInBody, skinTone } = this.#options.settings;
+    const request = this.#request(labelOf(builtInBody), true);
+    return this.#arrive(request, () => this.#loader.loadBuiltIn(builtInBody, skinTone, bytes));
   }
 
   /**
@@ -176,17 +176,23 @@ export class ShownAvatar {
     }
   }
 
-  #request(name: string, own: boolean): Request {
+  #request(name: string, isBuiltIn: boolean): Request {
     this.#requested += 1;
-    const request: Request = { turn: this.#requested, name, own, cancellation: new AbortController(), checked: null };
-    this.#loading = own ? null : request;
+    const request: Request = {
+      turn: this.#requested,
+      name,
+      isBuiltIn,
+      cancellation: new AbortController(),
+      checked: null,
+    };
+    this.#loading = isBuiltIn ? null : request;
     this.#waiting = null;
     this.#report(request, `${name} is loading.`);
     return request;
   }
 
-  #report({ turn, own }: Request, text: string): void {
-    if (turn !== this.#requested || own) return;
+  #report({ turn, isBuiltIn }: Request, text: string): void {
+    if (turn !== this.#requested || isBuiltIn) return;
     this.#pending = text;
     this.#options.onChange();
   }
@@ -222,7 +228,7 @@ export class ShownAvatar {
     }
   }
 
-  #refuse({ turn, name, own, checked }: Request, error: unknown): void {
+  #refuse({ turn, name, isBuiltIn, checked }: Request, error: unknown): void {
     const { notices } = this.#options;
     const isNewest = turn === this.#requested;
     if (error instanceof UnknownBones && checked && isNewest) {
@@ -233,7 +239,7 @@ export class ShownAvatar {
       return;
     }
     notices.show('error', `${name} could not be shown: ${reasonFor(name, error)}`);
-    if (isNewest) this.#pending = own ? null : `${name} could not be shown.`;
+    if (isNewest) this.#pending = isBuiltIn ? null : `${name} could not be shown.`;
   }
 
   #show({ avatar, worn }: LoadedUserAvatar, name: string, turn: number): void {

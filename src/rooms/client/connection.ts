@@ -67,8 +67,11 @@ export interface ConnectionUpdate<Game extends HostedGame> {
   /** Events of the match, oldest first. Earlier ones are part of the state in the welcome message. */
   readonly events: readonly Game['event'][];
   readonly poses: readonly ArrivedPose[];
-  /** welcome: joined or reconnected. match: another round began. voided: see `RoomView.voided`. */
-  readonly news: readonly ('welcome' | 'match' | 'voided' | 'seats')[];
+  /**
+   * Each at most once. welcome: joined or reconnected. match: another round began. voided: see `RoomView.voided`.
+   * resumed: the page was hidden, and the events are from that time.
+   */
+  readonly news: readonly ('welcome' | 'match' | 'voided' | 'seats' | 'resumed')[];
 }
 
 /** The pose of this page's avatar in one frame, as it is sent to the others; floor frame. */

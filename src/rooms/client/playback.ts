@@ -87,6 +87,8 @@ export class Playback {
   private samples: PathSample[] = [];
   private readonly transits = new TransitWindow(transitMemory);
   private receivedAt = 0;
+  /** Whether the next packet starts playback over. */
+  private resumed = false;
   /** The page's clock minus the drawn time of the sender's clock [s]. */
   private clockOffset = Number.NaN;
   private delay = firstDelay;
@@ -103,10 +105,16 @@ export class Playback {
   private freezes = 0;
   private frozenSeconds = 0;
 
+  /** Starts over with the next packet. The pose is drawn until then. */
+  resume(): void {
+    this.resumed = true;
+  }
+
   receive(packet: PosePacket, arrivedAt: number): void {
     const last = this.samples[this.samples.length - 1];
     let time = last ? last.time + packetSecondsBetween(last.packet.timeMs, packet.timeMs) : packet.timeMs / 1000;
-    const silent = arrivedAt - this.receivedAt > hideAfter;
+    const silent = this.resumed || arrivedAt - this.receivedAt > hideAfter;
+    this.resumed = false;
     if (last && time <= last.time && !silent) return;
     if (last && silent) {
       // After a long silence playback starts over, even if the sender's clock was set back.

@@ -21,6 +21,11 @@ export interface RemotePlayers {
    * every frame.
    */
   follow(time: number): readonly RemotePlayer[];
+  /**
+   * Starts all playbacks over with their next packet: the page was hidden, and its clock does not show how long the
+   * others were silent.
+   */
+  resume(): void;
   /** Discards the packets of a seat that another person has taken. */
   forget(seat: number): void;
   /** Returns the measurements of a seat's playback; null: no packet has arrived from it. */
@@ -62,6 +67,9 @@ export function createRemotePlayers(): RemotePlayers {
       followedAt = time;
       players.forEach(draw);
       return drawn;
+    },
+    resume() {
+      for (const { playback } of players.values()) playback.resume();
     },
     forget(seat) {
       players.delete(seat);

@@ -25,8 +25,11 @@ import { RoomReplica } from './room-replica';
 
 const poseSeconds = 1 / 30;
 
-/** The most packets that are kept while the page is hidden and calls no `update`. */
+/** The most packets, and the most events, that are kept while the page is hidden and calls no `update`. */
 const mostWaiting = 256;
+
+/** A page that skips more than this [s] was hidden; slow pages skip less between two frames. */
+const longestSlowFrame = 3;
 
 /** The client's side of the protocol. Subclasses send its messages, in `transmit` and `transmitPose`. */
 export abstract class RoomSession<Game extends HostedGame> implements Connection<Game> {
@@ -188,8 +191,8 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
         this.#voiceListener?.onSignal(message.from, message.body);
         return;
       case 'welcome':
-        if (this.#replica.onWelcome(message)) this.#news.push('voided');
-        this.#news.push('welcome');
+        if (this.#replica.onWelcome(message)) this.#announce('voided');
+        this.#announce('welcome');
         this.#welcomes += 1;
         // After a restart of the server the player requests the same seat.
         if (message.seat !== null) this.#seatRequest = { spectate: false, seat: message.seat };
@@ -220,6 +223,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
 
   /** Accounts for a pause that this page's clock skipped [s] and that ended at `now`; the Room's clock ran on. */
   protected leaveOut(seconds: number, now: number): void {
+    if (seconds > longestSlowFrame) this.#announce('resumed');
     this.#clock.paused(seconds, now);
   }
 
@@ -243,21 +247,26 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   #afterChange(message: RoomMessage<Game>): void {
     switch (message.type) {
       case 'seat':
-        this.#news.push('seats');
+        this.#announce('seats');
         this.#voiceListener?.onSeatsChanged();
         return;
       case 'seated':
         this.#seatRequest = { spectate: message.seat === null, seat: message.seat };
-        this.#news.push('seats');
+        this.#announce('seats');
         if (this.#pauseRequest && message.seat !== null) this.transmit({ type: 'pause', pause: true });
         this.#voiceListener?.onSeatsChanged();
         return;
       case 'match':
-        this.#news.push('match');
+        this.#announce('match');
         return;
       case 'events':
         this.#events.push(...message.events);
+        if (this.#events.length > mostWaiting) this.#events = this.#events.slice(-mostWaiting);
     }
+  }
+
+  #announce(word: ConnectionUpdate<Game>['news'][number]): void {
+    if (!this.#news.includes(word)) this.#news.push(word);
   }
 
   /** The Room's clock minus the page's clock [s]. */

@@ -1,4 +1,4 @@
-import { type AvatarRef, avatarHash, isOwnAvatar, type OwnAvatar } from 'threepoint/core/body/avatar-ref';
+import { type AvatarRef, avatarHash, type BuiltInAvatar, isBuiltInAvatar } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import * as v from 'valibot';
 import { cleanName } from './names';
@@ -32,7 +32,7 @@ const calibration = v.strictObject({
 
 const name = v.pipe(v.string(), v.maxLength(200), v.transform(cleanName));
 /** The schema of a AvatarRef. */
-const avatar = v.union([v.custom<OwnAvatar>(isOwnAvatar), v.pipe(v.string(), v.regex(avatarHash))]);
+const avatar = v.union([v.custom<BuiltInAvatar>(isBuiltInAvatar), v.pipe(v.string(), v.regex(avatarHash))]);
 
 /** The first message: what the others see of the player. Without a seat (null) the first free one is taken. */
 const join = v.strictObject({

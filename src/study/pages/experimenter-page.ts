@@ -189,7 +189,7 @@ class ExperimenterPage {
         'section',
         { class: 'card bar' },
         this.#access.select(study?.plan.id, 'No studies yet', (id) => void this.#open(id)),
-        this.#access.forgetButton(),
+        this.#access.signOutButton(),
         element(
           'span',
           { class: this.#online ? 'badge live' : 'badge lost' },

@@ -78,7 +78,7 @@ class ResultsPage {
       access.select(shown?.plan.id, 'This server has no studies yet', (id) => void this.#load(id)),
       ...(shown ? [button('Refresh', () => void this.#load(shown.plan.id, shown.planVersion))] : []),
       fileField,
-      access.forgetButton(),
+      access.signOutButton(),
     );
   }
 

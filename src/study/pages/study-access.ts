@@ -72,8 +72,8 @@ export class StudyAccess {
     return element('label', {}, element('span', {}, 'Study'), list);
   }
 
-  forgetButton(): HTMLElement {
-    return button('Forget the token', () => {
+  signOutButton(): HTMLElement {
+    return button('Sign out', () => {
       forgetToken();
       location.reload();
     });

@@ -5,7 +5,7 @@ import type { After } from './study-page';
 const exchangeEveryMs = 2000;
 const slowestExchangeMs = 15_000;
 /** The factor by which the interval grows after every exchange without an answer. */
-const patience = 1.5;
+const backOffFactor = 1.5;
 
 type TimedSession = Pick<ParticipantSession, 'exchange' | 'motionSent' | 'uploadStatus'>;
 
@@ -31,7 +31,7 @@ export class ExchangeTimer {
     this.#callOff();
     await this.#session.exchange();
     const { online } = this.#session.uploadStatus;
-    this.#delayMs = online ? exchangeEveryMs : Math.min(slowestExchangeMs, this.#delayMs * patience);
+    this.#delayMs = online ? exchangeEveryMs : Math.min(slowestExchangeMs, this.#delayMs * backOffFactor);
     // Another exchange may have ended in the meantime and have set its own timer.
     this.#callOff();
     this.#callOff = this.#after(this.#delayMs, () => void this.exchange());

@@ -11,7 +11,7 @@ import { questionPart } from './questions/question-screen';
 import { roundScreen } from './round-screens';
 import { askToStopButton, pauseButton, type ScreenParts } from './screen-parts';
 import { noStorage } from './session-store';
-import { silentStorage } from './storage-patience';
+import { silentStorage } from './storage-timeout';
 import type { StudyScreen } from './study-screen';
 import type { ScreenActions, ShownSession, StudySituation } from './study-situation';
 

@@ -3,7 +3,7 @@ import type { StudyPlan } from '../model/plan/plan';
 import type { Progress } from '../model/progress/progress';
 import type { ParticipantProfile } from '../model/records/participant-profile';
 import type { StudyRecord } from '../model/records/study-record';
-import { StoragePatience } from './storage-patience';
+import { StorageTimeout } from './storage-timeout';
 
 /** A session as this device stores it. */
 export interface KeptSession extends ParticipantProfile {
@@ -70,9 +70,9 @@ const everyOf = (study: string, participant: string) =>
 
 /** Opens the vault; rejects if the browser has none, as some in private windows. */
 export async function openStudyVault(name = 'threepoint-studies'): Promise<StudyVault> {
-  const patience = new StoragePatience();
+  const timeout = new StorageTimeout();
   const vault = databaseVault(
-    await patience.answer(() =>
+    await timeout.limit(() =>
       openDB<Schema>(name, 1, {
         upgrade(fresh) {
           fresh.createObjectStore('sessions', { keyPath: ['study', 'participant'] });
@@ -85,7 +85,7 @@ export async function openStudyVault(name = 'threepoint-studies'): Promise<Study
   const bounded =
     <Args extends readonly unknown[], Answer>(request: (...args: Args) => Promise<Answer>) =>
     (...args: Args): Promise<Answer> =>
-      patience.answer(() => request(...args));
+      timeout.limit(() => request(...args));
   return {
     session: bounded(vault.session),
     save: bounded(vault.save),

@@ -5,14 +5,14 @@ import type { EstimatorName, InferenceRequest } from '../core/estimation/pose-es
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
-import { admittedFrames, type TrackedPoint, TrackingGate } from '../core/tracking/tracking-gate';
+import { type TrackedPoint, TrackingValidator, validFrames } from '../core/tracking/tracking-validator';
 import { type AfterFrame, createAfterFrame } from './after-frame';
 import { demandOptions, optionNames, warnOfDisposed } from './demand-options';
 import { EstimatorChoice } from './estimator-choice';
 import { HeightPolicy } from './height-policy';
 import { type InferenceProfiler, profiled } from './inference-profiler';
 
-export type { TrackedPoint } from '../core/tracking/tracking-gate';
+export type { TrackedPoint } from '../core/tracking/tracking-validator';
 
 /**
  * The origin of a body's measures: given by the page, the headset's height at the start of a session, a wearer who
@@ -109,7 +109,7 @@ export class BodySolver {
   #events: BodyEvents;
   readonly #clock: Pick<PageClock, 'tick' | 'paused'>;
   readonly #profiler: InferenceProfiler | null;
-  readonly #gate = new TrackingGate({
+  readonly #validator = new TrackingValidator({
     onChange: (point, tracked) => (tracked ? this.#events.trackingfound?.(point) : this.#events.trackinglost?.(point)),
   });
   #afterFrame: AfterFrame | null = null;
@@ -237,7 +237,7 @@ export class BodySolver {
     this.#inSession = false;
     this.#request = null;
     this.#pose = null;
-    this.#gate.reset();
+    this.#validator.reset();
     this.#choice.reset();
     if (ends) this.#events.sessionend?.();
   }
@@ -274,7 +274,7 @@ export class BodySolver {
       warnOfDisposed(this, 'Body');
       return null;
     }
-    const frame = this.#gate.admit(tracked);
+    const frame = this.#validator.validate(tracked);
     if (frame === null) {
       this.#height.lose();
       return this.#pose;
@@ -294,7 +294,7 @@ export class BodySolver {
    * Has no effect if a discontinuity happens or another estimator is selected meanwhile.
    */
   warmUp(frames: Iterable<TrackingFrame>): Promise<void> {
-    return this.#choice.warmUp(admittedFrames(frames), (pose) => {
+    return this.#choice.warmUp(validFrames(frames), (pose) => {
       this.#pose = pose;
     });
   }

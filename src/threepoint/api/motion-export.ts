@@ -4,13 +4,13 @@ import type { EstimatorName } from '../core/estimation/pose-estimator';
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import type { Motion } from '../core/motion/motion';
 import { estimateMotion } from '../core/motion/take-motion';
-import { partOf, type Work } from '../core/motion/work';
+import { scaleProgressAsync, type Work } from '../core/motion/work';
 import { type BvhOptions, writeBvh } from '../core/motion/write-bvh';
 import { writeCsv } from '../core/motion/write-csv';
 import { writeVrma } from '../core/motion/write-vrma';
 import type { Replayable, TrackingFrames } from '../core/tracking/recording';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
-import { admittedFrames, TrackingGate } from '../core/tracking/tracking-gate';
+import { TrackingValidator, validFrames } from '../core/tracking/tracking-validator';
 import { type MotionFormat, motionFormats } from './motion-formats';
 import { runWork, type WorkOptions } from './run-work';
 
@@ -78,12 +78,12 @@ class AdmittedRecording implements TrackingFrames {
 
   /** Yields the admitted frames. Throws a sentence where times do not rise, or no frame has a head. */
   *[Symbol.iterator](): Generator<TrackingFrame> {
-    const gate = new TrackingGate();
+    const validator = new TrackingValidator();
     let number = 0;
     let last = Number.NEGATIVE_INFINITY;
     for (const frame of this.#frames) {
       number += 1;
-      const admitted = gate.admit(frame);
+      const admitted = validator.validate(frame);
       if (!admitted) continue;
       if (admitted.time <= last)
         throw new Error(`Frame ${number} of the recording is not later than the one before it.`);
@@ -98,7 +98,7 @@ class AdmittedRecording implements TrackingFrames {
 function personOf({ calibration, frames }: Replayable, given: Calibration | undefined): Calibration {
   const person = given ?? calibration;
   if (!person) {
-    const [first] = admittedFrames(frames);
+    const [first] = validFrames(frames);
     return provisionalCalibration(first?.head.position.y ?? Number.NaN);
   }
   demandPerson(person);
@@ -115,8 +115,8 @@ async function* exportWork(
   if (estimator === 'device') yield* demandBody(recording);
   const drawn = createEstimator(estimator, calibration, regressor);
   const admitted = { ...recording, frames: new AdmittedRecording(recording) };
-  const motion = yield* partOf(estimateMotion(admitted, calibration, drawn), 0, estimating);
-  return yield* partOf(writer.write(motion), estimating, 1);
+  const motion = yield* scaleProgressAsync(estimateMotion(admitted, calibration, drawn), 0, estimating);
+  return yield* scaleProgressAsync(writer.write(motion), estimating, 1);
 }
 
 /** Returns the loading network. Rejects as soon as the work is aborted, and releases a network that arrives later. */

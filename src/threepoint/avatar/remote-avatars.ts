@@ -1,6 +1,13 @@
 import { Group, type Mesh, type MeshBasicMaterial, type Object3D, type PlaneGeometry } from 'three';
 import type { AvatarPose } from '../core/body/avatar-pose';
-import { type AvatarRef, bodyOf, isAvatarHash, isOwnAvatar, plainAvatar, skinToneOf } from '../core/body/avatar-ref';
+import {
+  type AvatarRef,
+  bodyOf,
+  isAvatarHash,
+  isBuiltInAvatar,
+  plainAvatar,
+  skinToneOf,
+} from '../core/body/avatar-ref';
 import { type Calibration, sameMeasures } from '../core/body/calibration';
 import type { Fingers } from '../core/body/hand-shape';
 import { PassingFault } from '../core/errors/passing-fault';
@@ -17,7 +24,7 @@ export interface SeenPerson {
   readonly id: number;
   readonly calibration: Calibration;
   readonly avatar: AvatarRef;
-  /** The palette of one of the project's own bodies. */
+  /** The palette of a built-in body. */
   readonly palette: string;
   /** The pose in the frame of the person's own floor. */
   readonly pose: AvatarPose;
@@ -30,7 +37,7 @@ export interface SeenPerson {
 
 export interface RemoteAvatarsOptions {
   /**
-   * Loads the body of an avatar: once for a file, and for each needed copy of one of the project's own bodies. Rejects
+   * Loads the body of an avatar: once for a file, and for each needed copy of a built-in body. Rejects
    * where it is unavailable; after a PassingFault it is called again some seconds later.
    */
   load(avatar: AvatarRef): Promise<LoadedAvatar>;
@@ -122,7 +129,7 @@ class OthersBodies implements RemoteAvatars {
   readonly object = new Group();
   readonly #options: RemoteAvatarsOptions;
   readonly #bodies: Body[] = [];
-  /** The bodies in preparation: one of each own body and of each file. */
+  /** The bodies in preparation: one of each built-in body and of each file. */
   readonly #making: { own: boolean; file: boolean } = { own: false, file: false };
   readonly #refused = new Map<AvatarRef, Refusal>();
   #disposed = false;
@@ -245,9 +252,9 @@ class OthersBodies implements RemoteAvatars {
 
   #add(avatar: Avatar, of: AvatarRef): void {
     const fromFile = isAvatarHash(of);
-    // The project's own bodies stay as long as the others do; a file's memory is released body by body.
-    if (isOwnAvatar(of)) {
-      const first = this.#bodies.find((body) => isOwnAvatar(body.of) && bodyOf(body.of) === bodyOf(of));
+    // The built-in bodies stay as long as the others do; a file's memory is released body by body.
+    if (isBuiltInAvatar(of)) {
+      const first = this.#bodies.find((body) => isBuiltInAvatar(body.of) && bodyOf(body.of) === bodyOf(of));
       if (first) shareGeometry(first.avatar.object, avatar.object);
       avatar.setSkinTone(skinToneOf(of));
     }

@@ -17,12 +17,12 @@ import { wristAround } from 'threepoint-games/fist';
 /** What an archer does in one frame who holds the bow out and has the other hand on the line of the arrow. */
 export interface Posed {
   readonly bowSide?: Side;
-  /** Of the string hand behind brace height [m]; −0.16 is at the bow itself. */
+  /** The distance of the string hand behind brace height [m]; −0.16 is at the bow itself. */
   readonly draw?: number;
-  /** Of the string hand off the line, to the right [m]. */
+  /** The distance of the string hand to the right of the line [m]. */
   readonly off?: number;
   readonly direction?: Vec3;
-  /** Where the bow's knuckles point; default: along the arrow. */
+  /** The direction of the bow hand's knuckles; default: along the arrow. */
   readonly knuckles?: Vec3;
   readonly bowAt?: Vec3;
   readonly lost?: readonly Side[];
@@ -60,7 +60,7 @@ export function posed(time: number, pose: Posed = {}): TrackingFrame {
 const moments = (from: number, to: number, rateHz: number): number[] =>
   Array.from({ length: Math.round((to - from) * rateHz) }, (_, i) => from + (i + 1) / rateHz);
 
-/** An archer told move by move, at a frame rate; remembers everything that came of it. */
+/** An archer who is moved step by step at a frame rate; collects all results. */
 export function bowman(changes: Partial<ArcheryGestureSettings> = {}, rateHz = 90) {
   let settings: ArcheryGestureSettings = { ...defaultArcheryGestureSettings, ...changes };
   const gestures = createArcheryGestures(() => settings);
@@ -80,7 +80,7 @@ export function bowman(changes: Partial<ArcheryGestureSettings> = {}, rateHz = 9
         left: { ...allReleased, ...pressed.left },
         right: { ...allReleased, ...pressed.right },
       };
-      // The gestures overwrite what they tell with every frame.
+      // The gestures overwrite their result with every frame.
       const result = structuredClone(gestures.follow(posed(time, { bowSide: bowSide(), ...pose }), buttons));
       frames.push(result);
       return result;
@@ -103,7 +103,7 @@ export function bowman(changes: Partial<ArcheryGestureSettings> = {}, rateHz = 9
     },
     /** The floor lies elsewhere from the next frame on. */
     jump() {
-      gestures.jumped();
+      gestures.discontinuity();
       return self;
     },
     get bow(): BowView | null {

@@ -7,7 +7,7 @@ import { oneHandedDraw } from 'threepoint-games/archery/nocked-arrow';
 import { archeryRules } from 'threepoint-games/archery/rules';
 import { bowman } from './bowman';
 
-/** Where the knuckles of a hand with the bow there must point for its arrow to hit. */
+/** Returns the direction of the knuckles of a hand with the bow at `bowAt` for its arrow to hit the target. */
 function knucklesTowards(target: Vec3, bowAt: Vec3): Vec3 {
   // It depends a little on where the nock lies, and that on where they point.
   let knuckles = vec3(0, 0, -1);

@@ -58,7 +58,7 @@ export function playRound({ archer: body, seed = 1, options = {}, times, spoil }
   for (const time of times) {
     const played = archer.follow(time, match.state);
     const { frame, buttons } = spoil ? spoil(played.frame, played.buttons) : played;
-    // The gestures overwrite what they tell with every frame.
+    // The gestures overwrite their result with every frame.
     const gesture = structuredClone(gestures.follow(frame, buttons));
     round.frames.push(frame);
     round.gestures.push(gesture);

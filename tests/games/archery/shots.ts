@@ -28,7 +28,7 @@ export function highShot(state: ArcheryState): ArcheryAction {
   return { type: 'release', position, direction, draw: 0.6, delay: 0 };
 }
 
-/** A match told tick by tick. */
+/** A match that is stepped tick by tick. */
 export function told(first: ArcheryState) {
   const events: ArcheryEvent[] = [];
   let state = first;

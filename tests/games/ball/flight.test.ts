@@ -168,7 +168,7 @@ describe('a basket that moves', () => {
     expect(agreed / runs).toBeGreaterThan(0.995);
   });
 
-  /** The same question answered by brute force. */
+  /** Finds the catch by brute force. */
   function lookOften(launch: TimedLaunch, from: Basket, to: Basket, every: number): string | null {
     let above: number | null = null;
     for (let time = from.at; time <= to.at; time += every) {

@@ -7,7 +7,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import { ballRadius } from 'threepoint-games/ball/flight';
 import { createBallGestures, holdSeconds } from 'threepoint-games/ball/gestures';
-import { createHandSpeed, throwWindow } from 'threepoint-games/ball/hand-speed';
+import { createHandVelocity, throwWindow } from 'threepoint-games/ball/hand-velocity';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { rackPosition, stations } from 'threepoint-games/ball/stations';
 import { ballInPalm, fistOf, wristAround } from 'threepoint-games/fist';
@@ -20,7 +20,7 @@ const floorFromArena = invertTransform(arenaFromFloor);
 const other = { left: 'right', right: 'left' } as const;
 type Side = 'left' | 'right';
 
-/** A player whose one fist is told, in the arena; the other hangs. */
+/** A player with one fist at given places of the arena; the other hand hangs. */
 function throwing(options: { side?: Side; button?: Button; state?: BallState; player?: number } = {}) {
   const { side = 'right', button = 'trigger', player = leftThrower } = options;
   const match = told();
@@ -180,7 +180,7 @@ describe('a hand', () => {
 
 describe('the speed of a hand', () => {
   const follow = (path: (time: number) => Vec3, times: readonly number[]): Vec3 => {
-    const speed = createHandSpeed();
+    const speed = createHandVelocity();
     for (const time of times) speed.follow(time, path(time));
     return speed.velocity();
   };
@@ -252,7 +252,7 @@ describe('the speed of a hand', () => {
   test('is none of a floor that turns at once, as by the stick', () => {
     const { frame, actions, gestures } = carrying();
     for (let i = 0; i < 12; i++) frame(ahead, 1);
-    gestures.jumped();
+    gestures.discontinuity();
     const aside = add(ahead, vec3(0.3, 0, 0));
     frame(aside, 1);
     frame(aside, 1);

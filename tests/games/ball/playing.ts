@@ -8,7 +8,7 @@ import { wristAround } from 'threepoint-games/fist';
 
 export const { tickSeconds } = ballRules;
 
-/** Where the two throwers and the holder sit among the players, roles not rotated. */
+/** The seats of the two throwers and the holder while roles are not rotated. */
 export const [leftThrower, rightThrower, holder] = [0, 1, 2] as const;
 
 export const headOf = (player: number): Vec3 => add(stations[player]!.position, vec3(0, 1.6, 0));
@@ -38,7 +38,7 @@ export const inFront = add(stations[holder]!.position, vec3(0, 1.1, 0.45));
 export const velocityTo = (from: Vec3, to: Vec3, seconds: number): Vec3 =>
   addScaled(scale(subtract(to, from), 1 / seconds), vec3(0, 1, 0), 0.5 * gravity * seconds);
 
-/** A match told tick by tick, all players there and ready unless told. */
+/** A match that is stepped tick by tick; all players are present, and ready unless `ready` is false. */
 export function told(options: Partial<BallOptions> = {}, ready = true) {
   const events: BallEvent[] = [];
   const log: (readonly BallInput[])[] = [];

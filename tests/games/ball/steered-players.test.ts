@@ -96,7 +96,7 @@ describe.each([0, 1])('with a mouse on seat %i', (seat) => {
     const match = playing(seat, ({ state, player }) => {
       const basket = state.basket.position;
       const { aim } = player;
-      // As a person does: let go as soon as the dots reach the opening.
+      // A person lets go as soon as the dots reach the opening.
       const lands = aim && positionAt(aim, fallsTo(aim, basket.y));
       const far = lands !== null && Math.hypot(lands.x - basket.x, lands.z - basket.z) < 0.12;
       const at = transformPoint(

@@ -23,9 +23,10 @@ function page(options: {
   ball?: Partial<BallOptions>;
   rateHz?: number;
   steering?: () => BallSteering | null;
+  host?: ReturnType<typeof createBallLoopbackHost>;
 }) {
   const { acting = true, bots = true, ball = {}, rateHz = usualHz } = options;
-  const host = createBallLoopbackHost({ seed: 3, ball });
+  const host = options.host ?? createBallLoopbackHost({ seed: 3, ball });
   const player: BallPlay = createBallPlay({
     connect: host.connect,
     visitor: {
@@ -181,6 +182,34 @@ describe('one person with two bots', () => {
       expect(events.filter(({ type }) => type === 'refused')).toEqual([]);
     },
   );
+
+  it('the bots of a page that is hidden leave their seats to those of another person’s page', () => {
+    const ann = page({ seat: 0 });
+    const names = () => ben.player.probe()?.people.map((person) => person && `${person.name} ${person.presence}`);
+    ann.until(() => ann.player.probe()?.people.every(Boolean) ?? false, 10);
+    const ben = page({ seat: 1, host: ann.host });
+    const both = (seconds: number) => {
+      for (let i = 0; i < seconds * usualHz; i++) for (const each of [ann, ben]) each.frame();
+    };
+    both(2);
+    expect(ann.player.probe()?.people).toMatchObject([{ bot: false }, { bot: false }, { bot: true }]);
+    ann.player.away(true);
+    ben.until(() => ben.player.newest?.bodies.some(({ id }) => id === 2) ?? false, 4);
+    for (let i = 0; i < 4 * usualHz; i++) ben.frame();
+    expect(names()).toEqual(['Robin away', 'Robin here', 'Kim here']);
+    expect(ben.player.newest?.bodies.map(({ id }) => id)).toEqual([2]);
+    ann.player.away(false);
+    both(1);
+    expect(names()).toEqual(['Robin here', 'Robin here', 'Kim here']);
+  });
+
+  it('the bots of a page that is hidden keep their seats while no other person plays', () => {
+    const { player, until, frame } = page({ seat: 0 });
+    until(() => player.probe()?.people.every(Boolean) ?? false, 10);
+    player.away(true);
+    for (let i = 0; i < usualHz; i++) frame();
+    expect(player.probe()?.people.filter(Boolean)).toHaveLength(3);
+  });
 
   it('bots go when they are not wanted', () => {
     const alone = page({ bots: false });

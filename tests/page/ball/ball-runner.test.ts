@@ -35,7 +35,7 @@ const step = {
   seconds,
 } as PlayedStep;
 
-/** The room of a server that can be cut off, and that has forgotten what was played when it is started anew. */
+/** The room of a server that can be cut off, and that loses its match when it is restarted. */
 function restartedRoom() {
   const made = (epoch: string) => createBallLoopbackHost({ seed: 3, ball: { seconds }, epoch });
   let room = made('first');
@@ -185,7 +185,7 @@ test('who pauses in a shared match stops it for the whole group, and the pause c
     expect(outcome?.seconds).toBeGreaterThan(seconds - 0.5);
     // The match is over when the last ball in the air at the bell has come down.
     expect(outcome?.seconds).toBeLessThan(seconds + 2.5);
-    // As many a second as there are, while the match ran, none of the time in which it stood.
+    // The frames of the time in which the match ran; none of the time in which it stood.
     expect(outcome?.frames.count).toBeLessThan(rateHz * (seconds + 4));
     expect(outcome?.motionFrames).toBeLessThan(rateHz * (seconds + 4));
   }

@@ -23,8 +23,8 @@ function holder() {
   let time = 10;
   return {
     /**
-     * Half a second with the wrists there, tracked or told by the device's guess alone, the head so far aside of the
-     * mark [m].
+     * Shows half a second with the wrists there, tracked or only guessed by the device; `aside`: the distance of the
+     * head from the mark [m].
      */
     show(wrists: Wrists, tracking: TrackedPose['tracking'] = 'tracked', aside = 0) {
       for (let i = 0; i < 36; i++) {

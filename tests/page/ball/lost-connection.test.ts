@@ -16,7 +16,7 @@ import { createTestRoom } from '../../rooms/room/test-room';
 
 type Told = ReturnType<typeof createTestRoom>;
 
-/** Ann's wire to a room that a test tells everything: it can be lost, and come back. */
+/** Ann's connection to a room that a test controls: it can be lost and come back. */
 class LossyWire extends RoomSession<BallGame> {
   readonly #told: Told;
   #connections: number;
@@ -97,7 +97,7 @@ function court() {
     told.tick();
     look(wrists, pressure);
   };
-  /** The same while the room has not come to its next tick. */
+  /** Draws a frame while the room has not come to its next tick. */
   const look = (wrists: Readonly<Record<Side, Pose<'arena'> | null>>, pressure: number) => {
     page.begin(told.time);
     const { pose } = shownAt(wire, 0, wrists);

@@ -10,7 +10,7 @@ const seated = (seat: number, change: Partial<Seated> = {}): Seated => ({
   ...change,
 });
 
-/** The only other one, as they are listed; `inVoices`: by a page that hears the others. */
+/** Returns the entry of the only other player; `inVoices`: the page plays voices. */
 const listed = (change: Partial<Seated>, inVoices = true) =>
   otherPlayers({ seat: 0, people: [seated(0), seated(1, change)] }, inVoices)[0];
 

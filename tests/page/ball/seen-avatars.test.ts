@@ -9,7 +9,7 @@ import { collectGarbage } from '../../collect-garbage';
 
 const hash = createHash('sha256').update('an avatar').digest('base64url') as AvatarHash;
 
-/** Where a server of this machine answers so. */
+/** Starts a server on this machine that answers so; returns its address. */
 async function answeredBy(answer: RequestListener): Promise<string> {
   const server = createServer(answer);
   await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));

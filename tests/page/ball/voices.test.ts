@@ -51,7 +51,7 @@ function seated() {
     play: { room: play.room, status: play.status, voices: play.voices },
     blocked: new BlockList(),
     terms: () => new Promise((resolve) => answers.push(() => resolve(told))),
-    // Nothing is to be heard here: no one comes as far.
+    // Nothing plays a sound here: no connection comes as far.
     openAudio: async () => ({}) as AudioContext,
     relayOnly: () => false,
   });

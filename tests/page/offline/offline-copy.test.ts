@@ -3,7 +3,7 @@ import { beforeEach, expect, test, vi } from 'vitest';
 
 beforeEach(() => {
   vi.stubGlobal('location', { href: 'https://a.example/threepoint/?play=ball' });
-  // As a page built for any folder has it.
+  // The value in a page that is built for any folder.
   vi.stubEnv('BASE_URL', './');
 });
 

@@ -7,7 +7,7 @@ class Node {
   }
 
   disconnect(): void {
-    // Nothing here is heard.
+    // Nothing here makes a sound.
   }
 }
 

@@ -1,4 +1,4 @@
-import type { OwnBody } from 'threepoint/core/body/avatar-ref';
+import type { BuiltInBody } from 'threepoint/core/body/avatar-ref';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
 import { type EmbodyingParts, embody } from 'threepoint-page/shell/embody';
@@ -21,19 +21,19 @@ const frameAt = (time: number, height: number) => ({
 function pageOf(missing: readonly string[] = []) {
   const settings: Partial<Settings> = {};
   const impaired = new TrackingDegradation();
-  let worn: OwnBody = 'mannequin';
+  let worn: BuiltInBody = 'mannequin';
   let drawn: EstimatorName = 'ik';
   const parts: EmbodyingParts = {
     writer: { change: (part) => void Object.assign(settings, part) },
     impaired,
     avatar: {
-      get ownBody() {
+      get builtInBody() {
         return worn;
       },
-      async openOwn() {
-        const { ownBody = 'mannequin' } = settings;
-        if (missing.includes(ownBody)) return false;
-        worn = ownBody;
+      async openBuiltIn() {
+        const { builtInBody = 'mannequin' } = settings;
+        if (missing.includes(builtInBody)) return false;
+        worn = builtInBody;
         return true;
       },
     },
@@ -53,7 +53,7 @@ describe('the body of a round', () => {
   test('is all that its condition says, and what it does not say stays', async () => {
     const page = pageOf();
     await embody(page.parts, { estimator: 'learned', avatar: 'stout', mirror: false, upperBodyOnly: true }, 1);
-    expect(page.settings).toEqual({ mirror: false, upperBodyOnly: true, ownBody: 'stout' });
+    expect(page.settings).toEqual({ mirror: false, upperBodyOnly: true, builtInBody: 'stout' });
     expect([page.worn(), page.drawn()]).toEqual(['stout', 'learned']);
     await embody(page.parts, { estimator: 'ik' }, 1);
     expect([page.settings.mirror, page.worn(), page.drawn()]).toEqual([false, 'stout', 'ik']);

@@ -73,7 +73,7 @@ function headset() {
     },
     actions: {
       chooseEstimator: (name) => void done.push(`estimate by ${name}`),
-      chooseOwnBody: (name) => void done.push(`wear ${name}`),
+      chooseBuiltInBody: (name) => void done.push(`wear ${name}`),
       chooseSkinTone: (tone) => void done.push(`in ${tone}`),
       recentre: () => void done.push('recentre'),
       exitVr: () => void done.push('exit'),
@@ -92,7 +92,7 @@ function headset() {
       step = next;
       controls.show();
     },
-    /** Where the middle of this canvas point of the menu's sheet (640 wide) lies in the world. */
+    /** Returns the place in the world of this canvas point of the menu's sheet (640 wide). */
     onMenu(x: number, y: number) {
       menu.updateWorldMatrix(true, true);
       const sheet = menu.children[0];
@@ -210,7 +210,7 @@ describe('the buttons of the menu', () => {
     calibration: null,
     overlay: false,
     deviceBody: false,
-    ownBody: 'mannequin',
+    builtInBody: 'mannequin',
     skinTone: undefined,
     places: registered,
     activity: null,
@@ -221,7 +221,7 @@ describe('the buttons of the menu', () => {
     plainOthers: false,
     others: [],
     canInvite: false,
-    voices: { phase: 'none', muted: true, deaf: false },
+    voices: { phase: 'none', muted: true, microphoneMissing: false },
   };
   const ben: OtherPlayer = {
     seat: 1,
@@ -240,7 +240,7 @@ describe('the buttons of the menu', () => {
     recentre: () => undefined,
     setOverlay: (on) => void done.push(`overlay ${on}`),
     goTo: (place) => void done.push(`go to ${place}`),
-    chooseOwnBody: (name) => void done.push(`wear ${name}`),
+    chooseBuiltInBody: (name) => void done.push(`wear ${name}`),
     chooseSkinTone: (tone) => void done.push(`in ${tone}`),
     exit: () => undefined,
   };
@@ -265,9 +265,14 @@ describe('the buttons of the menu', () => {
     [', where the device was asked for its body', true],
   ])('lie apart and inside the menu at the mirror and at the court%s', (_, deviceBody) => {
     const voices = (phase: BallMenuState['voices']['phase']) =>
-      atCourt({ ready: true, others: [ben], canInvite: true, voices: { phase, muted: true, deaf: false } });
+      atCourt({
+        ready: true,
+        others: [ben],
+        canInvite: true,
+        voices: { phase, muted: true, microphoneMissing: false },
+      });
     for (const state of [mirror, voices('in'), voices('asked'), voices('off')]) {
-      const buttons = menuButtons({ ...state, deviceBody, ownBody: 'woman' }, actions);
+      const buttons = menuButtons({ ...state, deviceBody, builtInBody: 'woman' }, actions);
       expect(buttons.some(({ id }) => id === 'device')).toBe(deviceBody);
       expect(buttons.length).toBeGreaterThan(8);
       for (const [index, { at }] of buttons.entries()) {
@@ -284,7 +289,7 @@ describe('the buttons of the menu', () => {
 
   test('offer what can be done here', () => {
     expect(labels(mirror)).toEqual(expect.arrayContaining(['Archery', 'Ball game', 'Body: Mannequin']));
-    expect(labels({ ...mirror, ownBody: 'child' })).toEqual(expect.arrayContaining(['Body: Child', 'Skin: own']));
+    expect(labels({ ...mirror, builtInBody: 'child' })).toEqual(expect.arrayContaining(['Body: Child', 'Skin: own']));
     expect(labels(mirror).join()).not.toContain('Skin');
     expect(labels(atCourt())).toContain('To the mirror');
     expect(labels(atCourt({ ready: false }))).toContain('Ready');
@@ -294,8 +299,8 @@ describe('the buttons of the menu', () => {
     expect(labels(atCourt())).not.toContain('Invite');
     expect(labels(atCourt({ others: [ben] }))).toContain('Players');
     expect(labels(atCourt())).not.toContain('Players');
-    const talking = (phase: BallMenuState['voices']['phase'], muted = true, deaf = false) =>
-      labels(atCourt({ voices: { phase, muted, deaf } }));
+    const talking = (phase: BallMenuState['voices']['phase'], muted = true, microphoneMissing = false) =>
+      labels(atCourt({ voices: { phase, muted, microphoneMissing } }));
     expect(talking('none').join()).not.toMatch(/Talk|ute me/);
     expect(talking('off')).toContain('Talk');
     expect(talking('asked')).toEqual(expect.arrayContaining(['Join, muted', 'Not now']));
@@ -312,9 +317,9 @@ describe('the buttons of the menu', () => {
     press('overlay', { ...mirror, overlay: true });
     press('ball', mirror);
     press('ready', atCourt({ ready: true }));
-    press('body', { ...mirror, ownBody: 'child' });
-    press('skin', { ...mirror, ownBody: 'child' });
-    press('skin', { ...mirror, ownBody: 'child', skinTone: 'dark' });
+    press('body', { ...mirror, builtInBody: 'child' });
+    press('skin', { ...mirror, builtInBody: 'child' });
+    press('skin', { ...mirror, builtInBody: 'child', skinTone: 'dark' });
     press('others', atCourt({ plainOthers: true }));
     press('studio', atCourt());
     const bodies = ['wear mannequin', 'in fair', 'in fair', 'plain others false'];

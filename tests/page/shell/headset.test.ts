@@ -40,7 +40,7 @@ class Session extends EventTarget {
   }
 }
 
-/** A page before a headset, and what it was told. `draw`: how the renderer takes the session. */
+/** A page before a headset, and the notifications it received. `draw`: how the renderer takes the session. */
 async function page(draw: () => Promise<void> = () => Promise.resolve()) {
   const session = new Session();
   vi.stubGlobal('window', { isSecureContext: true });
@@ -69,7 +69,7 @@ async function page(draw: () => Promise<void> = () => Promise.resolve()) {
     entered: () => void happened.push('entered'),
     left: () => void happened.push('left'),
     refused: () => void happened.push('refused'),
-    jumped: () => undefined,
+    discontinuity: () => undefined,
     visibilityChanged: () => undefined,
     emulatorChanged: () => undefined,
   });

@@ -9,7 +9,7 @@ import { TrackingSource } from 'threepoint-page/shell/tracking-source';
 import { Recorder } from 'threepoint-page/studio/recorder';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
 
-/** As much of an element as the dialog needs. */
+/** The part of an element that the dialog needs. */
 class Element extends EventTarget {
   readonly dataset: Record<string, string> = {};
   textContent = '';
@@ -45,7 +45,7 @@ const standing = (time: number, eyeHeight: number): TrackingFrame => ({
 /** An emulated headset that its user holds as a person of 1.6 m at the eyes stands. */
 const emulatedHeadset = { read: (time) => standing(time, 1.6) } as Emulator;
 
-/** A page at a desk whose user may be measured; what is told and remembered is written down. */
+/** A page at a desk whose user may be measured; it records notices and stored values. */
 function page({ actor = false, emulator = null as Emulator | null } = {}) {
   const told: string[] = [];
   const remembered: Calibration[] = [];
@@ -77,7 +77,7 @@ function page({ actor = false, emulator = null as Emulator | null } = {}) {
     remembered,
     recorder,
     settings,
-    /** So many seconds of the page at 60 frames a second. */
+    /** Runs the page for this many seconds at 60 frames a second. */
     pass(seconds: number) {
       for (let frame = 0; frame < 60 * seconds; frame++) {
         now += 1 / 60;

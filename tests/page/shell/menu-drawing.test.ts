@@ -43,7 +43,7 @@ function drawn(change: Partial<ShownInvitation>) {
     calibration: null,
     overlay: false,
     deviceBody: false,
-    ownBody: 'mannequin',
+    builtInBody: 'mannequin',
     skinTone: undefined,
     places: [],
     activity: { entries: [], sheet: invitationSheet(invitation, () => undefined) },
@@ -76,7 +76,7 @@ describe('the invitation in the headset', () => {
     expect(read).toEqual(data);
     expect(left - menuMargin).toBeGreaterThanOrEqual(4 * side);
     expect(menuWidth - menuMargin - left - size * side).toBeGreaterThanOrEqual(4 * side);
-    // Of a sheet 64 cm wide: a module of a centimetre can be told apart on a cast of the headset's picture.
+    // The sheet is 64 cm wide: a module of a centimetre can be distinguished on a cast of the headset's picture.
     expect(side).toBeGreaterThanOrEqual(10);
   });
 

@@ -71,7 +71,7 @@ function files() {
           opened.push(source);
           return true;
         },
-        openOwn: async () => true,
+        openBuiltIn: async () => true,
         giveBones: async () => true,
       },
       mocap: { open: async (sources) => void mocap.push(sources) },

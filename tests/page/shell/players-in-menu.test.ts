@@ -45,7 +45,7 @@ const listing = (others: readonly OtherPlayer[], { actions } = recorded()): VrMe
   calibration: null,
   overlay: false,
   deviceBody: false,
-  ownBody: 'mannequin',
+  builtInBody: 'mannequin',
   skinTone: undefined,
   places: [],
   activity: { entries: [], sheet: playersSheet(others, actions) },

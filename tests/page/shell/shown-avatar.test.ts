@@ -17,7 +17,7 @@ test('a body of ours keeps the colours of its seat when another takes its place,
   const scene = new Scene();
   const avatar = new ShownAvatar({
     scene,
-    settings: { palette: 'porcelain', upperBodyOnly: false, ownBody: 'woman', skinTone: 'dark' },
+    settings: { palette: 'porcelain', upperBodyOnly: false, builtInBody: 'woman', skinTone: 'dark' },
     body: { calibration: defaultCalibration },
     notices: { show: (_, text) => expect(text).toBeNull() },
     knownBones: { of: () => undefined, keep: () => undefined },
@@ -30,10 +30,10 @@ test('a body of ours keeps the colours of its seat when another takes its place,
     const named = found.find(({ name }) => name === material);
     return named instanceof MeshStandardMaterial ? `#${named.color.getHexString()}` : 'none';
   };
-  await avatar.openOwn(bytes());
+  await avatar.openBuiltIn(bytes());
   expect([colourOf('Top'), colourOf('Skin')]).toEqual([clothes('porcelain'), skinColors.dark]);
   avatar.wear('ember');
-  await avatar.openOwn(bytes());
+  await avatar.openBuiltIn(bytes());
   expect([colourOf('Top'), colourOf('Skin')]).toEqual([clothes('ember'), skinColors.dark]);
   expect(avatar.worn).toBe('woman-dark');
   avatar.wear(null);
@@ -66,7 +66,7 @@ function wardrobe(prepare: (object: Object3D) => Promise<void> = () => Promise.r
   const told: string[] = [];
   const avatar = new ShownAvatar({
     scene: new Scene(),
-    settings: { palette: 'porcelain', upperBodyOnly: false, ownBody: 'woman', skinTone: undefined },
+    settings: { palette: 'porcelain', upperBodyOnly: false, builtInBody: 'woman', skinTone: undefined },
     body: { calibration: defaultCalibration },
     notices: { show: (_, text) => void told.push(text) },
     knownBones: { of: () => undefined, keep: () => undefined },
@@ -84,7 +84,7 @@ describe('of files that are asked for one after the other', () => {
     const { avatar } = wardrobe();
     const first = avatar.open(unknownNames('first.glb'));
     await expect.poll(() => avatar.pending).toContain('being checked');
-    expect(await avatar.openOwn(bytes())).toBe(true);
+    expect(await avatar.openBuiltIn(bytes())).toBe(true);
     letGo('first.glb');
     expect(await first).toBe(false);
     expect(avatar.waiting).toBeNull();

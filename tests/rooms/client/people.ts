@@ -17,7 +17,7 @@ export const visitor = (name: string, more: Partial<Visitor> = {}): Visitor => (
   ...more,
 });
 
-/** Where the throwers aim: the opening of the basket in front of the holder, arena frame. */
+/** The throwers' target: the opening of the basket in front of the holder, arena frame. */
 export const opening: Vec3 = add(stations[2]!.position, vec3(0, 1.1, 0.45));
 
 const eyes = vec3(0, 1.6, 0);
@@ -61,12 +61,12 @@ export const holding = (middle: Vec3): Record<Side, Pose<'arena'>> => ({
   right: wristAround('right', add(middle, vec3(-0.22, 0, 0)), vec3(0, 0, 1), vec3(0, 1, 0)),
 });
 
-/** Where a thrower of this seat lets go. */
+/** Returns the place at which a thrower of this seat releases the ball. */
 export const releaseOf = (seat: number): Vec3 => add(stations[seat]!.position, vec3(0, 1.6, -0.5));
 
 type Unnumbered = BallAction extends infer D ? (D extends BallAction ? Omit<D, 'sequence'> : never) : never;
 
-/** A person at a connection: does what a page would do every frame, and remembers what it heard. */
+/** A person at a connection: does what a page would do every frame, and records what it received. */
 export function createPerson(connection: BallConnection) {
   const events: BallEvent[] = [];
   const news: BallConnectionUpdate['news'][number][] = [];

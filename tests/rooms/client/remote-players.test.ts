@@ -207,6 +207,22 @@ describe('playback of others', () => {
     expect(drawn?.opacity).toBe(1);
   });
 
+  // Packet times wrap around every 16 s: after half of that a later one seems to be an earlier one.
+  test.each([1, 6, 10, 14, 60])(
+    'a person silent for %i s while this page was hidden is back with their first packet',
+    (seconds) => {
+      const players = createRemotePlayers();
+      players.receive({ seat: 1, packet: walker(0), arrivedAt: 0 });
+      players.follow(0.1);
+      // The page's clock skips the pause but for half a second.
+      players.resume();
+      players.receive({ seat: 1, packet: walker(seconds), arrivedAt: 0.65 });
+      const [drawn] = players.follow(0.66);
+      expect(drawn?.pose.head.position.x).toBe(seconds);
+      expect(drawn?.opacity).toBe(1);
+    },
+  );
+
   test('a hand that is lost stays where it was or is not there: it is never on a way', () => {
     const places = new Set<number>();
     playback(

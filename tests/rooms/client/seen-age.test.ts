@@ -4,7 +4,7 @@ import { printFigures } from '../../print-figures';
 
 const seconds = 60;
 
-/** Of a headset's places, along each axis [m]. */
+/** The jitter of a headset's positions, along each axis [m]. */
 const steady = 3e-5;
 
 function seen(way: Way, seed: number) {

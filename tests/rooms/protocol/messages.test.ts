@@ -1,6 +1,6 @@
 import { createHash } from 'node:crypto';
 import fc from 'fast-check';
-import { ownAvatarOf, ownBodies, plainAvatar, skinTones } from 'threepoint/core/body/avatar-ref';
+import { builtInAvatarOf, builtInBodies, plainAvatar, skinTones } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { ballActionFrom, ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
 import {
@@ -165,7 +165,11 @@ describe('control messages', () => {
           ),
           bot: fc.boolean(),
           presence: fc.constantFrom('here' as const, 'away' as const, 'gone' as const),
-          avatar: fc.constantFrom(...ownBodies, ...skinTones.map((tone) => ownAvatarOf('child', tone)), fileHash),
+          avatar: fc.constantFrom(
+            ...builtInBodies,
+            ...skinTones.map((tone) => builtInAvatarOf('child', tone)),
+            fileHash,
+          ),
           voice: fc.constantFrom(null, { session: 'annas-page', muted: true }, { session: 'annas-page', muted: false }),
         }),
         (info) => {
@@ -210,8 +214,8 @@ describe('control messages', () => {
 });
 
 test('a change of packets or frames is told to older pages as a change of messages is: by the version of the protocol', () => {
-  // A change of packets, or of the frames they come in, raises the first: pages that would not see each other are told
-  // so when they join.
+  // A change of packets, or of the frames they come in, raises the first: pages that would not see each other get a
+  // reason when they join.
   const frame = encodeFrame([{ seat: 5, bytes: Uint8Array.from({ length: 20 }, () => poseVersion << 4) }]);
   expect({ protocolVersion, poseVersion, seatAndFlags: frame[0] }).toEqual({
     protocolVersion: 9,
@@ -234,7 +238,7 @@ describe('the parser of small frames', () => {
   test('a pose is its bytes, nothing more', () => {
     const bytes = Uint8Array.of(16, 2, 3);
     expect(new pageParser.Encoder().encode({ type: 2, nsp: '/', data: ['pose', bytes] })).toEqual([bytes]);
-    // The relay hears it below socket.io.
+    // The relay receives it below socket.io.
     expect(throughPage({ type: 2, nsp: '/', data: ['pose', bytes] })).toBeUndefined();
   });
 

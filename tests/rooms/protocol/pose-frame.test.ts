@@ -7,7 +7,7 @@ import { beforeAll, describe, expect, test } from 'vitest';
 import { packetOf, senders } from './sent-bodies';
 
 const seed = 20261122;
-/** Of people in any movement, with and without bodies, hands and fingers. */
+/** Packets of people in any movement, with and without bodies, hands and fingers. */
 const packets: Uint8Array[] = [];
 
 beforeAll(async () => {

@@ -86,7 +86,7 @@ export function framesOf(sender: Sender): readonly TrackingFrame[] {
   });
 }
 
-/** What a person sends whose body this estimator solves (IK unless told). */
+/** Returns the packet of a person with a body that this estimator solves (default: IK). */
 export async function packetOf(
   sender: Sender,
   create: (calibration: Calibration) => PoseEstimator = createIk,

@@ -2,7 +2,7 @@ import fc from 'fast-check';
 import { BallPolicy } from 'threepoint-games/ball/ball-policy';
 import { packBall, unpackBall } from 'threepoint-games/ball/ball-snapshot';
 import type { BallState } from 'threepoint-games/ball/ball-state';
-import { followBallEvent } from 'threepoint-games/ball/replica';
+import { applyBallEvent } from 'threepoint-games/ball/client-state';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { clientMessageFrom, protocolVersion, unpackSeatInfo } from 'threepoint-rooms/protocol/messages';
 import { Room } from 'threepoint-rooms/room/room';
@@ -298,7 +298,7 @@ describe('a match in a room', () => {
           let known = state;
           for (const { message } of testRoom.sent.slice(heard)) {
             if (message.type === 'match') known = unpackBall(message.match)!;
-            if (message.type === 'events') known = message.events.reduce(followBallEvent, known);
+            if (message.type === 'events') known = message.events.reduce(applyBallEvent, known);
           }
           const truth = testRoom.room.match;
           expect(known.balls).toEqual(truth.balls);

@@ -43,10 +43,7 @@ interface TestRoomOptions extends Partial<RoomOptions> {
   readonly ball?: Partial<BallOptions>;
 }
 
-/**
- * A room of the ball game that a test tells everything, with all that it says. Every message is one that a page can
- * read.
- */
+/** A room of the ball game that a test controls; it collects all messages, and checks that a page can read each. */
 export function createTestRoom({ ball, ...options }: TestRoomOptions = {}) {
   const sent: { readonly to: string; readonly message: BallRoomMessage }[] = [];
   const frames: Uint8Array[] = [];

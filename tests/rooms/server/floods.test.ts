@@ -9,7 +9,7 @@ import { rawGuest, startRelay, until } from './running-relay';
 /** More than any connection may send at once, by far. */
 const frames = 2000;
 
-/** A connection of a page that shows no pass: it hears of the rooms and has no place in any. */
+/** A connection of a page that shows no pass: it receives the list of rooms and has no place in any. */
 async function stranger(url: string): Promise<WebSocket> {
   const socket = new WebSocket(`${url.replace('http', 'ws')}/relay/?EIO=4&transport=websocket`);
   onTestFinished(() => socket.terminate());
@@ -49,7 +49,7 @@ test.each<[what: string, send: (socket: WebSocket) => void]>([
   },
 );
 
-/** What a guest has been told of the second seat. */
+/** Returns what a guest has received about the second seat. */
 const seatsOf = (heard: Awaited<ReturnType<typeof rawGuest>>['heard']) =>
   heard.flatMap((message) => (message.type === 'seat' && message.seat === 1 && message.info ? [message.info] : []));
 

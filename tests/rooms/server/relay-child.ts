@@ -27,7 +27,7 @@ export async function forkRelay(environment: Record<string, string> = {}, port =
       child.send('measure');
       return heardFrom<RelayMeasure>(child);
     },
-    /** Measures anew from here. */
+    /** Restarts the measurement. */
     async forget() {
       child.send('forget');
       await heardFrom(child);

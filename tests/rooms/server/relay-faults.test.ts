@@ -197,7 +197,7 @@ test('500 clients reconnect at once', async () => {
   expect(lagP99Ms).toBeLessThan(100 + 20 * Math.max(0, machine.lagP99Ms - 10));
 }, 120_000);
 
-/** A player in a room of sixteen seats who sends thirty poses a second, and when they heard of others. */
+/** A player in a room of sixteen seats who sends thirty poses a second; records when poses of others arrive. */
 async function mover(url: string, room: string) {
   const guest = ending(await rawGuest(url, room), ({ socket }) => socket.disconnect());
   const welcome = guest.heard.find((message) => message.type === 'welcome')!;

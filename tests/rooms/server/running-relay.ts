@@ -131,7 +131,7 @@ export async function tokenFor(url: string, room: string): Promise<string> {
   return createRoomPass(url, room, kindOf(room)).token(false);
 }
 
-/** A socket without our client behind it: for saying what no page of ours says. */
+/** A socket without the project's client: for messages that no page sends. */
 export function rawSocket(url: string, token: string, room: string, extraHeaders: Record<string, string> = {}): Socket {
   return io(url, {
     path: '/relay',
@@ -145,7 +145,7 @@ export function rawSocket(url: string, token: string, room: string, extraHeaders
   });
 }
 
-/** The same, joined; and what it heard. */
+/** A raw socket that has joined, and what it received. */
 export async function rawGuest(url: string, room: string, token?: string) {
   const socket = rawSocket(url, token ?? (await tokenFor(url, room)), room);
   const heard: BallRoomMessage[] = [];

@@ -61,7 +61,7 @@ test('a study goes on when the server’s clock goes an hour ahead and an hour b
       ...(json !== undefined && { body: JSON.stringify(json) }),
     });
     expect(response.ok, `${method} ${path}: ${response.status}`).toBe(true);
-    // biome-ignore lint/suspicious/noExplicitAny: reason: what arrives over HTTP has no type; the expectations say what it should be.
+    // biome-ignore lint/suspicious/noExplicitAny: reason: an answer over HTTP has no type; the expectations state it
     return (response.status === 204 ? null : await response.json()) as any;
   };
   const own = '/paper/participants/P01';

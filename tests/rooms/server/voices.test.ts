@@ -9,7 +9,7 @@ import { arrive, type RunningRelay, rawGuest, startRelay, tokenFor, until } from
 const offer: SignalBody = { description: { type: 'offer', sdp: 'v=0\r\n' } };
 const turnSecret = 'turn-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 
-/** A person over a real socket, and what the room has told their page of its voices. */
+/** A person over a real socket, and what their page has received about the room's voices. */
 function talker(url: string, room: string, name: string) {
   const person = arrive(url, room, name);
   const heard: { readonly from: string; readonly body: SignalBody }[] = [];
@@ -88,7 +88,7 @@ describe('the voices of a room', () => {
     raw.socket.disconnect();
     await until('raw lost', () => ann.connection.room?.seats[2]?.presence === 'gone');
     expect(ann.voiceOf(2)).toEqual({ session: 'raws-page', muted: false });
-    // The same person after a reload: its page knows of no voices.
+    // After a reload the person's page knows of no voices.
     const again = await rawGuest(server.url, 'returning', token);
     await until('raw back', () => ann.connection.room?.seats[2]?.presence === 'here');
     expect(ann.voiceOf(2)).toBeNull();

@@ -133,7 +133,7 @@ describe('two cohorts', () => {
   });
 
   test('are alike where the means of their rounds add up to the same under all conditions: tied, and without a spread', () => {
-    // Of three rounds under three conditions: 5/3 + 5/3 + 1 is 4/3 + 2 + 1.
+    // Three rounds under three conditions: 5/3 + 5/3 + 1 is 4/3 + 2 + 1.
     const sums = [
       [5, 5, 3],
       [4, 6, 3],

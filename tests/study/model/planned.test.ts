@@ -47,7 +47,7 @@ test('the tables of an export hold the planned family with its own Holm p, and m
   ]);
   expect(tables.get('answers-compared')?.every((row) => row.planned === false)).toBe(true);
   expect(tables.get('scores-compared')?.every((row) => row.planned === false)).toBe(true);
-  // The same test, adjusted over three and over four.
+  // One test, adjusted over three and over four.
   const raw = (rows: typeof planned) => rows.find(({ of, first }) => of === 'raw' && first === 'late-200');
   expect(raw(planned)?.p).toBe(raw(explored)?.p);
   expect(raw(planned)?.low_dz).toBe(raw(explored)?.low_dz);

@@ -59,7 +59,7 @@ test('participants who were invited meet in the room of their trial, each on the
   );
   expect(connections.map(({ room }) => room?.mySeat)).toEqual([0, 1, 2]);
   for (const { room } of connections) expect(room?.seats.map((seat) => seat?.name)).toEqual(group);
-  // What people bring along would tell who they are.
+  // Settings that people bring along would identify them.
   for (const { room } of connections)
     expect(room?.seats.map((seat) => seat?.avatar)).toEqual(group.map(() => plainAvatar));
   expect(await (await fetch(`${origin}/api/rooms`)).json()).toMatchObject({ rooms: [] });

@@ -195,7 +195,7 @@ test('a session that an older page kept follows no command again', async () => {
   const kept = await vault.session('paper', 'P01');
   const { commandsSeen, ...progress } = first.progress;
   expect(commandsSeen).toBeGreaterThan(0);
-  // Where it stood before progress told it.
+  // The number was stored here before it was part of the progress.
   await vault.save({ ...kept, progress, commandsSeen } as never, []);
   const second = await reload();
   await second.exchange();

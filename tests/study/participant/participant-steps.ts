@@ -42,7 +42,7 @@ export async function beforeTheRound(server: StudyServer, motion = false) {
   return { device, tab };
 }
 
-/** The same, who has played the round and sits before its questions, the headset on. */
+/** A participant who has played the round and sits before its questions, the headset on. */
 export async function beforeTheQuestions(server: StudyServer) {
   const visit = await beforeTheRound(server);
   play(visit.tab, 40);

@@ -285,7 +285,7 @@ export function browser(server: StudyServer) {
       visit,
       display,
       host,
-      /** Where the page is sent to, once it is. */
+      /** The address that the page is sent to, once it is. */
       wentTo,
       /**
        * Resolves when the server has all there is now: an exchange under way may have begun before, a second one has
@@ -303,7 +303,7 @@ export function browser(server: StudyServer) {
         if (both) stamp += seconds;
         clock.pass(0);
       },
-      /** So many seconds are drawn at 30 Hz; `raised`: with both hands above the head. */
+      /** Draws this many seconds at 30 Hz; `raised`: with both hands above the head. */
       draw(seconds: number, raised = false): void {
         for (let i = 0; i < seconds * 30; i++) {
           stamp += 1 / 30;

@@ -78,7 +78,7 @@ function chooseOn(screen: StudyScreen | null, value: number): void {
   field.choose(value);
 }
 
-/** The same one, who has played the practice and the first round and sits before the questions. */
+/** A participant who has played the practice and the first round and sits before the questions. */
 function beforeTheQuestions() {
   const one = participant(consent, demographics, measured);
   for (let step = 0; one.session.step.kind !== 'questionnaire' && step < 20; step++) {

@@ -59,7 +59,7 @@ test('of a round that is longer than the server takes at once, the first frames 
   };
   const options = { key: 'archery/1/trial-1@1.1', motion: true, seed: 3, now: () => epoch };
   const trial = playTrial(step as Parameters<typeof playTrial>[0], game, host, options);
-  // As long as numbers of a headset are: single precision, written in double.
+  // A headset's numbers have single precision and are written in double.
   const a = Math.fround(-0.123_456_7);
   const pose = { position: { x: a, y: a, z: a }, orientation: { x: a, y: a, z: a, w: Math.sqrt(1 - 3 * a * a) } };
   const hand = { ...pose, tracking: 'tracked' as const };

@@ -28,7 +28,7 @@ export interface KillReport {
   readonly lost: string[];
   /** Participants with records of a condition that is not theirs at this place, or two devices that held one place. */
   readonly inTwoConditions: string[];
-  /** Participants deleted, by an acknowledged withdrawal, of whom something was there. */
+  /** Participants with data left after an acknowledged withdrawal. */
   readonly undeleted: string[];
   /** Databases that are not sound. */
   readonly unsound: string[];

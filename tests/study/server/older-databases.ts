@@ -6,7 +6,7 @@ export const withoutPlanVersions = `
   DROP TABLE plan_versions;
   PRAGMA user_version = 3;`;
 
-/** The same, and what came with the second: invitations. */
+/** The schema without plan versions, and without the invitations of the second version. */
 export const withoutInvitations = `${withoutPlanVersions}
   DROP TABLE software;
   ALTER TABLE participants DROP COLUMN invitation;

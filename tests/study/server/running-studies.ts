@@ -61,14 +61,14 @@ export function studiesInThisThread({
   return createStudyService({ routes: routes.routes, dispatcher, now: clock, trustProxy, log });
 }
 
-// biome-ignore lint/suspicious/noExplicitAny: reason: what arrives over HTTP has no type; each test says what it expects.
+// biome-ignore lint/suspicious/noExplicitAny: reason: an answer over HTTP has no type; each test states it
 export type Anything = any;
 
 export interface Asked {
   readonly token?: string;
   readonly json?: unknown;
   readonly raw?: RequestInit;
-  /** Where the proxy in front says that the request comes from. */
+  /** The client's address according to the proxy in front. */
   readonly from?: string;
 }
 
@@ -131,7 +131,7 @@ export async function servedStudies({
   return { ask, store, origin, wrongGuesses };
 }
 
-/** The same with the paper's study on it, changed or not. */
+/** Serves the paper's study, changed or not. */
 export async function servedPaperStudy(changes: Partial<StudyPlan> = {}, options: ServedOptions = {}) {
   const server = await servedStudies(options);
   server.store.plans.add(paperPlan(changes), { simulated: false, at: now });

@@ -205,7 +205,7 @@ describe('the motion of a study as BIDS', () => {
     readonly severity: 'error' | 'warning';
     readonly location: string;
   }
-  /** It ends with a fault where it finds one, and tells it all the same. */
+  /** Returns the issues; the program ends with an error code when it finds any, and still prints them. */
   const issuesIn = (folder: string): readonly Issue[] =>
     JSON.parse(spawnSync(validator ?? '', ['--json', folder], { encoding: 'utf8' }).stdout).issues.issues;
   test.skipIf(validator === null)('is faultless to the BIDS validator', () => {
@@ -216,7 +216,7 @@ describe('the motion of a study as BIDS', () => {
     }
     const issues = issuesIn(folder);
     expect(issues.filter(({ severity }) => severity === 'error')).toEqual([]);
-    // What it recommends to tell and we do not know: who the authors are, under which terms, whose headset.
+    // It recommends fields that the server does not know: the authors, the licence, the headset's maker.
     const open = issues.filter(({ code }) => !/^(TOO_FEW|NO)_AUTHORS$|_KEY_RECOMMENDED$/.test(code));
     expect(open).toEqual([]);
 

@@ -41,7 +41,7 @@ async function sitDown(participant: string, watching = false) {
 const welcomeOf = ({ guest }: Awaited<ReturnType<typeof sitDown>>) =>
   guest.heard.find((message) => message.type === 'welcome');
 
-/** What the lobby's socket tells a stranger. */
+/** Returns what the lobby's socket sends to a stranger. */
 const toldByLobby = () =>
   new Promise<string>((resolve) => {
     let told = '';

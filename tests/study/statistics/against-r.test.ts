@@ -115,7 +115,7 @@ test('signed ranks of means of three rounds, by differences of nine digits: wilc
     threeRounds.first.map(meanOf),
     threeRounds.second.map(meanOf),
   );
-  // Of the sums R says the same; of the means without `digits.rank` V = 34.5, p = 0.024.
+  // R's result for the sums agrees; for the means without `digits.rank` V = 34.5, p = 0.024.
   expect([v, method]).toEqual([32, 'normal']);
   expectAsInR(p, 0.0418305945652447);
   expectAsInR(effect, 0.777777777777778);
@@ -124,10 +124,10 @@ test('signed ranks of means of three rounds, by differences of nine digits: wilc
 });
 
 test('an effect whose interval reaches further than can be computed has none, rather than one that is cut off', () => {
-  // Of two differences with t = 18 the noncentrality would reach beyond 40; computing ends at 37.
+  // With two differences and t = 18 the noncentrality would reach beyond 40; computing ends at 37.
   expect(pairedTTest([19, 17], [0, 0])).toMatchObject({ t: 18, dzInterval: null });
   expect(pairedTTest([8.5, 7.5], [0, 0])).toMatchObject({ t: 16, dzInterval: { low: expect.any(Number) } });
-  // Of F(1, 2) = 512 it would reach beyond 1500; computing ends at 1400.
+  // With F(1, 2) = 512 it would reach beyond 1500; computing ends at 1400.
   const { between } = varianceAnalysis([
     [[0], [1]],
     [[16], [17]],

@@ -14,7 +14,7 @@ describe('the power of a study that is yet to be run', () => {
   ] as const)('%s, of %i, is what R computes for the t-test', (design, n, power) => {
     const { t, wilcoxon } = simulatedPower({ design, effect: 0.5, alpha: 0.05 }, n, simulation);
     expect(Math.abs(t - power)).toBeLessThan(tolerance);
-    // Of normal values Wilcoxon's tests use 3/π of the participants.
+    // For normal values Wilcoxon's tests have the power of 3/π of the participants.
     expect(wilcoxon).toBeLessThan(t);
     expect(wilcoxon).toBeGreaterThan(t - 0.05);
   });

@@ -4,7 +4,7 @@ import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { TrackedPose } from 'threepoint/core/math/pose';
 import { deviceBodySize } from 'threepoint/core/tracking/device-body';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { TrackingGate } from 'threepoint/core/tracking/tracking-gate';
+import { TrackingValidator } from 'threepoint/core/tracking/tracking-validator';
 import { describe, expect, test } from 'vitest';
 import { movingPerson } from '../core/estimation/moving-person';
 import { openPlainModel } from '../core/estimation/shipped-models';
@@ -142,7 +142,7 @@ test('a body is warmed up without invalid points', async () => {
 });
 
 test('a frame without a slip is taken as it is: nothing is copied', () => {
-  const gate = new TrackingGate();
+  const validator = new TrackingValidator();
   const whole = { ...at(0), deviceBody: new Float32Array(deviceBodySize) };
-  for (const frame of [at(0), { ...at(0), leftHand: null }, whole]) expect(gate.admit(frame)).toBe(frame);
+  for (const frame of [at(0), { ...at(0), leftHand: null }, whole]) expect(validator.validate(frame)).toBe(frame);
 });

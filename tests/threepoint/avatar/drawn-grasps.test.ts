@@ -1,6 +1,6 @@
 import type { Vector3 } from 'three';
+import { bodyLabels } from 'threepoint/avatar/built-in-bodies';
 import type { Holding } from 'threepoint/avatar/hands/holding';
-import { bodyLabels } from 'threepoint/avatar/own-bodies';
 import { fingerBonesOf } from 'threepoint/core/body/finger-bones';
 import { distanceToBall, distanceToRod } from 'threepoint/core/body/grasp';
 import { type FingerName, fingerNames, type MutableHandShape } from 'threepoint/core/body/hand-shape';
@@ -20,7 +20,7 @@ import { ballInPalm, wristAround } from 'threepoint-games/fist';
 import { describe, expect, test } from 'vitest';
 import { show } from '../core/estimation/drawn';
 import { openPlainModel } from '../core/estimation/shipped-models';
-import { type DrawnSkin, drawnHands, drawnSkin, ownBody, wearer } from './drawn-skin';
+import { builtInBody, type DrawnSkin, drawnHands, drawnSkin, wearer } from './drawn-skin';
 
 const sides = ['left', 'right'] as const;
 
@@ -105,7 +105,7 @@ function nearest(skin: DrawnSkin, bones: readonly string[], distance: (at: Vec3)
 const flesh = 6;
 
 describe.each(bodyLabels.map(({ name }) => name))('the hands of our %s', async (body) => {
-  const avatar = await ownBody(body);
+  const avatar = await builtInBody(body);
 
   describe.each([
     ['a bow’s grip', bow],

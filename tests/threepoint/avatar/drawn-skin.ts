@@ -17,8 +17,8 @@ type Wrists = Readonly<Record<Side, Pose<'floor'>>>;
 /** Closes a hand round something. */
 type Grasp = (holding: Holding, side: Side, wrist: Pose<'floor'>, target: MutableHandShape) => void;
 
-/** Loads one of the project's own bodies for that person. */
-export async function ownBody(body: string): Promise<Avatar> {
+/** Loads a built-in body for that person. */
+export async function builtInBody(body: string): Promise<Avatar> {
   const file = readFileSync(new URL(`../../../public/avatars/${body}.vrm`, import.meta.url));
   const bytes = file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer;
   const avatar = createAvatar(await parseAvatar(bytes, `${body}.vrm`));

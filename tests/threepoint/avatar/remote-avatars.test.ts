@@ -5,10 +5,10 @@ import { createRemoteAvatars, type RemoteAvatars, type SeenPerson } from 'threep
 import {
   type AvatarHash,
   type AvatarRef,
+  type BuiltInBody,
   bodyOf,
-  isOwnAvatar,
-  type OwnBody,
-  ownAvatarOf,
+  builtInAvatarOf,
+  isBuiltInAvatar,
   plainAvatar,
 } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
@@ -24,7 +24,7 @@ import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { poseOf } from '../core/estimation/drawn';
 
-function bytesOf(body: OwnBody): ArrayBuffer {
+function bytesOf(body: BuiltInBody): ArrayBuffer {
   const file = readFileSync(new URL(`../../../public/avatars/${body}.vrm`, import.meta.url));
   return file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer;
 }
@@ -45,7 +45,7 @@ const person = (id: number, more: Partial<SeenPerson> = {}): SeenPerson => ({
 /** Draws these people until each of them has a body. */
 async function gathered(people: readonly SeenPerson[]): Promise<RemoteAvatars> {
   const others = createRemoteAvatars({
-    load: (avatar) => (isOwnAvatar(avatar) ? parseAvatar(bytesOf(bodyOf(avatar)), avatar) : Promise.reject(avatar)),
+    load: (avatar) => (isBuiltInAvatar(avatar) ? parseAvatar(bytesOf(bodyOf(avatar)), avatar) : Promise.reject(avatar)),
     plain: () => false,
     mouthOf: () => 0,
     onRefused: (avatar, reason) => expect([avatar, reason]).toBeNull(),
@@ -75,7 +75,7 @@ describe('bodies of others', () => {
 
   const unlike: Record<string, readonly [Partial<SeenPerson>, Partial<SeenPerson>]> = {
     palettes: [{ palette: 'ember' }, { palette: 'moss' }],
-    'tones of skin': [{ avatar: ownAvatarOf('woman', 'fair') }, { avatar: ownAvatarOf('woman', 'dark') }],
+    'tones of skin': [{ avatar: builtInAvatarOf('woman', 'fair') }, { avatar: builtInAvatarOf('woman', 'dark') }],
   };
   test.each(Object.entries(unlike))('share vertices, not colours: %s', async (_, [one, other]) => {
     const others = await gathered([person(1, one), person(2, other)]);

@@ -36,10 +36,6 @@ export const rotation: fc.Arbitrary<Quat> = fc
     return flipped ? { x: -q.x, y: -q.y, z: -q.z, w: -q.w } : q;
   });
 
-/** Rotations near to none: at most `angle` [rad] about any axis. */
-export const smallRotation = (angle: number): fc.Arbitrary<Quat> =>
-  fc.tuple(direction, evenly(-angle, angle)).map(([axis, turn]) => fromAxisAngle(axis, turn));
-
 /** The position and yaw of a person: properties never start at the origin facing −Z. */
 export const standpoint = fc.record({ x: evenly(-3, 3), z: evenly(-3, 3), yaw: evenly(-Math.PI, Math.PI) });
 

@@ -17,7 +17,10 @@ export interface HeadsetControlsOptions extends Pick<ControlledParts, 'settings'
   readonly body: Pick<BodySolver, 'estimator' | 'unavailable'>;
   readonly activities: Pick<Activities, 'all' | 'current' | 'goTo'>;
   readonly measuring: Pick<Measuring, 'step' | 'begin' | 'cancel'>;
-  readonly actions: Pick<PanelActions, 'chooseEstimator' | 'chooseOwnBody' | 'chooseSkinTone' | 'recentre' | 'exitVr'>;
+  readonly actions: Pick<
+    PanelActions,
+    'chooseEstimator' | 'chooseBuiltInBody' | 'chooseSkinTone' | 'recentre' | 'exitVr'
+  >;
 }
 
 /** What can be pressed in the headset: the menu, or a study's sheet in its place, and the sheets of a game. */
@@ -87,7 +90,7 @@ export class HeadsetControls {
       recentre: () => actions.recentre(),
       setOverlay: (on) => writer.change({ vrOverlay: on }),
       goTo: (place) => void activities.goTo(place),
-      chooseOwnBody: (name) => actions.chooseOwnBody(name),
+      chooseBuiltInBody: (name) => actions.chooseBuiltInBody(name),
       chooseSkinTone: (tone) => actions.chooseSkinTone(tone),
       exit: () => actions.exitVr(),
     };

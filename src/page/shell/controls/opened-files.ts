@@ -12,7 +12,7 @@ import type { ShownAvatar } from '../shown-avatar';
 const recordingFile: FileKind = { what: 'a recording', megabytes: 100 };
 
 export interface OpenedFilesOptions {
-  readonly avatar: Pick<ShownAvatar, 'open' | 'openOwn' | 'giveBones' | 'name'>;
+  readonly avatar: Pick<ShownAvatar, 'open' | 'openBuiltIn' | 'giveBones' | 'name'>;
   readonly recorder: Pick<Recorder, 'ask' | 'open' | 'replay'>;
   readonly notices: Pick<Notices, 'show'>;
   readonly body: Pick<BodySolver, 'discontinuity'>;
@@ -64,11 +64,11 @@ export class OpenedFiles {
   }
 
   /** Ours, also after a reload. */
-  showOwnAvatar(): void {
+  showBuiltInAvatar(): void {
     const address = new URL(location.href);
     address.searchParams.delete('avatar');
     history.replaceState(null, '', address);
-    void this.#options.avatar.openOwn();
+    void this.#options.avatar.openBuiltIn();
   }
 
   /**

@@ -44,17 +44,17 @@ function avatarActions({ writer, avatar, files }: PanelActionsOptions): AvatarAc
       writer.keep({ palette });
       avatar.recolour();
     },
-    chooseOwnBody(ownBody) {
-      writer.keep({ ownBody });
-      files.showOwnAvatar();
+    chooseBuiltInBody(builtInBody) {
+      writer.keep({ builtInBody });
+      files.showBuiltInAvatar();
     },
     chooseSkinTone(skinTone) {
       writer.keep({ skinTone });
-      files.showOwnAvatar();
+      files.showBuiltInAvatar();
     },
     openAvatarFile: (file) => void files.open(file),
     openAvatarUrl: (url) => void files.openAvatar(url),
-    showOwnAvatar: () => files.showOwnAvatar(),
+    showBuiltInAvatar: () => files.showBuiltInAvatar(),
     cancelAvatar: () => avatar.cancel(),
     setUpperBodyOnly: (upperBodyOnly) => writer.keep({ upperBodyOnly }),
     giveBones: (bones) => void files.giveBones(bones),

@@ -1,4 +1,4 @@
-import { bodyLabels } from 'threepoint/avatar/own-bodies';
+import { bodyLabels } from 'threepoint/avatar/built-in-bodies';
 import { skinColors } from 'threepoint/avatar/palettes';
 import { plainAvatar, skinTones } from 'threepoint/core/body/avatar-ref';
 import { button, element } from 'threepoint-ui/element';
@@ -8,22 +8,22 @@ import { toggle } from 'threepoint-ui/toggle';
 import { createBonesForm } from './bones-form';
 import type { AvatarActions, PanelPage, PanelState } from './panel-state';
 
-/** Colours of our own avatar. */
+/** The colours of a built-in avatar. */
 export interface PaletteChoice {
   readonly name: string;
   readonly label: string;
   readonly color: string;
 }
 
-/** Shows the name of the avatar and, for the page's own avatars, their colours. */
+/** Shows the name of the avatar and, for built-in avatars, their colours. */
 function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions) {
   const name = element('p', { class: 'avatar-name' });
   const pending = createRunningLine({ class: 'hint' });
-  const own = button('Back to the page’s avatar', () => actions.showOwnAvatar());
+  const builtIn = button('Back to the page’s avatar', () => actions.showBuiltInAvatar());
   const cancel = button('Cancel loading', () => actions.cancelAvatar());
   const bodies = bodyLabels.map((body) => ({
     name: body.name,
-    node: button(body.label, () => actions.chooseOwnBody(body.name)),
+    node: button(body.label, () => actions.chooseBuiltInBody(body.name)),
   }));
   const swatch = (label: string, color: string, act: () => void): HTMLButtonElement => {
     const node = button('', act, { class: 'swatch', 'aria-label': label, title: label });
@@ -51,30 +51,30 @@ function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions)
       element('div', { class: 'chips', role: 'group', 'aria-label': 'Our bodies' }, ...bodies.map(({ node }) => node)),
       row('Colours', colours),
       row('Skin', tones),
-      own,
+      builtIn,
     ),
     show({
       avatarName,
       avatarPending,
       avatarOnItsWay,
-      ownAvatarOffered,
-      ownBody,
+      builtInAvatarOffered,
+      builtInBody,
       skinTone,
       palette: worn,
     }: PanelState) {
       name.textContent = avatarName;
       pending.show(avatarPending ?? '');
       pending.node.hidden = avatarPending === null;
-      own.hidden = !ownAvatarOffered;
+      builtIn.hidden = !builtInAvatarOffered;
       cancel.hidden = !avatarOnItsWay;
-      for (const { name, node } of bodies) node.setAttribute('aria-pressed', String(name === ownBody));
+      for (const { name, node } of bodies) node.setAttribute('aria-pressed', String(name === builtInBody));
       for (const { palette, node } of colours) {
         node.setAttribute('aria-pressed', String(palette === worn));
         node.disabled = worn === null;
       }
       for (const { tone, node } of tones) {
         node.setAttribute('aria-pressed', String(tone === skinTone));
-        node.disabled = ownBody === null || ownBody === plainAvatar;
+        node.disabled = builtInBody === null || builtInBody === plainAvatar;
       }
     },
   };

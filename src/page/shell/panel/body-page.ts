@@ -46,7 +46,7 @@ function createEstimators(actions: Pick<BodyActions, 'chooseEstimator'>) {
 function createDeviceBody(actions: Pick<BodyActions, 'setDeviceBody'>) {
   const ask = toggle('Use the headset’s body tracking', (on) => actions.setDeviceBody(on));
   const about =
-    'Applies when you next enter VR, until you close the page. It is off by default because headset browsers have crashed.';
+    'Starts when you next enter VR, and lasts until you close the page. It is off by default, because it has crashed the browsers of some headsets.';
   return {
     node: element('section', {}, ask.node, element('p', { class: 'hint' }, about)),
     show({ deviceBody }: PanelState) {

@@ -1,5 +1,5 @@
 import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
-import type { OwnBody, SkinTone } from 'threepoint/core/body/avatar-ref';
+import type { BuiltInBody, SkinTone } from 'threepoint/core/body/avatar-ref';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { ViewName } from '../../scene/desktop-view';
 import type { WaitingForBones } from '../shown-avatar';
@@ -47,7 +47,7 @@ export interface PanelState {
   /** The state of an avatar that was requested and is not shown; null: there is none. */
   readonly avatarPending: string | null;
   /** Another avatar than ours is shown, or was wanted. */
-  readonly ownAvatarOffered: boolean;
+  readonly builtInAvatarOffered: boolean;
   /** Whether an avatar is loading, which the user can cancel. */
   readonly avatarOnItsWay: boolean;
   /** A file whose bones the user must map; null: none. */
@@ -55,10 +55,10 @@ export interface PanelState {
   readonly shareAvatar: boolean;
   readonly plainOthers: boolean;
   /** Which body of our own is shown; null: another avatar is. */
-  readonly ownBody: OwnBody | null;
+  readonly builtInBody: BuiltInBody | null;
   /** The skin tone of a human avatar; undefined: the avatar's own. */
   readonly skinTone: SkinTone | undefined;
-  /** Colours of our own avatar; null: another avatar is shown, which keeps its own. */
+  /** The colours of a built-in avatar; null: another avatar is shown, which keeps its own. */
   readonly palette: string | null;
   readonly heightCm: number;
   readonly armSpanCm: number;
@@ -89,11 +89,11 @@ export interface BodyActions {
 
 export interface AvatarActions {
   choosePalette(name: string): void;
-  chooseOwnBody(name: OwnBody): void;
+  chooseBuiltInBody(name: BuiltInBody): void;
   chooseSkinTone(tone: SkinTone): void;
   openAvatarFile(file: File): void;
   openAvatarUrl(url: string): void;
-  showOwnAvatar(): void;
+  showBuiltInAvatar(): void;
   cancelAvatar(): void;
   setUpperBodyOnly(on: boolean): void;
   /** Which bone of the file that waits is which. */

@@ -1,5 +1,11 @@
-import { labelOf } from 'threepoint/avatar/own-bodies';
-import { type OwnBody, ownBodies, plainAvatar, type SkinTone, skinTones } from 'threepoint/core/body/avatar-ref';
+import { labelOf } from 'threepoint/avatar/built-in-bodies';
+import {
+  type BuiltInBody,
+  builtInBodies,
+  plainAvatar,
+  type SkinTone,
+  skinTones,
+} from 'threepoint/core/body/avatar-ref';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
 import {
@@ -23,8 +29,8 @@ export interface VrMenuState {
   readonly overlay: boolean;
   /** The headset's body tracking is used. */
   readonly deviceBody: boolean;
-  /** The page's own avatar that is worn, or would be instead of another one. */
-  readonly ownBody: OwnBody;
+  /** The built-in avatar that is worn, or would be instead of another one. */
+  readonly builtInBody: BuiltInBody;
   /** The skin tone of a human avatar; undefined: the avatar's own. */
   readonly skinTone: SkinTone | undefined;
   /** The activities that the user can go to, with the labels of their buttons. */
@@ -42,7 +48,7 @@ export interface VrMenuActions {
   recentre(): void;
   setOverlay(on: boolean): void;
   goTo(place: string): void;
-  chooseOwnBody(name: OwnBody): void;
+  chooseBuiltInBody(name: BuiltInBody): void;
   chooseSkinTone(tone: SkinTone): void;
   exit(): void;
 }
@@ -80,12 +86,12 @@ const after = <T>(all: readonly [T, ...T[]], chosen: T | undefined): T =>
 
 /** The buttons that change with the place where the user is. */
 function placeEntries(state: VrMenuState, actions: VrMenuActions): readonly MenuEntry[] {
-  const { places, activity, ownBody, skinTone } = state;
+  const { places, activity, builtInBody, skinTone } = state;
   if (activity) return [{ id: home, label: 'To the mirror', act: () => actions.goTo(home) }, ...activity.entries];
   const entries = places.map(({ name, title }) => ({ id: name, label: title, act: () => actions.goTo(name) }));
-  const body = `Body: ${labelOf(ownBody)}`;
-  entries.push({ id: 'body', label: body, act: () => actions.chooseOwnBody(after(ownBodies, ownBody)) });
-  if (ownBody === plainAvatar) return entries;
+  const body = `Body: ${labelOf(builtInBody)}`;
+  entries.push({ id: 'body', label: body, act: () => actions.chooseBuiltInBody(after(builtInBodies, builtInBody)) });
+  if (builtInBody === plainAvatar) return entries;
   const skin = `Skin: ${skinTone ?? 'own'}`;
   return [...entries, { id: 'skin', label: skin, act: () => actions.chooseSkinTone(after(skinTones, skinTone)) }];
 }

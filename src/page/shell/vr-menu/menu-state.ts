@@ -27,7 +27,7 @@ export function menuStateOf({ body, settings, activities, measuring, notices }: 
     calibration: measuring.step,
     overlay: settings.vrOverlay,
     deviceBody: settings.deviceBody,
-    ownBody: settings.ownBody,
+    builtInBody: settings.builtInBody,
     skinTone: settings.skinTone,
     places: activities.all.map(({ name, title }) => ({ name, title })),
     activity,

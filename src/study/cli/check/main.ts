@@ -1,5 +1,6 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { ValidationError } from 'threepoint/core/validation/validation';
+import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { embodimentInWords } from '../../model/plan/embodiment';
 import {
   languagesOf,
@@ -12,6 +13,7 @@ import {
 } from '../../model/plan/plan';
 import { durationOf, outlineOf } from '../../model/plan/plan-outline';
 import { cohortCounts, orderCounts, remarksOn } from '../../model/plan/plan-remarks';
+import { loadStudyPlugins } from '../../server/plugins/load-plugins';
 
 const [file = '', participant] = process.argv.slice(2);
 
@@ -73,9 +75,10 @@ function check(): void {
 }
 
 try {
+  await loadStudyPlugins(process.env);
   check();
 } catch (error) {
-  if (!(error instanceof ValidationError)) throw error;
+  if (!(error instanceof ValidationError || error instanceof ConfigurationError)) throw error;
   console.error(error.message);
   process.exitCode = 1;
 }

@@ -2,6 +2,7 @@ import { existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 
 import { dirname, join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { ValidationError } from 'threepoint/core/validation/validation';
+import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { softwareIn } from 'threepoint-http/software';
 import { checkedPlan, parsePlan, type StudyPlan } from '../../model/plan/plan';
 import type { StudyRecord } from '../../model/records/study-record';
@@ -9,6 +10,7 @@ import { compareCohorts } from '../../model/results/compare-cohorts';
 import { compareConditions } from '../../model/results/compare-conditions';
 import { measuresIn, overallComparisons, type StudyMeasures } from '../../model/results/exported-results';
 import { exportFiles, exportName, exportZip } from '../../server/export/export-zip';
+import { loadStudyPlugins } from '../../server/plugins/load-plugins';
 import { openStudyStore } from '../../server/storage/store';
 import { modelsWith, simulatedPlan, simulateStudy, statedInWords } from '../../simulation/simulate-study';
 import { simulateOptions } from './options';
@@ -116,9 +118,11 @@ function run(): void {
 }
 
 try {
+  await loadStudyPlugins(process.env);
   run();
 } catch (error) {
-  if (!(error instanceof ValidationError) && !(error instanceof TypeError && 'code' in error)) throw error;
+  const known = error instanceof ValidationError || error instanceof ConfigurationError;
+  if (!known && !(error instanceof TypeError && 'code' in error)) throw error;
   console.error((error as Error).message);
   process.exitCode = 1;
 }

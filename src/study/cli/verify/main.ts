@@ -3,6 +3,7 @@ import { basename } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { softwareIn } from 'threepoint-http/software';
+import { loadStudyPlugins } from '../../server/plugins/load-plugins';
 import { verifyExport } from './verify-export';
 
 const [path = ''] = process.argv.slice(2);
@@ -11,6 +12,7 @@ const file = basename(path);
 const mostShown = 50;
 
 try {
+  await loadStudyPlugins(process.env);
   if (!existsSync(path)) throw new Error('there is no such file');
   const here = softwareIn(
     fileURLToPath(new URL('../../../../public', import.meta.url)),

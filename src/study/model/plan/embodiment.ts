@@ -1,4 +1,4 @@
-import { ownBodies } from 'threepoint/core/body/avatar-ref';
+import { builtInBodies } from 'threepoint/core/body/avatar-ref';
 import { type ThreePointName, threePointNames } from 'threepoint/core/estimation/pose-estimator';
 import { mostLatencyMs } from 'threepoint/core/tracking/tracking-degradation';
 import { numberBetween } from 'threepoint/core/validation/validation';
@@ -14,7 +14,7 @@ export const embodimentFields = {
   /** The estimator of the body. */
   estimator: v.exactOptional(estimatorSchema),
   /** The avatar, one of those of this project. */
-  avatar: v.exactOptional(v.picklist(ownBodies, `expected one of ${ownBodies.join(', ')}`)),
+  avatar: v.exactOptional(v.picklist(builtInBodies, `expected one of ${builtInBodies.join(', ')}`)),
   /** Whether there is a mirror; the ball game has none. */
   mirror: v.exactOptional(trueOrFalse),
   /** Whether the body ends at the hips. */

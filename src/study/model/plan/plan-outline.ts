@@ -17,7 +17,7 @@ export interface OutlinedScreen {
 
 const ofForm = ({ answer: form, optional }: Question): string => {
   const range = questionKind(form).range(form);
-  return `${form.kind}${range ? ` ${range[0]} to ${range[1]}` : ''}${optional ? ', may stay open' : ''}`;
+  return `${form.kind}${range ? ` ${range[0]} to ${range[1]}` : ''}${optional ? ', optional' : ''}`;
 };
 
 function screensOf(plan: StudyPlan, step: StudyStep): readonly OutlinedScreen[] {

@@ -28,8 +28,8 @@ export const answerFormSchema = v.variant(
  * the tables contain; a `QuestionView` draws the question on the desk card and on the VR sheet, and turns what is
  * pressed into an answer. Every process that reads plans registers the first before it reads one: the server's
  * thread, the process of an export, the command line tools and the page. The page also registers the second with
- * `registerQuestionView`. The kinds of this package are such plug-ins. Returns a function that removes the kind;
- * throws an Error if the name is taken.
+ * `registerQuestionView`. The setting THREEPOINT_STUDY_PLUGINS does all of this (docs/study.md). Returns a function
+ * that removes the kind; throws an Error if the name is taken.
  *
  * @example
  * declare module 'threepoint-study/model/questionnaires/question-kind' {

@@ -1,4 +1,4 @@
-import { ownBodies } from 'threepoint/core/body/avatar-ref';
+import { builtInBodies } from 'threepoint/core/body/avatar-ref';
 import { threePointNames } from 'threepoint/core/estimation/pose-estimator';
 import { mostLatencyMs } from 'threepoint/core/tracking/tracking-degradation';
 import type { StudyPlan } from '../plan/plan';
@@ -16,7 +16,7 @@ const columns = [
     from('estimator'),
     'Estimator of the body; here and below empty: not set.',
   ),
-  text('avatar', ownBodies.join(', '), from('avatar'), 'Avatar.'),
+  text('avatar', builtInBodies.join(', '), from('avatar'), 'Avatar.'),
   boolean('mirror', from('mirror'), 'Whether there is a mirror.'),
   boolean('upper_body_only', from('upperBodyOnly'), 'Whether the body ends at the hips.'),
   number('latency', 'ms', `0 to ${mostLatencyMs}`, from('latencyMs'), 'Additional latency of the body.'),

@@ -4,7 +4,7 @@ import { readAmc } from '../motion/read-amc';
 import { readAsf } from '../motion/read-asf';
 import { bvhFileMotion, readBvh } from '../motion/read-bvh';
 import { readVrma } from '../motion/read-vrma';
-import { portionOf } from '../motion/work';
+import { scaleProgress } from '../motion/work';
 import { putBackLostBones } from './cmuconvert';
 import { cutAtLeaps, evenClip } from './even-clip';
 import { fromMappedRest } from './mapped-motion';
@@ -110,9 +110,13 @@ export function* prepareMocap(source: MocapSource): Generator<number, PreparedMo
   const { name } = source;
   try {
     const map = source.map && readBeside(source.map, readSkeletonMap);
-    const file = yield* portionOf(readFile(source, map), 0, 0.6);
-    const motion = yield* portionOf(toOurJoints(file, file.rateHz ?? map?.frameRate ?? rateOf(name), map), 0.6, 0.8);
-    return yield* portionOf(clipsOf(name, motion, file.notes), 0.8, 1);
+    const file = yield* scaleProgress(readFile(source, map), 0, 0.6);
+    const motion = yield* scaleProgress(
+      toOurJoints(file, file.rateHz ?? map?.frameRate ?? rateOf(name), map),
+      0.6,
+      0.8,
+    );
+    return yield* scaleProgress(clipsOf(name, motion, file.notes), 0.8, 1);
   } catch (error) {
     throw faultIn(name, error);
   }

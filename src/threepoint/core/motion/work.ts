@@ -4,8 +4,12 @@
  */
 export type Work<Result> = Generator<number, Result> | AsyncGenerator<number, Result>;
 
-/** Work as a part of longer work: its shares become those from `from` to `to`. */
-export async function* partOf<Result>(work: Work<Result>, from: number, to: number): AsyncGenerator<number, Result> {
+/** Runs work as a part of longer work: its progress [0, 1] is scaled to the range from `from` to `to`. */
+export async function* scaleProgressAsync<Result>(
+  work: Work<Result>,
+  from: number,
+  to: number,
+): AsyncGenerator<number, Result> {
   for (;;) {
     const step = await work.next();
     if (step.done) return step.value;
@@ -13,8 +17,8 @@ export async function* partOf<Result>(work: Work<Result>, from: number, to: numb
   }
 }
 
-/** Yields the scaled progress of work that never waits. */
-export function* portionOf<Result>(
+/** Runs work that never waits as a part of longer work, like `scaleProgressAsync`. */
+export function* scaleProgress<Result>(
   work: Generator<number, Result>,
   from: number,
   to: number,

@@ -2,7 +2,7 @@ import { type Quat, quat, toEulerYxz } from '../math/quat';
 import { type MutableVec3, scale, setVec3, type Vec3, vec3 } from '../math/vec3';
 import { hipsAt, type Motion, resampleMotion, rotationAt } from './motion';
 import type { MotionBone } from './skeleton';
-import { portionOf } from './work';
+import { scaleProgress } from './work';
 
 export interface BvhOptions {
   /** What a number of the file is: metres (the default) or centimetres. */
@@ -79,7 +79,7 @@ export function* writeBvh(
   { unit = 'm', rateHz = motion.rateHz }: BvhOptions = {},
 ): Generator<number, readonly string[]> {
   if (unit !== 'm' && unit !== 'cm') throw new Error(`“${String(unit)}” is not a unit of a BVH file. Use m or cm.`);
-  const even = yield* portionOf(resampleMotion(motion, rateHz), 0, resampling);
+  const even = yield* scaleProgress(resampleMotion(motion, rateHz), 0, resampling);
   const perMetre = unit === 'cm' ? 100 : 1;
   const digits = unit === 'cm' ? 4 : 6;
   const place = vec3(0, 0, 0);

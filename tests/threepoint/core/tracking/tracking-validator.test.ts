@@ -1,6 +1,6 @@
 import { identity } from 'threepoint/core/math/quat';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { admittedFrames, TrackingGate } from 'threepoint/core/tracking/tracking-gate';
+import { TrackingValidator, validFrames } from 'threepoint/core/tracking/tracking-validator';
 import { expect, test } from 'vitest';
 
 const point = (x: number, tracking: 'tracked' | 'emulated' = 'tracked') => ({
@@ -9,28 +9,28 @@ const point = (x: number, tracking: 'tracked' | 'emulated' = 'tracked') => ({
 const frame: TrackingFrame = { time: 1, head: point(0), leftHand: point(-0.3), rightHand: point(0.3) };
 const guessed: TrackingFrame = { ...frame, leftHand: point(-0.3, 'emulated') };
 
-function gateOf(assumesTracked: boolean) {
+function validatorOf(assumesTracked: boolean) {
   const events: string[] = [];
   const onChange = (name: string, tracked: boolean) => void events.push(`${name} ${tracked ? 'found' : 'lost'}`);
-  return { gate: new TrackingGate({ assumesTracked, onChange }), events };
+  return { validator: new TrackingValidator({ assumesTracked, onChange }), events };
 }
 
 test('a hand that a device only guesses counts as tracked until the device has reported it as tracked', () => {
-  const { gate } = gateOf(true);
-  expect(gate.admit(guessed)).toMatchObject({ leftHand: { tracking: 'tracked' } });
-  expect(gate.admit(frame)).toBe(frame);
-  expect(gate.admit(guessed)).toBe(guessed);
+  const { validator } = validatorOf(true);
+  expect(validator.validate(guessed)).toMatchObject({ leftHand: { tracking: 'tracked' } });
+  expect(validator.validate(frame)).toBe(frame);
+  expect(validator.validate(guessed)).toBe(guessed);
 });
 
 test('a guessed hand of a page’s own frames is lost', () => {
-  const { gate, events } = gateOf(false);
-  expect(gate.admit(guessed)).toBe(guessed);
+  const { validator, events } = validatorOf(false);
+  expect(validator.validate(guessed)).toBe(guessed);
   expect(events).toEqual(['head found', 'right found']);
 });
 
 test('each change is reported once, and a frame without a head loses every point', () => {
-  const { gate, events } = gateOf(false);
-  for (const next of [frame, frame, guessed, null, null, frame]) gate.admit(next);
+  const { validator, events } = validatorOf(false);
+  for (const next of [frame, frame, guessed, null, null, frame]) validator.validate(next);
   expect(events).toEqual([
     ...['head found', 'left found', 'right found', 'left lost'],
     ...['head lost', 'right lost', 'head found', 'left found', 'right found'],
@@ -38,19 +38,19 @@ test('each change is reported once, and a frame without a head loses every point
 });
 
 test('after a reset every point is found again without having been reported as lost', () => {
-  const { gate, events } = gateOf(false);
-  gate.admit(frame);
+  const { validator, events } = validatorOf(false);
+  validator.validate(frame);
   events.length = 0;
-  gate.reset();
+  validator.reset();
   expect(events).toEqual([]);
-  gate.admit(frame);
+  validator.validate(frame);
   expect(events).toEqual(['head found', 'left found', 'right found']);
 });
 
 test('a corrected copy keeps what is not corrected', () => {
   const suspended: TrackingFrame = { ...frame, suspended: true, leftHand: null };
   expect(
-    new TrackingGate().admit({ ...suspended, rightHand: { ...point(0.3), position: { x: NaN, y: 0, z: 0 } } }),
+    new TrackingValidator().validate({ ...suspended, rightHand: { ...point(0.3), position: { x: NaN, y: 0, z: 0 } } }),
   ).toEqual({
     ...suspended,
     rightHand: null,
@@ -60,5 +60,5 @@ test('a corrected copy keeps what is not corrected', () => {
 test('frames of a recording without a head are left out', () => {
   // reason: a page without types
   const headless = { ...frame, head: null } as unknown as TrackingFrame;
-  expect([...admittedFrames([headless, frame, headless])]).toEqual([frame]);
+  expect([...validFrames([headless, frame, headless])]).toEqual([frame]);
 });

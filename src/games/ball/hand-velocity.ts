@@ -11,7 +11,7 @@ import {
 } from 'threepoint/core/math/vec3';
 
 /** Measures the velocity of a hand over its recent path. */
-export interface HandSpeed {
+export interface HandVelocity {
   /** Adds a position; it is copied. A time that does not rise is ignored. */
   follow(time: number, position: Vec3): void;
   /** Returns the velocity [m/s] over the last `throwWindow`; zero with fewer than two positions. */
@@ -39,7 +39,7 @@ const makePlace = (): Place => ({ time: 0, position: vec3(0, 0, 0) });
  * Computes the slope of a least-squares line through the path, which is linear between frames; a dropped frame
  * therefore changes little.
  */
-class PathSpeed implements HandSpeed {
+class PathVelocity implements HandVelocity {
   /** Oldest first. */
   readonly #path: Place[] = [];
   /** Objects for reuse. */
@@ -86,4 +86,4 @@ class PathSpeed implements HandSpeed {
   }
 }
 
-export const createHandSpeed = (): HandSpeed => new PathSpeed();
+export const createHandVelocity = (): HandVelocity => new PathVelocity();

@@ -35,7 +35,7 @@ function validFingers(fingers: Fingers): Fingers {
   return left === fingers.left && right === fingers.right ? fingers : { left, right };
 }
 
-export interface TrackingGateOptions {
+export interface TrackingValidatorOptions {
   /**
    * Whether a point that the source has never reported as tracked counts as tracked. Emulators and controllers without
    * cameras report every position as guessed; without this their arms would hang and their hands could not play.
@@ -49,15 +49,15 @@ export interface TrackingGateOptions {
  * Decides what is tracked in the frames of one source: the only place that checks poses, their tracking state and their
  * times.
  */
-export class TrackingGate {
-  readonly #options: TrackingGateOptions;
+export class TrackingValidator {
+  readonly #options: TrackingValidatorOptions;
   /** The time of the newest frame [s]; NaN before the first. */
   #time = Number.NaN;
   /** The points that the source has reported as tracked at least once. */
   readonly #reported: Record<TrackedPoint, boolean> = { head: false, left: false, right: false };
   readonly #tracked: Record<TrackedPoint, boolean> = { head: false, left: false, right: false };
 
-  constructor(options: TrackingGateOptions = {}) {
+  constructor(options: TrackingValidatorOptions = {}) {
     this.#options = options;
   }
 
@@ -67,12 +67,12 @@ export class TrackingGate {
    * that of the frame before. Returns null while the head is not seen or no time is known. A head counts as tracked in
    * each frame that has one, because the body follows a guessed head too.
    */
-  admit(frame: TrackingFrame | null | undefined): TrackingFrame | null {
-    const admitted = this.#check(frame);
-    this.#follow('head', admitted !== null);
-    this.#follow('left', isTracked(admitted?.leftHand));
-    this.#follow('right', isTracked(admitted?.rightHand));
-    return admitted;
+  validate(frame: TrackingFrame | null | undefined): TrackingFrame | null {
+    const valid = this.#check(frame);
+    this.#follow('head', valid !== null);
+    this.#follow('left', isTracked(valid?.leftHand));
+    this.#follow('right', isTracked(valid?.rightHand));
+    return valid;
   }
 
   /** Marks every point as not tracked without a call of `onChange`: the session is over. */
@@ -111,11 +111,11 @@ export class TrackingGate {
   }
 }
 
-/** Yields the admitted frames of a recording; frames without a head or a time are left out. */
-export function* admittedFrames(frames: Iterable<TrackingFrame>): Generator<TrackingFrame> {
-  const gate = new TrackingGate();
+/** Yields the valid frames of a recording; frames without a head or a time are left out. */
+export function* validFrames(frames: Iterable<TrackingFrame>): Generator<TrackingFrame> {
+  const validator = new TrackingValidator();
   for (const frame of frames) {
-    const admitted = gate.admit(frame);
-    if (admitted) yield admitted;
+    const valid = validator.validate(frame);
+    if (valid) yield valid;
   }
 }

@@ -9,7 +9,7 @@ const throwerOf = (place: BallPlace | undefined): number =>
  * Returns the state after an event of the Room: balls, score, phase and presence. The tick, heads, hands and the basket
  * do not follow from events; a page has the clock and poses for them. An event that arrives twice changes nothing.
  */
-export function followBallEvent(state: BallState, event: BallEvent): BallState {
+export function applyBallEvent(state: BallState, event: BallEvent): BallState {
   switch (event.type) {
     case 'joined':
       return withPlayer(state, event.player, { present: true, ready: false });

@@ -1,0 +1,12 @@
+import type { BuiltInBody } from '../core/body/avatar-ref';
+
+/** The display names of the built-in bodies, in the order in which they are offered. */
+export const bodyLabels: readonly { readonly name: BuiltInBody; readonly label: string }[] = [
+  { name: 'mannequin', label: 'Mannequin' },
+  { name: 'woman', label: 'Woman' },
+  { name: 'man', label: 'Man' },
+  { name: 'stout', label: 'Stout' },
+  { name: 'child', label: 'Child' },
+];
+
+export const labelOf = (name: BuiltInBody): string => bodyLabels.find((body) => body.name === name)?.label ?? name;

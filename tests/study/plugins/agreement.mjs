@@ -1,0 +1,47 @@
+// A kind of question of a laboratory, as docs/study.md describes it: one file without imports, outside the packages.
+export default ({ v, words, inLanguage, button }) => ({
+  questionKinds: [
+    {
+      kind: 'agreement',
+      schema: v.strictObject({ kind: v.literal('agreement'), yes: words(40), no: words(40) }),
+      answer: () => v.picklist(['yes', 'no'], 'expected yes or no'),
+      range: () => null,
+      options: () => ['yes', 'no'],
+      texts: ({ yes, no }) => [
+        ['yes', yes],
+        ['no', no],
+      ],
+      columns: ({ yes, no }, inWords) => ({ answers: `yes: ${inWords(yes)}; no: ${inWords(no)}` }),
+      simulate: (_, part) => (part < 0.5 ? 'no' : 'yes'),
+    },
+  ],
+  questionViews: [
+    {
+      kind: 'agreement',
+      field: ({ yes, no }, { phrases: { language }, given, choose }) => ({
+        kind: 'agreement',
+        options: [
+          ['yes', inLanguage(yes, language)],
+          ['no', inLanguage(no, language)],
+        ],
+        answer: given,
+        choose,
+      }),
+      card: ({ options, answer, choose }) =>
+        options.map(([value, label]) =>
+          button(label, () => choose(value), { 'aria-pressed': String(answer === value) }),
+        ),
+      sheet: {
+        targets: ({ options, answer, choose }) =>
+          options.map(([value, label], index) => ({
+            kind: 'option',
+            id: `answer-${value}`,
+            label,
+            look: answer === value ? 'chosen' : 'plain',
+            at: [60 + index * 550, 400, 530, 150],
+            act: () => choose(value),
+          })),
+      },
+    },
+  ],
+});
