@@ -200,7 +200,8 @@ export default {
       severity: 'error',
       from: {
         path: '^(src|server)/',
-        pathNot: '^src/(threepoint/(xr|avatar)|rooms/drawing|ui|page|study/participant)/|^src/threepoint/api/three\\.ts$',
+        pathNot:
+          '^src/(threepoint/(xr|avatar)|rooms/drawing|ui|page|study/participant)/|^src/threepoint/api/three\\.ts$',
       },
       to: { path: packagePath('three', '@types/three', '@pixiv/[^/]+') },
     },

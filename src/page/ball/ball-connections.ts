@@ -2,7 +2,7 @@ import { type BallConnection, ballClientPolicy, createBallLoopbackHost } from 't
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
 import type { LocalClock, Visitor } from 'threepoint-rooms/client/connection';
 import type { RoomTerms } from 'threepoint-rooms/protocol/messages';
-import type { VoiceSettings } from 'threepoint-rooms/voices/voice-settings';
+import { fetchVoiceSettings, type VoiceSettings } from 'threepoint-rooms/voices/voice-settings';
 import type { SignedSeat } from 'threepoint-study/model/progress/study-api';
 import { pageFolder } from 'threepoint-ui/page-folder';
 
@@ -55,13 +55,11 @@ export async function connectionsFor(
     const { pausable: _, ...ball } = terms;
     return { connect: createBallLoopbackHost({ seed, ball }).connect, avatars: null, voiceTerms: null };
   }
-  const [{ createSocketConnection }, { createRoomPass }, { createAvatarExchange }, { fetchVoiceSettings }] =
-    await Promise.all([
-      import('threepoint-rooms/client/socket-connection'),
-      import('threepoint-rooms/client/room-pass'),
-      import('threepoint-rooms/client/avatar-exchange'),
-      import('threepoint-rooms/voices/voice-settings'),
-    ]);
+  const [{ createSocketConnection }, { createRoomPass }, { createAvatarExchange }] = await Promise.all([
+    import('threepoint-rooms/client/socket-connection'),
+    import('threepoint-rooms/client/room-pass'),
+    import('threepoint-rooms/client/avatar-exchange'),
+  ]);
   const server = pageFolder();
   const person = createRoomPass(server, room, 'ball', tabStorage(), terms);
   const connect: Connect = (visitor) =>
