@@ -52,7 +52,7 @@ export async function pack(names) {
   return folder;
 }
 
-/** Installs and builds one example in the folder of the tarballs; resolves to its own folder, with the page in dist/. */
+/** Installs and builds one example in the folder of the tarballs; resolves to its folder, with the page in dist/. */
 export async function buildExample(name, folder) {
   const own = join(folder, `example-${name}`);
   cpSync(join(root, 'examples', name), own, { recursive: true });
