@@ -1,9 +1,10 @@
-// Builds each of examples/ as its reader would: in an empty folder, with the packed package instead of the sources.
-import { cpSync, mkdtempSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+// Builds each of examples/ as its reader would: in an empty folder, with the packed packages instead of the sources.
+import { cpSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { buildLibrary } from './build-library.mjs';
+import { buildRooms } from './build-rooms.mjs';
 import { main, root, runQuietly, SetupError } from './run-command.mjs';
 
 async function done(command, args, cwd) {
@@ -15,39 +16,60 @@ async function done(command, args, cwd) {
   }
 }
 
-const quiet = ['--no-audit', '--no-fund', '--no-update-notifier', '--ignore-scripts'];
+const quiet = ['--no-audit', '--no-fund', '--no-update-notifier', '--ignore-scripts', '--prefer-offline'];
 
-/** The names of the examples. */
-export const exampleNames = readdirSync(join(root, 'examples'), { withFileTypes: true })
+/** The packages under test, and how each is built. */
+const packages = {
+  threepoint: { build: buildLibrary, folder: 'dist-library' },
+  'threepoint-rooms': { build: buildRooms, folder: 'dist-rooms' },
+};
+
+const manifestOf = (name) => JSON.parse(readFileSync(join(root, 'examples', name, 'package.json'), 'utf8'));
+
+const allNames = readdirSync(join(root, 'examples'), { withFileTypes: true })
   .filter((file) => file.isDirectory())
   .map(({ name }) => name);
 
+const hasRooms = (name) => 'threepoint-rooms' in manifestOf(name).dependencies;
+
+/** The names of the examples that draw other people's bodies. */
+export const roomExampleNames = allNames.filter(hasRooms);
+
+/** The names of the examples of the wearer's own body. */
+export const exampleNames = allNames.filter((name) => !hasRooms(name));
+
 /**
- * Creates a folder outside the repository with the tarball, so that no import resolves to the repository's packages.
+ * Creates a folder outside the repository with the packages' tarballs, each in a folder of the package's name. There no
+ * import resolves to the repository's packages.
  */
-export async function packLibrary() {
-  await buildLibrary();
+export async function pack(names) {
   const folder = mkdtempSync(join(tmpdir(), 'threepoint-examples-'));
-  await done('npm', ['pack', join(root, 'dist-library'), '--pack-destination', folder], folder);
+  for (const name of names) {
+    await packages[name].build();
+    mkdirSync(join(folder, name));
+    await done('npm', ['pack', join(root, packages[name].folder), '--pack-destination', join(folder, name)], folder);
+  }
   return folder;
 }
 
-/** Installs and builds one example in the folder of the tarball; resolves to the folder of its built page. */
+/** Installs and builds one example in the folder of the tarballs; resolves to its folder, with the page in dist/. */
 export async function buildExample(name, folder) {
-  const [tarball] = readdirSync(folder).filter((file) => file.endsWith('.tgz'));
-  const own = join(folder, name);
+  const own = join(folder, `example-${name}`);
   cpSync(join(root, 'examples', name), own, { recursive: true });
-  const manifest = JSON.parse(readFileSync(join(own, 'package.json'), 'utf8'));
-  manifest.dependencies.threepoint = `file:../${tarball}`;
+  const manifest = manifestOf(name);
+  for (const packed of Object.keys(packages).filter((packed) => packed in manifest.dependencies)) {
+    const [tarball] = readdirSync(join(folder, packed));
+    manifest.dependencies[packed] = `file:../${packed}/${tarball}`;
+  }
   writeFileSync(join(own, 'package.json'), JSON.stringify(manifest));
   await done('npm', ['install', ...quiet], own);
   await done(process.execPath, ['node_modules/vite/bin/vite.js', 'build', '--logLevel', 'error'], own);
-  return join(own, 'dist');
+  return own;
 }
 
 if (import.meta.url === pathToFileURL(process.argv[1]).href) {
   await main(async () => {
-    const folder = await packLibrary();
-    for (const name of exampleNames) console.log(await buildExample(name, folder));
+    const folder = await pack(Object.keys(packages));
+    for (const name of allNames) console.log(await buildExample(name, folder));
   });
 }

@@ -1,5 +1,5 @@
-// Uses the packed package as its users do. Compiles examples/consumer.ts against it, with the module resolution of
-// bundlers and of Node, strictly and with declarations checked; runs examples/in-node.mjs.
+// Uses the packed packages as their users do. Compiles the consumers in examples/ against them, with the module
+// resolution of bundlers and of Node, strictly and with declarations checked; runs the programs of Node there.
 import { copyFileSync, mkdirSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { build } from 'esbuild';
@@ -12,23 +12,20 @@ const resolutions = [
   { module: 'node16', moduleResolution: 'node16' },
 ];
 
-/** Installs the package as `npm install` does; its peers resolve to the repository's own packages. */
-async function unpack() {
-  const modules = join(folder, 'node_modules');
-  rmSync(folder, { recursive: true, force: true });
-  mkdirSync(modules, { recursive: true });
-  const packed = await runQuietly('npm', ['pack', join(root, 'dist-library'), '--pack-destination', folder]);
-  const tarball = readdirSync(folder).find((file) => file.endsWith('.tgz'));
+/** The built folders of the packages. */
+const packages = { threepoint: 'dist-library', 'threepoint-rooms': 'dist-rooms' };
+
+/** The consumers, and the types of its surroundings that each may use. */
+const consumers = { 'consumer.ts': [], 'rooms-consumer.ts': [], 'rooms-server-consumer.ts': ['node'] };
+
+/** Installs a package as `npm install` does; what it depends on resolves to the repository's own packages. */
+async function unpack(name) {
+  const into = join(folder, 'node_modules', name);
+  mkdirSync(into, { recursive: true });
+  const packed = await runQuietly('npm', ['pack', join(root, packages[name]), '--pack-destination', into]);
+  const tarball = readdirSync(into).find((file) => file.endsWith('.tgz'));
   if (packed?.code !== 0 || !tarball) throw new SetupError(`npm pack failed:\n${packed?.output ?? 'npm is not there'}`);
-  const name = 'threepoint';
-  mkdirSync(join(modules, name));
-  const unpacked = await runQuietly('tar', [
-    '-xzf',
-    join(folder, tarball),
-    '-C',
-    join(modules, name),
-    '--strip-components=1',
-  ]);
+  const unpacked = await runQuietly('tar', ['-xzf', join(into, tarball), '-C', into, '--strip-components=1']);
   if (unpacked?.code !== 0)
     throw new SetupError(`${tarball} could not be unpacked:\n${unpacked?.output ?? 'tar is not there'}`);
 }
@@ -48,30 +45,30 @@ async function compile(config) {
   return faults;
 }
 
-async function compileConsumer() {
-  copyFileSync(join(root, 'examples/consumer.ts'), join(folder, 'consumer.ts'));
+async function compileConsumer(consumer, types) {
+  copyFileSync(join(root, 'examples', consumer), join(folder, consumer));
   for (const resolution of resolutions) {
-    const config = join(folder, `tsconfig.${resolution.moduleResolution}.json`);
+    const config = join(folder, `tsconfig.${consumer}.${resolution.moduleResolution}.json`);
     const compilerOptions = {
       ...resolution,
-      ...{ target: 'es2022', lib: ['es2022', 'dom', 'dom.iterable'], types: [], noEmit: true },
+      ...{ target: 'es2022', lib: ['es2022', 'dom', 'dom.iterable'], types, noEmit: true },
       ...{ strict: true, exactOptionalPropertyTypes: true, noUncheckedIndexedAccess: true, skipLibCheck: false },
     };
-    writeFileSync(config, JSON.stringify({ compilerOptions, files: ['consumer.ts'] }));
+    writeFileSync(config, JSON.stringify({ compilerOptions, files: [consumer] }));
     const faults = await compile(config);
     if (faults.length > 0) {
       throw new SetupError(
-        `A page with moduleResolution ${resolution.moduleResolution} does not compile:\n${faults.join('\n')}`,
+        `${consumer} with moduleResolution ${resolution.moduleResolution} does not compile:\n${faults.join('\n')}`,
       );
     }
   }
 }
 
-async function runExample() {
-  const program = join(folder, 'in-node.mjs');
-  copyFileSync(join(root, 'examples/in-node.mjs'), program);
+async function runProgram(name) {
+  const program = join(folder, name);
+  copyFileSync(join(root, 'examples', name), program);
   const { code, output } = await run(process.execPath, [program], { capture: true, limitSeconds: 60 });
-  if (code !== 0) throw new SetupError(`A program of Node that uses the package ends with code ${code}:\n${output}`);
+  if (code !== 0) throw new SetupError(`${name}, a program of Node, ends with code ${code}:\n${output}`);
 }
 
 /**
@@ -94,9 +91,10 @@ async function bundleWeights() {
 }
 
 await main(async () => {
-  await unpack();
+  rmSync(folder, { recursive: true, force: true });
+  for (const name of Object.keys(packages)) await unpack(name);
   writeFileSync(join(folder, 'package.json'), '{ "type": "module" }');
-  await compileConsumer();
-  await runExample();
+  for (const [consumer, types] of Object.entries(consumers)) await compileConsumer(consumer, types);
+  for (const program of ['in-node.mjs', 'rooms-in-node.mjs']) await runProgram(program);
   await bundleWeights();
 });

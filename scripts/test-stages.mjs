@@ -14,6 +14,8 @@ const vitest = (report, ...args) => [
   node('vitest/vitest.mjs', 'run', ...args, '--reporter=default', '--reporter=json', `--outputFile.json=${report}`),
 ];
 
+const buildPackages = ['library', 'rooms'].map((name) => [process.execPath, `scripts/build-${name}.mjs`]);
+
 /**
  * Returns the commands of browser tests: 'day' runs untagged tests, the others those with that tag
  * (playwright.config.ts).
@@ -34,15 +36,17 @@ const playwright = (tests) => async (report) => {
  */
 export const stages = {
   // The longest stages come first: two single-core stages run at the same time.
-  // The package, built as it is published: its parts, its types, its documents, and the size of each entry.
+  // The packages, built as they are published: their parts, types, documents, and the sizes of the library's entries.
   library: {
     suite: 'day',
     singleCore: true,
     commands: () => [
-      [process.execPath, 'scripts/build-library.mjs'],
+      ...buildPackages,
       [process.execPath, 'scripts/check-library-package.mjs'],
-      node('publint/src/cli.js', 'dist-library', '--strict'),
-      node('@arethetypeswrong/cli/dist/index.js', '--pack', 'dist-library', '--profile', 'esm-only', '--quiet'),
+      ...['dist-library', 'dist-rooms'].flatMap((folder) => [
+        node('publint/src/cli.js', folder, '--strict'),
+        node('@arethetypeswrong/cli/dist/index.js', '--pack', folder, '--profile', 'esm-only', '--quiet'),
+      ]),
     ],
   },
   types: {
@@ -92,14 +96,11 @@ export const stages = {
     commands: (report) => vitest(report, '--tags-filter=!full'),
   },
   e2e: { suite: 'day', runner: 'playwright', commands: playwright('day') },
-  // A user's page, compiled against the package with every supported module resolution, and a program for Node.
+  // A user's pages, compiled against the packages with every supported module resolution, and programs for Node.
   'library-use': {
     suite: 'full',
     singleCore: true,
-    commands: () => [
-      [process.execPath, 'scripts/build-library.mjs'],
-      [process.execPath, 'scripts/check-library-use.mjs'],
-    ],
+    commands: () => [...buildPackages, [process.execPath, 'scripts/check-library-use.mjs']],
   },
   // The reference of all public packages: every link in a comment leads somewhere.
   reference: {

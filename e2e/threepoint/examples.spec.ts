@@ -1,30 +1,14 @@
 import { readFileSync, rmSync } from 'node:fs';
-import { fileURLToPath } from 'node:url';
+import { join } from 'node:path';
 import { expect, type Page, test } from '@playwright/test';
-import { buildExample, exampleNames, packLibrary } from '../../scripts/build-examples.mjs';
-import { emulatedHeadset, type Point } from '../emulated-headset';
+import { buildExample, exampleNames, pack } from '../../scripts/build-examples.mjs';
+import type { EmulatedHeadset } from '../emulated-headset';
+import { type Drawn, emulateHeadset, enterExample, faultsOf, ownJoint } from '../example-page';
 import { wristByGrip, wristName } from '../hands-on-controllers';
 import { distance } from '../page-fixture';
 import { serveStatic } from '../static-server';
 
-const iwer = fileURLToPath(new URL('../../node_modules/iwer/build/iwer.min.js', import.meta.url));
-
-/** The part of a three.js object that decides whether it is drawn. */
-interface Drawn {
-  readonly visible: boolean;
-  readonly parent: Drawn | null;
-  readonly isScene?: true;
-}
-
-/** What every example leaves at hand: the library's BodyTracker. */
-interface SelfAvatar {
-  readonly pose: object | null;
-  readonly object: Drawn;
-  readonly estimator: string;
-  readonly avatar: { jointPositions(): Record<string, { x: number; y: number; z: number }> };
-}
-
-/** What the example of @react-three/xr leaves at hand: the avatar of a RemoteAvatar. */
+/** What the example of @react-three/xr leaves on the window: the avatar of a RemoteAvatar. */
 interface ShownAvatar {
   readonly object: Drawn;
   jointPositions(): Record<string, { x: number; y: number; z: number }>;
@@ -32,25 +16,12 @@ interface ShownAvatar {
 
 declare global {
   interface Window {
-    selfAvatar?: SelfAvatar | null;
     remoteAvatar?: ShownAvatar | null;
-    /** The global of iwer's script. */
-    IWER: {
-      readonly metaQuest3: object;
-      readonly XRDevice: new (config: object, options: object) => { installRuntime(options: object): void };
-    };
   }
 }
 
-const wristOf = (page: Page, side: 'left' | 'right'): Promise<Point> =>
-  page.evaluate((name) => {
-    const at = window.selfAvatar?.avatar.jointPositions()[name];
-    if (!at) throw new Error(`no ${name}`);
-    return [at.x, at.y, at.z] as const;
-  }, wristName[side]);
-
 /** The second body has the pose of the first, and goes with its session. */
-async function sharesItsBody(page: Page, headset: Awaited<ReturnType<typeof emulatedHeadset>>): Promise<void> {
+async function sharesItsBody(page: Page, headset: EmulatedHeadset): Promise<void> {
   const apart = () =>
     page.evaluate(() => {
       const [mine, other] = [window.selfAvatar?.avatar, window.remoteAvatar].map((avatar) => avatar?.jointPositions());
@@ -72,7 +43,7 @@ test.describe('examples of the package @realtime', () => {
   let folder = '';
   test.beforeAll(async () => {
     test.setTimeout(120_000);
-    folder = await packLibrary();
+    folder = await pack(['threepoint']);
   });
   test.afterAll(() => {
     if (folder) rmSync(folder, { recursive: true });
@@ -91,30 +62,17 @@ test.describe('examples of the package @realtime', () => {
   for (const name of exampleNames) {
     test(`${name}: the body is there, its hands on the controllers @realtime`, async ({ page }) => {
       test.setTimeout(300_000);
-      const server = await serveStatic(await buildExample(name, folder));
-      const faults: string[] = [];
-      page.on('pageerror', ({ message }) => faults.push(message));
-      page.on('console', (message) => {
-        if (/multiple instances of three/i.test(message.text())) faults.push(message.text());
-      });
+      const server = await serveStatic(join(await buildExample(name, folder), 'dist'));
+      const faults = faultsOf(page);
       // Frames as small as the emulator's own: software draws them.
       await page.setViewportSize({ width: 480, height: 270 });
-      await page.addInitScript({ path: iwer });
-      await page.addInitScript(() => {
-        const device = new window.IWER.XRDevice(window.IWER.metaQuest3, { stereoEnabled: false });
-        device.installRuntime({ forceInstall: true });
-      });
+      await emulateHeadset(page);
       await page.goto(server.address);
-      await page.waitForFunction(() => window.selfAvatar);
-      const headset = await emulatedHeadset(page);
-      await headset.place({
+      const headset = await enterExample(page, {
         head: { position: [0.2, 1.62, 0.1] },
         left: { position: [-0.05, 1.45, -0.3] },
         right: { position: [0.5, 1.5, -0.35] },
       });
-      await page.locator('#VRButton:not([disabled]), .a-enter-vr-button').first().click();
-      await expect.poll(() => page.evaluate(() => window.selfAvatar?.pose != null)).toBe(true);
-      await expect.poll(() => page.evaluate(() => window.selfAvatar?.estimator)).toBe('learned');
       // Through every parent up to the scene: poses alone would be right of a body that no one sees.
       const drawn = () =>
         page.evaluate(() => {
@@ -126,7 +84,9 @@ test.describe('examples of the package @realtime', () => {
       for (const side of ['left', 'right'] as const) {
         const wanted = await wristByGrip(headset, side);
         await expect
-          .poll(async () => 1000 * distance(await wristOf(page, side), wanted), { message: `the ${side} wrist [mm]` })
+          .poll(async () => 1000 * distance(await ownJoint(page, wristName[side]), wanted), {
+            message: `the ${side} wrist [mm]`,
+          })
           .toBeLessThan(1);
       }
       await page.screenshot({ path: `artifacts/examples/${name}.png` });

@@ -26,8 +26,15 @@ describe('the suites', () => {
       /^tsconfig\.\w+\.json$/.test(file),
     );
     expect(configurations.length).toBeGreaterThan(0);
-    // The stage of the library has its own entry, for the script that builds it.
-    const compiled = [...commands, ...(text('scripts/build-library.mjs').match(/tsconfig\.\w+\.json/g) ?? [])];
+    // The stage of the packages runs scripts that compile.
+    const scripts = stages.library
+      .commands()
+      .flat()
+      .filter((argument: string) => argument.startsWith('scripts/'));
+    const compiled = [
+      ...commands,
+      ...scripts.flatMap((path: string) => text(path).match(/tsconfig\.\w+\.json/g) ?? []),
+    ];
     expect(compiled).toEqual(expect.arrayContaining(configurations));
   });
 

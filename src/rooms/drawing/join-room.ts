@@ -1,4 +1,4 @@
-import { type EventListener, type Object3D, Quaternion, Vector3 } from 'three';
+import { type Object3D, Quaternion, Vector3 } from 'three';
 import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { type Calibration, sameMeasures } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
@@ -21,8 +21,8 @@ import { loadRoomAvatar, uploadAvatar } from './room-avatars';
 export interface RoomBody extends SentBody {
   /** Its object lies where the floor is. Absent: at the scene's origin. */
   readonly avatar?: { readonly object: Object3D };
-  addEventListener?(type: 'discontinuity', listener: EventListener<object, 'discontinuity', never>): void;
-  removeEventListener?(type: 'discontinuity', listener: EventListener<object, 'discontinuity', never>): void;
+  addEventListener?(type: 'discontinuity', listener: () => void): void;
+  removeEventListener?(type: 'discontinuity', listener: () => void): void;
 }
 
 export interface JoinRoomOptions {

@@ -29,9 +29,16 @@ export class RemoteBodies {
   readonly #poses: RemotePoses;
   readonly #drawn: DrawnBodies;
 
-  constructor({ avatar, ...options }: RemoteBodiesOptions = {}) {
-    this.#poses = new RemotePoses(options);
-    this.#drawn = new DrawnBodies(avatar);
+  constructor({ avatar, onForgotten, ...options }: RemoteBodiesOptions = {}) {
+    const drawn = new DrawnBodies(avatar);
+    this.#drawn = drawn;
+    this.#poses = new RemotePoses({
+      ...options,
+      onForgotten(peer) {
+        drawn.remove(peer);
+        onForgotten?.(peer);
+      },
+    });
   }
 
   /** The object to add to the scene; its origin is that of the scene in which the others move. */

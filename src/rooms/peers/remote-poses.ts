@@ -34,6 +34,8 @@ export interface RemotePosesOptions {
    * console.
    */
   readonly onRefused?: (peer: string, reason: string) => void;
+  /** Called with a peer that was removed because it has sent nothing for 30 s. */
+  readonly onForgotten?: (peer: string) => void;
   /** The most peers at a time; further ones are refused. Default: 64. */
   readonly mostPeers?: number;
 }
@@ -48,11 +50,13 @@ export class RemotePoses {
   readonly #peers = new Map<string, Peer>();
   readonly #drawn: RemotePose[] = [];
   readonly #onRefused: (peer: string, reason: string) => void;
+  readonly #onForgotten: ((peer: string) => void) | undefined;
   readonly #mostPeers: number;
   readonly #warned = new Set<string>();
 
-  constructor({ onRefused, mostPeers = 64 }: RemotePosesOptions = {}) {
+  constructor({ onRefused, onForgotten, mostPeers = 64 }: RemotePosesOptions = {}) {
     this.#onRefused = onRefused ?? ((peer, reason) => this.#warnOnce(peer, reason));
+    this.#onForgotten = onForgotten;
     this.#mostPeers = mostPeers;
   }
 
@@ -84,8 +88,10 @@ export class RemotePoses {
     const time = timeMs / 1000;
     this.#drawn.length = 0;
     for (const peer of this.#peers.values()) {
-      if (peer.isForgotten(time)) this.remove(peer.peer);
-      else if (peer.follow(time)) this.#drawn.push(peer);
+      if (peer.isForgotten(time)) {
+        this.remove(peer.peer);
+        this.#onForgotten?.(peer.peer);
+      } else if (peer.follow(time)) this.#drawn.push(peer);
     }
     return this.#drawn;
   }

@@ -1,0 +1,41 @@
+// The entries of threepoint-rooms for pages in TypeScript: compiled against the packed packages by `npm run test:full`.
+import type { Scene, WebGLRenderer } from 'three';
+import { type Avatar, BodyTracker, loadMannequin } from 'threepoint/three';
+import { longestPeerPacket, PoseSender, type RemotePose, RemotePoses } from 'threepoint-rooms';
+import { type JoinedRoom, joinRoom, placementOf, RemoteBodies } from 'threepoint-rooms/three';
+
+/** A room of a server, with the wearer's body and those of the others. */
+export async function inARoom(renderer: WebGLRenderer, scene: Scene): Promise<JoinedRoom> {
+  const body = new BodyTracker(renderer, { avatar: await loadMannequin() });
+  const avatar = (reference: string | null, peer: string): Promise<Avatar> => {
+    console.log(reference, peer);
+    return loadMannequin();
+  };
+  const room = await joinRoom('https://example.org', { name: 'Ada', body, room: 'lunch', avatar });
+  scene.add(body.object, room.others.object);
+  renderer.setAnimationLoop((timeMs, frame) => {
+    body.update(timeMs, frame);
+    room.update(timeMs);
+    console.log(room.status.phase, room.seat, ...room.others.people.map(({ name, presence }) => `${name} ${presence}`));
+  });
+  return room;
+}
+
+/** A transport of the page, with bodies in a scene. */
+export function overAChannel(channel: RTCDataChannel, body: BodyTracker, scene: Scene): (timeMs: number) => void {
+  const others = new RemoteBodies({ mostPeers: 1, onForgotten: (peer: string) => console.log(peer) });
+  scene.add(others.object);
+  channel.onmessage = ({ data }: MessageEvent<ArrayBuffer>) => others.receive('peer', data);
+  const sender = new PoseSender((bytes) => channel.send(bytes), { name: 'Ada', rate: 30 });
+  return (timeMs) => {
+    sender.update(timeMs, body, { placement: placementOf(body.avatar.object) });
+    others.update(timeMs);
+  };
+}
+
+/** Poses without three.js. */
+export function elbowsOf(packets: readonly Uint8Array[], timeMs: number): (number | undefined)[] {
+  const poses = new RemotePoses({ onRefused: (peer, reason) => console.log(peer, reason) });
+  for (const bytes of packets) if (bytes.length <= longestPeerPacket) poses.receive('ada', bytes, timeMs);
+  return poses.update(timeMs).map(({ joints }: RemotePose) => joints?.leftLowerArm.position.y);
+}
