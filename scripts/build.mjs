@@ -78,7 +78,7 @@ function emptied(out) {
   return directory;
 }
 
-/** Returns the paths of the plug-ins that are built into the pages, as src/study/server/plugins/plugin-paths.ts does. */
+/** Returns the paths of the plug-ins that are built into the pages, like src/study/server/plugins/plugin-paths.ts. */
 const studyPlugins = () =>
   (process.env.THREEPOINT_STUDY_PLUGINS ?? '')
     .split(',')
