@@ -1,7 +1,7 @@
 import { readFile } from 'node:fs/promises';
 import { loadAvatar } from 'threepoint/api/three';
-import { PoseSender } from 'threepoint-rooms/peers/pose-sender';
 import { RemoteBodies } from 'threepoint-rooms/drawing/remote-bodies';
+import { PoseSender } from 'threepoint-rooms/peers/pose-sender';
 import { expect, test, vi } from 'vitest';
 import { solvedActor } from './solved-actor';
 
