@@ -38,6 +38,8 @@ const fastestPlayback = 1.5;
 const freezeSeconds = 0.25;
 /** Packets further apart than this [s] are not interpolated. */
 const longestGap = 0.5;
+/** The most packets that are kept while a hidden page draws no frames. */
+const mostSamples = 256;
 /** Half-life of the playout offset's adaptation [s]. */
 const delayHalfLife = 0.5;
 /** Window of the transit times [s]: clocks drift, routes change. */
@@ -130,6 +132,7 @@ export class Playback {
       for (let i = missing; i > 0; i--) this.transits.add(arrivedAt, arrivedAt - time + i / posesPerSecond);
     }
     this.samples.push({ time, arrivedAt, packet });
+    if (this.samples.length > mostSamples) this.samples.shift();
     this.receivedAt = arrivedAt;
     this.transits.add(arrivedAt, arrivedAt - time);
   }

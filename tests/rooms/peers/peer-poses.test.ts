@@ -6,6 +6,7 @@ import { distance } from 'threepoint/core/math/vec3';
 import { longestPeerPacket, peerVersion } from 'threepoint-rooms/peers/peer-packet';
 import { PoseSender } from 'threepoint-rooms/peers/pose-sender';
 import { RemotePoses } from 'threepoint-rooms/peers/remote-poses';
+import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import { afterEach, expect, test, vi } from 'vitest';
 import { isNightly } from '../../nightly';
 import { solvedActor } from './solved-actor';
@@ -33,6 +34,19 @@ function sending(options: { readonly rate?: number } = {}) {
       }
     },
   };
+}
+
+/** Returns a packet with another time of its frame [ms], at bit 13 of the pose packet. */
+function withTime(packet: Uint8Array, timeMs: number): Uint8Array {
+  const bytes = packet.slice();
+  const value = packetMs(timeMs);
+  for (let bit = 0; bit < 14; bit++) {
+    const at = 3 * 8 + 13 + bit;
+    const mask = 0x80 >> (at & 7);
+    if ((value >> (13 - bit)) & 1) bytes[at >> 3]! |= mask;
+    else bytes[at >> 3]! &= ~mask;
+  }
+  return bytes;
 }
 
 test('another page shows head, hands and elbows of a moving person as they were, 2 % of the packets lost', () => {
@@ -159,6 +173,27 @@ test('a flood costs its sender the packets beyond three times the usual rate, an
   }
   expect(taken).toBeLessThanOrEqual(90 * 3 + 1);
   expect([...reasons]).toEqual(['flood: it sends too many packets']);
+});
+
+test('a page that is hidden for an hour keeps a few packets, and draws the newest when it is shown', () => {
+  const { until, sent } = sending();
+  until(8000);
+  const others = new RemotePoses();
+  const poses = sent.filter(({ bytes }) => bytes[1] !== 0);
+  others.receive('ada', sent[0]!.bytes, 0);
+  let at = 0;
+  // A hidden page draws no frames, and its transport goes on.
+  for (let loop = 0; loop < 450; loop++) {
+    for (const [i, { bytes }] of poses.entries()) {
+      at = 8000 * loop + (8000 * i) / poses.length;
+      others.receive('ada', withTime(bytes, at), at);
+    }
+  }
+  const started = process.cpuUsage().user;
+  expect(others.update(at)).toHaveLength(1);
+  // An hour's packets, dropped one by one, took 4 s.
+  expect((process.cpuUsage().user - started) / 1000).toBeLessThan(500);
+  expect(at / 1000 - others.report('ada')!.shownTime).toBeLessThan(0.25);
 });
 
 test('so many peers and no more, and one that is silent for 30 s is forgotten', () => {
