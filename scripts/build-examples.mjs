@@ -52,7 +52,10 @@ export async function pack(names) {
   return folder;
 }
 
-/** Installs and builds one example in the folder of the tarballs; resolves to its folder, with the page in dist/. */
+/**
+ * Installs and builds one example in the folder of the tarballs. Resolves to its folder, with the page in dist/, or in
+ * the folder itself where the example needs no build.
+ */
 export async function buildExample(name, folder) {
   const own = join(folder, `example-${name}`);
   cpSync(join(root, 'examples', name), own, { recursive: true });
@@ -63,7 +66,9 @@ export async function buildExample(name, folder) {
   }
   writeFileSync(join(own, 'package.json'), JSON.stringify(manifest));
   await done('npm', ['install', ...quiet], own);
-  await done(process.execPath, ['node_modules/vite/bin/vite.js', 'build', '--logLevel', 'error'], own);
+  if (manifest.scripts?.build) {
+    await done(process.execPath, ['node_modules/vite/bin/vite.js', 'build', '--logLevel', 'error'], own);
+  }
   return own;
 }
 

@@ -1,4 +1,4 @@
-import { readFileSync, rmSync } from 'node:fs';
+import { existsSync, readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { expect, type Page, test } from '@playwright/test';
 import { buildExample, exampleNames, pack } from '../../scripts/build-examples.mjs';
@@ -62,7 +62,9 @@ test.describe('examples of the package @realtime', () => {
   for (const name of exampleNames) {
     test(`${name}: the body is there, its hands on the controllers @realtime`, async ({ page }) => {
       test.setTimeout(300_000);
-      const server = await serveStatic(join(await buildExample(name, folder), 'dist'));
+      const built = await buildExample(name, folder);
+      const dist = join(built, 'dist');
+      const server = await serveStatic(existsSync(dist) ? dist : built);
       const faults = faultsOf(page);
       // Frames as small as the emulator's own: software draws them.
       await page.setViewportSize({ width: 480, height: 270 });
