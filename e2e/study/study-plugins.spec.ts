@@ -96,7 +96,10 @@ test('a kind of question from outside works in command line, server, export and 
   expect(new TextDecoder().decode(questions?.[1])).toContain('yes: I agree; no: I disagree');
 
   const { errors } = collectErrors(page, `${origin}/`);
-  await page.route('**/studies/agreement.json', (route) => route.fulfill({ body: plan }));
+  await page.route(
+    ({ pathname }) => pathname === '/studies/agreement.json',
+    (route) => route.fulfill({ body: plan }),
+  );
   await page.goto(`${origin}/preview?plan=/studies/agreement.json`);
   await page
     .getByRole('button', { name: /^body: / })

@@ -27,10 +27,19 @@ export default ({ v, words, inLanguage, button }) => ({
         answer: given,
         choose,
       }),
-      card: ({ options, answer, choose }) =>
-        options.map(([value, label]) =>
-          button(label, () => choose(value), { 'aria-pressed': String(answer === value) }),
-        ),
+      // The card is built once for a question: its fields show the answer themselves.
+      card: ({ options, answer, choose }) => {
+        const press = (chosen) => {
+          choose(chosen);
+          for (const [i, [value]] of options.entries()) {
+            buttons[i].setAttribute('aria-pressed', String(value === chosen));
+          }
+        };
+        const buttons = options.map(([value, label]) =>
+          button(label, () => press(value), { 'aria-pressed': String(answer === value) }),
+        );
+        return buttons;
+      },
       sheet: {
         targets: ({ options, answer, choose }) =>
           options.map(([value, label], index) => ({

@@ -36,7 +36,10 @@ export interface QuestionView<Form extends AnswerForm = AnswerForm, Field extend
   readonly kind: Form['kind'];
   /** Returns the field that card and sheet show. */
   field(form: Form, context: FieldContext): Field;
-  /** Returns the nodes of a field on the desk card; `id` is that of the question. */
+  /**
+   * Returns the nodes of a field on the desk card, which is built once for a question: they show a new answer
+   * themselves. `id` is that of the question.
+   */
   card(field: Field, id: string, phrases: Phrases): readonly Node[];
   readonly sheet: SheetView<Field>;
   /** Returns the hint for typed text that is not an answer. Absent for kinds that are not typed. */
