@@ -9,16 +9,6 @@ import { pageFolder } from 'threepoint-ui/page-folder';
 /** Makes one visitor's place in a room; `time`: the page's clock [s]. */
 export type Connect = (visitor: Visitor, time: number) => BallConnection;
 
-/** Returns the storage of this tab, or undefined if the browser denies it. */
-function tabStorage(): Storage | undefined {
-  try {
-    return window.sessionStorage;
-  } catch (error) {
-    if (error instanceof DOMException) return undefined;
-    throw error;
-  }
-}
-
 /** A room to play in. */
 export interface BallPlace {
   readonly connect: Connect;
@@ -55,7 +45,7 @@ export async function connectionsFor(
     const { pausable: _, ...ball } = terms;
     return { connect: createBallLoopbackHost({ seed, ball }).connect, avatars: null, voiceTerms: null };
   }
-  const [{ createSocketConnection }, { createRoomPass }, { createAvatarExchange }] = await Promise.all([
+  const [{ createSocketConnection }, { createRoomPass, tabStorage }, { createAvatarExchange }] = await Promise.all([
     import('threepoint-rooms/client/socket-connection'),
     import('threepoint-rooms/client/room-pass'),
     import('threepoint-rooms/client/avatar-exchange'),

@@ -1,12 +1,12 @@
 import * as v from 'valibot';
 import { roomMessageReader } from '../protocol/messages';
-import { nobody, type People, peopleKind, sharedFloor } from '../room/people-policy';
+import { noMatchState, type People, peopleKind, sharedFloor } from '../room/people-policy';
 import type { ClientPolicy } from './client-policy';
 
 /** A room without a game, for its clients. */
 export const peopleClientPolicy: ClientPolicy<People> = {
   readMessage: roomMessageReader<People>(peopleKind, v.null(), v.never()),
-  unpack: () => nobody,
+  unpack: () => noMatchState,
   follow: (state) => state,
   at: (state) => state,
   predict: (state) => state,

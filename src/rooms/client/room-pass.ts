@@ -15,6 +15,16 @@ export interface Keep {
   setItem(key: string, value: string): void;
 }
 
+/** Returns the storage of this tab; undefined: there is none, or the browser denies it. */
+export function tabStorage(): Keep | undefined {
+  try {
+    return globalThis.sessionStorage;
+  } catch (error) {
+    if (error instanceof DOMException) return undefined;
+    throw error;
+  }
+}
+
 /**
  * Creates the pass to a room of the relay at `base`. A reload in the same tab keeps the person. `kind`: the name of the
  * game; `terms`: the terms of the room, if this person is the first in it.

@@ -7,7 +7,7 @@ import {
   mixHandShape,
 } from 'threepoint/core/body/hand-shape';
 import { type JointName, jointNames } from 'threepoint/core/body/joints';
-import { type MutablePose, makePose, type TrackedPose } from 'threepoint/core/math/pose';
+import { type MutableTrackedPose, makeTrackedPose, type TrackedPose } from 'threepoint/core/math/pose';
 import { copyQuat, type MutableQuat, normaliseQuat, type Quat, quat, setQuat, slerp } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { addScaled, copyVec3, lerp, type MutableVec3, setVec3, vec3 } from 'threepoint/core/math/vec3';
@@ -17,16 +17,10 @@ import type { PathFit, PathSample } from './path-fit';
 /** The pose of a player in one frame. */
 export type Shown = Omit<PosePacket, 'timeMs' | 'jump'>;
 
-interface MutableTrackedPose extends MutablePose<'floor'> {
-  tracking: TrackedPose['tracking'];
-}
-
 interface MutableBody {
   readonly hipsPosition: MutableVec3;
   readonly localRotations: Readonly<Record<JointName, MutableQuat>>;
 }
-
-const makeTracked = (): MutableTrackedPose => ({ ...makePose<'floor'>(), tracking: 'tracked' });
 
 const makeBody = (): MutableBody => ({
   hipsPosition: vec3(0, 0, 0),
@@ -46,13 +40,16 @@ export class ShownPlayer implements Shown {
   };
   readonly fingers: Record<Side, HandShape | null> = { left: null, right: null };
   placement: FloorPlacement | null = null;
-  private readonly hands: Readonly<Record<Side, MutableTrackedPose>> = { left: makeTracked(), right: makeTracked() };
+  private readonly hands: Readonly<Record<Side, MutableTrackedPose>> = {
+    left: makeTrackedPose(),
+    right: makeTrackedPose(),
+  };
   private readonly body = makeBody();
   private readonly placed = { position: vec3(0, 0, 0), heading: 0 };
   private readonly shapes = { left: makeHandShape(), right: makeHandShape() };
 
   constructor() {
-    this.pose = { head: makeTracked(), leftHand: null, rightHand: null, body: null };
+    this.pose = { head: makeTrackedPose(), leftHand: null, rightHand: null, body: null };
   }
 
   /** Copies a pose. */

@@ -1,4 +1,4 @@
-import { type Object3D, Quaternion, Vector3 } from 'three';
+import type { Object3D } from 'three';
 import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { type Calibration, sameMeasures } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
@@ -7,7 +7,7 @@ import { type AvatarExchange, createAvatarExchange } from '../client/avatar-exch
 import type { Connection, ConnectionStatus, ConnectionUpdate } from '../client/connection';
 import { peopleClientPolicy } from '../client/people-client';
 import { createRemotePlayers, type RemotePlayer } from '../client/remote-players';
-import { createRoomPass, type Keep } from '../client/room-pass';
+import { createRoomPass, type Keep, tabStorage } from '../client/room-pass';
 import { createSocketConnection } from '../client/socket-connection';
 import type { SentBody } from '../peers/pose-sender';
 import { withFingers } from '../peers/posed-fingers';
@@ -16,6 +16,7 @@ import { type People, peopleKind } from '../room/people-policy';
 import { type AvatarLoader, DrawnBodies, type DrawnPose } from './drawn-bodies';
 import { PlacedPose } from './placed-pose';
 import { loadRoomAvatar, uploadAvatar } from './room-avatars';
+import { worldTransform } from './world-transform';
 
 /** The wearer's body: a `BodyTracker` of threepoint is one. */
 export interface RoomBody extends SentBody {
@@ -110,17 +111,8 @@ export async function joinRoom(
   return live;
 }
 
-/** The measures of a page that watches: nobody draws them. */
+/** The measures of a page that watches; no page draws them. */
 const standIn: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
-
-/** The storage of this tab; null: the browser denies it. */
-function tabStorage(): Keep | null {
-  try {
-    return globalThis.sessionStorage ?? null;
-  } catch {
-    return null;
-  }
-}
 
 /** Resolves when the connection has joined; rejects, after ending it, when it cannot. */
 async function joined(connection: Connection<People>, what: string): Promise<void> {
@@ -148,10 +140,6 @@ const reasons: Readonly<Record<NonNullable<ConnectionStatus['reason']>, string>>
   closed: 'the room was closed',
   'old-page': 'the server has another version of threepoint-rooms',
 };
-
-const position = new Vector3();
-const orientation = new Quaternion();
-const scale = new Vector3();
 
 class LiveRoom implements JoinedRoom {
   readonly #connection: Connection<People>;
@@ -237,20 +225,12 @@ class LiveRoom implements JoinedRoom {
       this.#connection.calibrate(body.calibration);
     }
     if (!body.pose) return;
-    const pose = this.#placed.place(this.#sceneFromFloor(body), body.pose);
+    const pose = body.avatar ? this.#placed.place(worldTransform(body.avatar.object), body.pose) : body.pose;
     this.#connection.sendPose(time, { jump: this.#jump, pose, fingers: body.pose.fingers ?? unknownFingers });
     this.#jump = false;
   }
 
-  #sceneFromFloor({ avatar }: RoomBody) {
-    position.set(0, 0, 0);
-    orientation.identity();
-    avatar?.object.updateWorldMatrix(true, false);
-    avatar?.object.matrixWorld.decompose(position, orientation, scale);
-    return { position, orientation };
-  }
-
-  /** Follows who sits where; nobody glides from the place of the person who sat there before. */
+  /** Follows the seats, so that no body glides from the place of the person who had the seat before. */
   #watchSeats(): void {
     const room = this.#connection.room;
     if (!room || room.seats === this.#seats) return;

@@ -1,8 +1,8 @@
 import { type AvatarPose, makeUpperBodyPose } from 'threepoint/core/body/avatar-pose';
 import { jointNames } from 'threepoint/core/body/joints';
 import {
-  type MutablePose,
-  makePose,
+  type MutableTrackedPose,
+  makeTrackedPose,
   type TrackedPose,
   type Transform,
   transformPoint,
@@ -10,17 +10,13 @@ import {
 } from 'threepoint/core/math/pose';
 import { copyQuat, multiply } from 'threepoint/core/math/quat';
 
-type MutableTracked = MutablePose<'floor'> & { tracking: TrackedPose['tracking'] };
-
-const makeTracked = (): MutableTracked => ({ ...makePose<'floor'>(), tracking: 'tracked' });
-
 /** A buffer for a pose on a floor that the page has moved. */
 export class PlacedPose implements AvatarPose {
-  readonly head: MutableTracked = makeTracked();
+  readonly head: MutableTrackedPose = makeTrackedPose();
   leftHand: TrackedPose | null = null;
   rightHand: TrackedPose | null = null;
   body: AvatarPose['body'] = null;
-  readonly #hands = { left: makeTracked(), right: makeTracked() };
+  readonly #hands = { left: makeTrackedPose(), right: makeTrackedPose() };
   readonly #body = makeUpperBodyPose();
 
   /** Writes a pose on the wearer's floor as one on the floor of the scene. */
@@ -43,8 +39,8 @@ export class PlacedPose implements AvatarPose {
 function placeTracked(
   sceneFromFloor: Transform<'floor', 'floor'>,
   pose: TrackedPose,
-  target: MutableTracked,
-): MutableTracked {
+  target: MutableTrackedPose,
+): MutableTrackedPose {
   transformPose(sceneFromFloor, pose, target);
   target.tracking = pose.tracking;
   return target;

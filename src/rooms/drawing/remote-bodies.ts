@@ -1,8 +1,9 @@
-import { type Object3D, Quaternion, Vector3 } from 'three';
+import type { Object3D } from 'three';
 import type { PlaybackReport } from '../client/playback';
 import { type RemotePose, RemotePoses, type RemotePosesOptions } from '../peers/remote-poses';
 import type { FloorPlacement } from '../protocol/pose-packet';
 import { type AvatarLoader, DrawnBodies } from './drawn-bodies';
+import { worldTransform } from './world-transform';
 
 export interface RemoteBodiesOptions extends RemotePosesOptions {
   /**
@@ -72,23 +73,18 @@ export class RemoteBodies {
     return this.#poses.report(peer);
   }
 
-  /** Removes all peers and takes the object out of the scene. */
+  /** Removes all bodies and takes the object out of the scene. */
   dispose(): void {
     this.#drawn.dispose();
   }
 }
-
-const position = new Vector3();
-const orientation = new Quaternion();
-const scale = new Vector3();
 
 /**
  * Returns where the floor of an object lies in the scene, as a `PoseSender` sends it: pass `tracker.avatar.object`
  * where the page moves its wearer about. An object that is tilted is taken for upright.
  */
 export function placementOf(object: Object3D): FloorPlacement {
-  object.updateWorldMatrix(true, false);
-  object.matrixWorld.decompose(position, orientation, scale);
+  const { position, orientation } = worldTransform(object);
   const { x, y, z } = position;
   return { position: { x, y, z }, heading: 2 * Math.atan2(orientation.y, orientation.w) };
 }

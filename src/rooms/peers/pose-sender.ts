@@ -9,7 +9,7 @@ import { encodePeerPose, encodeProfile } from './peer-packet';
 
 /** The person whose body is sent: a `BodyTracker` or `BodySolver` of threepoint is one. */
 export interface SentBody {
-  /** The pose of the newest frame with its fingers, floor frame [m]; null: there is none, and the others see nobody. */
+  /** The pose of the newest frame with its fingers, floor frame [m]; null: there is none, and others hide the body. */
   readonly pose: AvatarPose | null;
   readonly calibration: Calibration;
 }
@@ -31,7 +31,7 @@ export interface PoseSenderOptions {
   readonly rate?: number;
 }
 
-/** The profile is sent again this often [ms]: whoever has joined since, or has missed it, then has it. */
+/** The profile is sent again this often [ms], for peers that have joined since or have missed it. */
 const profileMs = 1000;
 
 /**
@@ -67,13 +67,13 @@ export class PoseSender {
     this.#intervalMs = 1000 / rate;
     this.#name = name;
     this.#avatar = avatar;
-    // Throws here, rather than in the first frame, where the reference is too long.
-    encodeProfile({ name, avatar, visible: false, calibration: { eyeHeight: 1.6, armSpan: 1.5 } });
+    // Throws here, rather than in the first frame.
+    demandSendable(avatar);
   }
 
   /**
    * Sends what is due; to be called in every frame, with its time [ms] by any monotonic clock. Without a pose it
-   * sends once a second that nobody is there. Throws a RangeError where the measures are not human.
+   * sends once a second that the person is not visible. Throws a RangeError where the measures are not human.
    */
   update(timeMs: number, { pose, calibration }: SentBody, frame: SentFrame = {}): void {
     this.#setCalibration(calibration);
@@ -97,7 +97,7 @@ export class PoseSender {
     this.#nextProfileMs = Number.NEGATIVE_INFINITY;
   }
 
-  /** The space was re-anchored or the wearer teleported: nobody draws the way from the last pose to the next. */
+  /** The space was re-anchored or the wearer teleported: no page draws the way from the last pose to the next. */
   discontinuity(): void {
     this.#jump = true;
   }
@@ -110,7 +110,7 @@ export class PoseSender {
 
   /** Changes the reference to the avatar. Throws a RangeError if it is too long. */
   wear(avatar: string | null): void {
-    encodeProfile({ name: '', avatar, visible: false, calibration: { eyeHeight: 1.6, armSpan: 1.5 } });
+    demandSendable(avatar);
     this.#avatar = avatar;
     this.introduce();
   }
@@ -129,4 +129,9 @@ export class PoseSender {
     const profile = { name: this.#name, calibration: this.#calibration!, avatar: this.#avatar, visible: this.#visible };
     this.#send(encodeProfile(profile));
   }
+}
+
+/** Throws a RangeError where no profile can have this reference to an avatar. */
+function demandSendable(avatar: string | null): void {
+  encodeProfile({ name: '', avatar, visible: false, calibration: { eyeHeight: 1.6, armSpan: 1.5 } });
 }

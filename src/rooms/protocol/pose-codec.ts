@@ -3,10 +3,16 @@ import { forwardKinematics, makeJointPoses } from 'threepoint/core/body/forward-
 import { isFiniteHand } from 'threepoint/core/body/hand-shape';
 import { jointNames } from 'threepoint/core/body/joints';
 import { type Skeleton, wristFromHandBone } from 'threepoint/core/body/skeleton';
-import { type MutablePose, makePose, type Pose, type TrackedPose } from 'threepoint/core/math/pose';
+import {
+  type MutableTrackedPose,
+  makePose,
+  makeTrackedPose,
+  type Pose,
+  type TrackedPose,
+} from 'threepoint/core/math/pose';
 import { conjugate, multiply, type Quat, quat } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
-import { copyVec3, isFiniteVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { copyVec3, isFiniteVec3, type Vec3 } from 'threepoint/core/math/vec3';
 import { writeBodySteps } from './body-steps';
 import { handShapeOf, toFingerSteps } from './finger-steps';
 import { packetMs } from './packet-time';
@@ -91,36 +97,28 @@ function writeFingers(side: Side, { fingers }: PosePacket, hand: TrackedPose | n
   toFingerSteps(shape, target);
 }
 
-type MutableTracked = MutablePose<'floor'> & { tracking: TrackedPose['tracking'] };
-
 /** A buffer for head and hands of a packet. */
 interface PointsBuffer extends PointsPacket {
   timeMs: number;
   jump: boolean;
   readonly pose: {
-    readonly head: MutableTracked;
+    readonly head: MutableTrackedPose;
     leftHand: TrackedPose | null;
     rightHand: TrackedPose | null;
     readonly body: null;
   };
-  readonly hands: Readonly<Record<Side, MutableTracked>>;
+  readonly hands: Readonly<Record<Side, MutableTrackedPose>>;
 }
-
-const makeTracked = (): MutableTracked => ({
-  position: vec3(0, 0, 0),
-  orientation: quat(0, 0, 0, 1),
-  tracking: 'tracked',
-});
 
 export const makePoints = (): PointsBuffer => ({
   timeMs: 0,
   jump: false,
-  pose: { head: makeTracked(), leftHand: null, rightHand: null, body: null },
-  hands: { left: makeTracked(), right: makeTracked() },
+  pose: { head: makeTrackedPose(), leftHand: null, rightHand: null, body: null },
+  hands: { left: makeTrackedPose(), right: makeTrackedPose() },
 });
 
 /** Returns a hand in `steps`; null: lost. */
-function handOf(side: Side, head: Vec3, target: MutableTracked): TrackedPose | null {
+function handOf(side: Side, head: Vec3, target: MutableTrackedPose): TrackedPose | null {
   const { placed, tracking, at } = steps.hands[side];
   if (!placed || tracking === 'lost') return null;
   target.tracking = tracking;

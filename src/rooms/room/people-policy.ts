@@ -17,11 +17,11 @@ export const peopleKind = 'people';
 /** The floors of all seats lie where the scene's origin is. */
 export const sharedFloor = { position: vec3(0, 0, 0), orientation: identity } as const;
 
-export const nobody: MatchState = { tick: 0, phase: 'ready', players: [] };
+export const noMatchState: MatchState = { tick: 0, phase: 'ready', players: [] };
 
 /** Nothing happens in it: its state is that of its seats. */
 class NoMatch implements HostedMatch<People> {
-  readonly state = nobody;
+  readonly state = noMatchState;
   readonly lead = 0;
 
   advance(_time: number, _actions: readonly MatchAction<People>[]): readonly never[] {

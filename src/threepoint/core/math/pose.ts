@@ -32,6 +32,11 @@ export interface MutablePose<F extends Frame> extends Pose<F> {
   readonly orientation: MutableQuat;
 }
 
+/** A tracked pose that its owner overwrites. */
+export interface MutableTrackedPose extends MutablePose<'floor'> {
+  tracking: TrackedPose['tracking'];
+}
+
 declare const transformFrames: unique symbol;
 
 /** The rigid transform that takes coordinates in From to coordinates in To; named toFromFrom: `headingFromFloor`. */
@@ -52,6 +57,9 @@ export const makePose = <F extends Frame>(): MutablePose<F> => ({
   position: vec3(0, 0, 0),
   orientation: quat(0, 0, 0, 1),
 });
+
+/** Returns a tracked pose at the origin, for buffers. */
+export const makeTrackedPose = (): MutableTrackedPose => ({ ...makePose<'floor'>(), tracking: 'tracked' });
 
 /**
  * Returns whether position and rotation are valid: finite numbers, also when squared, and a quaternion with a length.

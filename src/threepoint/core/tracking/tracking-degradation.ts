@@ -1,5 +1,5 @@
 import { copyHandShape, type HandShape, type MutableHandShape, makeHandShape, mixHandShape } from '../body/hand-shape';
-import { copyPose, type MutablePose, makePose, type TrackedPose } from '../math/pose';
+import { copyPose, type MutableTrackedPose, makeTrackedPose, type TrackedPose } from '../math/pose';
 import { fromAxisAngle, multiply, quat, slerp } from '../math/quat';
 import { seedAfter, uniformOf } from '../math/random';
 import type { Side } from '../math/side';
@@ -22,9 +22,6 @@ export const mostLatencyMs = 200;
 const kept = 64;
 const sides = ['left', 'right'] as const;
 const handOf = { left: 'leftHand', right: 'rightHand' } as const;
-
-type MutableTrackedPose = MutablePose<'floor'> & { tracking: TrackedPose['tracking'] };
-const makeTrackedPose = (): MutableTrackedPose => ({ ...makePose<'floor'>(), tracking: 'tracked' });
 
 /** A buffered hand of a frame. */
 class KeptHand {
