@@ -20,6 +20,8 @@ const constraints: MediaStreamConstraints = {
   audio: { echoCancellation: true, noiseSuppression: true, autoGainControl: true },
 };
 
+const mutedBySystem = 'The system mutes the microphone. Switch it on in the device’s settings.';
+
 /** Interval at which a lost microphone is requested again while the page is visible [ms]. */
 const retryMs = 2000;
 
@@ -37,14 +39,19 @@ export class Microphone {
     this.#changed = changed;
   }
 
-  /** The audio track; null: there is none now. */
+  /** The audio track; null: there is none now, or the system mutes it. */
   get track(): MediaStreamTrack | null {
-    return this.#stream?.getAudioTracks()[0] ?? null;
+    const open = this.#openTrack;
+    return open?.muted ? null : open;
   }
 
   /** Why there is no track, in a sentence; null: there is one, or none is wanted. */
   get errorMessage(): string | null {
-    return this.#errorMessage;
+    return this.#openTrack?.muted ? mutedBySystem : this.#errorMessage;
+  }
+
+  get #openTrack(): MediaStreamTrack | null {
+    return this.#stream?.getAudioTracks()[0] ?? null;
   }
 
   /** Requests the microphone. Never rejects: a failure becomes `errorMessage`. */
@@ -82,7 +89,10 @@ export class Microphone {
       this.#stream = stream;
       this.#errorMessage = null;
       this.#stopRetrying();
-      stream.getAudioTracks()[0]?.addEventListener('ended', this.#lose, { once: true });
+      const track = this.#openTrack;
+      track?.addEventListener('ended', this.#lose, { once: true });
+      track?.addEventListener('mute', this.#changed);
+      track?.addEventListener('unmute', this.#changed);
     } catch (error) {
       if (!this.#wanted) return;
       this.#errorMessage = microphoneErrorOf(error);
@@ -102,7 +112,7 @@ export class Microphone {
   };
 
   readonly #retry = (): void => {
-    if (this.#wanted && this.track === null && document.visibilityState === 'visible' && this.#retryTimer !== null)
+    if (this.#wanted && this.#stream === null && document.visibilityState === 'visible' && this.#retryTimer !== null)
       void this.#take();
   };
 
@@ -112,9 +122,11 @@ export class Microphone {
   }
 
   #release(): void {
-    const track = this.track;
+    const track = this.#openTrack;
     this.#stream = null;
     track?.removeEventListener('ended', this.#lose);
+    track?.removeEventListener('mute', this.#changed);
+    track?.removeEventListener('unmute', this.#changed);
     track?.stop();
   }
 }

@@ -43,10 +43,19 @@ const fits: Readonly<Record<string, HandleFit>> = {
 /** The fit of unlisted profiles: most handles follow Touch. */
 export const genericFit: HandleFit = { ahead: 0.08, below: 0.025, lean: degrees(45) };
 
+/**
+ * The fit of a bare hand, whose grip is where a rod would lie in its fist, straight across the palm: 1 cm and half the
+ * thickness of the palm below the middle of the metacarpal bones (webxr-hand-input 114).
+ */
+export const bareHandFit: HandleFit = { ahead: 0.06, below: 0.02, lean: 0 };
+
+/** The profiles of bare hands: `generic-hand`, `generic-hand-select`, `oculus-hand` and others. */
+const bareHandProfile = /(^|-)hand(-|$)/;
+
 /** Returns the fit of the first known profile of an input source. */
 export function handleFit(profiles: readonly string[]): HandleFit {
   for (const profile of profiles) {
-    const fit = fits[profile];
+    const fit = bareHandProfile.test(profile) ? bareHandFit : fits[profile];
     if (fit) return fit;
   }
   return genericFit;

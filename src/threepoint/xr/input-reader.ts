@@ -1,10 +1,11 @@
-import type { HandShape } from '../core/body/hand-shape';
+import { type HandShape, makeHandShape, shapeOfClosing } from '../core/body/hand-shape';
 import { allReleased, type HandButtons } from '../core/input/button-presses';
 import type { TrackedPose } from '../core/math/pose';
 import { type Side, sides } from '../core/math/side';
 import { ControllerFingers, squeezeButton, triggerButton } from './controller-fingers';
-import { handleFit, wristFromGrip } from './grip-offsets';
+import { bareHandFit, handleFit, wristFromGrip } from './grip-offsets';
 import { HandReader } from './hand-reader';
+import { SourceChoice } from './source-choice';
 import { toTrackedPose } from './tracked-pose';
 
 const pressedButtons = (gamepad: Gamepad | undefined): HandButtons => ({
@@ -12,6 +13,9 @@ const pressedButtons = (gamepad: Gamepad | undefined): HandButtons => ({
   trigger: gamepad?.buttons[triggerButton]?.value ?? 0,
   grip: gamepad?.buttons[squeezeButton]?.value ?? 0,
 });
+
+/** The fingers of a hand without joints that does not pinch. */
+const openHand = { thumb: 0, index: 0, rest: 0 };
 
 const maximumOf = (a: HandButtons, b: HandButtons): HandButtons => ({
   trigger: Math.max(a.trigger, b.trigger),
@@ -22,8 +26,16 @@ const maximumOf = (a: HandButtons, b: HandButtons): HandButtons => ({
 /** How a side is tracked. */
 export type InputKind = 'controller' | 'hand' | 'none';
 
-const kindOf = ({ hand, gripSpace }: XRInputSource): InputKind =>
-  hand?.get('wrist') ? 'hand' : gripSpace ? 'controller' : 'none';
+const hasJoints = ({ hand }: XRInputSource): boolean => hand?.get('wrist') !== undefined;
+
+/** Returns how a source holds its grip; a hand without joints has the fit of a bare hand, whatever its profiles. */
+const fitOf = ({ hand, profiles }: XRInputSource) => (hand ? bareHandFit : handleFit(profiles));
+
+function kindOf(source: XRInputSource): InputKind {
+  if (hasJoints(source)) return 'hand';
+  if (!source.gripSpace) return 'none';
+  return fitOf(source) === bareHandFit ? 'hand' : 'controller';
+}
 
 /** A stick pushed this far to the side turns, and may turn again once it is back below the second. */
 const stickPushed = 0.7;
@@ -47,12 +59,19 @@ export class InputReader {
   readonly #sticks = new Sticks();
   readonly #handReaders = { left: new HandReader('left'), right: new HandReader('right') };
   readonly #controllerFingers = { left: new ControllerFingers(), right: new ControllerFingers() };
+  /** The fingers of hands without joints, which pinch or are open. */
+  readonly #plainFingers = { left: makeHandShape(), right: makeHandShape() };
+  readonly #choices = { left: new SourceChoice(), right: new SourceChoice() };
+  /** The sources that select now: the pinches of hands without joints and without a gamepad. */
+  readonly #selecting = new WeakSet<XRInputSource>();
   /** Input sources, numbered in the order in which they appeared. */
   readonly #devices = new WeakMap<XRInputSource, number>();
   #deviceCount = 0;
 
   constructor(session: XRSession) {
     this.#session = session;
+    session.addEventListener('selectstart', ({ inputSource }) => this.#selecting.add(inputSource));
+    session.addEventListener('selectend', ({ inputSource }) => this.#selecting.delete(inputSource));
   }
 
   /** The inputs used since the session began: 'mixed' where they changed or differed between the sides. */
@@ -90,24 +109,27 @@ export class InputReader {
       kinds[side] = 'none';
       buttons[side] = allReleased;
       fingers[side] = null;
+      this.#choices[side].begin(time);
     }
     if (suspended) return hands;
     for (const source of this.#session.inputSources) {
       const side = source.handedness;
       if (side === 'none' || this.#repeatsHand(source)) continue;
       const pose = this.#readHand(frame, space, source, time);
-      // A device may list a controller on the table as well as the hand that left it: the source that is seen wins.
-      const wins = pose !== null && (hands[side] === null || pose.tracking === 'tracked');
-      if (wins) {
-        hands[side] = pose;
-        fingers[side] = this.#shapeOf(source, side, time);
-      }
-      const kind = wins || kinds[side] === 'none' ? kindOf(source) : kinds[side];
-      const device = wins ? this.#deviceOf(source) : (buttons[side].device ?? this.#deviceOf(source));
-      kinds[side] = kind;
+      const kind = kindOf(source);
+      if (pose) this.#choices[side].offer({ source, pose, isHand: kind === 'hand' });
+      if (kinds[side] === 'none') kinds[side] = kind;
+      const device = buttons[side].device ?? this.#deviceOf(source);
       buttons[side] = { ...maximumOf(buttons[side], this.#pressedBy(source, side)), device };
     }
     for (const side of sides) {
+      const chosen = this.#choices[side].best;
+      if (chosen) {
+        hands[side] = chosen.pose;
+        kinds[side] = kindOf(chosen.source);
+        fingers[side] = this.#shapeOf(chosen.source, side, time);
+        buttons[side] = { ...buttons[side], device: this.#deviceOf(chosen.source) };
+      }
       const kind = kinds[side];
       if (kind === 'none') continue;
       this.#held[kind] = true;
@@ -130,12 +152,12 @@ export class InputReader {
 
   #readHand(frame: XRFrame, space: XRReferenceSpace, source: XRInputSource, time: number): TrackedPose | null {
     const side = source.handedness as Side;
-    if (source.hand?.get('wrist')) return this.#handReaders[side].read(frame, source.hand, space, time);
+    if (source.hand && hasJoints(source)) return this.#handReaders[side].read(frame, source.hand, space, time);
     if (!source.gripSpace) return null;
     const grip = frame.getPose(source.gripSpace, space);
     if (!grip) return null;
     const tracked = toTrackedPose(grip);
-    return tracked && { ...wristFromGrip(tracked, side, handleFit(source.profiles)), tracking: tracked.tracking };
+    return tracked && { ...wristFromGrip(tracked, side, fitOf(source)), tracking: tracked.tracking };
   }
 
   /**
@@ -143,13 +165,19 @@ export class InputReader {
    * its end.
    */
   #pressedBy(source: XRInputSource, side: Side): HandButtons {
-    if (!source.hand) return pressedButtons(source.gamepad);
-    const { pinch } = this.#handReaders[side];
+    if (kindOf(source) !== 'hand') return pressedButtons(source.gamepad);
+    const pinch = hasJoints(source) ? this.#handReaders[side].pinch : this.#selected(source);
     return Number.isNaN(pinch) ? allReleased : { ...allReleased, pinch };
   }
 
+  #selected(source: XRInputSource): number {
+    return this.#selecting.has(source) ? 1 : pressedButtons(source.gamepad).trigger;
+  }
+
   #shapeOf(source: XRInputSource, side: Side, time: number): HandShape {
-    return source.hand ? this.#handReaders[side].shape : this.#controllerFingers[side].read(source.gamepad, time);
+    if (hasJoints(source)) return this.#handReaders[side].shape;
+    if (kindOf(source) === 'controller') return this.#controllerFingers[side].read(source.gamepad, time);
+    return shapeOfClosing({ ...openHand, pinch: this.#selected(source) }, this.#plainFingers[side]);
   }
 
   #deviceOf(source: XRInputSource): number {

@@ -2,11 +2,14 @@ import { wakeSound } from 'threepoint-page/shell/wake-sound';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
 
 let page = new EventTarget();
+let pageDocument = Object.assign(new EventTarget(), { visibilityState: 'visible' });
 let userActivation = { hasBeenActive: false };
 beforeEach(() => {
   page = new EventTarget();
   userActivation = { hasBeenActive: false };
   vi.stubGlobal('window', page);
+  pageDocument = Object.assign(new EventTarget(), { visibilityState: 'visible' });
+  vi.stubGlobal('document', pageDocument);
   vi.stubGlobal('navigator', { userActivation });
 });
 afterEach(() => vi.unstubAllGlobals());
@@ -30,11 +33,11 @@ function gameSound() {
 }
 
 describe('the sound of a game on a page that no one has touched', () => {
-  test('wakes with the first touch or key, and with no other', () => {
+  test('wakes with the first touch or key', () => {
     const sound = gameSound();
     wakeSound(sound, true, notices);
     expect(sound.times()).toBe(0);
-    press(['pointerdown', 'pointerup', 'keydown', 'pointerdown', 'keydown']);
+    press(['pointerdown']);
     expect(sound.times()).toBe(1);
   });
 
@@ -53,5 +56,43 @@ describe('the sound of a game on a page that no one has touched', () => {
     leave();
     press(['pointerdown', 'keydown']);
     expect(sound.times()).toBe(0);
+  });
+});
+
+describe('the sound of a game that the system has suspended', () => {
+  test('wakes with each touch, and when the page is seen again', () => {
+    const sound = gameSound();
+    userActivation.hasBeenActive = true;
+    wakeSound(sound, true, notices);
+    expect(sound.times()).toBe(1);
+    press(['pointerup']);
+    expect(sound.times()).toBe(2);
+    pageDocument.visibilityState = 'hidden';
+    pageDocument.dispatchEvent(new Event('visibilitychange'));
+    expect(sound.times()).toBe(2);
+    pageDocument.visibilityState = 'visible';
+    pageDocument.dispatchEvent(new Event('visibilitychange'));
+    expect(sound.times()).toBe(3);
+  });
+
+  test('is reported once where it cannot start, however often it is touched', async () => {
+    const shown: string[] = [];
+    const sound = { setMuted: () => undefined, unlock: () => Promise.reject(new Error('no audio device')) };
+    userActivation.hasBeenActive = true;
+    wakeSound(sound, true, { show: (_, text) => shown.push(text) });
+    press(['pointerup']);
+    press(['pointerup']);
+    await vi.waitFor(() => expect(shown).toEqual(['Sound could not be started: no audio device']));
+  });
+
+  test('stays asleep where it is off, or once the game is left', () => {
+    const sound = gameSound();
+    userActivation.hasBeenActive = true;
+    wakeSound(sound, false, notices);
+    const leave = wakeSound(sound, true, notices);
+    leave();
+    press(['pointerup']);
+    pageDocument.dispatchEvent(new Event('visibilitychange'));
+    expect(sound.times()).toBe(1);
   });
 });

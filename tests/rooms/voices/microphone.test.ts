@@ -7,9 +7,16 @@ import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
  */
 class Track extends EventTarget {
   stopped = false;
+  muted = false;
 
   stop(): void {
     this.stopped = true;
+  }
+
+  /** The system mutes or unmutes the microphone, by a key of the device or its menu. */
+  mute(muted: boolean): void {
+    this.muted = muted;
+    this.dispatchEvent(new Event(muted ? 'mute' : 'unmute'));
   }
 
   end(): void {
@@ -107,5 +114,29 @@ describe('a microphone that a headset ends when it sleeps', () => {
     seen.dispatchEvent(new Event('visibilitychange'));
     await vi.advanceTimersByTimeAsync(60_000);
     expect(device.asked).toBe(1);
+  });
+});
+
+describe('a microphone that the system mutes', () => {
+  test('is no track, with a sentence, and is the same track when the system unmutes it', async () => {
+    const { microphone, tracks } = await opened();
+    device.tracks[0]?.mute(true);
+    expect(microphone.track).toBeNull();
+    expect(microphone.errorMessage).toMatch(/^The system mutes the microphone/);
+    device.tracks[0]?.mute(false);
+    expect(microphone.track).toBe(device.tracks[0]);
+    expect(microphone.errorMessage).toBeNull();
+    expect(tracks).toEqual([device.tracks[0], null, device.tracks[0]]);
+    expect(device.asked).toBe(1);
+  });
+
+  test('is released while it is muted, and reports nothing afterwards', async () => {
+    const { microphone, tracks } = await opened();
+    device.tracks[0]?.mute(true);
+    microphone.close();
+    expect(device.tracks[0]?.stopped).toBe(true);
+    device.tracks[0]?.mute(false);
+    expect(tracks).toHaveLength(2);
+    expect(microphone.errorMessage).toBeNull();
   });
 });

@@ -24,6 +24,34 @@ function headsetWithBody() {
   return { ...headset, frame, joints };
 }
 
+/** The joints of a Pico headset with motion trackers, and the names of the same places in WebXR Body Tracking. */
+const pico: Readonly<Record<string, string>> = {
+  pelvis: 'hips',
+  'left-hip': 'left-upper-leg',
+  'right-hip': 'right-upper-leg',
+  spine1: 'spine-lower',
+  'left-knee': 'left-lower-leg',
+  'right-knee': 'right-lower-leg',
+  spine2: 'spine-middle',
+  'left-ankle': 'left-foot-ankle',
+  'right-ankle': 'right-foot-ankle',
+  spine3: 'spine-upper',
+  'left-foot': 'left-foot-ball',
+  'right-foot': 'right-foot-ball',
+  neck: 'neck',
+  'left-collar': 'left-shoulder',
+  'right-collar': 'right-shoulder',
+  head: 'head',
+  'left-shoulder': 'left-arm-upper',
+  'right-shoulder': 'right-arm-upper',
+  'left-elbow': 'left-arm-lower',
+  'right-elbow': 'right-arm-lower',
+  'left-wrist': 'left-hand-wrist',
+  'right-wrist': 'right-hand-wrist',
+  'left-hand': 'left-hand-palm',
+  'right-hand': 'right-hand-palm',
+};
+
 const read = (reader: DeviceBodyReader, { frame, floor }: { frame: unknown; floor: XRReferenceSpace }) =>
   reader.read(frame as XRFrame, floor);
 
@@ -89,6 +117,38 @@ describe('the body that a device reports', () => {
     Object.assign(headset.frame, { body: well.joints, fillPoses, getPose: ask });
     expect(read(reader, headset)).not.toBeNull();
     expect(reader.complaint).toBeNull();
+  });
+
+  test.each<[string, (headset: ReturnType<typeof headsetWithBody>) => void]>([
+    [
+      'under its own names',
+      ({ frame, joints }) => {
+        frame.body = new Map(Object.entries(pico).map(([name, standard]) => [name, joints.get(standard)]));
+      },
+    ],
+    [
+      'under the names of WebXR',
+      ({ frame, joints }) => {
+        frame.body = new Map(Object.values(pico).map((name) => [name, joints.get(name)]));
+      },
+    ],
+    [
+      'among the other joints of WebXR, which it does not see',
+      ({ joints }) => {
+        const seen = Object.values(pico);
+        for (const name of joints.keys()) if (!seen.includes(name)) joints.set(name, { at: null });
+      },
+    ],
+  ])('of Pico’s 24 joints, %s, is read; a joint that it lacks is where its neighbour is', (_, change) => {
+    const headset = headsetWithBody();
+    change(headset);
+    const reader = new DeviceBodyReader();
+    const body = read(reader, headset);
+    expect(reader.complaint).toBeNull();
+    const placeRead = (name: string) => body?.[3 * deviceJointNames.indexOf(name)];
+    for (const name of Object.values(pico)) expect(placeRead(name)).toBeCloseTo(placeOf(name).x, 6);
+    expect(placeRead('left-scapula')).toBeCloseTo(placeOf('left-shoulder').x, 6);
+    expect(placeRead('right-foot-transverse')).toBeCloseTo(placeOf('right-foot-ball').x, 6);
   });
 
   test('is there again once a frame can be asked after one that could not', () => {

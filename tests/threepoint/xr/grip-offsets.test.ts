@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import { rotate } from 'threepoint/core/math/quat';
 import { distance, dot, vec3 } from 'threepoint/core/math/vec3';
-import { genericFit, gripFromWrist, handleFit, wristFromGrip } from 'threepoint/xr/grip-offsets';
+import { bareHandFit, genericFit, gripFromWrist, handleFit, wristFromGrip } from 'threepoint/xr/grip-offsets';
 import { describe, expect, test } from 'vitest';
 import { fromEulerYxz } from '../core/euler-angles';
 
@@ -40,5 +40,14 @@ describe('a controller in the hand', () => {
   test('the first known profile decides; unknown devices get the generic fit', () => {
     expect(handleFit(['no-such-device', 'htc-vive', 'generic-trigger'])).toEqual(handleFit(['htc-vive']));
     expect(handleFit(['no-such-device'])).toEqual(genericFit);
+  });
+
+  test.each([
+    ['generic-hand', 'generic-hand-select', 'generic-trigger'],
+    ['oculus-hand', 'generic-trigger'],
+    ['generic-hand-select-grasp'],
+  ])('%s is a bare hand, whose grip lies straight across the palm', (...profiles) => {
+    expect(handleFit(profiles)).toEqual(bareHandFit);
+    expect(handleFit(['meta-quest-touch-plus', ...profiles])).not.toEqual(bareHandFit);
   });
 });

@@ -128,6 +128,72 @@ describe('which hand it is', () => {
     expect(inputs.input).toBe('hands');
   });
 
+  test.each(['listed first', 'listed last'])(
+    'is the hand, not the controller on the table that is tracked, %s',
+    (order) => {
+      const { read, setInputs, inputs } = tracked();
+      const onTheTable = controller('left', at(-0.6, 0.7, -0.5));
+      const hand = bareHand('left', left);
+      setInputs(...(order === 'listed first' ? [hand, onTheTable] : [onTheTable, hand]));
+      expect(read()?.leftHand?.position.x).toBeCloseTo(left.position.x, 6);
+      expect(inputs.kinds.left).toBe('hand');
+    },
+  );
+
+  test.each(['listed first', 'listed last'])('is of two controllers the one that moves, %s', (order) => {
+    const { read, setInputs, inputs } = tracked();
+    const held = controller('left', left);
+    const onTheTable = controller('left', at(-2, 0.7, -0.5));
+    setInputs(...(order === 'listed first' ? [held, onTheTable] : [onTheTable, held]));
+    for (let step = 0; step < 20; step++) {
+      held.gripSpace.at = at(-0.25 + 0.005 * step, 1.1, -0.35);
+      // Noise at rest moves no arm.
+      onTheTable.gripSpace.at = at(-2 + 0.004 * Math.sin(step), 0.7, -0.5);
+      read();
+    }
+    const device = inputs.buttons.left.device;
+    held.gripSpace.at = left;
+    for (let step = 0; step < 100; step++) expect(read()?.leftHand?.position.x).toBeGreaterThan(-1);
+    expect(inputs.buttons.left.device).toBe(device);
+    // The other is taken up, and its movement has to outlast a short rest of the first.
+    for (let step = 0; step < 50; step++) {
+      onTheTable.gripSpace.at = at(-2, 0.7 + 0.01 * step, -0.5);
+      read();
+    }
+    expect(read()?.leftHand?.position.x).toBeLessThan(-1);
+    expect(inputs.buttons.left.device).not.toBe(device);
+  });
+
+  test('is a bare hand where the device reports no joints, and it pinches where the device selects', () => {
+    const { read, setInputs, inputs, session } = tracked();
+    const { gripSpace } = controller('right', right);
+    const hand = { handedness: 'right' as const, profiles: ['generic-hand-select'], gripSpace };
+    const source = { ...hand, gamepad: { buttons: [], axes: [] } };
+    setInputs(source);
+    const wrist = read()?.rightHand;
+    // A rod across the palm: the hand is level where the rod is, and does not lean by the angle of a controller.
+    expect(wrist && distance(wrist.position, right.position)).toBeLessThan(0.07);
+    expect(inputs.kinds.right).toBe('hand');
+    expect(inputs.input).toBe('hands');
+    const select = (type: string) =>
+      session.dispatchEvent(Object.assign(new Event(type), { inputSource: source, frame: {} }));
+    select('selectstart');
+    read();
+    expect(inputs.buttons.right).toMatchObject({ kind: 'hand', pinch: 1, trigger: 0 });
+    expect(inputs.fingers.right?.pinch).toBe(1);
+    select('selectend');
+    read();
+    expect(inputs.buttons.right.pinch).toBe(0);
+  });
+
+  test('is a bare hand where the device has hands but not the wrist of this one', () => {
+    const { read, setInputs, inputs } = tracked();
+    setInputs({ ...controller('right', right, 0.8), profiles: [], hand: new Map() });
+    const wrist = read()?.rightHand;
+    expect(wrist && distance(wrist.position, right.position)).toBeLessThan(0.07);
+    expect(inputs.buttons.right).toMatchObject({ kind: 'hand', pinch: 0.8, trigger: 0 });
+  });
+
   test('is where it pinches, of a device that reports nothing else', () => {
     const { read, setInputs, inputs } = tracked();
     setInputs({ ...controller('right', right, 1), targetRayMode: 'transient-pointer' });

@@ -10,7 +10,9 @@ export type Recipes = ReadonlyMap<string, Recipe>;
 
 /** Sounds from where they happen, for ears that move; floor frame. */
 export interface SoundStage {
-  /** Starts the audio; a browser allows it only within a user's gesture. Rejects where there is no audio. */
+  /**
+   * Starts the audio, unless it runs; a browser allows it only within a user's gesture. Rejects where there is no audio.
+   */
   unlock(): Promise<void>;
   /** Returns the running audio context without the sounds of the game, for other sounds with the same listener. */
   open(): Promise<AudioContext>;
@@ -51,6 +53,7 @@ function createPlayer(context: AudioContext, recipes: Recipes) {
   /** Renders everything, one sound at a time with the page's own work between, so that no frame of the match has to. */
   async function warm(): Promise<void> {
     for (const name of recipes.keys()) {
+      if (buffers.has(name)) continue;
       buffer(name);
       await new Promise((resolve) => setTimeout(resolve));
     }
@@ -132,8 +135,14 @@ export function createSoundStage(
   };
   async function awaken(): Promise<Player> {
     if (!player) {
-      player = createPlayer(createContext(), recipes);
+      const context = createContext();
+      player = createPlayer(context, recipes);
       player.master.gain.value = muted ? 0 : volume;
+      // The system suspends or interrupts audio for a call or another program: it continues when that is over.
+      context.addEventListener('statechange', () => {
+        // reason: a context that may not resume yet does so at the user's next touch, which `unlock` reports
+        if (context.state === 'suspended') void context.resume().catch(() => undefined);
+      });
     }
     if (player.context.state !== 'running') await player.context.resume();
     return player;

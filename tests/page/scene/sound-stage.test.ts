@@ -1,0 +1,76 @@
+import { createSoundStage, type Recipes } from 'threepoint-page/scene/sound/sound-stage';
+import { describe, expect, test } from 'vitest';
+
+/** A gain, a limiter or a buffer of the browser's audio: takes what it is given. */
+const node = () => ({
+  gain: { value: 0, setTargetAtTime: () => undefined },
+  connect: (next: unknown) => next,
+  copyToChannel: () => undefined,
+});
+
+/** The browser's audio context, which the system may suspend. `allowed`: it may resume. */
+class Context extends EventTarget {
+  state = 'suspended';
+  allowed = true;
+  rendered = 0;
+  readonly currentTime = 0;
+  readonly sampleRate = 8000;
+  readonly destination = {};
+  createGain = node;
+  createDynamicsCompressor = node;
+
+  createBuffer() {
+    this.rendered += 1;
+    return node();
+  }
+
+  async resume(): Promise<void> {
+    if (!this.allowed) throw new DOMException('not now', 'InvalidStateError');
+    this.become('running');
+  }
+
+  become(state: string): void {
+    if (state === this.state) return;
+    this.state = state;
+    this.dispatchEvent(new Event('statechange'));
+  }
+}
+
+const recipes: Recipes = new Map([['click', () => new Float32Array(8)]]);
+
+function stageWithContext() {
+  const context = new Context();
+  return { context, stage: createSoundStage(recipes, () => context as unknown as AudioContext) };
+}
+
+describe('audio that the system suspends', () => {
+  test('continues at once where it may', async () => {
+    const { context, stage } = stageWithContext();
+    await stage.unlock();
+    context.become('suspended');
+    expect(stage.player).not.toBeNull();
+  });
+
+  test('that was interrupted continues when the interruption is over', async () => {
+    const { context, stage } = stageWithContext();
+    await stage.unlock();
+    context.allowed = false;
+    context.become('interrupted');
+    expect(stage.player).toBeNull();
+    context.allowed = true;
+    context.become('suspended');
+    expect(stage.player).not.toBeNull();
+  });
+
+  test('that may not continue by itself does so with the next unlock, and renders no sound again', async () => {
+    const { context, stage } = stageWithContext();
+    await stage.unlock();
+    context.allowed = false;
+    context.become('suspended');
+    expect(stage.player).toBeNull();
+    context.allowed = true;
+    await stage.unlock();
+    expect(stage.player).not.toBeNull();
+    expect(context.rendered).toBe(1);
+  });
+});
