@@ -17,7 +17,7 @@ function projectOf(files: Readonly<Record<string, string>>): string {
     ...Object.fromEntries(ours.map((file) => [file, readFileSync(join(root, file))])),
     ...files,
   });
-  symlinkSync(join(root, 'node_modules'), join(directory, 'node_modules'), 'dir');
+  symlinkSync(join(root, 'node_modules'), join(directory, 'node_modules'), 'junction');
   return directory;
 }
 
