@@ -1,5 +1,4 @@
 import { basename } from 'node:path';
-import { fileURLToPath } from 'node:url';
 import { defaultClientConditions, defineConfig, type Plugin } from 'vite';
 import { contentSecurityPolicy } from './src/http/security-headers.ts';
 import { studyPluginPaths } from './src/study/server/plugins/plugin-paths.ts';
@@ -73,24 +72,15 @@ const studyPluginsInPages: Plugin = {
   },
 };
 
+/** The server for rooms and studies: `npm start`, which runs next to the development server, on the same PORT. */
+const server = `http://127.0.0.1:${process.env.PORT ?? 3333}`;
+
 export default defineConfig({
   // The page can be served from any folder, unless `npm run build -- --base` names one (scripts/build.mjs).
   base: './',
   plugins: [policyInPages, studyPluginsInPages],
-  resolve: {
-    conditions: ['source', ...defaultClientConditions],
-    alias: {
-      '@stdlib/assert-has-generator-support': fileURLToPath(
-        new URL('scripts/has-generator-support.cjs', import.meta.url),
-      ),
-    },
-  },
-  // Requests for rooms and studies go to `npm start`, which runs next to the development server.
-  server: {
-    host: '127.0.0.1',
-    port: 5173,
-    proxy: { '/api': 'http://127.0.0.1:3333', '/relay': { target: 'http://127.0.0.1:3333', ws: true } },
-  },
+  resolve: { conditions: ['source', ...defaultClientConditions] },
+  server: { host: '127.0.0.1', port: 5173, proxy: { '/api': server, '/relay': { target: server, ws: true } } },
   preview: { host: '127.0.0.1', port: 4173 },
   // Workers are modules, so that they can import chunks.
   worker: { format: 'es', plugins: () => [decodersWithoutNode] },

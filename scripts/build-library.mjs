@@ -2,7 +2,7 @@
 // models for the runtime with their model card, the mannequin, and the sources that editors open. Prints the size of
 // each entry and fails if a document states another size. `npm pack ./dist-library` makes the tarball.
 import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { dirname, join, relative } from 'node:path';
+import { dirname, join, posix, relative } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { brotliCompressSync } from 'node:zlib';
 import { rolldown } from 'rolldown';
@@ -190,9 +190,9 @@ export function documentInPackage(text, to) {
   return text.replace(/!?\[([^\]]*)\]\(([^)\s]+)\)/g, (link, label, target) => {
     if (/^([a-z]+:|#)/.test(target)) return link;
     const [path, anchor] = target.split('#');
-    const found = inPackage[relative(root, join(root, dirname(documents[to]), path))];
+    const found = inPackage[posix.join(posix.dirname(documents[to]), path)];
     if (found === undefined) return label;
-    return `[${label}](${relative(dirname(to), found)}${anchor === undefined ? '' : `#${anchor}`})`;
+    return `[${label}](${posix.relative(posix.dirname(to), found)}${anchor === undefined ? '' : `#${anchor}`})`;
   });
 }
 

@@ -1,4 +1,4 @@
-import { spawn } from 'node:child_process';
+import { spawn, spawnSync } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 
 /** The root of the repository, without a trailing slash. */
@@ -7,12 +7,15 @@ export const root = fileURLToPath(new URL('..', import.meta.url)).replace(/[\\/]
 /** An error whose message is shown without a stack. */
 export class SetupError extends Error {}
 
-/** The running child processes. Each leads its own process group, so that none outlives the script that started it. */
+/**
+ * The running child processes. Each leads its own process group, or tree on Windows, so that none outlives the script
+ * that started it.
+ */
 const running = new Set();
 
 function killGroup(child, signal) {
   try {
-    if (process.platform === 'win32') child.kill(signal);
+    if (process.platform === 'win32') spawnSync('taskkill', ['/pid', String(child.pid), '/T', '/F']);
     else process.kill(-child.pid, signal);
   } catch (error) {
     if (error.code !== 'ESRCH') throw error;

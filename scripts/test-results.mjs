@@ -1,5 +1,8 @@
 import { existsSync, readFileSync } from 'node:fs';
-import { relative } from 'node:path';
+import { relative, sep } from 'node:path';
+
+/** Returns the path of a file from here, with slashes on every platform. */
+const shortPath = (file) => relative('.', file).split(sep).join('/');
 
 /** Returns the specs of a suite in Playwright's report, including those of nested suites. */
 const specsOf = ({ specs = [], suites = [] }) => [...specs, ...suites.flatMap(specsOf)];
@@ -12,7 +15,7 @@ const readers = {
   vitest(text, chosen = () => true) {
     const report = JSON.parse(text);
     const tests = report.testResults.flatMap((file) =>
-      file.assertionResults.map((test) => ({ ...test, file: relative('.', file.name) })),
+      file.assertionResults.map((test) => ({ ...test, file: shortPath(file.name) })),
     );
     const asked = tests.filter(({ tags = [] }) => chosen(tags));
     const of = (...kinds) => asked.filter(({ status }) => kinds.includes(status));
@@ -21,7 +24,7 @@ const readers = {
     return {
       passed: of('passed').length,
       failures: [
-        ...broken.map((file) => `${relative('.', file.name)} does not load`),
+        ...broken.map((file) => `${shortPath(file.name)} does not load`),
         ...of('failed').map(({ file, fullName }) => `${file}: ${fullName}`),
       ],
       skipped: of('skipped', 'pending', 'todo').length,

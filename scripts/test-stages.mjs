@@ -86,6 +86,7 @@ export const stages = {
         ...['dependency-cruiser/bin/dependency-cruise.mjs', '--config', '.dependency-cruiser.mjs'],
         ...['src', 'server', 'tests', 'e2e', 'bench'],
       ),
+      [process.execPath, 'scripts/check-dependencies.mjs'],
     ],
   },
   unit: {

@@ -17,7 +17,7 @@ function projectOf(files: Readonly<Record<string, string>>): string {
     ...Object.fromEntries(ours.map((file) => [file, readFileSync(join(root, file))])),
     ...files,
   });
-  symlinkSync(join(root, 'node_modules'), join(directory, 'node_modules'), 'dir');
+  symlinkSync(join(root, 'node_modules'), join(directory, 'node_modules'), 'junction');
   return directory;
 }
 
@@ -155,6 +155,8 @@ describe('the import rules', () => {
       'shipped-code-knows-no-tests',
       { 'src/rooms/client/a.ts': "import '../../../tests/b';", 'tests/b.ts': empty },
     ],
+    ['nor a tool', 'shipped-packages-are-no-tools', { 'server/a-worker.mjs': "import 'fast-check';" }],
+    ['nor does the library', 'shipped-packages-are-no-tools', { 'src/threepoint/xr/a.ts': "import 'fast-check';" }],
     ['no circles', 'no-cycles', { 'src/ui/a.ts': "import './b';", 'src/ui/b.ts': "import './a';" }],
     ['imports lead somewhere', 'imports-resolve', { 'src/ui/a.ts': "import './gone';" }],
   ])('%s (%s)', async (_, rule, files) => {

@@ -40,7 +40,7 @@ test('a linked node_modules is left alone: npm ci would empty the folder it lead
   const wanted = { 'node_modules/three': { version: '0.187.0' } };
   const owner = projectWith(wanted, { 'node_modules/three': { version: '0.186.0' } });
   const borrower = projectWith(wanted, null);
-  symlinkSync(join(owner, 'node_modules'), join(borrower, 'node_modules'), 'dir');
+  symlinkSync(join(owner, 'node_modules'), join(borrower, 'node_modules'), 'junction');
   const before = readFileSync(join(owner, 'node_modules/.package-lock.json'), 'utf8');
   await expect(ensureInstalled(borrower)).rejects.toThrow(
     /^three 0\.187\.0 is missing.*symbolic link.*remove the link/,

@@ -26,27 +26,23 @@ describe('a program that is run', () => {
     expect((await node("process.stdin.on('end', () => process.exit(7)).resume()")).code).toBe(7);
   });
 
-  test.skipIf(process.platform === 'win32')(
-    'is ended with everything it started when it runs too long',
-    { tags: ['full'] },
-    async () => {
-      const portFile = join(directoryWith(), 'port');
-      const listening = `
-      const server = require('node:net').createServer().listen(0, '127.0.0.1', () =>
-        require('node:fs').writeFileSync(${JSON.stringify(portFile)}, String(server.address().port)));`;
-      const script = `
-      require('node:child_process').spawn(process.execPath, ['-e', ${JSON.stringify(listening)}]);
-      setInterval(() => {}, 1000);`;
-      const running = node(script, { limitSeconds: 5 });
-      await expect.poll(() => existsSync(portFile) && readFileSync(portFile, 'utf8') !== '').toBe(true);
-      const port = Number(readFileSync(portFile, 'utf8'));
-      expect(await answers(port)).toBe(true);
-      const result = await running;
-      expect(result.timedOut).toBe(true);
-      expect(result.code).not.toBe(0);
-      await expect.poll(() => answers(port)).toBe(false);
-    },
-  );
+  test('is ended with everything it started when it runs too long', { tags: ['full'] }, async () => {
+    const portFile = join(directoryWith(), 'port');
+    const listening = `
+    const server = require('node:net').createServer().listen(0, '127.0.0.1', () =>
+      require('node:fs').writeFileSync(${JSON.stringify(portFile)}, String(server.address().port)));`;
+    const script = `
+    require('node:child_process').spawn(process.execPath, ['-e', ${JSON.stringify(listening)}]);
+    setInterval(() => {}, 1000);`;
+    const running = node(script, { limitSeconds: 5 });
+    await expect.poll(() => existsSync(portFile) && readFileSync(portFile, 'utf8') !== '').toBe(true);
+    const port = Number(readFileSync(portFile, 'utf8'));
+    expect(await answers(port)).toBe(true);
+    const result = await running;
+    expect(result.timedOut).toBe(true);
+    expect(result.code).not.toBe(0);
+    await expect.poll(() => answers(port)).toBe(false);
+  });
 
   test('that is not installed: null when asked quietly, an error otherwise', async () => {
     expect(await runQuietly('no-such-program-here', [])).toBeNull();

@@ -25,7 +25,7 @@ async function runBuiltServer(directory: string): Promise<string> {
   renameSync(join(directory, 'server/package.json'), join(directory, 'package.json'));
   mkdirSync(join(directory, 'dist'));
   writeFileSync(join(directory, 'dist/index.html'), '<!doctype html><title>page</title>');
-  symlinkSync(join(root, 'node_modules'), join(directory, 'node_modules'));
+  symlinkSync(join(root, 'node_modules'), join(directory, 'node_modules'), 'junction');
   const child = spawn(process.execPath, ['--enable-source-maps', 'server/main.mjs'], {
     cwd: directory,
     env: {

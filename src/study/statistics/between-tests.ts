@@ -1,4 +1,4 @@
-import normalCdf from '@stdlib/stats-base-dists-normal-cdf';
+import { normalCdf } from './distributions';
 import { noncentralityOfT } from './noncentral';
 import { cubesOf, rankBiserialInterval, ranksOf } from './ranks';
 import { criticalT, deviationOf, type Interval, meanOf, roundingOf, twoSidedP } from './summaries';
@@ -130,7 +130,7 @@ function normalP(w: number, m: number, n: number, ties: readonly number[]): numb
   if (deviation === 0) return null;
   const distance = w - (m * n) / 2;
   const z = (distance - Math.sign(distance) / 2) / deviation;
-  return Math.min(1, 2 * normalCdf(-Math.abs(z), 0, 1));
+  return Math.min(1, 2 * normalCdf(-Math.abs(z)));
 }
 
 /** Returns a function from W to its two-sided p for m and n values without ties. */

@@ -1,6 +1,5 @@
-import betainc from '@stdlib/math-base-special-betainc';
-import normalCdf from '@stdlib/stats-base-dists-normal-cdf';
 import { bisect } from 'threepoint/core/math/bisection';
+import { incompleteBeta, normalCdf } from './distributions';
 import type { Interval } from './summaries';
 
 /** Terms of a series this small relative to its greatest add nothing to a double. */
@@ -9,7 +8,7 @@ const halvings = 80;
 
 /** Returns the probability of an F at least this large. */
 export const fTail = (f: number, df1: number, df2: number): number =>
-  f <= 0 ? 1 : betainc(df2 / (df2 + df1 * f), df2 / 2, df1 / 2);
+  f <= 0 ? 1 : incompleteBeta(df2 / (df2 + df1 * f), df2 / 2, df1 / 2);
 
 /** Caches a function of whole numbers, because the search for a noncentrality repeats its arguments. */
 function kept(value: (index: number) => number): (index: number) => number {
@@ -30,8 +29,8 @@ export function noncentralT(t: number, df: number): (noncentrality: number) => n
     return (noncentrality) => 1 - mirrored(-noncentrality);
   }
   const x = (t * t) / (t * t + df);
-  const even = kept((j) => betainc(x, j + 0.5, df / 2));
-  const odd = kept((j) => betainc(x, j + 1, df / 2));
+  const even = kept((j) => incompleteBeta(x, j + 0.5, df / 2));
+  const odd = kept((j) => incompleteBeta(x, j + 1, df / 2));
   return (noncentrality) => {
     const half = (noncentrality * noncentrality) / 2;
     let p = Math.exp(-half);
@@ -42,7 +41,7 @@ export function noncentralT(t: number, df: number): (noncentrality: number) => n
       p *= half / (j + 1);
       q *= half / (j + 1.5);
     }
-    return Math.min(1, Math.max(0, normalCdf(-noncentrality, 0, 1) + sum / 2));
+    return Math.min(1, Math.max(0, normalCdf(-noncentrality) + sum / 2));
   };
 }
 
@@ -52,7 +51,7 @@ export function noncentralT(t: number, df: number): (noncentrality: number) => n
  */
 export function noncentralF(f: number, df1: number, df2: number): (noncentrality: number) => number {
   const x = (df1 * f) / (df1 * f + df2);
-  const central = kept((j) => betainc(x, df1 / 2 + j, df2 / 2));
+  const central = kept((j) => incompleteBeta(x, df1 / 2 + j, df2 / 2));
   return (noncentrality) => {
     const half = noncentrality / 2;
     let weight = Math.exp(-half);

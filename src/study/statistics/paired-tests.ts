@@ -1,5 +1,4 @@
-import normalCdf from '@stdlib/stats-base-dists-normal-cdf';
-import signedRankCdf from '@stdlib/stats-base-dists-signrank-cdf';
+import { normalCdf, signedRankCdf } from './distributions';
 import { noncentralityOfT } from './noncentral';
 import { cubesOf, rankBiserialInterval, ranksOf } from './ranks';
 import { type Interval, meanSummary, roundingOf, twoSidedP } from './summaries';
@@ -98,7 +97,7 @@ function normalP(v: number, n: number, ties: readonly number[]): number {
   const deviation = Math.sqrt((n * (n + 1) * (2 * n + 1)) / 24 - cubesOf(ties) / 48);
   const distance = v - (n * (n + 1)) / 4;
   const z = (distance - Math.sign(distance) / 2) / deviation;
-  return Math.min(1, 2 * normalCdf(-Math.abs(z), 0, 1));
+  return Math.min(1, 2 * normalCdf(-Math.abs(z)));
 }
 
 /** Returns the two-sided p of a V of n pairs without ties and zeros. */

@@ -1,4 +1,4 @@
-import gammainc from '@stdlib/math-base-special-gammainc';
+import { gammaTail } from './distributions';
 import { cubesOf, ranksOf } from './ranks';
 import { roundingOf } from './summaries';
 
@@ -13,7 +13,7 @@ export interface RankAnalysis {
 }
 
 /** The upper tail of the χ² distribution, computed directly: 1 minus the rest would round small tails away. */
-const upperTail = (chiSquared: number, df: number) => gammainc(chiSquared / 2, df / 2, true, true);
+const upperTail = (chiSquared: number, df: number) => gammaTail(df / 2, chiSquared / 2);
 
 /**
  * Computes R's `friedman.test` of `participants[p][k]`, participant p under condition k. Throws without participants.

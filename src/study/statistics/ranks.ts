@@ -1,5 +1,5 @@
-import normalCdf from '@stdlib/stats-base-dists-normal-cdf';
 import { bisect } from 'threepoint/core/math/bisection';
+import { normalCdf } from './distributions';
 import { type Interval, roundingOf } from './summaries';
 
 /**
@@ -37,7 +37,7 @@ export const cubesOf = (ties: readonly number[]): number => ties.reduce((sum, si
  */
 export function rankBiserialInterval(effect: number, error: number, confidence = 0.95): Interval | null {
   if (Math.abs(effect) === 1) return null;
-  const critical = bisect(0, 40, (z) => normalCdf(z, 0, 1) > (1 + confidence) / 2, 80);
+  const critical = bisect(0, 40, (z) => normalCdf(z) > (1 + confidence) / 2, 80);
   const z = Math.atanh(effect);
   return { low: Math.tanh(z - critical * error), high: Math.tanh(z + critical * error) };
 }

@@ -1,5 +1,5 @@
-import tCdf from '@stdlib/stats-base-dists-t-cdf';
-import tQuantile from '@stdlib/stats-base-dists-t-quantile';
+import { bisect } from 'threepoint/core/math/bisection';
+import { incompleteBeta } from './distributions';
 
 /** The ends of a confidence interval. */
 export interface Interval {
@@ -27,7 +27,11 @@ export function deviationOf(values: readonly number[]): number {
 }
 
 /** Returns the t between ±which a share `confidence` of Student's distribution lies. */
-export const criticalT = (confidence: number, df: number) => tQuantile((1 + confidence) / 2, df);
+export function criticalT(confidence: number, df: number): number {
+  // t² / (df + t²) has a beta distribution.
+  const share = bisect(0, 1, (x) => incompleteBeta(x, 0.5, df / 2) > confidence, 100);
+  return Math.sqrt((df * share) / (1 - share));
+}
 
 /** Returns the mean with its confidence interval; throws for no values. */
 export function meanSummary(values: readonly number[], confidence = 0.95): MeanSummary {
@@ -41,7 +45,7 @@ export function meanSummary(values: readonly number[], confidence = 0.95): MeanS
 }
 
 /** Returns the probability of a t at least this far from 0 on either side, with df degrees of freedom. */
-export const twoSidedP = (t: number, df: number): number => Math.min(1, 2 * tCdf(-Math.abs(t), df));
+export const twoSidedP = (t: number, df: number): number => incompleteBeta(df / (df + t * t), df / 2, 0.5);
 
 /** Values that differ by at most this share of the largest input are equal up to rounding. */
 const equalWithin = 1e-9;

@@ -20,7 +20,10 @@ export function normalisedCode(typed: string): string {
   return (characters.match(/.{1,4}/g) ?? []).join('-');
 }
 
-/** Each migrates the database from its index to the next version. Never change a released one; add another one. */
+/**
+ * Each migrates the database from its index to the next version. Never change a released one; add another one, and a
+ * file of the new schema for the tests (tests/study/server/write-schema.ts).
+ */
 const migrations: readonly (string | ((database: DatabaseSyncInstance) => void))[] = [
   `
   CREATE TABLE studies (

@@ -1,0 +1,52 @@
+import { join } from 'node:path';
+import { createServer } from 'vite';
+import { expect, onTestFinished, test, vi } from 'vitest';
+import { root } from '../../scripts/run-command.mjs';
+import { arrive, rawSocket, startRelay, tokenFor, until } from '../rooms/server/running-relay';
+
+/** Starts the server of `npm run dev` on a free port, in front of a relay of its own. Resolves to its origin. */
+async function startDevelopment(): Promise<string> {
+  const relay = await startRelay();
+  onTestFinished(() => relay.close());
+  vi.stubEnv('PORT', String(relay.port));
+  const server = await createServer({
+    root,
+    configFile: join(root, 'vite.config.ts'),
+    logLevel: 'error',
+    server: { port: 0, watch: null },
+    optimizeDeps: { noDiscovery: true },
+  });
+  onTestFinished(() => server.close());
+  await server.listen();
+  const [address] = server.resolvedUrls?.local ?? [];
+  return new URL(address as string).origin;
+}
+
+test('npm run dev serves the page, and passes rooms with their WebSockets to the server', async () => {
+  const origin = await startDevelopment();
+  expect(await (await fetch(origin)).text()).toContain('src="/src/page/main.ts"');
+  // public/api/rooms says to static hosts that there is no server.
+  expect(await (await fetch(`${origin}/api/rooms`)).json()).toEqual({ rooms: [], complete: true });
+  const people = ['Ann', 'Ben'].map((name) => arrive(origin, 'development', name));
+  onTestFinished(() => {
+    for (const person of people) person.stop();
+  });
+  await until('two people in one room', () =>
+    people.every(({ connection }) => connection.room?.seats.filter(Boolean).length === 2),
+  );
+});
+
+test('a page of the development server may use the relay, a page of another site may not', async () => {
+  const origin = await startDevelopment();
+  const token = await tokenFor(origin, 'development');
+  const outcomeFor = (from: string) => {
+    const socket = rawSocket(origin, token, 'development', { origin: from });
+    onTestFinished(() => void socket.disconnect());
+    return new Promise<string>((resolve) => {
+      socket.on('connect', () => resolve('connected'));
+      socket.on('connect_error', () => resolve('refused'));
+    });
+  };
+  expect(await outcomeFor(origin)).toBe('connected');
+  expect(await outcomeFor('https://evil.example')).toBe('refused');
+});
