@@ -111,6 +111,8 @@ export interface RecordingActions {
   cancelExport(): void;
   /** Recordings, or the files of one motion. */
   openFiles(files: readonly File[]): void;
+  /** Opens files that were chosen as motion capture, of a body that moves its motion. */
+  openMotion(files: readonly File[]): void;
   seek(seconds: number): void;
   setPaused(on: boolean): void;
   setLoop(on: boolean): void;
