@@ -3,7 +3,7 @@ import type { Avatar } from 'threepoint/avatar/avatar';
 import { labelOf } from 'threepoint/avatar/built-in-bodies';
 import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
 import { MotionWithoutBody } from 'threepoint/avatar/file/inspect-avatar';
-import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
+import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones';
 import { type BuiltInBody, bodyOf, plainAvatar, skinToneOf } from 'threepoint/core/body/avatar-ref';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';

@@ -1,5 +1,6 @@
 import type { VRM } from '@pixiv/three-vrm';
 import { type Object3D, Quaternion, Vector3 } from 'three';
+import type { BoneName } from '../core/humanoid/bones';
 import { addClip, type GltfDescription, type NodeTrack, packGlb } from '../core/motion/gltf';
 import { type Motion, makePosedBones, type PosedBones, poseBones } from '../core/motion/motion';
 import { clipOf } from '../core/motion/write-vrma';
@@ -7,7 +8,6 @@ import type { Decoders } from './decoders/decoder-set';
 import { chunksOf } from './file/glb-chunks';
 import { glbOfFile } from './file/glb-of-file';
 import { inspectAvatar } from './file/inspect-avatar';
-import type { BoneName } from './humanoid/bone-names';
 import { boneNode } from './humanoid/humanoid';
 import { type LoadedAvatar, type ParseOptions, parseAvatar } from './load-avatar';
 

@@ -1,5 +1,5 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
-import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
+import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { isSkeletonMap } from 'threepoint/core/mocap/is-skeleton-map';
 import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';

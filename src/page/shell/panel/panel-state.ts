@@ -1,4 +1,4 @@
-import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
+import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import type { BuiltInBody, SkinTone } from 'threepoint/core/body/avatar-ref';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { ViewName } from '../../scene/desktop-view';
