@@ -39,11 +39,12 @@ const coreRooms = {
   validation: ['errors'],
   math: [],
   body: ['math', 'validation', 'errors'],
+  humanoid: ['math', 'body'],
   input: ['math'],
   tracking: ['math', 'body', 'errors'],
   estimation: ['math', 'body', 'tracking', 'errors'],
   motion: ['math', 'body', 'tracking', 'estimation', 'errors'],
-  mocap: ['math', 'body', 'tracking', 'motion', 'errors'],
+  mocap: ['math', 'body', 'humanoid', 'tracking', 'motion', 'errors'],
 };
 const libraryRooms = {
   core: [],

@@ -9,7 +9,7 @@ test('a VRM from a local file takes the place of ours, with the hands still on t
   const hand = await settledJoint(page, 'leftHand');
   await page.getByRole('tab', { name: 'Avatar' }).click();
   await page
-    .getByLabel('Open VRM or GLB')
+    .getByLabel('Open VRM, GLB or FBX')
     .and(page.locator('input'))
     .setInputFiles({
       name: 'another-person.vrm',
@@ -33,7 +33,7 @@ test('a file that is no avatar is refused in a sentence, and ours stays', async 
   const { name } = (await probe(page)).avatar;
   await page.getByRole('tab', { name: 'Avatar' }).click();
   await page
-    .getByLabel('Open VRM or GLB')
+    .getByLabel('Open VRM, GLB or FBX')
     .and(page.locator('input'))
     .setInputFiles({ name: 'holiday.vrm', mimeType: 'model/gltf-binary', buffer: Buffer.from('a picture') });
   await expect(page.getByRole('alert')).toContainText('holiday.vrm');

@@ -19,7 +19,7 @@ const robot = Buffer.from(
 const openRobot = async (page: Page): Promise<void> => {
   await page.getByRole('tab', { name: 'Avatar' }).click();
   const file = { name: 'robot.glb', mimeType: 'model/gltf-binary', buffer: robot };
-  await page.getByLabel('Open VRM or GLB').and(page.locator('input')).setInputFiles(file);
+  await page.getByLabel('Open VRM, GLB or FBX').and(page.locator('input')).setInputFiles(file);
 };
 
 test('a file whose bones’ names tell nothing is worn once they are told, and again without asking @full', async ({

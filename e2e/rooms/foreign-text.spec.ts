@@ -90,7 +90,7 @@ test('markup in names of files is text in what pages say of them @full', async (
   }
   await page.goto(`${origin}/?quality=low&panel=on&overlay=off`);
   await page.getByRole('tab', { name: 'Avatar' }).click();
-  await page.getByLabel('Open VRM or GLB').and(page.locator('input')).setInputFiles(foreignFile('vrm'));
+  await page.getByLabel('Open VRM, GLB or FBX').and(page.locator('input')).setInputFiles(foreignFile('vrm'));
   await expect(page.getByRole('alert')).toContainText(mark);
   await showsText(page, 'avatar');
 });

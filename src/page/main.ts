@@ -85,7 +85,10 @@ async function start(): Promise<void> {
   const { avatar, body, controls, headset, timing } = page;
 
   // The built-in avatar is shown until another one has been loaded, and stays if that fails.
-  if (switches.avatar) void avatar.open(switches.avatar);
+  if (switches.avatar) {
+    const address = switches.avatar;
+    void avatar.open(address).then((outcome) => (outcome === 'motion' ? page.mocap.open([address]) : undefined));
+  }
   const enterButton = createEnterButton(pageElement('enter', HTMLDivElement), () => void headset.enter());
   run(page, context);
 

@@ -28,11 +28,6 @@ def test_golden_features_are_what_the_features_are_now():
     assert_as_committed("features.json", golden.feature_vectors(), atol=1e-7)
 
 
-def test_golden_mocap_files_are_read_as_before():
-    assert_as_committed("bvh.json", golden.bvh_vectors(), atol=1e-7)
-    assert [case["text"] for case in committed("bvh.json")] == [case["text"] for case in golden.bvh_vectors()]
-
-
 def test_golden_mocap_makes_the_recordings_that_it_made():
     now, before = golden.mocap_vectors(), committed("mocap.json")
     assert [case["files"] for case in before] == [case["files"] for case in now]

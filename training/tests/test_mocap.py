@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from threepoint_training import quaternion
 from threepoint_training.mocap_asf_amc import parse_amc, parse_asf
-from threepoint_training.mocap_bvh import parse_bvh
 from threepoint_training.motion import MocapError
 
 ASF = """:version 1.10
@@ -42,27 +41,6 @@ ASF = """:version 1.10
   end
 """
 
-BVH = """HIERARCHY
-ROOT Hips
-{
-  OFFSET 0 0 0
-  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
-  JOINT Spine
-  {
-    OFFSET 0 2 0
-    CHANNELS 3 Zrotation Xrotation Yrotation
-    End Site
-    {
-      OFFSET 0 3 0
-    }
-  }
-}
-MOTION
-Frames: 2
-Frame Time: 0.008333
-0 1 0 0 0 0 0 0 0
-0 1 0 90 0 0 0 90 0
-"""
 
 
 def write(folder: Path, name: str, text: str) -> Path:
@@ -161,33 +139,3 @@ def test_angles_of_another_unit_are_refused(tmp_path: Path, unit: str, sentence:
 def test_a_skeleton_without_bones_is_refused(tmp_path: Path) -> None:
     with pytest.raises(MocapError, match="no :bonedata with bones"):
         parse_asf(write(tmp_path, "empty.asf", ":version 1.10\n"))
-
-
-def test_bvh_rotations_apply_in_the_order_of_the_channels(tmp_path: Path) -> None:
-    motion = parse_bvh(write(tmp_path, "clip.bvh", BVH))
-    assert motion.frame_rate == pytest.approx(120, abs=0.01)
-    np.testing.assert_allclose(motion.positions[0, motion.index("Spine:end")], [0, 6, 0], atol=1e-9)
-    # The root turns up to −X; the spine then turns about the X that the root has turned.
-    np.testing.assert_allclose(motion.positions[1, motion.index("Spine")], [-2, 1, 0], atol=1e-9)
-    np.testing.assert_allclose(motion.positions[1, motion.index("Spine:end")], [-2, 1, 3], atol=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("change", "sentence"),
-    [
-        (("0 1 0 90 0 0 0 90 0", "0 1 0 90"), "clip.bvh, line 20: a frame has 4 numbers, the hierarchy has 9 channels"),
-        (("Frames: 2", "Frames: 3"), "clip.bvh: “Frames: 3”, but 2 follow"),
-        (
-            ("Frame Time: 0.008333", "Frame Time: 0"),
-            "clip.bvh: frame rate unknown; a line “Frame Time: seconds” is needed",
-        ),
-        (
-            ("CHANNELS 3 Z", "CHANNELS 4 Z"),
-            "clip.bvh, line 9: CHANNELS should be a count and as many names, is “4 Zrotation Xrotation Yrotation”",
-        ),
-    ],
-)
-def test_bad_bvh_names_file_and_line(tmp_path: Path, change: tuple[str, str], sentence: str) -> None:
-    with pytest.raises(MocapError) as error:
-        parse_bvh(write(tmp_path, "clip.bvh", BVH.replace(*change)))
-    assert str(error.value) == sentence

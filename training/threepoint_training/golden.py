@@ -14,7 +14,6 @@ from . import hand_tilt, notice_hand_tilts, notice_headset_rise, quaternion, sol
 from .chest_features import chest_axes
 from .features import frame_features
 from .generated_motion import generate_clip
-from .golden_bvh import bvh_vectors
 from .golden_mocap import mocap_vectors
 from .notice_hand_tilts import CalibratedTilts
 from .paper_features import paper_features
@@ -270,14 +269,13 @@ class GoldenConfig:
 
 
 def main(config: GoldenConfig) -> None:
-    """Writes features.json, fitted-joints.json, headset-rise.json, bvh.json and mocap.json in tests/golden, and
+    """Writes features.json, fitted-joints.json, headset-rise.json and mocap.json in tests/golden, and
     models.json where there are models.
     """
     GOLDEN.mkdir(parents=True, exist_ok=True)
     (GOLDEN / "features.json").write_text(json.dumps(plain(feature_vectors())) + "\n")
     (GOLDEN / "fitted-joints.json").write_text(json.dumps(plain(fitted_vectors())) + "\n")
     (GOLDEN / "headset-rise.json").write_text(json.dumps(plain(headset_rise_vectors())) + "\n")
-    (GOLDEN / "bvh.json").write_text(json.dumps(plain(bvh_vectors())) + "\n")
     (GOLDEN / "mocap.json").write_text(json.dumps(plain(mocap_vectors())) + "\n")
     if list(config.models.glob("*.json")):
         (GOLDEN / "models.json").write_text(json.dumps(plain(model_vectors(config.models))) + "\n")

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from .foreign_motion import SUFFIXES
 from .mocap_rules import RULES
 from .motion import MocapError
 from .skeleton_map import SkeletonMap
@@ -56,10 +57,10 @@ def motion_files(mocap: Path, people: tuple[str, ...] | None) -> list[Source]:
         folder / name
         for folder, names in _folders(mocap)
         for name in names
-        if Path(name).suffix.lower() in (".amc", ".bvh")
+        if Path(name).suffix.lower() in (".amc", *SUFFIXES)
     )
     if not files:
-        raise MocapError(f"{mocap}: no .amc or .bvh files in this folder or below it")
+        raise MocapError(f"{mocap}: no .amc, .bvh or .vrma files in this folder or below it")
     sources = []
     for path in files:
         person = path.parent.name if path.parent != mocap else path.stem.split("_")[0]

@@ -3,7 +3,7 @@ T-pose.
 """
 
 import hashlib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import quaternion
+from .foreign_motion import SUFFIXES, read_foreign
 from .mocap_asf_amc import AsfSkeleton, parse_amc, parse_asf
-from .mocap_bvh import parse_bvh
 from .mocap_rules import RULES
 from .motion import MocapError, Motion
 from .motion_files import Source, frame_rate, index_rates, motion_files
@@ -40,7 +40,7 @@ _LATERAL = {"leftHand": np.array([-1.0, 0.0, 0.0]), "rightHand": np.array([1.0, 
 
 @dataclass(frozen=True)
 class PrepareConfig:
-    """mocap: a folder searched for .asf, .amc and .bvh files. people: only these (None: all)."""
+    """mocap: a folder searched for .asf, .amc, .bvh and .vrma files. people: only these (None: all)."""
 
     mocap: Path
     skeleton_map: Path | None = None
@@ -88,7 +88,7 @@ def _to_our_joints(motion: Motion, skeleton: SkeletonMap, rate: float, file_name
     for theirs in skeleton.joints.values():
         if theirs not in motion.names:
             raise MocapError(f"{file_name}: no joint “{theirs}”, which the map “{skeleton.name}” names")
-    if skeleton.rest_frame is not None or skeleton.rest_pose is not None:
+    if skeleton.rest_frame is not None:
         motion = face_forward(motion, skeleton.joints, skeleton.floor_from_file())
     scale = _scale(motion, skeleton, file_name)
     turn = quaternion.from_matrix(skeleton.floor_from_file())
@@ -250,14 +250,8 @@ def corpus_hash(paths: Iterable[Path]) -> str:
     return digest.hexdigest()
 
 
-def _motion(
-    source: Source, skeletons: dict[Path, AsfSkeleton], rest_pose: Mapping[str, tuple[float, ...]] | None
-) -> Motion:
-    """What a file has; `skeletons` keeps those read before."""
-    if source.path.suffix.lower() == ".bvh":
-        return parse_bvh(source.path, rest_pose)
-    if rest_pose is not None:
-        raise MocapError(f"{source.path.name}: restPose is for BVH files; here restFrame can be given")
+def _motion(source: Source, skeletons: dict[Path, AsfSkeleton]) -> Motion:
+    """What an AMC file has; `skeletons` keeps those read before."""
     if source.asf is None:
         raise MocapError(f"{source.path.name}: no .asf skeleton beside it")
     if source.asf not in skeletons:
@@ -270,8 +264,10 @@ class _Reader:
     it.
     """
 
-    def __init__(self, config: PrepareConfig) -> None:
+    def __init__(self, config: PrepareConfig, sources: Sequence[Source]) -> None:
         self.given = read_skeleton_map(config.skeleton_map) if config.skeleton_map else None
+        foreign = [source.path for source in sources if source.path.suffix.lower() in SUFFIXES]
+        self.foreign = read_foreign(foreign, config.skeleton_map)
         self.rates = index_rates(config.mocap)
         self.skeletons: dict[Path, AsfSkeleton] = {}
         self.rests: dict[Path, Motion] = {}
@@ -280,7 +276,11 @@ class _Reader:
     def read(self, source: Source) -> _Clip:
         """One file in our joints; what cannot be read raises MocapError or OSError."""
         name = source.path.name
-        motion = _motion(source, self.skeletons, self.given.rest_pose if self.given else None)
+        if source.path in self.foreign:
+            return self._foreign(source)
+        if self.given and self.given.rest_pose is not None:
+            raise MocapError(f"{name}: restPose is for BVH files; here restFrame can be given")
+        motion = _motion(source, self.skeletons)
         skeleton = self.given or find_skeleton_map(motion.names, name)
         if motion.frame_rate is None:
             motion = replace(motion, frame_rate=frame_rate(source.path, skeleton, self.rates))
@@ -291,12 +291,21 @@ class _Reader:
             self.notes.setdefault(note, []).append(name)
         return clip
 
+    def _foreign(self, source: Source) -> _Clip:
+        found = self.foreign[source.path]
+        if isinstance(found, MocapError):
+            raise found
+        for note in found.notes:
+            self.notes.setdefault(note, []).append(source.path.name)
+        rotations = np.stack([quaternion.continuous(found.rotations[:, i]) for i in range(3)], axis=1)
+        return _Clip(found.positions, rotations, found.legs, found.rest, found.rate)
+
     def _counted_from(self, motion: Motion, skeleton: SkeletonMap, frame: int, source: Source) -> Motion:
         file = skeleton.rest_file
         if file is None:
             return rest_from_frame(motion, frame, motion, source.path.name)
         if file not in self.rests:
-            self.rests[file] = _motion(replace(source, path=file), self.skeletons, None)
+            self.rests[file] = _motion(replace(source, path=file), self.skeletons)
         return rest_from_frame(motion, frame, self.rests[file], f"{source.path.name}, {file.name}")
 
     def messages(self) -> list[str]:
@@ -312,13 +321,14 @@ def main(config: PrepareConfig, progress: Callable[[str], None] = lambda _: None
     """
     sources = motion_files(config.mocap, config.people)
     hashed = [path for source in sources for path in (source.path, source.asf) if path is not None]
-    reader = _Reader(config)
-    rest_file = reader.given.rest_file if reader.given else None
+    given = read_skeleton_map(config.skeleton_map) if config.skeleton_map else None
+    rest_file = given.rest_file if given else None
     digest = corpus_hash([*hashed, *(path for path in (config.skeleton_map, rest_file) if path)])
     cached = config.cache / f"{digest[:16]}-v{PreparedCorpus.VERSION}.npz" if config.cache else None
     if cached and cached.is_file():
         return PreparedCorpus.load(cached)
 
+    reader = _Reader(config, sources)
     problems: list[str] = []
     by_person: dict[str, list[tuple[str, _Clip]]] = {}
     for source in sources:

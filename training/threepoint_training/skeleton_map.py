@@ -1,4 +1,4 @@
-"""Maps the joints of a file to the project's joints: built in for CMU's ASF and common BVH skeletons, else from JSON.
+"""Maps the joints of a file to the project's joints: built in for CMU's ASF, else from JSON.
 """
 
 import json
@@ -50,7 +50,7 @@ class SkeletonMap:
         return np.stack([np.cross(forward, up), up, -forward])
 
 
-BUILT_IN = tuple(SkeletonMap(**known) for known in RULES["skeletons"])
+ACCLAIM = SkeletonMap(**RULES["acclaim"])
 
 
 def read_skeleton_map(path: Path) -> SkeletonMap:
@@ -144,14 +144,10 @@ def _rest_pose(content: dict[str, Any], path: Path) -> dict[str, tuple[float, ..
 
 
 def find_skeleton_map(names: tuple[str, ...], file_name: str) -> SkeletonMap:
-    """The built-in map that fits best: with all needed joints and most of the others; none raises MocapError."""
-    known = set(names)
-    fitting = [
-        candidate for candidate in BUILT_IN if all(candidate.joints[joint] in known for joint in REQUIRED_JOINTS)
-    ]
-    if not fitting:
+    """Returns the map of an Acclaim skeleton without what the file lacks; without a needed joint raises MocapError."""
+    missing = [joint for joint in REQUIRED_JOINTS if ACCLAIM.joints[joint] not in names]
+    if missing:
         raise MocapError(
-            f"{file_name}: a skeleton that is not known here (it has {', '.join(names[:8])}, …); give a map with --skeleton MAP.json"
+            f"{file_name}: the skeleton has no {' and no '.join(missing)} (it has {', '.join(names[:8])}, …); give a map with --skeleton MAP.json"
         )
-    best = max(fitting, key=lambda candidate: sum(theirs in known for theirs in candidate.joints.values()))
-    return replace(best, joints={ours: theirs for ours, theirs in best.joints.items() if theirs in known})
+    return replace(ACCLAIM, joints={ours: theirs for ours, theirs in ACCLAIM.joints.items() if theirs in names})

@@ -5,7 +5,7 @@ import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
 import { checkInWorker } from 'threepoint/avatar/file/check-in-worker';
 import { hashOf } from 'threepoint/avatar/file/file-hash';
 import { avatarLimits } from 'threepoint/avatar/file/inspect-avatar';
-import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
+import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import { withNamedBones } from 'threepoint/avatar/humanoid/name-bones';
 import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
 import { type BuiltInBody, builtInAvatarOf, type SkinTone } from 'threepoint/core/body/avatar-ref';

@@ -1,4 +1,4 @@
-import { type BoneName, boneNames } from 'threepoint/avatar/humanoid/bone-names';
+import { type BoneName, boneNames } from 'threepoint/core/humanoid/bones';
 import { avatarHash, builtInBodies, skinTones } from 'threepoint/core/body/avatar-ref';
 import { calibrationComplaint } from 'threepoint/core/body/calibration';
 import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';

@@ -2,7 +2,8 @@ import type { BodySolver } from 'threepoint/api/body-solver';
 import type { Avatar } from 'threepoint/avatar/avatar';
 import { labelOf } from 'threepoint/avatar/built-in-bodies';
 import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
-import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
+import { MotionWithoutBody } from 'threepoint/avatar/file/inspect-avatar';
+import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones';
 import { type BuiltInBody, bodyOf, plainAvatar, skinToneOf } from 'threepoint/core/body/avatar-ref';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
@@ -142,15 +143,18 @@ export class ShownAvatar {
   }
 
   /**
-   * Shows the avatar of a file or an address. Returns false after a notice if it fails. Of several requests the last
-   * one is shown.
+   * Shows the avatar of a file or an address. Returns false after a notice if it fails, and 'motion' where the file
+   * holds motion and no body. Of several requests the last one is shown.
    */
-  open(source: string | File): Promise<boolean> {
+  open(source: string | File): Promise<boolean | 'motion'> {
     const request = this.#request(nameOf(source), false);
     return this.#arrive(request, async () => {
       const { signal } = request.cancellation;
       request.checked = await this.#loader.check(source, { onProgress: this.#progressOf(request), signal });
       return this.#loader.build(request.checked, request.name);
+    }).catch((error: unknown) => {
+      if (!(error instanceof MotionWithoutBody)) throw error;
+      return 'motion' as const;
     });
   }
 
@@ -208,7 +212,10 @@ export class ShownAvatar {
     };
   }
 
-  /** Shows the avatar that `load` returns, unless a later request has been shown before. */
+  /**
+   * Shows the avatar that `load` returns, unless a later request has been shown before. Rejects only where the file
+   * holds motion and no body.
+   */
   async #arrive(request: Request, load: () => Promise<LoadedUserAvatar>): Promise<boolean> {
     const { turn, name, cancellation } = request;
     try {
@@ -220,7 +227,12 @@ export class ShownAvatar {
       this.#show(loaded, name, turn);
       return true;
     } catch (error) {
-      if (!cancellation.signal.aborted) this.#refuse(request, error);
+      if (cancellation.signal.aborted) return false;
+      if (error instanceof MotionWithoutBody) {
+        if (turn === this.#requested) this.#pending = null;
+        throw error;
+      }
+      this.#refuse(request, error);
       return false;
     } finally {
       if (this.#loading === request) this.#loading = null;

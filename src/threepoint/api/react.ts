@@ -11,9 +11,9 @@ import {
   useState,
 } from 'react';
 import type { Avatar } from '../avatar/avatar';
-import type { BoneMap } from '../avatar/humanoid/bone-names';
 import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
+import type { BoneMap } from '../core/humanoid/bones';
 import { type AvatarSource, BodyTracker, type BodyTrackerEvents, type BodyTrackerOptions, loadAvatar } from './three';
 
 /** The prop that receives each event of a tracker. */

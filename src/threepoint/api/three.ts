@@ -1,12 +1,12 @@
 // "threepoint/three": the body on an avatar of three.js, driven by a WebXR session.
 import { EventDispatcher, type EventListener, Group, type Object3D, type WebGLRenderer } from 'three';
 import { type Avatar, createAvatar } from '../avatar/avatar';
-import type { BoneMap } from '../avatar/humanoid/bone-names';
 import { parseAvatar } from '../avatar/load-avatar';
 import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
 import { reasonOf } from '../core/errors/reasons';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
+import type { BoneMap } from '../core/humanoid/bones';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { DeviceBodyReader } from '../xr/device-body-reader';
 import { TrackedSession } from '../xr/tracked-session';
@@ -18,7 +18,7 @@ import type { MotionWriter } from './motion-export';
 import { readOwnMannequin } from './own-mannequin';
 
 export type { Avatar } from '../avatar/avatar';
-export type { BoneMap } from '../avatar/humanoid/bone-names';
+export type { BoneMap } from '../core/humanoid/bones';
 
 export interface LoadAvatarOptions {
   /**

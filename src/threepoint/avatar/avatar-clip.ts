@@ -1,12 +1,13 @@
 import type { VRM } from '@pixiv/three-vrm';
 import { type Object3D, Quaternion, Vector3 } from 'three';
+import type { BoneName } from '../core/humanoid/bones';
 import { addClip, type GltfDescription, type NodeTrack, packGlb } from '../core/motion/gltf';
 import { type Motion, makePosedBones, type PosedBones, poseBones } from '../core/motion/motion';
 import { clipOf } from '../core/motion/write-vrma';
 import type { Decoders } from './decoders/decoder-set';
 import { chunksOf } from './file/glb-chunks';
+import { glbOfFile } from './file/glb-of-file';
 import { inspectAvatar } from './file/inspect-avatar';
-import type { BoneName } from './humanoid/bone-names';
 import { boneNode } from './humanoid/humanoid';
 import { type LoadedAvatar, type ParseOptions, parseAvatar } from './load-avatar';
 
@@ -144,9 +145,10 @@ function* clipTracks(motion: Motion, avatar: LoadedAvatar): Generator<number, re
 
 /**
  * Makes GLB files of an avatar (VRM or a humanoid of another kind) that moves: all that is in its file stays, but for
- * clips of its own. Rejects with a sentence that names the file.
+ * clips of its own; FBX is converted first. Rejects with a sentence that names the file.
  */
-export async function avatarClip(bytes: ArrayBuffer, name: string, options: ParseOptions = {}): Promise<AvatarClip> {
+export async function avatarClip(given: ArrayBuffer, name: string, options: ParseOptions = {}): Promise<AvatarClip> {
+  const bytes = await glbOfFile(given, name, 'body');
   const { description, binary } = read(bytes, name, options.decoders);
   const bare = await whole(packGlb(bonesAlone(description), [new Uint8Array(binary)]));
   const avatar = await parseAvatar(bare, name, options);

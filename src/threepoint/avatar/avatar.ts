@@ -1,5 +1,5 @@
 import { type VRM, VRMFirstPerson, VRMUtils } from '@pixiv/three-vrm';
-import { Group, type Object3D } from 'three';
+import { Group, type Mesh, type Object3D } from 'three';
 import { handBoneRotation } from '../core/body/arm-rotations';
 import type { AvatarPose, UpperBodyPose } from '../core/body/avatar-pose';
 import type { SkinTone } from '../core/body/avatar-ref';
@@ -22,6 +22,7 @@ import { Legs } from './legs/legs';
 import type { LoadedAvatar } from './load-avatar';
 import { ArmHelperJoints } from './rig/arm-helpers';
 import { type AvatarMesh, BodyMeshes, readMeshes } from './rig/body-meshes';
+import { tieLooseParts } from './rig/loose-parts';
 import { OwnTrunk } from './rig/own-trunk';
 import { type AvatarJoint, Rig } from './rig/rig';
 import { Springs } from './rig/springs';
@@ -100,6 +101,7 @@ function* makeAvatar({ vrm }: LoadedAvatar): Steps<Avatar> {
   vrm.humanoid.autoUpdateHumanBones = false;
   object.updateMatrixWorld(true);
   const rig = new Rig(vrm);
+  yield* tieLooseParts(vrm, rig);
   const arms = new ArmHelperJoints(rig);
   yield* arms.shareSkin(vrm.scene);
   // The first-person meshes are cut from copies of meshes with a head, after the skin weights were shared.
@@ -109,9 +111,16 @@ function* makeAvatar({ vrm }: LoadedAvatar): Steps<Avatar> {
   return new VrmAvatar({ vrm, object, rig, arms, meshes });
 }
 
-/** What VRMFirstPerson does with all meshes, mesh by mesh. */
-function* setUpFirstPerson({ firstPerson, humanoid }: VRM): Steps<void> {
-  for (const { meshes, type } of firstPerson?.meshAnnotations ?? []) {
+/**
+ * Prepares the meshes for first person, mesh by mesh. A file without annotations, as VRM 0.x may be, has its head
+ * hidden.
+ */
+function* setUpFirstPerson({ firstPerson, humanoid, scene }: VRM): Steps<void> {
+  const all: Mesh[] = [];
+  scene.traverse((node) => {
+    if ('isMesh' in node) all.push(node as Mesh);
+  });
+  for (const { meshes, type } of firstPerson?.meshAnnotations ?? [{ meshes: all, type: 'auto' as const }]) {
     for (const mesh of meshes) {
       yield;
       new VRMFirstPerson(humanoid, [{ meshes: [mesh], type }]).setup();
@@ -224,6 +233,7 @@ class VrmAvatar implements Avatar {
     points.leftHand = joints.leftHand.position;
     points.rightHand = joints.rightHand.position;
     this.legs.apply(points, deltaSeconds);
+    this.rig.settle();
   }
 
   /** Head and hands alone, each where it was tracked; the rest is not drawn. */
@@ -243,6 +253,7 @@ class VrmAvatar implements Avatar {
     this.arms.straighten();
     this.applyHand('left', leftHand);
     this.applyHand('right', rightHand);
+    this.rig.settle();
   }
 
   private applyHand(side: Side, hand: AvatarPose['leftHand']): void {

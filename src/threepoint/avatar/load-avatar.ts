@@ -1,16 +1,17 @@
 import { type VRM, VRMLoaderPlugin, VRMUtils } from '@pixiv/three-vrm';
 import type { Object3D } from 'three';
-import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { type GLTF, GLTFLoader, type GLTFLoaderPlugin, type GLTFParser } from 'three/addons/loaders/GLTFLoader.js';
 import { reasonOf } from '../core/errors/reasons';
+import type { BoneMap } from '../core/humanoid/bones';
 import type { Decoders } from './decoders/decoder-set';
 import type { CheckedAvatar } from './file/check-avatar';
 import { validExpressionBinds } from './file/expression-binds';
 import { chunksOf } from './file/glb-chunks';
+import { glbOfFile } from './file/glb-of-file';
 import { inspectAvatar } from './file/inspect-avatar';
 import { makeGeometryPlain } from './file/plain-geometry';
 import { viewsOfFile } from './file/views-of-file';
 import { restoreBindPose } from './humanoid/bind-pose';
-import type { BoneMap } from './humanoid/bone-names';
 import { boneNode, demandBones, humanoidOf } from './humanoid/humanoid';
 import { settleRest } from './humanoid/rest-pose';
 import { betweenFrames } from './in-steps';
@@ -31,14 +32,15 @@ export interface ParseOptions {
 }
 
 /**
- * Parses the bytes of a file within `avatarLimits` that is known to be valid glTF. Rejects with a sentence that names
- * the file.
+ * Parses the bytes of a file within `avatarLimits` that is known to be valid glTF, or FBX. Rejects with a sentence that
+ * names the file.
  */
 export async function parseAvatar(
-  bytes: ArrayBuffer,
+  given: ArrayBuffer,
   name: string,
   { bones, decoders = {} }: ParseOptions = {},
 ): Promise<LoadedAvatar> {
+  const bytes = await glbOfFile(given, name, 'body');
   const packed = inspectAvatar(new Uint8Array(bytes), name, Object.keys(decoders));
   return parseChecked({ bytes, packed, file: new Blob([bytes]) }, name, { bones, decoders });
 }
@@ -51,6 +53,7 @@ export async function parseChecked(
 ): Promise<LoadedAvatar> {
   const loader = new GLTFLoader();
   for (const extension of packed) await decoders[extension]?.(loader);
+  loader.register(withoutAnimations);
   loader.register(validExpressionBinds);
   loader.register((parser) => new VRMLoaderPlugin(parser));
   const chunks = chunksOf(new Uint8Array(bytes))!;
@@ -69,6 +72,15 @@ export async function parseChecked(
   settleRest(vrm, name);
   return { name, vrm, nodeIndices: nodeIndicesOf(gltf) };
 }
+
+/** Leaves out animations, which no one plays on a body that poses move. */
+const withoutAnimations = ({ json }: GLTFParser): GLTFLoaderPlugin => ({
+  name: 'threepoint_animations',
+  beforeRoot() {
+    delete json.animations;
+    return null;
+  },
+});
 
 function nodeIndicesOf({ parser }: GLTF): ReadonlyMap<Object3D, number> {
   const indices = new Map<Object3D, number>();

@@ -127,13 +127,6 @@ describe('is refused with a sentence', () => {
     );
   });
 
-  test('FBX, with the way to a GLB', async () => {
-    const fbx = new TextEncoder().encode('Kaydara FBX Binary  \0 and more').buffer;
-    const way = 'is an FBX file, which this page does not read; Blender makes a GLB of it';
-    await expect(parseAvatar(fbx, 'soldier')).rejects.toThrow(way);
-    await expect(parseAvatar(new TextEncoder().encode('; FBX 7.4.0').buffer, 'Soldier.FBX')).rejects.toThrow(way);
-  });
-
   test('a scene scaled to nothing', async () => {
     await refused({ nameOf: vroid, rootScale: 0 }).toThrow('its joints lie all in one place');
   });

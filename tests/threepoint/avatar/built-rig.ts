@@ -1,5 +1,5 @@
 import { Matrix4, Quaternion, Vector3 } from 'three';
-import type { BoneName } from 'threepoint/avatar/humanoid/bone-names';
+import type { BoneName } from 'threepoint/core/humanoid/bones';
 import { glbOf, padded } from './glb';
 
 type Point = readonly [number, number, number];
@@ -36,13 +36,25 @@ const left: Readonly<Record<string, readonly [parent: string, at: Point]>> = {
   Toes: ['Foot', [0.08, 0.01, 0.1]],
 };
 
-interface Joint {
+export interface Joint {
   readonly bone: BoneName;
   readonly parent: BoneName | null;
   readonly at: Vector3;
 }
 
-function joints(without: readonly string[]): Joint[] {
+/** A joint that bodies have no name for; its parent null: it hangs from the armature. */
+export interface MoreJoint {
+  readonly called: string;
+  readonly parent: BoneName | null;
+  readonly at: Point;
+}
+
+export function rigJoints({
+  without = [],
+  parents = {},
+  more = [],
+  place,
+}: Pick<RigOptions, 'without' | 'parents' | 'more' | 'place'>): Joint[] {
   const all = new Map<string, Joint>();
   const put = (bone: string, parent: string | null, [x, y, z]: Point) =>
     all.set(bone, { bone: bone as BoneName, parent: parent as BoneName | null, at: new Vector3(x, y, z) });
@@ -54,15 +66,33 @@ function joints(without: readonly string[]): Joint[] {
   }
   const kept = (bone: string | null): string | null =>
     bone !== null && without.includes(bone) ? kept(all.get(bone)?.parent ?? null) : bone;
-  return [...all.values()]
+  const named = [...all.values()]
     .filter(({ bone }) => !without.includes(bone))
-    .map(({ bone, parent, at }) => ({ bone, parent: kept(parent) as BoneName | null, at }));
+    .map(({ bone, parent, at }) => ({
+      ...{ bone, at },
+      parent: bone in parents ? ((parents[bone] ?? null) as BoneName | null) : (kept(parent) as BoneName | null),
+    }));
+  for (const { bone, at } of named) place?.(bone, at);
+  return [
+    ...named,
+    ...more.map(({ called, parent, at }) => ({ bone: called as BoneName, parent, at: new Vector3(...at) })),
+  ];
 }
 
 export interface RigOptions {
   /** What the file calls a bone. */
   readonly nameOf: (bone: BoneName) => string;
   readonly without?: readonly string[];
+  /** The bone or further joint from which a bone hangs instead of its usual parent; null: the armature. */
+  readonly parents?: Readonly<Partial<Record<BoneName, string | null>>> | undefined;
+  /** Joints with skin beside those that bodies have names for. */
+  readonly more?: readonly MoreJoint[] | undefined;
+  /** Moves joints: other proportions. */
+  readonly place?: ((bone: BoneName, at: Vector3) => void) | undefined;
+  /** Each joint carries a box that is no skin, and there is no skin. */
+  readonly rigid?: boolean;
+  /** Boxes that are no skin and hang from the armature, by the name of their node. */
+  readonly beside?: Readonly<Record<string, Point>> | undefined;
   /** Arms hang this far down and forearms are bent ahead [degrees]. */
   readonly armsDown?: number;
   /** Above the bones: what an exporter puts there. */
@@ -103,8 +133,10 @@ function pose(all: readonly Joint[], armsDown: number): Map<BoneName, Matrix4> {
   return worlds;
 }
 
-const boxCorners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => new Vector3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
-const boxFaces = [
+export const boxCorners = [0, 1, 2, 3, 4, 5, 6, 7].map(
+  (i) => new Vector3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1),
+);
+export const boxFaces = [
   0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5,
 ];
 /** Half the side of the box about each joint [m]. */
@@ -138,8 +170,9 @@ function vertexData(count: number, positions: Float32Array, interleaved: boolean
  * bones.
  */
 export function builtRig(options: RigOptions): ArrayBuffer {
-  const { nameOf, without = [], armsDown = 0, root = new Matrix4(), rootScale, unit = 1 } = options;
-  const all = joints(without);
+  const { nameOf, more: further = [], armsDown = 0, root = new Matrix4(), rootScale, unit = 1 } = options;
+  const all = rigJoints(options);
+  const called = new Set(further.map((joint) => joint.called));
   const bound = pose(all, armsDown);
   const scaled = (matrix: Matrix4) =>
     matrix.clone().setPosition(new Vector3().setFromMatrixPosition(matrix).multiplyScalar(unit));
@@ -147,7 +180,7 @@ export function builtRig(options: RigOptions): ArrayBuffer {
   const nodes: Record<string, unknown>[] = [
     {
       name: 'Armature',
-      children: [1],
+      children: [],
       ...(rootScale === undefined ? { matrix: root.toArray() } : { scale: [rootScale, rootScale, rootScale] }),
     },
   ];
@@ -158,16 +191,25 @@ export function builtRig(options: RigOptions): ArrayBuffer {
     const above = parent ? scaled(shown.get(parent)!) : new Matrix4();
     const [position, turn] = [new Vector3(), new Quaternion()];
     above.invert().multiply(own).decompose(position, turn, new Vector3());
-    nodes.push({ name: nameOf(bone), translation: position.toArray(), rotation: turn.toArray() });
+    nodes.push({
+      name: called.has(bone) ? bone : nameOf(bone),
+      ...{ translation: position.toArray(), rotation: turn.toArray() },
+      ...(options.rigid && { mesh: 0 }),
+    });
   }
+  nodes[0]!.children = children.get(null);
   for (const [index, { bone }] of all.entries()) {
     const below = children.get(bone);
     if (below) nodes[index + 1]!.children = below;
   }
   const more = Array.from({ length: options.moreBones ?? 0 }, (_, i) => nodes.push({ name: `cloth_${i}` }) - 1);
   if (more.length > 0) nodes[1]!.children = [...(nodes[1]!.children as number[]), ...more];
-  nodes.push({ name: 'Body', mesh: 0, skin: 0 });
-  (nodes[0]!.children as number[]).push(nodes.length - 1);
+  const atTop = nodes[0]!.children as number[];
+  if (!options.rigid) atTop.push(nodes.push({ name: 'Body', mesh: 0, skin: 0 }) - 1);
+  for (const [name, at] of Object.entries(options.beside ?? {})) {
+    const translation = at.map((value) => value * unit);
+    atTop.push(nodes.push({ name, translation, mesh: options.rigid ? 0 : 1 }) - 1);
+  }
 
   const positions = new Float32Array(all.length * 24);
   const inverses = new Float32Array((all.length + more.length) * 16);
@@ -187,13 +229,19 @@ export function builtRig(options: RigOptions): ArrayBuffer {
       .toArray(inverses, (all.length + i) * 16);
   }
   const indices = new Uint16Array(all.flatMap((_, box) => boxFaces.map((corner) => box * 8 + corner)));
+  const box = Float32Array.from(
+    boxCorners.flatMap((corner) => corner.toArray()),
+    (value) => value * boxHalf * unit,
+  );
   const { buffers, stride } = vertexData(all.length * 8, positions, options.interleaved ?? false);
-  const skinned = [...buffers, new Uint8Array(indices.buffer), new Uint8Array(inverses.buffer)];
+  const skinned = [...buffers, ...[box, indices, inverses].map(({ buffer }) => new Uint8Array(buffer))];
   return glb(nodes, skinned, {
     joints: [...all.map((_, i) => i + 1), ...more],
     vertices: all.length * 8,
     indices: indices.length,
     stride,
+    rigid: options.rigid ?? false,
+    boxes: options.beside !== undefined,
   });
 }
 
@@ -221,9 +269,14 @@ interface Counts {
   readonly vertices: number;
   readonly indices: number;
   readonly stride: number;
+  /** There are boxes and no skin. */
+  readonly rigid: boolean;
+  /** There are boxes. */
+  readonly boxes: boolean;
 }
 
-function glb(nodes: unknown, parts: readonly Uint8Array[], { joints, vertices, indices, stride }: Counts): ArrayBuffer {
+function glb(nodes: unknown, parts: readonly Uint8Array[], counts: Counts): ArrayBuffer {
+  const { joints, vertices, indices, stride, rigid, boxes } = counts;
   const views: object[] = [];
   let length = 0;
   for (const part of parts) {
@@ -244,7 +297,11 @@ function glb(nodes: unknown, parts: readonly Uint8Array[], { joints, vertices, i
     of(interleaved ? 0 : 2, float, 'VEC4', vertices, interleaved ? { byteOffset: 20 } : {}),
     of(views.length - 2, short, 'SCALAR', indices),
     of(views.length - 1, float, 'MAT4', joints.length),
+    of(views.length - 3, float, 'VEC3', 8, bounds),
+    of(views.length - 2, short, 'SCALAR', boxFaces.length),
   ];
+  const skin = { primitives: [{ attributes: { POSITION: 0, JOINTS_0: 1, WEIGHTS_0: 2 }, indices: 3 }] };
+  const box = { primitives: [{ attributes: { POSITION: 5 }, indices: 6 }] };
   const binary = new Uint8Array(length);
   let at = 0;
   for (const part of parts) {
@@ -256,8 +313,8 @@ function glb(nodes: unknown, parts: readonly Uint8Array[], { joints, vertices, i
     scene: 0,
     scenes: [{ nodes: [0] }],
     nodes,
-    meshes: [{ primitives: [{ attributes: { POSITION: 0, JOINTS_0: 1, WEIGHTS_0: 2 }, indices: 3 }] }],
-    skins: [{ joints, inverseBindMatrices: 4 }],
+    meshes: [...(rigid ? [] : [skin]), ...(rigid || boxes ? [box] : [])],
+    ...(!rigid && { skins: [{ joints, inverseBindMatrices: 4 }] }),
     accessors,
     bufferViews: views,
     buffers: [{ byteLength: length }],

@@ -5,9 +5,17 @@ const bytes = readFileSync(new URL('../../../public/avatars/mannequin.vrm', impo
 /** The JSON of a GLB file, as far as tests change it. */
 export interface GltfJson {
   [field: string]: unknown;
-  nodes: { name: string; translation?: number[]; rotation?: number[]; children?: number[]; mesh?: number }[];
+  nodes: {
+    name: string;
+    translation?: number[];
+    rotation?: number[];
+    children?: number[];
+    mesh?: number;
+    skin?: number;
+  }[];
   meshes: {
     extras?: { targetNames?: string[] };
+    weights?: number[];
     primitives: { attributes: Record<string, number>; indices?: number; targets?: Record<string, number>[] }[];
   }[];
   accessors: { count: number; type: string; bufferView?: number; componentType: number; max?: number[] }[];

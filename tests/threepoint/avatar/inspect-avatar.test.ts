@@ -6,6 +6,7 @@ import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
 import { afterAll, describe, expect, test } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
 import { changed, type GltfJson, mannequin } from './glb';
+import { largeAvatar } from './large-avatar';
 
 const look = (bytes: ArrayBuffer) => inspectAvatar(new Uint8Array(bytes), 'person.vrm');
 
@@ -292,6 +293,11 @@ describe('the Khronos validator', () => {
       refused += 1;
     }
   });
+});
+
+test('the large file that the benchmark loads is taken', async () => {
+  const file = largeAvatar({ pictures: 1, layers: 1, shapes: 40, mtoon: true });
+  expect((await checkAvatar(file, { name: 'measured.vrm', unpacked: [] })).packed).toEqual([]);
 });
 
 describe('the size of a picture', () => {

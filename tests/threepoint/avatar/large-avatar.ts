@@ -121,7 +121,11 @@ function withPlaces(json: GltfJson, primitive: GltfJson['meshes'][number]['primi
 }
 
 function addShapes(json: GltfJson, shapes: number): void {
-  for (const primitive of json.meshes[1]?.primitives ?? []) {
+  const [, face] = json.meshes;
+  if (!face) return;
+  face.weights = Array.from({ length: shapes }, () => 0);
+  face.extras = { targetNames: face.weights.map((_, shape) => `shape ${shape}`) };
+  for (const primitive of face.primitives) {
     const normal = json.accessors[primitive.attributes.NORMAL ?? -1];
     if (!normal) continue;
     // Moved along its normals by up to a metre: what a shape looks like does not matter here.

@@ -1,6 +1,6 @@
 import { createAvatar } from 'threepoint/avatar/avatar';
 import { gltfFaults } from 'threepoint/avatar/file/validate-gltf';
-import type { BoneMap, BoneName } from 'threepoint/avatar/humanoid/bone-names';
+import type { BoneMap, BoneName } from 'threepoint/core/humanoid/bones';
 import { boneNode } from 'threepoint/avatar/humanoid/humanoid';
 import { withNamedBones } from 'threepoint/avatar/humanoid/name-bones';
 import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones';

@@ -1,6 +1,6 @@
 import { type SkinnedMesh, Vector3 } from 'three';
 import { type Avatar, createAvatar } from 'threepoint/avatar/avatar';
-import type { BoneName } from 'threepoint/avatar/humanoid/bone-names';
+import type { BoneName } from 'threepoint/core/humanoid/bones';
 import { type LoadedAvatar, parseAvatar } from 'threepoint/avatar/load-avatar';
 import { handBoneRotation } from 'threepoint/core/body/arm-rotations';
 import { defaultCalibration } from 'threepoint/core/body/calibration';

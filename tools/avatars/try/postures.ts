@@ -1,14 +1,26 @@
-import { fromAxes, identity, type Quat } from 'threepoint/core/math/quat';
-import { cross, down, forward, normalise, right, scale, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { fromAxes, fromAxisAngle, identity, type Quat } from 'threepoint/core/math/quat';
+import {
+  backward,
+  cross,
+  down,
+  forward,
+  normalise,
+  reject,
+  right,
+  scale,
+  up,
+  type Vec3,
+  vec3,
+} from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
 const left = scale(right, -1);
 const inwards = { left: right, right: left };
 
-/** A wrist whose fingers point this way and whose palm faces that way. */
+/** A wrist whose fingers point this way and whose palm faces that way, as far as the fingers leave it. */
 function wrist(fingers: Vec3, palm: Vec3): Quat {
   const z = scale(normalise(fingers), -1);
-  const y = scale(normalise(palm), -1);
+  const y = scale(normalise(reject(palm, z)), -1);
   return fromAxes(cross(y, z), y, z);
 }
 
@@ -20,14 +32,23 @@ interface Hand {
   readonly palm: Vec3;
 }
 
-const posture = (head: Vec3, leftHand: Hand, rightHand: Hand): TrackingFrame => ({
+const posture = (head: Vec3, leftHand: Hand, rightHand: Hand, facing: Quat = identity): TrackingFrame => ({
   time: 0,
-  head: point(head, identity),
+  head: point(head, facing),
   leftHand: point(leftHand.at, wrist(leftHand.fingers, leftHand.palm)),
   rightHand: point(rightHand.at, wrist(rightHand.fingers, rightHand.palm)),
 });
 
 const eyes = vec3(0, 1.59, 0);
+const mirrored = ({ x, y, z }: Vec3): Vec3 => vec3(-x, y, z);
+/** Both hands alike, from the left one. */
+const both = (hand: Hand): [Hand, Hand] => [
+  hand,
+  { at: mirrored(hand.at), fingers: mirrored(hand.fingers), palm: mirrored(hand.palm) },
+];
+/** By how much the body is turned to the left in a twist [rad]. */
+const twisted = Math.PI / 3;
+
 const hanging: Hand = { at: vec3(-0.24, 0.83, 0.02), fingers: down, palm: inwards.left };
 
 /** What a person of 1.70 m does on the pictures of a sheet: floor frame [m], facing −Z. */
@@ -67,5 +88,54 @@ export const postures: readonly { readonly name: string; readonly frame: Trackin
   {
     name: 'wave',
     frame: posture(eyes, hanging, { at: vec3(0.47, 1.72, -0.14), fingers: up, palm: forward }),
+  },
+  {
+    name: 'arms crossed',
+    frame: posture(
+      eyes,
+      { at: vec3(0.1, 1.16, -0.27), fingers: vec3(1, 0.25, 0), palm: backward },
+      { at: vec3(-0.1, 1.21, -0.32), fingers: vec3(-1, 0.2, 0), palm: backward },
+    ),
+  },
+  {
+    name: 'hands on hips',
+    frame: posture(eyes, ...both({ at: vec3(-0.27, 1, -0.02), fingers: vec3(0.6, -0.3, -0.7), palm: right })),
+  },
+  {
+    name: 'behind the head',
+    frame: posture(eyes, ...both({ at: vec3(-0.11, 1.62, 0.12), fingers: vec3(1, 0.3, 0), palm: forward })),
+  },
+  {
+    name: 'behind the back',
+    frame: posture(
+      eyes,
+      { at: vec3(-0.06, 1.04, 0.17), fingers: right, palm: backward },
+      { at: vec3(0.06, 1, 0.2), fingers: left, palm: backward },
+    ),
+  },
+  {
+    name: 'guard',
+    frame: posture(
+      eyes,
+      { at: vec3(-0.12, 1.4, -0.38), fingers: vec3(0.2, 0.9, -0.3), palm: right },
+      { at: vec3(0.14, 1.36, -0.28), fingers: vec3(-0.2, 0.9, -0.3), palm: left },
+    ),
+  },
+  {
+    name: 'bend',
+    frame: posture(
+      vec3(0, 1.14, -0.5),
+      ...both({ at: vec3(-0.2, 0.6, -0.5), fingers: down, palm: right }),
+      fromAxisAngle(right, -1),
+    ),
+  },
+  {
+    name: 'twist',
+    frame: posture(
+      eyes,
+      { at: vec3(-0.49, 1.25, -0.05), fingers: vec3(-0.87, 0, -0.5), palm: vec3(0.5, 0, -0.87) },
+      { at: vec3(-0.29, 1.25, -0.4), fingers: vec3(-0.87, 0, -0.5), palm: vec3(-0.5, 0, 0.87) },
+      fromAxisAngle(up, twisted),
+    ),
   },
 ];

@@ -15,6 +15,9 @@ import { postures } from './postures';
 const width = 330;
 const height = 430;
 const headline = 34;
+/** Postures side by side; each is seen from two sides. */
+const columns = 6;
+const sides = 2;
 /** A body's picture [pixels] in the row of all bodies of a folder. */
 const bodyWidth = 300;
 const bodyHeight = 520;
@@ -114,17 +117,20 @@ async function draw(sheet: CanvasRenderingContext2D, address: string, name: stri
   const outside = [fromOutside(-0.9, -3.8), fromOutside(2.4, 3.1)];
   let seenFromInside = 0;
   let waving: string | null = null;
-  for (const [column, { name: posture, frame }] of postures.entries()) {
+  for (const [index, { name: posture, frame }] of postures.entries()) {
     avatar.setFirstPerson(false);
-    hold(avatar, frame, column * 10);
-    for (const [row, camera] of outside.entries()) shoot(sheet, scene, camera, { column, row, text: posture });
+    hold(avatar, frame, index * 10);
+    const [column, band] = [index % columns, Math.floor(index / columns)];
+    for (const [side, camera] of outside.entries()) {
+      shoot(sheet, scene, camera, { column, row: band * sides + side, text: posture });
+    }
     if (posture === 'wave') waving = shootAlone(scene);
     const down = ownEyes[posture];
     if (down === undefined) continue;
     avatar.setFirstPerson(true);
     const row = seenFromInside++;
     const text = `${posture}, own eyes`;
-    shoot(sheet, scene, fromInside(frame.head, down), { column: postures.length, row, text });
+    shoot(sheet, scene, fromInside(frame.head, down), { column: columns, row, text });
   }
   avatar.dispose();
   return { loadMs, waving };
@@ -132,8 +138,8 @@ async function draw(sheet: CanvasRenderingContext2D, address: string, name: stri
 
 window.makeSheet = async (address, name) => {
   const canvas = document.createElement('canvas');
-  canvas.width = width * (postures.length + 1);
-  canvas.height = headline + 2 * height;
+  canvas.width = width * (columns + 1);
+  canvas.height = headline + Math.ceil(postures.length / columns) * sides * height;
   const sheet = canvas.getContext('2d');
   if (!sheet) throw new Error('no 2D canvas');
   sheet.fillStyle = '#ffffff';

@@ -1,5 +1,5 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
-import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
+import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { isSkeletonMap } from 'threepoint/core/mocap/is-skeleton-map';
 import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
@@ -24,6 +24,8 @@ const isJson = ({ name }: File): boolean => /\.json$/i.test(name);
 /** A map of a skeleton is a page of text [bytes]. */
 const largestMap = 2 ** 18;
 const isMocap = ({ name }: File): boolean => /\.(bvh|asf|amc|vrma)$/i.test(name);
+/** Files with a body, its motion or both: bodies, unless they were chosen as motion. */
+const mayBeMocap = ({ name }: File): boolean => /\.(fbx|glb)$/i.test(name);
 
 /** Avatars, recordings and motion capture that the user brings along, as files of this device or as addresses. */
 export class OpenedFiles {
@@ -33,10 +35,14 @@ export class OpenedFiles {
     this.#options = options;
   }
 
-  /** Files that came together: those of motion capture make one motion, others are opened one by one. */
-  openAll(files: readonly File[]): void {
+  /**
+   * Files that came together: those of motion capture make one motion, others are opened one by one. `asMotion`: they
+   * were chosen as motion capture.
+   */
+  openAll(files: readonly File[], { asMotion = false } = {}): void {
+    const isMotion = (file: File): boolean => isMocap(file) || (asMotion && mayBeMocap(file));
     // Beside motion, JSON is a map of its skeleton.
-    const mocap = files.some(isMocap) ? files.filter((file) => isMocap(file) || isJson(file)) : [];
+    const mocap = files.some(isMotion) ? files.filter((file) => isMotion(file) || isJson(file)) : [];
     if (mocap.length > 0) void this.#options.mocap.open(mocap);
     for (const file of files) if (!mocap.includes(file)) void this.open(file);
   }
@@ -52,9 +58,12 @@ export class OpenedFiles {
     else await this.openRecording(file, asked);
   }
 
+  /** Shows an avatar; a file of motion without a body is opened as motion capture. */
   async openAvatar(source: string | File): Promise<void> {
-    const { avatar, notices } = this.#options;
-    if (await avatar.open(source)) notices.show('info', `${avatar.name} is your avatar now.`);
+    const { avatar, notices, mocap } = this.#options;
+    const outcome = await avatar.open(source);
+    if (outcome === 'motion') await mocap.open([source]);
+    else if (outcome) notices.show('info', `${avatar.name} is your avatar now.`);
   }
 
   /** Sets the bones of the file that waits for them. Never rejects: the form shows what is wrong. */

@@ -87,6 +87,7 @@ function recordingActions(options: PanelActionsOptions): RecordingActions {
     exportMotion: (choice) => void motionExport.begin(choice),
     cancelExport: () => motionExport.cancel(),
     openFiles: (chosen) => files.openAll(chosen),
+    openMotion: (chosen) => files.openAll(chosen, { asMotion: true }),
     seek(seconds) {
       recorder.seek(seconds);
       body.discontinuity();

@@ -85,7 +85,7 @@ function otherAvatars(actions: AvatarActions): HTMLElement {
   const address = element('input', {
     type: 'url',
     placeholder: 'https://…/avatar.vrm',
-    'aria-label': 'Address of a VRM or GLB',
+    'aria-label': 'Address of a VRM, GLB or FBX',
   });
   const form = element('form', { class: 'row' }, address, element('button', { type: 'submit' }, 'Load'));
   form.addEventListener('submit', (event) => {
@@ -99,12 +99,12 @@ function otherAvatars(actions: AvatarActions): HTMLElement {
     element(
       'p',
       { class: 'hint' },
-      'Any VRM (0.x or 1.0), or a humanoid GLB (Mixamo, Ready Player Me, Avaturn, VRoid, Unreal, Rigify, Character Creator): drop it on the page, or',
+      'Any VRM (0.x or 1.0), or a humanoid as GLB or FBX (Mixamo, Ready Player Me, Avaturn, VRoid, Unreal, Rigify, Character Creator): drop it on the page, or',
     ),
     element(
       'div',
       { class: 'row' },
-      ...fileButton('Open VRM or GLB', '.vrm,.glb,.fbx', ([file]) => actions.openAvatarFile(file)),
+      ...fileButton('Open VRM, GLB or FBX', '.vrm,.glb,.fbx', ([file]) => actions.openAvatarFile(file)),
     ),
     form,
   );

@@ -1,4 +1,4 @@
-import type { BoneMap, BoneName } from 'threepoint/avatar/humanoid/bone-names';
+import type { BoneMap, BoneName } from 'threepoint/core/humanoid/bones';
 import { neededBones } from 'threepoint/avatar/humanoid/humanoid';
 import { button, element } from 'threepoint-ui/element';
 import * as v from 'valibot';

@@ -1,4 +1,4 @@
-import type { BoneMap } from 'threepoint/avatar/humanoid/bone-names';
+import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import type { BuiltInBody, SkinTone } from 'threepoint/core/body/avatar-ref';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { ViewName } from '../../scene/desktop-view';
@@ -111,6 +111,8 @@ export interface RecordingActions {
   cancelExport(): void;
   /** Recordings, or the files of one motion. */
   openFiles(files: readonly File[]): void;
+  /** Opens files that were chosen as motion capture, of a body that moves its motion. */
+  openMotion(files: readonly File[]): void;
   seek(seconds: number): void;
   setPaused(on: boolean): void;
   setLoop(on: boolean): void;

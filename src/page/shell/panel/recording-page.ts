@@ -29,8 +29,8 @@ function createRecorderSection(actions: RecordingActions) {
   const open = fileButton('Open recording', '.json,application/json', (files) => actions.openFiles(files));
   const openMocap = fileButton(
     'Open motion capture',
-    '.bvh,.asf,.amc,.vrma,.json',
-    (files) => actions.openFiles(files),
+    '.bvh,.asf,.amc,.vrma,.fbx,.glb,.json',
+    (files) => actions.openMotion(files),
     {
       multiple: true,
     },

@@ -1,5 +1,6 @@
 import { reasonOf } from '../../core/errors/reasons';
 import { hashOf } from './file-hash';
+import { glbOfFile } from './glb-of-file';
 import { type AvatarLimits, avatarLimits, inspectAvatar } from './inspect-avatar';
 import { gltfFaults } from './validate-gltf';
 
@@ -13,7 +14,7 @@ export interface AvatarQuestion {
   readonly limits?: AvatarLimits;
 }
 
-/** A file that may be read. */
+/** A file that may be read: VRM or GLB, or what FBX was converted to. */
 export interface CheckedAvatar {
   readonly bytes: ArrayBuffer;
   /** The file as a Blob, of which parts can be read without a copy. */
@@ -31,7 +32,8 @@ export interface CheckedAvatar {
 export type AvatarCheck = (bytes: ArrayBuffer, question: AvatarQuestion) => Promise<CheckedAvatar>;
 
 /** The check itself, on the thread that calls it. */
-export const checkAvatar: AvatarCheck = async (bytes, { name, unpacked, limits = avatarLimits }) => {
+export const checkAvatar: AvatarCheck = async (given, { name, unpacked, limits = avatarLimits }) => {
+  const bytes = await glbOfFile(given, name, 'body');
   const file = new Uint8Array(bytes);
   const packed = inspectAvatar(file, name, unpacked, limits);
   const faults = await gltfFaults(file).catch((error: unknown) => {

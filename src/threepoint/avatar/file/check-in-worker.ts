@@ -1,5 +1,6 @@
 import type { AvatarCheck, CheckedAvatar } from './check-avatar';
 import type { WorkerAnswer, WorkerQuestion } from './check-worker';
+import { MotionWithoutBody } from './inspect-avatar';
 
 /** A file that keeps its check busy for longer [ms] is not worth the wait. */
 const patienceMs = 20_000;
@@ -15,6 +16,7 @@ export const checkInWorker: AvatarCheck = (bytes, { name, unpacked, limits }) =>
     worker.addEventListener('message', ({ data: answer }: MessageEvent<WorkerAnswer>) => {
       clearTimeout(timer);
       if ('checked' in answer) resolve(answer.checked);
+      else if ('motion' in answer) reject(new MotionWithoutBody(name));
       else reject(new Error(answer.refused));
     });
     worker.addEventListener('error', ({ message }) => {

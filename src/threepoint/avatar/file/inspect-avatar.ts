@@ -33,6 +33,13 @@ export const seenAvatarLimits: AvatarLimits = {
   millionNumbers: 12,
 };
 
+/** The error of a file of motion alone, which can be opened as motion capture. */
+export class MotionWithoutBody extends Error {
+  constructor(name: string) {
+    super(`${name}: holds motion and no body; open it as motion capture`);
+  }
+}
+
 const index = v.pipe(v.number(), v.integer(), v.minValue(0));
 const list = <Item extends v.GenericSchema>(item: Item) => v.optional(v.array(item), []);
 const primitive = v.object({
@@ -61,6 +68,7 @@ const gltf = v.object({
     }),
   ),
   buffers: list(v.object({ byteLength: index, uri: v.optional(v.string()) })),
+  animations: list(v.unknown()),
   images: list(v.object({ uri: v.optional(v.string()), bufferView: v.optional(index) })),
 });
 
@@ -81,12 +89,6 @@ const numbersOf: Readonly<Record<string, number>> = {
 /** The largest share of JSON in a file's bytes. */
 const mostJson = 0.25;
 
-/** Binary FBX begins with these words, FBX as text with any. */
-const isFbx = (bytes: Uint8Array, name: string): boolean =>
-  new TextDecoder().decode(bytes.subarray(0, 18)) === 'Kaydara FBX Binary' || /\.fbx$/i.test(name);
-const fbxAdvice =
-  'is an FBX file, which this page does not read; Blender makes a GLB of it: File › Import › FBX, then File › Export › glTF 2.0 (.glb)';
-
 const ktx2Advice =
   'has KTX2 textures, which this page does not read. Convert them to PNG, JPEG or WebP and save it again.';
 
@@ -94,19 +96,19 @@ const ktx2Advice =
 const deepestNesting = 64;
 
 /**
- * Every address in the file: each value that is called `uri`, at any depth, extensions included. Throws where there is
- * no end to the depth.
+ * Every address in the file that a reader may follow: each value that is called `uri`, at any depth, extensions
+ * included. What stands in `extras` is a note for other programs. Throws where there is no end to the depth.
  */
 function urisIn(json: unknown): string[] {
   const uris: string[] = [];
-  const waiting: { readonly value: unknown; readonly depth: number }[] = [{ value: json, depth: 0 }];
+  const waiting = [{ value: json, depth: 0, isNote: false }];
   for (let next = waiting.pop(); next; next = waiting.pop()) {
-    const { value, depth } = next;
+    const { value, depth, isNote } = next;
     if (typeof value !== 'object' || value === null) continue;
     if (depth > deepestNesting) throw new Error(`is nested deeper than ${deepestNesting} levels`);
     for (const [key, inner] of Object.entries(value)) {
-      if (key === 'uri' && typeof inner === 'string') uris.push(inner);
-      waiting.push({ value: inner, depth: depth + 1 });
+      if (key === 'uri' && typeof inner === 'string' && !isNote) uris.push(inner);
+      waiting.push({ value: inner, depth: depth + 1, isNote: isNote || key === 'extras' });
     }
   }
   return uris;
@@ -128,7 +130,6 @@ export function inspectAvatar(
       throw new Error(`${name}: ${shownNumber(has)} ${what}; an avatar may have ${shownNumber(may)} at most`);
   };
   limit('MB', bytes.length / 2 ** 20, limits.megabytes);
-  if (isFbx(bytes, name)) throw new Error(`${name}: ${fbxAdvice}`);
   const chunks = chunksOf(bytes);
   if (!chunks) throw new Error(`${name}: not a VRM or GLB file (wrong signature, or truncated)`);
   limit('MB of description', chunks.json.length / 2 ** 20, limits.megabytes * mostJson);
@@ -150,6 +151,7 @@ export function inspectAvatar(
     throw new Error(`${name}: not a VRM or GLB file (${v.getDotPath(issue) ?? 'the whole'}: ${issue.message})`);
   }
   const { extensionsRequired, extensionsUsed, nodes, meshes, accessors, skins, images, bufferViews } = parsed.output;
+  if (meshes.length === 0 && parsed.output.animations.length > 0) throw new MotionWithoutBody(name);
   const foreign = extensionsRequired.find((extension) => !readable.test(extension) && !unpacked.includes(extension));
   if (foreign === 'KHR_texture_basisu') throw new Error(`${name}: ${ktx2Advice}`);
   if (foreign !== undefined)

@@ -12,6 +12,7 @@ import {
   mirrorRotation,
 } from '../../core/body/hand-geometry';
 import { type FingerName, fingerNames, makeHandShape } from '../../core/body/hand-shape';
+import type { BoneName } from '../../core/humanoid/bones';
 import { conjugate, copyQuat, fromAxes, type MutableQuat, multiply, type Quat, quat } from '../../core/math/quat';
 import type { Side } from '../../core/math/side';
 import {
@@ -28,7 +29,6 @@ import {
   up,
   vec3,
 } from '../../core/math/vec3';
-import type { BoneName } from '../humanoid/bone-names';
 import { boneNode } from '../humanoid/humanoid';
 
 export type BoneIndex = 0 | 1 | 2;

@@ -1,24 +1,11 @@
 import { VRM, VRMFirstPerson, type VRMHumanBones, VRMHumanoid } from '@pixiv/three-vrm';
-import type { Group, Object3D, SkinnedMesh } from 'three';
-import { reasonOf } from '../../core/errors/reasons';
-import { type BoneMap, bonesByName, knownNamings } from './bone-names';
+import { type Group, type Object3D, type SkinnedMesh, Vector3 } from 'three';
+import { type BoneMap, type BoneName, neededBones } from '../../core/humanoid/bones';
+import type { SkeletonJoint } from '../../core/humanoid/joint-tree';
+import { humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-humanoid';
 import { UnknownBones } from './unknown-bones';
 
-/** Bones without which there is no upper body to move. */
-export const neededBones = [
-  'hips',
-  'spine',
-  'head',
-  'leftUpperArm',
-  'leftLowerArm',
-  'leftHand',
-  'rightUpperArm',
-  'rightLowerArm',
-  'rightHand',
-] as const;
-
-/** Names that a sentence shows of those that a file has. */
-const shownNames = 12;
+export { neededBones } from '../../core/humanoid/bones';
 
 /** The file's own name of a node: three.js rewrites names, and keeps the file's beside. */
 const nameOf = (node: Object3D): string => (typeof node.userData.name === 'string' ? node.userData.name : node.name);
@@ -41,33 +28,71 @@ function skinBones(scene: Group): Set<Object3D> {
   return bones;
 }
 
-const lacks = (bones: BoneMap): string[] => neededBones.filter((bone) => bones[bone] === undefined);
+/** The nodes that may be bones: those that move skin, with what lies between them; of a file without skins all. */
+function candidatesOf(scene: Group): readonly Object3D[] {
+  const skinned = skinBones(scene);
+  const all: Object3D[] = [];
+  scene.traverse((node) => all.push(node));
+  if (skinned.size === 0) return all;
+  const under = new Map<Object3D, number>();
+  for (const bone of skinned)
+    for (let node: Object3D | null = bone; node; node = node.parent) under.set(node, (under.get(node) ?? 0) + 1);
+  // Whatever has all skin bones below it, but for the lowest, is no part of the skeleton.
+  const whole = all.filter((node) => under.get(node) === skinned.size);
+  const root = skinned.has(whole.at(-1)!) ? whole.find((node) => skinned.has(node)) : whole.at(-1);
+  const outside = new Set(root ? whole.slice(0, whole.indexOf(root)) : []);
+  return all.filter((node) => under.has(node) && !outside.has(node));
+}
+
+/** The sums of the skin weights by bone; empty: no mesh has a skin. */
+function skinWeights(scene: Group): Map<Object3D, number> {
+  const sums = new Map<Object3D, number>();
+  scene.traverse((node) => {
+    if (!('isSkinnedMesh' in node)) return;
+    const { geometry, skeleton } = node as SkinnedMesh;
+    const { skinIndex, skinWeight } = geometry.attributes;
+    if (!skinIndex || !skinWeight) return;
+    for (let vertex = 0; vertex < skinWeight.count; vertex++) {
+      for (let i = 0; i < skinWeight.itemSize; i++) {
+        const bone = skeleton.bones[skinIndex.getComponent(vertex, i)];
+        if (bone) sums.set(bone, (sums.get(bone) ?? 0) + skinWeight.getComponent(vertex, i));
+      }
+    }
+  });
+  return sums;
+}
 
 /**
- * Returns the bones that are known by their names. Throws a sentence with the names that were found where they match no
- * humanoid.
+ * Finds the bones of a scene. Throws UnknownBones with what was found and what is missing where they are no humanoid's.
  */
-function knownBones(scene: Group, name: string): { readonly bones: BoneMap; readonly nodes: Map<string, Object3D> } {
-  const skinned = skinBones(scene);
-  const joints = nodesByName(scene, (node) => skinned.has(node));
-  const all = nodesByName(scene, () => true);
-  const named = (nodes: Map<string, Object3D>) => ({ nodes, bones: bonesByName([...nodes.keys()]) });
-  const byJoints = named(joints);
-  const byAll = named(all);
-  const choice = lacks(byJoints.bones).length <= lacks(byAll.bones).length ? byJoints : byAll;
-  if (choice.bones.hips !== undefined) return choice;
-  const found = [...(joints.size > 0 ? joints : all).keys()];
+function foundBones(scene: Group, name: string): ReadonlyMap<BoneName, Object3D> {
+  const nodes = candidatesOf(scene);
+  const indices = new Map(nodes.map((node, i) => [node, i]));
+  const weights = skinWeights(scene);
+  // A scale below zero mirrors the joints; the skin is drawn mirrored, too.
+  const mirror = nodes.some((node) => node.matrixWorld.determinant() < 0) ? -1 : 1;
+  const place = new Vector3();
+  const joints = nodes.map((node): SkeletonJoint => {
+    const { x, y, z } = place.setFromMatrixPosition(node.matrixWorld);
+    const position = { x: mirror * x, y, z };
+    const parent = indices.get(node.parent as Object3D) ?? -1;
+    return { name: nameOf(node), parent, position, ...(weights.size > 0 && { weight: weights.get(node) ?? 0 }) };
+  });
+  const match = matchHumanoid(joints);
+  const complaint = humanoidComplaint(match);
+  const matched = Object.entries(match.map).map(([bone, { joint }]) => [bone as BoneName, nodes[joint]!] as const);
+  if (!complaint) return new Map(matched);
+  const found = [...new Set(joints.flatMap((joint) => (joint.name === '' ? [] : [joint.name])))];
   if (found.length === 0) throw new Error(`${name}: no humanoid in the file: it has no bones`);
-  const shownFound =
-    found.slice(0, shownNames).join(', ') + (found.length > shownNames ? ` and ${found.length - shownNames} more` : '');
   throw new UnknownBones(
-    `${name}: its bones could not be matched to a humanoid (found: ${shownFound}; known: ${knownNamings.join('; ')}). Map them by hand: loadAvatar(source, {bones: {hips: '…', …}})`,
+    `${name}: ${complaint}. Map them by hand: loadAvatar(source, {bones: {hips: '…', …}})`,
     found,
+    Object.fromEntries(matched.map(([bone, node]) => [bone, nameOf(node)])),
   );
 }
 
 /** The nodes that a map names, of several of one name one that carries skin. Throws where one is not in the file. */
-function mappedBones(scene: Group, bones: BoneMap, name: string): Map<string, Object3D> {
+function mappedBones(scene: Group, bones: BoneMap, name: string): ReadonlyMap<BoneName, Object3D> {
   const skinned = skinBones(scene);
   // A mesh may be called as the bone that moves it.
   const nodes = nodesByName(scene, (node) => skinned.has(node));
@@ -76,26 +101,24 @@ function mappedBones(scene: Group, bones: BoneMap, name: string): Map<string, Ob
   scene.traverse((node) => {
     if (!nodes.has(node.name)) nodes.set(node.name, node);
   });
-  for (const [bone, called] of Object.entries(bones)) {
-    if (!nodes.has(called)) throw new Error(`${name}: bones.${bone}: no node is called “${called}”`);
-  }
-  return nodes;
+  return new Map(
+    Object.entries(bones).map(([bone, called]) => {
+      const node = nodes.get(called);
+      if (!node) throw new Error(`${name}: bones.${bone}: no node is called “${called}”`);
+      return [bone as BoneName, node];
+    }),
+  );
 }
 
 /**
- * Makes a VRM of a scene that is none. Its bones are those of `bones`, or those that are known by their nodes' names.
- * Throws a sentence that names the file and the missing bone, or the names that were found.
+ * Makes a VRM of a scene that is none. Its bones are those of `bones`, or those that are found. Throws a sentence that
+ * names the file and the missing bone, or what was found.
  */
 export function humanoidOf(scene: Group, name: string, given?: BoneMap): VRM {
-  const { bones, nodes } = given ? { bones: given, nodes: mappedBones(scene, given, name) } : knownBones(scene, name);
-  try {
-    demandBones(name, (bone) => bones[bone] !== undefined);
-  } catch (error) {
-    throw given ? error : new UnknownBones(reasonOf(error), [...nodes.keys()], bones);
-  }
-  const humanBones = Object.fromEntries(
-    Object.entries(bones).map(([bone, called]) => [bone, { node: nodes.get(called) }]),
-  ) as unknown as VRMHumanBones;
+  scene.updateMatrixWorld(true);
+  const bones = given ? mappedBones(scene, given, name) : foundBones(scene, name);
+  demandBones(name, (bone) => bones.has(bone));
+  const humanBones = Object.fromEntries([...bones].map(([bone, node]) => [bone, { node }])) as unknown as VRMHumanBones;
   const humanoid = new VRMHumanoid(humanBones);
   scene.add(humanoid.normalizedHumanBonesRoot);
   const meshes: { meshes: Object3D[]; type: 'auto' }[] = [];

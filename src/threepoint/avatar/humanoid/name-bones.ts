@@ -1,6 +1,6 @@
+import { type BoneMap, boneNames } from '../../core/humanoid/bones';
 import { packGlb } from '../../core/motion/gltf';
 import { chunksOf } from '../file/glb-chunks';
-import { type BoneMap, boneNames } from './bone-names';
 
 interface NamedNodes {
   [field: string]: unknown;

@@ -1,7 +1,7 @@
 import type { VRM } from '@pixiv/three-vrm';
 import { Matrix4, type Object3D, Quaternion, Vector3 } from 'three';
+import { type BoneName, handFingerBones } from '../../core/humanoid/bones';
 import type { Side } from '../../core/math/side';
-import { type BoneName, handFingerBones } from './bone-names';
 import { boneNode, neededBones } from './humanoid';
 
 // From here on a body at rest faces +Z, as a VRM does: its left is +X.

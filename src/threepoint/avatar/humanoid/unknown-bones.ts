@@ -1,4 +1,4 @@
-import type { BoneMap } from './bone-names';
+import type { BoneMap } from '../../core/humanoid/bones';
 
 /** The error of a file whose bone names match no humanoid, or not all needed bones: a map of them can be given. */
 export class UnknownBones extends Error {

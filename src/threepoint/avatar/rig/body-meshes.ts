@@ -13,7 +13,7 @@ import type { SkinTone } from '../../core/body/avatar-ref';
 import type { Steps } from '../in-steps';
 import { palettes, skinColors } from '../palettes';
 import type { Rig } from './rig';
-import { type SkinPart, sortByPart } from './skin-parts';
+import { type SkinPart, skinParts, sortByPart } from './skin-parts';
 
 /** The layer of what only others and mirrors see: the own head. VRM's own number for it. */
 export const thirdPersonOnlyLayer = 10;
@@ -22,8 +22,8 @@ const firstPersonOnlyLayer = 9;
 export interface AvatarMesh {
   readonly mesh: Mesh;
   readonly audience: 'both' | 'others' | 'self';
-  /** Index count up to and including each part; null for meshes without a skin. */
-  readonly ends: Record<SkinPart, number> | null;
+  /** Index count up to and including each part; a mesh without a skin belongs to one part as a whole. */
+  readonly ends: Readonly<Record<SkinPart, number>>;
 }
 
 /** The meshes of a body, those with a skin sorted by its parts, once. */
@@ -69,10 +69,21 @@ export function* readMeshes(
       : mesh.layers.isEnabled(firstPersonOnlyLayer)
         ? 'self'
         : 'others';
-    const ends = mesh instanceof SkinnedMesh ? yield* sortByPart(mesh, partOfBone, hipLine) : null;
+    const ends =
+      mesh instanceof SkinnedMesh ? yield* sortByPart(mesh, partOfBone, hipLine) : endsOfPart(mesh, partOfBone(mesh));
     result.push({ mesh, audience, ends });
   }
   return result;
+}
+
+/** Returns where the parts of a mesh end that is one part as a whole. */
+function endsOfPart({ geometry }: Mesh, part: SkinPart | 'hips'): Readonly<Record<SkinPart, number>> {
+  const first = skinParts.indexOf(part === 'hips' ? 'trunk' : part);
+  const count = geometry.index?.count ?? 0;
+  return Object.fromEntries(skinParts.map((each, index) => [each, index < first ? 0 : count])) as Record<
+    SkinPart,
+    number
+  >;
 }
 
 /** The largest number of vertices that are used for a head's height: hair has many. */
@@ -83,7 +94,7 @@ function topOf(meshes: readonly AvatarMesh[], head: Object3D | undefined): numbe
   let top = 0;
   const place = new Vector3();
   for (const { mesh, ends } of meshes) {
-    if (mesh instanceof SkinnedMesh && ends) {
+    if (mesh instanceof SkinnedMesh) {
       const step = Math.max(1, Math.ceil((ends.head - ends.hands) / mostCorners));
       for (let corner = ends.hands; corner < ends.head; corner += step) {
         const vertex = mesh.geometry.index?.getX(corner) ?? 0;
@@ -198,9 +209,10 @@ export class BodyMeshes {
   private showParts(): void {
     const last: SkinPart = this.shown === 'hands' ? 'head' : this.upperBodyOnly ? 'trunk' : 'legs';
     for (const { mesh, ends } of this.meshes) {
-      const end = ends?.[last];
-      mesh.visible = this.shown !== 'nothing' && (end === undefined ? this.shown === 'body' : end > 0);
-      if (end !== undefined) mesh.geometry.setDrawRange(0, end);
+      const end = ends[last];
+      mesh.visible = this.shown !== 'nothing' && end > 0;
+      // Meshes without a skin may share their geometry; the range of each that is drawn is the whole.
+      if (end > 0) mesh.geometry.setDrawRange(0, end);
     }
   }
 

@@ -34,6 +34,8 @@ export interface RigBone {
   ownLength: number;
   /** World matrix of this frame. */
   readonly world: Matrix4;
+  /** Whether a pose has set `world`; otherwise the bone keeps its place against its parent. */
+  placed: boolean;
   /** The drawn position in this frame, floor frame [m]. */
   readonly drawn: MutableVec3;
 }
@@ -63,7 +65,6 @@ const farEnd: Partial<Record<AvatarJoint, AvatarJoint>> = {
   rightLowerLeg: 'rightFoot',
 };
 
-/** Parents before children. */
 const drivenJoints: readonly AvatarJoint[] = [...jointNames, ...legJoints];
 
 const trunkBones: ReadonlySet<string> = new Set([
@@ -98,6 +99,8 @@ export class Rig {
    * it.
    */
   readonly helpers = new Set<Object3D>();
+  /** The bones with ancestors first: files may hang the hips under the spine. */
+  private readonly ordered: readonly RigBone[];
   /** Joints of the bones as drawn, floor frame [m]; the same object in every frame. */
   readonly joints: Partial<Record<AvatarJoint, Vec3>> = {};
   /** Constraints read positions and rotations; drawing needs the matrices alone. */
@@ -107,6 +110,7 @@ export class Rig {
 
   constructor(vrm: VRM) {
     this.bones = readRig(vrm);
+    this.ordered = [...this.bones.values()].sort((a, b) => depthOf(a) - depthOf(b));
     this.constrained = (vrm.nodeConstraintManager?.constraints.size ?? 0) > 0;
     for (const { node } of this.bones.values()) node.matrixAutoUpdate = false;
   }
@@ -162,21 +166,30 @@ export class Rig {
 
   /**
    * Moves a bone to a joint: position [m] and rotation from T-pose, floor frame. Does nothing where the rig lacks the
-   * bone. `seen`: whether it counts among the drawn joints.
+   * bone. `seen`: whether it counts among the drawn joints. The nodes move with the next `settle`.
    */
   place(name: AvatarJoint, at: Vec3, rotationFromRest: Quat, seen = true): void {
     const bone = this.bones.get(name);
     if (!bone) return;
-    const { node, parent, world, fromParentBone } = bone;
-    setWorld(bone, at, rotationFromRest, world);
-    // What lies between the parent bone and this node (and above the hips) keeps its rest pose.
-    if (parent) above.multiplyMatrices(parent.world, fromParentBone);
-    else above.copy(fromParentBone);
-    node.matrix.multiplyMatrices(above.invert(), world);
-    if (this.constrained) node.matrix.decompose(node.position, node.quaternion, node.scale);
-    node.matrixWorldNeedsUpdate = true;
+    setWorld(bone, at, rotationFromRest, bone.world);
+    bone.placed = true;
     copyVec3(at, bone.drawn);
     if (seen) this.joints[name] = bone.drawn;
+  }
+
+  /** Moves the nodes to where their bones were placed, ancestors first. */
+  settle(): void {
+    for (let i = 0; i < this.ordered.length; i++) {
+      const { node, parent, world, fromParentBone, placed } = this.ordered[i]!;
+      // What lies between the parent bone and this node (and above the topmost bones) keeps its rest pose.
+      if (parent) above.multiplyMatrices(parent.world, fromParentBone);
+      else above.copy(fromParentBone);
+      if (placed) {
+        node.matrix.multiplyMatrices(above.invert(), world);
+        if (this.constrained) node.matrix.decompose(node.position, node.quaternion, node.scale);
+      } else world.multiplyMatrices(above, node.matrix);
+      node.matrixWorldNeedsUpdate = true;
+    }
   }
 
   /** A new joint on a bone that the rig has. */
@@ -209,7 +222,7 @@ export class Rig {
   shrink(name: AvatarJoint): void {
     const bone = this.bones.get(name);
     if (!bone) return;
-    bone.world.makeScale(0, 0, 0);
+    bone.placed = false;
     bone.node.matrix.makeScale(1e-6, 1e-6, 1e-6);
     delete this.joints[name];
   }
@@ -238,15 +251,26 @@ function setStretch(target: Matrix4, d: Vector3, factor: number, uniform: number
   return target.scale(scaling.setScalar(uniform));
 }
 
+/** The number of nodes above a bone's. */
+function depthOf({ node }: RigBone): number {
+  let depth = 0;
+  for (let above = node.parent; above; above = above.parent) depth += 1;
+  return depth;
+}
+
 function readRig(vrm: VRM): Map<AvatarJoint, RigBone> {
   const bones = new Map<AvatarJoint, RigBone>();
-  const nodes = new Map<Object3D, RigBone>();
-  for (const name of drivenJoints) {
+  const driven = drivenJoints.flatMap((name) => {
     const node = vrm.humanoid.getRawBoneNode(name as VRMHumanBoneName);
-    if (!node) continue;
+    return node ? [[node, name] as const] : [];
+  });
+  const nodes = new Map(driven);
+  const boneOf = (node: Object3D, name: AvatarJoint): RigBone => {
+    const known = bones.get(name);
+    if (known) return known;
     let above: Object3D | null = node.parent;
     while (above && !nodes.has(above)) above = above.parent;
-    const parent = (above && nodes.get(above)) ?? null;
+    const parent = above && boneOf(above, nodes.get(above)!);
     const actualParent = node.parent?.matrixWorld ?? new Matrix4();
     const restRotation = node.getWorldQuaternion(new Quaternion());
     const target: RigBone = {
@@ -264,10 +288,12 @@ function readRig(vrm: VRM): Map<AvatarJoint, RigBone> {
       fromParentBone: parent ? parent.node.matrixWorld.clone().invert().multiply(actualParent) : actualParent.clone(),
       stretch: new Matrix4(),
       world: new Matrix4(),
+      placed: false,
       drawn: vec3(0, 0, 0),
     };
-    nodes.set(node, target);
     bones.set(name, target);
-  }
+    return target;
+  };
+  for (const [node, name] of driven) boneOf(node, name);
   return bones;
 }

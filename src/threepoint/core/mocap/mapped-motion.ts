@@ -1,18 +1,17 @@
-import { conjugate, fromAxes, fromAxisAngle, multiply, type Quat, quat, rotate } from '../math/quat';
-import { cross, scale, subtract, up, type Vec3 } from '../math/vec3';
+import { conjugate, fromAxisAngle, multiply, type Quat, quat, rotate } from '../math/quat';
+import { subtract, up, type Vec3 } from '../math/vec3';
 import { type FileMotion, type JointPoses, makeJointPoses } from '../motion/file-motion';
 import { type BvhJoint, type BvhMotion, poseBvh } from '../motion/read-bvh';
+import { floorFromAxes } from './body-axes';
 import { directions } from './read-skeleton-map';
 import type { SkeletonMap } from './skeleton-map';
 
 /** What takes a file's axes to those of the floor (+Y up, people at rest face −Z). */
-export function floorFromFile({ up: upward = '+y', forward = '+z' }: SkeletonMap): Quat {
-  const [above, ahead] = [directions[upward], directions[forward]];
-  return conjugate(fromAxes(cross(ahead, above), above, scale(ahead, -1)));
-}
+export const floorFromFile = ({ up: upward = '+y', forward = '+z' }: SkeletonMap): Quat =>
+  floorFromAxes(directions[upward], directions[forward]);
 
 /** Returns the motion relative to another rest pose. */
-function countedFrom(file: FileMotion, { positions, rotations }: JointPoses): FileMotion {
+export function countedFrom(file: FileMotion, { positions, rotations }: JointPoses): FileMotion {
   const backs = rotations.map((rotation) => conjugate(rotation));
   return {
     ...file,
@@ -49,6 +48,7 @@ export function fromMappedRest(
   file: FileMotion,
   map: SkeletonMap,
   bvh: { readonly motion: BvhMotion; readonly joints: readonly BvhJoint[] } | null,
+  restFile: FileMotion = file,
 ): FileMotion {
   const { restFrame, restPose } = map;
   const demand = (joints: Readonly<Record<string, string>>, what: string) => {
@@ -63,8 +63,14 @@ export function fromMappedRest(
     return facingForward(countedFrom(file, poseOfAngles(bvh.motion, bvh.joints, restPose)), map);
   }
   if (restFrame === undefined) return file;
-  if (restFrame > file.frameCount) throw new Error(`restFrame ${restFrame}, but there are ${file.frameCount} frames`);
-  return facingForward(countedFrom(file, file.pose(restFrame - 1, makeJointPoses(file.names.length))), map);
+  if (restFrame > restFile.frameCount)
+    throw new Error(`restFrame ${restFrame}, but there are ${restFile.frameCount} frames`);
+  const there = restFile.pose(restFrame - 1, makeJointPoses(restFile.names.length));
+  const order = file.names.map((name) => restFile.names.indexOf(name));
+  const missing = order.indexOf(-1);
+  if (missing >= 0) throw new Error(`no joint “${file.names[missing]}”, so its restFrame is of another skeleton`);
+  const pose = { positions: order.map((i) => there.positions[i]!), rotations: order.map((i) => there.rotations[i]!) };
+  return facingForward(countedFrom(file, pose), map);
 }
 
 /** Returns the joints at these angles [degrees]: the root at the origin, others at their offsets, missing angles 0. */
@@ -83,7 +89,7 @@ function poseOfAngles(
       throw new Error(`restPose gives ${name} ${given.length} angles, the file ${turning} rotation channels`);
     let next = 0;
     return channels.map(({ kind, axis }) => {
-      if (kind === 'position') return parent < 0 ? 0 : offset[axis];
+      if (kind !== 'rotation') return parent < 0 ? 0 : offset[axis];
       next += 1;
       return given[next - 1] ?? 0;
     });

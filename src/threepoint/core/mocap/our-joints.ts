@@ -8,14 +8,26 @@ import {
   rotate,
   rotationBetween,
 } from '../math/quat';
-import { distance, lerp, right, scale, subtract, up, type Vec3, vec3 } from '../math/vec3';
+import {
+  addScaled,
+  distance,
+  lerp,
+  type MutableVec3,
+  right,
+  scale,
+  subtract,
+  up,
+  type Vec3,
+  vec3,
+  writeVec3,
+  zero,
+} from '../math/vec3';
 import { type FileMotion, makeJointPoses } from '../motion/file-motion';
-import { floorFromFile } from './mapped-motion';
 import { armLength, units } from './mocap-rules.json';
 import { checkRest, type RestPose } from './rest-pose';
 import {
-  findSkeletonMap,
-  type SkeletonMap,
+  type BetweenJoints,
+  type MappedSkeleton,
   type TrackedJoint,
   type TruthJoint,
   trackedJoints,
@@ -42,8 +54,8 @@ export const rotationsWidth = 4 * trackedJoints.length;
 const framesPerStep = 64;
 
 /** Metres per unit: the map's, else the one that makes the arm at rest a person's. */
-function metresPerUnit(map: SkeletonMap, restOf: (joint: TruthJoint) => Vec3): number {
-  if (map.scale) return map.scale;
+function metresPerUnit({ scale: given }: MappedSkeleton, restOf: (joint: TruthJoint) => Vec3): number {
+  if (given) return given;
   const arm =
     distance(restOf('leftUpperArm'), restOf('leftLowerArm')) + distance(restOf('leftLowerArm'), restOf('leftHand'));
   const [least, most] = armLength as [number, number];
@@ -60,25 +72,45 @@ function wristFromRest(side: 'left' | 'right', rest: RestPose): Quat {
   return multiply(rotationBetween(scale(right, -sign), forearm), turn);
 }
 
+/** Joints that a file may lack, each after those that it lies between. */
+const assumed = ['neck', 'chest', 'spine'] as const;
+
+/** Writes the position of an assumed joint. */
+function placeBetween({ near, far, share }: BetweenJoints, at: (joint: TruthJoint) => Vec3, target: MutableVec3): Vec3 {
+  const middle = (joints: readonly TruthJoint[]): Vec3 =>
+    joints.reduce((sum, joint) => addScaled(sum, at(joint), 1 / joints.length), zero);
+  return lerp(middle(near), middle(far), share, target);
+}
+
+/** The joints at rest [m], floor frame. */
+function restInMetres(file: FileMotion, skeleton: MappedSkeleton, unit: number): RestPose {
+  const { columns, between, floor } = skeleton;
+  const rest = new Map<TruthJoint, Vec3>();
+  for (const joint of truthJoints) {
+    const column = columns[joint];
+    if (column !== undefined) rest.set(joint, scale(rotate(floor, file.rest[column]!), unit));
+  }
+  for (const joint of assumed) {
+    const lacking = between[joint];
+    if (lacking)
+      rest.set(
+        joint,
+        placeBetween(lacking, (of) => rest.get(of)!, vec3(0, 0, 0)),
+      );
+  }
+  return rest;
+}
+
 /**
- * Brings a file's joints into ours. Yields the share [0, 1] that is done. Throws a sentence where its skeleton is not
- * known or no person's.
+ * Brings a file's joints into ours. Yields the share [0, 1] that is done. Throws a sentence where its skeleton is no
+ * person's.
  */
-export function* toOurJoints(
-  file: FileMotion,
-  rateHz: number,
-  map: SkeletonMap = findSkeletonMap(file.names),
-): Generator<number, OurMotion> {
-  const floor = floorFromFile(map);
-  const fileFromFloor = conjugate(floor);
-  const indexOf = (name: string): number => file.names.indexOf(name);
-  const restOf = (joint: TruthJoint): Vec3 => file.rest[indexOf(map.joints[joint]!)]!;
-  const unit = metresPerUnit(map, restOf);
-  const known = truthJoints.filter((joint) => map.joints[joint] !== undefined);
-  const rest = new Map(known.map((joint) => [joint, scale(rotate(floor, restOf(joint)), unit)]));
-  checkRest(rest, map);
-  const columns = truthJoints.map((joint) => indexOf(map.joints[joint] ?? ''));
-  const turning = trackedJoints.map((joint) => indexOf(map.rotations?.[joint] ?? map.joints[joint]!));
+export function* toOurJoints(file: FileMotion, rateHz: number, skeleton: MappedSkeleton): Generator<number, OurMotion> {
+  const { columns, between, floor, motionFloor } = skeleton;
+  const restFromFloor = conjugate(floor);
+  const unit = metresPerUnit(skeleton, (joint) => file.rest[columns[joint]!]!);
+  const rest = restInMetres(file, skeleton, unit);
+  checkRest(rest, skeleton);
   const wrists: Partial<Record<TrackedJoint, Quat>> = {
     leftHand: wristFromRest('left', rest),
     rightHand: wristFromRest('right', rest),
@@ -86,18 +118,23 @@ export function* toOurJoints(
   const positions = new Float64Array(file.frameCount * positionsWidth).fill(Number.NaN);
   const rotations = new Float64Array(file.frameCount * rotationsWidth);
   const poses = makeJointPoses(file.names.length);
-  const place = vec3(0, 0, 0);
+  const places = new Map(truthJoints.map((joint) => [joint, vec3(0, 0, 0)]));
+  const lacking = assumed.filter((joint) => between[joint]);
+  const present = truthJoints.filter((joint) => columns[joint] !== undefined);
   const turn: MutableQuat = quat(0, 0, 0, 1);
   for (let frame = 0; frame < file.frameCount; frame++) {
     file.pose(frame, poses);
-    for (const [i, column] of columns.entries()) {
-      if (column < 0 && truthJoints[i] !== 'spine') continue;
-      if (column < 0) lerp(poses.positions[columns[0]!]!, poses.positions[columns[2]!]!, 0.5, place);
-      const { x, y, z } = scale(rotate(floor, column < 0 ? place : poses.positions[column]!, place), unit, place);
-      positions.set([x, y, z], frame * positionsWidth + 3 * i);
+    for (const joint of present) {
+      const place = places.get(joint)!;
+      scale(rotate(motionFloor, poses.positions[columns[joint]!]!, place), unit, place);
+    }
+    for (const joint of lacking) placeBetween(between[joint]!, (of) => places.get(of)!, places.get(joint)!);
+    for (const [i, joint] of truthJoints.entries()) {
+      if (columns[joint] === undefined && !between[joint as keyof typeof between]) continue;
+      writeVec3(places.get(joint)!, positions, frame * positionsWidth + 3 * i);
     }
     for (const [i, joint] of trackedJoints.entries()) {
-      multiply(multiply(floor, poses.rotations[turning[i]!]!, turn), fileFromFloor, turn);
+      multiply(multiply(motionFloor, poses.rotations[skeleton.turning[i]!]!, turn), restFromFloor, turn);
       const wrist = wrists[joint];
       if (wrist) multiply(turn, wrist, turn);
       rotations.set([turn.x, turn.y, turn.z, turn.w], frame * rotationsWidth + 4 * i);

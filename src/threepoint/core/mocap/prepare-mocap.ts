@@ -4,16 +4,18 @@ import { readAmc } from '../motion/read-amc';
 import { readAsf } from '../motion/read-asf';
 import { bvhFileMotion, readBvh } from '../motion/read-bvh';
 import { readVrma } from '../motion/read-vrma';
-import { scaleProgress } from '../motion/work';
+import { finishWork, scaleProgress } from '../motion/work';
 import { putBackLostBones } from './cmuconvert';
+import { doubtsOf } from './doubts';
 import { cutAtLeaps, evenClip } from './even-clip';
-import { fromMappedRest } from './mapped-motion';
+import { floorFromFile, fromMappedRest } from './mapped-motion';
+import { type MatchedMotion, matchSkeleton } from './match-skeleton';
 import { cmu, rateHz } from './mocap-rules.json';
 import { type OurMotion, toOurJoints } from './our-joints';
 import { floorHeight, measuresOf, neutralHead } from './person';
 import { readSkeletonMap } from './read-skeleton-map';
 import { simulateTrackers } from './simulate-trackers';
-import type { SkeletonMap } from './skeleton-map';
+import { acclaimMap, mappedSkeleton, type SkeletonMap } from './skeleton-map';
 
 /** The text of a file that belongs to another, with its name. */
 interface Beside {
@@ -26,6 +28,8 @@ export type MocapSource = {
   readonly name: string;
   /** The map of a skeleton that is unknown here. */
   readonly map?: Beside;
+  /** The BVH file that the map's `restFrame` is of, where it is another. */
+  readonly rest?: Beside;
 } & (
   | { readonly format: 'bvh'; readonly text: string }
   | {
@@ -69,19 +73,38 @@ function readBeside<Result>({ name, text }: Beside, read: (text: string, name: s
   }
 }
 
-function* readFile(source: MocapSource, map: SkeletonMap | undefined): Generator<number, FileMotion> {
-  if (source.format === 'bvh') {
-    const motion = yield* readBvh(source.text);
-    const { joints, notes } = putBackLostBones(motion.joints);
-    const file = bvhFileMotion(motion, joints, notes);
-    return map ? fromMappedRest(file, map, { motion, joints }) : file;
-  }
-  const file =
-    source.format === 'vrma'
-      ? readVrma(source.description, source.binary)
-      : yield* readAmc(source.text, readBeside(source.skeleton, readAsf), source.skeleton.name);
-  return map ? fromMappedRest(file, map, null) : file;
+/** Reads a BVH file, with its lost bones put back. */
+function* readBvhFile(text: string) {
+  const motion = yield* readBvh(text);
+  const { joints, notes } = putBackLostBones(motion.joints);
+  return { motion, joints, file: bvhFileMotion(motion, joints, [...motion.notes, ...notes]) };
 }
+
+/** Reads a file and finds its skeleton: by the map that was given, by the format, or by what it looks like. */
+function* readFile(source: MocapSource, map: SkeletonMap | undefined): Generator<number, MatchedMotion> {
+  const bvh = source.format === 'bvh' ? yield* readBvhFile(source.text) : null;
+  const file = bvh?.file ?? (yield* readOther(source));
+  if (!map) return source.format === 'amc' ? withMap(file, acclaimMap(file.names)) : matchSkeleton(file);
+  if (map.restFile !== undefined && !source.rest)
+    throw new Error(
+      '“restFrame” of another file is for npm run evaluate; here it is the number of a frame of the file',
+    );
+  const rest = source.rest && readBeside(source.rest, (text) => finishWork(readBvhFile(text)).file);
+  return withMap(fromMappedRest(file, map, bvh, map.restFile === undefined ? undefined : rest), map);
+}
+
+function* readOther(source: MocapSource): Generator<number, FileMotion> {
+  if (source.format === 'vrma') return readVrma(source.description, source.binary);
+  if (source.format === 'amc')
+    return yield* readAmc(source.text, readBeside(source.skeleton, readAsf), source.skeleton.name);
+  throw new Error('no file of motion');
+}
+
+const withMap = (file: FileMotion, map: SkeletonMap): MatchedMotion => ({
+  file,
+  skeleton: mappedSkeleton(file.names, map, floorFromFile(map)),
+  notes: [],
+});
 
 const stemOf = (name: string): string => name.replace(/\.[^.]*$/, '');
 
@@ -102,23 +125,34 @@ function personOf(name: string): string {
 }
 
 /**
+ * Reads a file's motion in our joints. Yields the share [0, 1] that is done. `notes`: what was put right or assumed and
+ * what cannot be right, a sentence each. Throws a sentence that begins with the file's name.
+ */
+export function* readOurMotion(
+  source: MocapSource,
+): Generator<number, { readonly motion: OurMotion; readonly notes: readonly string[] }> {
+  try {
+    const map = source.map && readBeside(source.map, readSkeletonMap);
+    const { file, skeleton, notes } = yield* scaleProgress(readFile(source, map), 0, 0.75);
+    const rate = file.rateHz ?? map?.frameRate ?? rateOf(source.name);
+    const motion = yield* scaleProgress(toOurJoints(file, rate, skeleton), 0.75, 1);
+    return { motion, notes: [...file.notes, ...notes, ...doubtsOf(motion)] };
+  } catch (error) {
+    throw faultIn(source.name, error);
+  }
+}
+
+/**
  * Simulates what a headset and two hands would have seen of the person in a file, as the evaluation does
  * (docs/accuracy.md). Where the motion leaps it is cut. Yields the share [0, 1] that is done. Throws a sentence that
  * begins with the file's name.
  */
 export function* prepareMocap(source: MocapSource): Generator<number, PreparedMocap> {
-  const { name } = source;
+  const { motion, notes } = yield* scaleProgress(readOurMotion(source), 0, 0.8);
   try {
-    const map = source.map && readBeside(source.map, readSkeletonMap);
-    const file = yield* scaleProgress(readFile(source, map), 0, 0.6);
-    const motion = yield* scaleProgress(
-      toOurJoints(file, file.rateHz ?? map?.frameRate ?? rateOf(name), map),
-      0.6,
-      0.8,
-    );
-    return yield* scaleProgress(clipsOf(name, motion, file.notes), 0.8, 1);
+    return yield* scaleProgress(clipsOf(source.name, motion, notes), 0.8, 1);
   } catch (error) {
-    throw faultIn(name, error);
+    throw faultIn(source.name, error);
   }
 }
 

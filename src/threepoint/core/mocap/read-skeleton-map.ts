@@ -94,16 +94,19 @@ function numberOf(content: Content, key: 'scale' | 'frameRate') {
   return { [key]: value };
 }
 
+const restFrameForm = '“restFrame” should be the number of a frame, from 1, or {"file": …, "frame": …}';
+const isFrame = (value: unknown): value is number => Number.isInteger(value) && (value as number) >= 1;
+
 function restFrameOf({ restFrame = null, restPose }: Content) {
   if (restFrame === null) return {};
   if (restPose !== undefined) throw new Error('either “restFrame” or “restPose”');
-  if (isObject(restFrame))
-    throw new Error(
-      '“restFrame” of another file is for npm run evaluate; here it is the number of a frame of the file itself',
-    );
-  if (!Number.isInteger(restFrame) || (restFrame as number) < 1)
-    throw new Error('“restFrame” should be the number of a frame, from 1');
-  return { restFrame: restFrame as number };
+  if (isObject(restFrame)) {
+    const { file, frame = 1, ...more } = restFrame;
+    if (typeof file !== 'string' || Object.keys(more).length > 0 || !isFrame(frame)) throw new Error(restFrameForm);
+    return { restFrame: frame, restFile: file };
+  }
+  if (!isFrame(restFrame)) throw new Error(restFrameForm);
+  return { restFrame };
 }
 
 function restPoseOf({ restPose = null }: Content): Readonly<Record<string, readonly number[]>> | null {

@@ -2,7 +2,7 @@ import { sideSign } from '../body/skeleton';
 import { sides } from '../math/side';
 import { distance, dot, down, length, normalise, right, scale, subtract, up, type Vec3, zero } from '../math/vec3';
 import { shortestBone } from './mocap-rules.json';
-import type { SkeletonMap, TruthJoint } from './skeleton-map';
+import type { MappedSkeleton, TruthJoint } from './skeleton-map';
 
 /** The joints at rest [m], +Y up, facing −Z, without those that a file lacks. */
 export type RestPose = ReadonlyMap<TruthJoint, Vec3>;
@@ -28,24 +28,26 @@ function shownVector({ x, y, z }: Vec3): string {
  * of no length, a trunk that lies, shoulders that are not left and right, raised or folded arms, legs that do not
  * stand.
  */
-export function checkRest(rest: RestPose, { joints }: SkeletonMap): void {
+export function checkRest(rest: RestPose, { joints: names }: Pick<MappedSkeleton, 'joints'>): void {
   const at = (joint: TruthJoint): Vec3 => rest.get(joint)!;
+  const nameOf = (joint: TruthJoint): string => names[joint] ?? 'assumed';
   const refuse = (what: string, should: string): never => {
     throw new Error(`the rest pose is no T-pose: ${what} instead of ${should}`);
   };
   const bone = (near: TruthJoint, far: TruthJoint, part: string): void => {
     if (distance(at(near), at(far)) < shortestBone)
       throw new Error(
-        `${joints[far]} (${far}) lies on ${joints[near]} (${near}) in the rest pose: the file lost a bone of ${part}`,
+        `${nameOf(far)} (${far}) lies on ${nameOf(near)} (${near}) in the rest pose: the file lost a bone of ${part}`,
       );
   };
   for (const [near, far] of trunk) bone(near, far, 'the trunk');
   const spine = direction(subtract(at('neck'), at('hips')));
-  if (dot(spine, up) < 0.7) refuse(`the trunk, ${joints.hips} to ${joints.neck}, points ${shownVector(spine)}`, 'up');
+  if (dot(spine, up) < 0.7)
+    refuse(`the trunk, ${nameOf('hips')} to ${nameOf('neck')}, points ${shownVector(spine)}`, 'up');
   const across = subtract(at('rightUpperArm'), at('leftUpperArm'));
   if (dot(direction(across), right) < 0.7 || length(across) < 0.1) {
     const so = length(across) < 0.02 ? 'lie on each other' : `lie ${shownVector(across)} of each other`;
-    refuse(`the shoulders, ${joints.leftUpperArm} and ${joints.rightUpperArm}, ${so}`, 'left and right');
+    refuse(`the shoulders, ${nameOf('leftUpperArm')} and ${nameOf('rightUpperArm')}, ${so}`, 'left and right');
   }
   for (const side of sides) {
     const outward = scale(right, sideSign(side));
@@ -54,13 +56,13 @@ export function checkRest(rest: RestPose, { joints }: SkeletonMap): void {
     bone(elbow, hand, `the ${side} arm`);
     const arm = direction(subtract(at(hand), at(shoulder)));
     if (dot(arm, up) > 0.5 || dot(arm, outward) < -0.3)
-      refuse(`the ${side} arm, ${joints[shoulder]} to ${joints[hand]}, points ${shownVector(arm)}`, 'sideways');
+      refuse(`the ${side} arm, ${nameOf(shoulder)} to ${nameOf(hand)}, points ${shownVector(arm)}`, 'sideways');
     if (dot(direction(subtract(at(elbow), at(shoulder))), direction(subtract(at(hand), at(elbow)))) < 0)
-      refuse(`the ${side} arm is folded at ${joints[elbow]}`, 'straight');
+      refuse(`the ${side} arm is folded at ${nameOf(elbow)}`, 'straight');
     const [hip, foot] = [`${side}UpperLeg`, `${side}Foot`] as const;
     if (!rest.has(hip) || !rest.has(foot)) continue;
     const leg = direction(subtract(at(foot), at(hip)));
     if (dot(leg, down) < 0.7)
-      refuse(`the ${side} leg, ${joints[hip]} to ${joints[foot]}, points ${shownVector(leg)}`, 'down');
+      refuse(`the ${side} leg, ${nameOf(hip)} to ${nameOf(foot)}, points ${shownVector(leg)}`, 'down');
   }
 }

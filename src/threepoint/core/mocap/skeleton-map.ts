@@ -1,5 +1,5 @@
-import { shown } from '../motion/lines';
-import { skeletons } from './mocap-rules.json';
+import type { Quat } from '../math/quat';
+import { acclaim } from './mocap-rules.json';
 
 /** Joints of the truth, floor frame; VRM's names. Those that head and hands are made of are among them. */
 export const bodyJoints = [
@@ -51,6 +51,8 @@ export interface SkeletonMap {
   readonly frameRate?: number;
   /** A frame in T-pose, from 1, or the angles of one [degrees] by the file's joint; neither: all angles 0. */
   readonly restFrame?: number;
+  /** The file that `restFrame` is of, where it is another. */
+  readonly restFile?: string;
   readonly restPose?: Readonly<Record<string, readonly number[]>>;
 }
 
@@ -60,33 +62,50 @@ export type FileAxis = '+x' | '-x' | '+y' | '-y' | '+z' | '-z';
 /** Joints that every map has. */
 export const neededJoints: readonly TruthJoint[] = bodyJoints.filter((joint) => joint !== 'spine');
 
-/**
- * The known skeleton that fits these joints: one with all that are needed and most of the others, without those that
- * the file lacks. Throws a sentence where none does.
- */
-export function findSkeletonMap(names: readonly string[]): SkeletonMap {
-  const known = new Set(names);
-  const has = (map: SkeletonMap, joint: TruthJoint): boolean => known.has(map.joints[joint] ?? '');
-  const among = (map: SkeletonMap): number => truthJoints.filter((joint) => has(map, joint)).length;
-  let best: SkeletonMap | null = null;
-  for (const map of skeletons as readonly SkeletonMap[])
-    if (neededJoints.every((joint) => has(map, joint)) && (!best || among(map) > among(best))) best = map;
-  if (best) {
-    const joints = Object.fromEntries(Object.entries(best.joints).filter(([, theirs]) => known.has(theirs)));
-    return { ...best, joints };
-  }
-  throw new Error(unknownSkeleton(names));
+/** A joint that a file lacks: a share of the way from the middle of some joints to that of others. */
+export interface BetweenJoints {
+  readonly near: readonly TruthJoint[];
+  readonly far: readonly TruthJoint[];
+  readonly share: number;
 }
 
-/** Returns a sentence with the closest known skeleton, which helps where only the wrists are missing. */
-function unknownSkeleton(names: readonly string[]): string {
+/** The skeleton of a file in which every joint has its column. */
+export interface MappedSkeleton {
+  /** The names of the file's joints, for messages. */
+  readonly joints: Readonly<Partial<Record<TruthJoint, string>>>;
+  /** The indices of the file's joints. */
+  readonly columns: Readonly<Partial<Record<TruthJoint, number>>>;
+  /** The file's joints whose rotations head and hands have, in the order of `trackedJoints`. */
+  readonly turning: readonly number[];
+  readonly between: Readonly<Partial<Record<'neck' | 'chest' | 'spine', BetweenJoints>>>;
+  /** Metres per unit; absent: the unit that makes the arms a person's. */
+  readonly scale?: number;
+  /** The rotation from the file's axes to the floor frame, of the rest pose. */
+  readonly floor: Quat;
+  /** The same rotation of the motion: it differs where a program turned the root alone. */
+  readonly motionFloor: Quat;
+}
+
+/** The skeleton that a map describes, whose joints all are in the file. */
+export function mappedSkeleton(names: readonly string[], map: SkeletonMap, floor: Quat): MappedSkeleton {
+  const { joints, rotations, scale } = map;
+  const columns = Object.fromEntries(Object.entries(joints).map(([joint, theirs]) => [joint, names.indexOf(theirs)]));
+  return {
+    ...{ joints, columns, floor, motionFloor: floor },
+    ...(scale !== undefined && { scale }),
+    turning: trackedJoints.map((joint) => names.indexOf(rotations?.[joint] ?? joints[joint]!)),
+    between: joints.spine === undefined ? { spine: { near: ['hips'], far: ['chest'], share: 0.5 } } : {},
+  };
+}
+
+/** Returns the map of an Acclaim skeleton without what the file lacks. Throws a sentence where needed joints lack. */
+export function acclaimMap(names: readonly string[]): SkeletonMap {
   const known = new Set(names);
-  const lacks = (skeletons as readonly SkeletonMap[]).map(({ joints }) =>
-    neededJoints.filter((each) => !known.has(joints[each]!)),
-  );
-  const least = lacks.reduce((a, b) => (b.length < a.length ? b : a));
-  if (least.length <= 2)
-    return `the skeleton has no ${least.join(' and no ')}, which head and hands and the truth are made of`;
-  const some = names.slice(0, 8).map(shown).join(', ');
-  return `a skeleton that is not known here (it has ${some}, …); a map of it, a .json that is dropped too, says which joint is which: docs/accuracy.md`;
+  const map = acclaim as SkeletonMap;
+  const lacks = neededJoints.filter((joint) => !known.has(map.joints[joint]!));
+  if (lacks.length > 0)
+    throw new Error(
+      `the skeleton has no ${lacks.join(' and no ')}, which head and hands and the truth are made of. A map of it, a .json that is dropped too, says which joint is which: docs/accuracy.md`,
+    );
+  return { ...map, joints: Object.fromEntries(Object.entries(map.joints).filter(([, theirs]) => known.has(theirs))) };
 }

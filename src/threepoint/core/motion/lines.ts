@@ -16,9 +16,17 @@ export class Lines {
   /** The number of the current line, from 1. */
   number = 0;
   line = '';
+  /** Whether a number was written with a comma for its decimals. */
+  commas = false;
   #next = 0;
+  readonly text: string;
+  readonly #separator: string;
 
-  constructor(readonly text: string) {}
+  constructor(text: string) {
+    // Editors of Windows begin a file with a byte order mark; old programs end lines with CR alone.
+    this.text = text.startsWith('\ufeff') ? text.slice(1) : text;
+    this.#separator = this.text.includes('\n') ? '\n' : '\r';
+  }
 
   /** Share [0, 1] of the text that was read. */
   get share(): number {
@@ -28,7 +36,7 @@ export class Lines {
   /** Goes on to the next line that is not blank; false: there is none. */
   next(): boolean {
     while (this.#next <= this.text.length) {
-      const feed = this.text.indexOf('\n', this.#next);
+      const feed = this.text.indexOf(this.#separator, this.#next);
       const end = feed < 0 ? this.text.length : feed;
       this.number += 1;
       if (end - this.#next > longestLine) this.fail(longestLine, 'the line does not end: this is no motion file');
@@ -47,10 +55,13 @@ export class Lines {
 
   /** The number that a word is. */
   numberOf({ word, column }: Word): number {
-    const value = Number(word);
     // Number takes '0x10' and 'Infinity' too; the latter is refused as not finite.
-    if (!Number.isFinite(value)) this.fail(column, `${shown(word)} is no finite number`);
-    return value;
+    const value = Number(word);
+    if (Number.isFinite(value)) return value;
+    const decimal = /^[+-]?\d*,\d+(e[+-]?\d+)?$/i.test(word) ? Number(word.replace(',', '.')) : Number.NaN;
+    if (!Number.isFinite(decimal)) this.fail(column, `${shown(word)} is no finite number`);
+    this.commas = true;
+    return decimal;
   }
 
   /** Writes the numbers of the line from a character on, as many as `width` at most; returns how many there are. */
@@ -64,8 +75,9 @@ export class Lines {
       }
       let end = i + 1;
       while (end < line.length && line.charCodeAt(end) > 32) end++;
-      const value = Number(line.slice(i, end));
-      if (!Number.isFinite(value)) this.fail(i + 1, `${shown(line.slice(i, end))} is no finite number`);
+      const word = line.slice(i, end);
+      let value = Number(word);
+      if (!Number.isFinite(value)) value = this.numberOf({ word, column: i + 1 });
       if (count < width) target[at + count] = value;
       count += 1;
       i = end;
@@ -97,6 +109,11 @@ export class Rows {
     }
     this.count += 1;
     return at;
+  }
+
+  /** Removes the last row. */
+  drop(): void {
+    this.count -= 1;
   }
 
   finish(): Float64Array {

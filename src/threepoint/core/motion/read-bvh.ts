@@ -5,7 +5,8 @@ import { Lines, Rows, shown, type Word } from './lines';
 
 type Axis = 'x' | 'y' | 'z';
 export interface BvhChannel {
-  readonly kind: 'position' | 'rotation';
+  /** `unused`: a position that only repeats the joint's offset, or none at all. */
+  readonly kind: 'position' | 'rotation' | 'unused';
   readonly axis: Axis;
 }
 
@@ -29,6 +30,8 @@ export interface BvhMotion {
   readonly width: number;
   /** Frame after frame; angles in degrees. */
   readonly values: Float64Array;
+  /** What was put right or assumed, a sentence each. */
+  readonly notes: readonly string[];
 }
 
 /** No skeleton of a person has as many. */
@@ -63,7 +66,21 @@ function readChannels(lines: Lines, words: readonly Word[]): readonly BvhChannel
   });
 }
 
-/** What stands before MOTION. */
+/** Splits the words of a line at braces: programs write them on the joint's line as well as on their own. */
+function statementsOf(lines: Lines): readonly (readonly Word[])[] {
+  const statements: Word[][] = [[]];
+  for (const { word, column } of lines.words()) {
+    let at = column;
+    for (const part of word.split(/([{}])/)) {
+      if (part === '{' || part === '}') statements.push([{ word: part, column: at }], []);
+      else if (part !== '') statements.at(-1)!.push({ word: part, column: at });
+      at += part.length;
+    }
+  }
+  return statements.filter((words) => words.length > 0);
+}
+
+/** Reads what stands before MOTION. */
 function readHierarchy(lines: Lines): readonly OpenJoint[] {
   const joints: OpenJoint[] = [];
   const stack: number[] = [];
@@ -72,11 +89,10 @@ function readHierarchy(lines: Lines): readonly OpenJoint[] {
     const index = stack.at(-1);
     return index === undefined ? lines.fail(column, `${what} outside a joint`) : joints[index]!;
   };
-  while (lines.next()) {
-    const words = lines.words();
+  const read = (words: readonly Word[]): boolean => {
     const { word, column } = words[0]!;
     const keyword = word.toUpperCase();
-    if (keyword === 'HIERARCHY') continue;
+    if (keyword === 'HIERARCHY') return false;
     if (keyword === 'ROOT' || keyword === 'JOINT') {
       pending = words.slice(1).map((part) => part.word).join(' '); // biome-ignore format: one thought
       if (pending === '') lines.fail(column, 'a joint without a name');
@@ -96,9 +112,11 @@ function readHierarchy(lines: Lines): readonly OpenJoint[] {
       if (stack.length > 0)
         lines.fail(column, `the hierarchy is not closed before MOTION: ${stack.length} “}” missing`);
       if (joints.length === 0) lines.fail(column, 'no joint before MOTION');
-      return joints;
+      return true;
     } else lines.fail(column, `${shown(word)} is not known in a BVH hierarchy`);
-  }
+    return false;
+  };
+  while (lines.next()) if (statementsOf(lines).some(read)) return joints;
   return lines.fail(1, joints.length === 0 ? 'no BVH file: no HIERARCHY' : 'the file ends before its MOTION');
 }
 
@@ -113,12 +131,12 @@ function readDeclaration(lines: Lines, declared: Declared): boolean {
   if (!found) return false;
   const text = found[2]!;
   const column = lines.line.lastIndexOf(text === '' ? ':' : text) + 1;
-  const value = text === '' ? Number.NaN : Number(text);
+  const value = text === '' ? Number.NaN : lines.numberOf({ word: text, column });
   if (found[1]!.toLowerCase() === 'frames') {
     if (!Number.isSafeInteger(value) || value < 1) lines.fail(column, `Frames should be a count, is ${shown(text)}`);
     declared.count = value;
   } else {
-    if (!(Number.isFinite(value) && value > 0)) lines.fail(column, `Frame Time should be seconds, is ${shown(text)}`);
+    if (!(value > 0)) lines.fail(column, `Frame Time should be seconds, is ${shown(text)}`);
     declared.seconds = value;
   }
   return true;
@@ -126,7 +144,8 @@ function readDeclaration(lines: Lines, declared: Declared): boolean {
 
 /**
  * Reads the text of a BVH file. Yields the share [0, 1] that was read. Throws a sentence with line and column where the
- * text is none: cut short, counts that do not agree, numbers that are none.
+ * text is none: cut short, counts that do not agree, numbers that are none. A count of frames that is off by one and a
+ * last row that is cut are put right.
  */
 export function* readBvh(text: string): Generator<number, BvhMotion> {
   const lines = new Lines(text);
@@ -135,21 +154,82 @@ export function* readBvh(text: string): Generator<number, BvhMotion> {
   if (width === 0) lines.fail(1, 'no joint of the hierarchy has channels: nothing moves');
   const declared: Declared = { count: null, seconds: null };
   const rows = new Rows(width);
+  const notes: string[] = [];
+  let cut: (() => never) | null = null;
   while (lines.next()) {
+    cut?.();
     if (readDeclaration(lines, declared)) continue;
-    if (declared.count !== null && rows.count >= declared.count)
+    if (declared.count !== null && rows.count > declared.count)
       lines.fail(1, `Frames says ${declared.count}, but more follow`);
     const at = rows.add();
     const count = lines.numbers(0, rows.values, at, width);
-    if (count !== width) lines.fail(1, `a frame has ${count} numbers, the hierarchy has ${width} channels`);
+    if (count !== width) {
+      const { number } = lines;
+      cut = () => {
+        throw new Error(`line ${number}, column 1: a frame has ${count} numbers, the hierarchy has ${width} channels`);
+      };
+    }
     if (rows.count % linesPerStep === 0) yield lines.share;
+  }
+  if (cut) {
+    // One row alone, or one too long, is no file that was cut at its end.
+    if (rows.count < 2 || rows.count - 1 < (declared.count ?? 0) - 1) cut();
+    rows.drop();
+    notes.push('its last row is cut short; it was left out');
   }
   const frameCount = rows.count;
   if (frameCount === 0) lines.fail(1, 'the file ends without a frame');
-  if (declared.count !== null && declared.count !== frameCount)
+  if (declared.count !== null && declared.count > frameCount + 1)
     lines.fail(1, `Frames says ${declared.count}, but the file ends after ${frameCount}`);
+  if (declared.count !== null && declared.count !== frameCount)
+    notes.push(`Frames says ${declared.count}, there are ${frameCount}; those were taken`);
   if (declared.seconds === null) throw new Error('a line “Frame Time: seconds” is needed, and there is none');
-  return { joints, frameSeconds: declared.seconds, frameCount, width, values: rows.finish() };
+  if (lines.commas) {
+    if (/\d\.\d/.test(text.slice(text.search(/^\s*MOTION/im))))
+      throw new Error('its numbers have both commas and points; write them with points');
+    notes.push('its numbers have commas for decimals; they were read so');
+  }
+  const motion = { joints, frameSeconds: declared.seconds, frameCount, width, values: rows.finish(), notes };
+  return withoutRepeatedPositions(motion);
+}
+
+/**
+ * Marks position channels that say nothing: all zero on a joint that has an offset, or its offset again in every frame.
+ * Constant positions of a joint without an offset are its offset.
+ */
+function withoutRepeatedPositions(motion: BvhMotion): BvhMotion {
+  const { width, values, frameCount } = motion;
+  const notes = [...motion.notes];
+  let [zeros, column] = [0, 0];
+  const joints = motion.joints.map((joint) => {
+    const from = column;
+    column += joint.channels.length;
+    if (joint.parent < 0 || !joint.channels.some(({ kind }) => kind === 'position')) return joint;
+    const { offset } = joint;
+    const size = Math.max(Math.abs(offset.x), Math.abs(offset.y), Math.abs(offset.z));
+    const first: Record<Axis, number> = { ...offset };
+    let [zero, constant] = [true, true];
+    for (const [i, { kind, axis }] of joint.channels.entries()) {
+      if (kind !== 'position') continue;
+      first[axis] = values[from + i]!;
+      for (let frame = 0; frame < frameCount; frame++) {
+        const value = values[frame * width + from + i]!;
+        if (value !== 0) zero = false;
+        if (Math.abs(value - first[axis]) > 1e-4 * size) constant = false;
+      }
+    }
+    const repeats =
+      constant && (['x', 'y', 'z'] as const).every((axis) => Math.abs(first[axis] - offset[axis]) <= 1e-3 * size);
+    if (zero && size > 0) zeros += 1;
+    const moved = constant && size === 0 && !zero;
+    if (!(zero && size > 0) && !repeats && !moved) return joint;
+    const channels = joint.channels.map(
+      ({ kind, axis }) => ({ axis, kind: kind === 'position' ? 'unused' : kind }) as const,
+    );
+    return { ...joint, channels, offset: moved ? first : offset };
+  });
+  if (zeros > 0) notes.push(`the positions of ${zeros} joints are zero in every frame; their offsets were taken`);
+  return { ...motion, joints, notes };
 }
 
 const axes: Readonly<Record<Axis, Vec3>> = { x: right, y: up, z: backward };
@@ -166,7 +246,8 @@ export function poseBvh({ joints, width, values }: BvhMotion, frame: number, tar
     for (const { kind, axis } of channels) {
       const value = values[column++]!;
       if (kind === 'position') local[axis] = value;
-      else multiply(rotation, fromAxisAngle(axes[axis], (value * Math.PI) / 180, turn), rotation);
+      else if (kind === 'rotation')
+        multiply(rotation, fromAxisAngle(axes[axis], (value * Math.PI) / 180, turn), rotation);
     }
     if (parent < 0) copyVec3(local, position);
     else {
@@ -182,14 +263,15 @@ export function poseBvh({ joints, width, values }: BvhMotion, frame: number, tar
  * A BVH file as any file of motion: at rest all its angles are zero. `joints`: those of the file, or what was put right
  * of them.
  */
-export function bvhFileMotion(motion: BvhMotion, joints = motion.joints, notes: readonly string[] = []): FileMotion {
+export function bvhFileMotion(motion: BvhMotion, joints = motion.joints, notes = motion.notes): FileMotion {
   const rest: Vec3[] = [];
   for (const { parent, offset } of joints) rest.push(parent < 0 ? zero : add(rest[parent]!, offset));
   const { frameCount, frameSeconds } = motion;
   const mended = { ...motion, joints };
   const names = joints.map(({ name }) => name);
+  const parents = joints.map(({ parent }) => parent);
   return {
-    ...{ names, rest, frameCount, notes, rateHz: 1 / frameSeconds },
+    ...{ names, parents, rest, frameCount, notes, rateHz: 1 / frameSeconds },
     pose: (frame, target) => poseBvh(mended, frame, target),
   };
 }

@@ -247,12 +247,19 @@ export function readVrma(description: unknown, binary: Uint8Array): FileMotion {
     if (!isIndex(node) || !nodes[node]) throw new Error(`humanBones.${name} is a node that is not there`);
     return node;
   });
+  const boneOf = new Map(bones.map((node, i) => [node, i]));
+  const above = new Map<number, number>();
+  for (const node of scene.order) {
+    const { parent } = nodes[node]!;
+    above.set(node, boneOf.get(parent) ?? above.get(parent) ?? -1);
+  }
+  const parents = bones.map((node) => above.get(node)!);
   scene.pose(null);
   const rest = scene.write(bones, makeJointPoses(bones.length));
   const back = rest.rotations.map((rotation) => conjugate(rotation));
   const hips = rest.positions[Math.max(0, names.indexOf('hips'))]!;
   return {
-    ...{ names, rateHz, frameCount, notes: [] },
+    ...{ names, parents, rateHz, frameCount, notes: [] },
     rest: rest.positions.map((position) => subtract(position, hips)),
     pose(frame, target) {
       scene.pose(frame / rateHz);

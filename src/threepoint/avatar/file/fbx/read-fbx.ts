@@ -1,0 +1,41 @@
+import { type AnimationClip, type Group, Loader, LoadingManager, Texture } from 'three';
+import { FBXLoader } from 'three/addons/loaders/FBXLoader.js';
+import { reasonOf } from '../../../core/errors/reasons';
+import { glbOfScene, type SceneParts } from './glb-of-scene';
+import { plainFbx } from './inspect-fbx';
+
+/** A loader that only notes where a picture is: decoding is for the reader of the converted file. */
+class PictureAddresses extends Loader<Texture> {
+  override load(url: string): Texture {
+    const texture = new Texture();
+    texture.userData.url = url;
+    return texture;
+  }
+}
+
+/** Returns the picture that a texture of the scene names; null: it lies outside the file. */
+async function embeddedPicture({ userData: { url } }: Texture): Promise<Uint8Array<ArrayBuffer> | null> {
+  if (typeof url !== 'string' || !/^(blob|data):/.test(url)) return null;
+  const picture = await (await fetch(url)).arrayBuffer();
+  URL.revokeObjectURL(url);
+  return new Uint8Array(picture);
+}
+
+/** Reads FBX, binary or text, without a document: in a worker or in Node. */
+function sceneOf(bytes: Uint8Array): Group & { readonly animations: readonly AnimationClip[] } {
+  const manager = new LoadingManager();
+  manager.addHandler(/./, new PictureAddresses(manager));
+  return new FBXLoader(manager).parse(plainFbx(bytes), '');
+}
+
+/**
+ * Converts FBX into a GLB file. Rejects with a sentence that names the file. `parts`: what of the scene is kept, a body
+ * or its motion.
+ */
+export async function glbOfFbx(bytes: Uint8Array, name: string, parts: SceneParts): Promise<ArrayBuffer> {
+  try {
+    return await glbOfScene(sceneOf(bytes), parts, embeddedPicture);
+  } catch (error) {
+    throw new Error(`${name}: cannot be read as FBX (${reasonOf(error)})`);
+  }
+}

@@ -1,0 +1,143 @@
+import type { Side } from '../math/side';
+import type { JointTree } from './joint-tree';
+import type { Part } from './name-votes';
+
+/** The three joints of a limb, by their places in its chain: shoulder, elbow, hand, or hip, knee, foot. */
+export interface Limb {
+  readonly chain: readonly number[];
+  readonly at: readonly [number, number, number];
+  /** How well lengths fit, about 0 to 2. */
+  readonly shape: number;
+  /** How well names fit, from 0 to 1. */
+  readonly names: number;
+}
+
+export type LimbKind = 'arm' | 'leg';
+
+const limbParts: Readonly<Record<LimbKind, readonly [Part, Part, Part]>> = {
+  arm: ['upperArm', 'lowerArm', 'hand'],
+  leg: ['upperLeg', 'lowerLeg', 'foot'],
+};
+
+/** Joints of a chain that are looked at: no limb has as many bones before its hand. */
+const longestChain = 16;
+/** A limb has at least this share of the skeleton's longest chain. */
+const shortestLimb = 0.12;
+/** Pairs that are compared with one another. */
+const mostPairs = 24;
+const mostBranches = 60;
+
+/** The three joints of a chain that are most like a limb of this kind; null: the chain is too short. */
+export function findLimb(tree: JointTree, first: number, kind: LimbKind): Limb | null {
+  const chainOfAll = tree.mainChain(first, longestChain);
+  const fan = chainOfAll.findIndex((joint, i) => i >= 2 && tree.fansOut(joint));
+  const chain = fan < 0 ? chainOfAll : chainOfAll.slice(0, fan + 1);
+  const along = [0];
+  for (const joint of chain.slice(1)) along.push(along.at(-1)! + tree.segments[joint]!);
+  const total = along.at(-1)!;
+  if (chain.length < 3 || !(total > 0)) return null;
+  const votes = limbParts[kind].map((part) => chain.map((joint) => tree.vote(joint, part))) as [
+    number[],
+    number[],
+    number[],
+  ];
+  const helper = chain.map((joint) => (tree.auxiliary[joint] ? 0.3 : 0));
+  // The whole of an arm counts where fingers show its end; a leg has no clavicle before it.
+  const whole = fan >= 0 || kind === 'leg' ? 0.8 : 0.3;
+  const skipped = fan >= 0 ? 0 : kind === 'leg' ? 0.05 : 0.12;
+  let best: Limb | null = null;
+  for (let k = chain.length - 1; k >= 2; k--) {
+    const reached = k === fan ? 0.8 : 0;
+    const loose = tree.joints[chain[k]!]!.end ? 0.5 : 0;
+    for (let j = k - 1; j >= 1; j--) {
+      for (let i = j - 1; i >= 0; i--) {
+        const [near, far] = [along[j]! - along[i]!, along[k]! - along[j]!];
+        if (!(near > 0 && far > 0)) continue;
+        const names = (votes[0][i]! + votes[1][j]! + votes[2][k]!) / 3;
+        const likeness = Math.min(near, far) / Math.max(near, far);
+        const against = skipped * (k - i - 2) + loose + helper[i]! + helper[j]! + helper[k]!;
+        const shape = 1.2 * likeness + (whole * (near + far)) / total + reached - against;
+        if (!best || shape + 4 * names > best.shape + 4 * best.names)
+          best = { chain: chainOfAll, at: [i, j, k], shape, names };
+      }
+    }
+  }
+  return best;
+}
+
+/** Two limbs that mirror each other and leave one joint. */
+export interface LimbPair {
+  readonly root: number;
+  readonly limbs: readonly [Limb, Limb];
+  readonly kind: LimbKind;
+  readonly score: number;
+}
+
+/** The length of a limb from its first to its last named joint, with what lies before. */
+export const limbLength = (tree: JointTree, { chain, at }: Limb): number =>
+  chain.slice(at[0] + 1, at[2] + 1).reduce((sum, joint) => sum + tree.segments[joint]!, 0);
+
+/** How far the lengths of two chains differ, as a share. */
+function difference(tree: JointTree, a: readonly number[], b: readonly number[]): number {
+  const count = Math.min(a.length, b.length);
+  let [apart, total] = [0, 0];
+  for (let i = 0; i < count; i++) {
+    const [one, other] = [tree.segments[a[i]!]!, tree.segments[b[i]!]!];
+    apart += Math.abs(one - other);
+    total += Math.max(one, other);
+  }
+  return total > 0 ? apart / total : 1;
+}
+
+/** The side that most names of a limb state, with how sure they are. */
+export function sideByNames(tree: JointTree, { chain, at }: Limb): Side | null {
+  const votes = chain.slice(0, at[2] + 1).map((joint) => tree.votes[joint]!.side);
+  const [left, right] = [
+    votes.filter((side) => side === 'left').length,
+    votes.filter((side) => side === 'right').length,
+  ];
+  return left === right ? null : left > right ? 'left' : 'right';
+}
+
+function pairOf(
+  tree: JointTree,
+  root: number,
+  [first, second]: readonly [Limb, Limb],
+  kind: LimbKind,
+): LimbPair | null {
+  const [one, other] = [sideByNames(tree, first), sideByNames(tree, second)];
+  const named = one !== null && other !== null && one !== other;
+  if (one !== null && one === other) return null;
+  const apart = difference(tree, first.chain.slice(0, first.at[2] + 1), second.chain.slice(0, second.at[2] + 1));
+  if (apart > (named ? 0.5 : 0.2)) return null;
+  const size = Math.min(limbLength(tree, first), limbLength(tree, second)) / tree.size;
+  if (size < shortestLimb) return null;
+  const score =
+    3 * Math.min(first.names, second.names) +
+    Math.min(first.shape, second.shape) +
+    1 -
+    3 * apart +
+    2 * size +
+    (named ? 0.3 : 0);
+  return { root, limbs: [first, second], kind, score };
+}
+
+/** Pairs of limbs that may be arms or legs, the likeliest first. */
+export function findPairs(tree: JointTree, kind: LimbKind): readonly LimbPair[] {
+  const pairs: LimbPair[] = [];
+  for (const root of tree.order) {
+    const branches = tree.children[root]!.filter(
+      (child) =>
+        tree.segments[child]! + tree.heights[child]! >= shortestLimb * tree.size &&
+        tree.children[child]!.some((next) => tree.children[next]!.length > 0),
+    );
+    if (branches.length < 2) continue;
+    const limbs = branches.slice(0, mostBranches).flatMap((child) => findLimb(tree, child, kind) ?? []);
+    for (const [i, a] of limbs.entries())
+      for (const b of limbs.slice(i + 1)) {
+        const pair = pairOf(tree, root, [a, b], kind);
+        if (pair) pairs.push(pair);
+      }
+  }
+  return pairs.sort((a, b) => b.score - a.score).slice(0, mostPairs);
+}

@@ -1,0 +1,437 @@
+import { otherSide, type Side } from '../math/side';
+import {
+  addScaled,
+  cross,
+  distance,
+  dot,
+  length,
+  lerp,
+  normalise,
+  reject,
+  subtract,
+  type Vec3,
+  zero,
+} from '../math/vec3';
+import { type BoneName, boneNames, neededBones } from './bones';
+import { JointTree, type SkeletonJoint } from './joint-tree';
+import { findPairs, type Limb, type LimbPair, limbLength, sideByNames } from './limb-pairs';
+import { matchFingers } from './match-fingers';
+import type { Part } from './name-votes';
+
+/** The joint of a bone. */
+export interface BoneMatch {
+  /** The index of the joint. */
+  readonly joint: number;
+  /** From 0 (a guess) to 1 (names and structure agree). */
+  readonly confidence: number;
+  /** The reason, as part of a sentence. */
+  readonly reason: string;
+}
+
+/** What was found of a humanoid in a skeleton. */
+export interface HumanoidMatch {
+  readonly map: Readonly<Partial<Record<BoneName, BoneMatch>>>;
+  /** The mean confidence of the needed bones, 0 where one is missing. */
+  readonly confidence: number;
+  /** Needed bones that were not found. */
+  readonly missing: readonly BoneName[];
+  /** What was found, as a sentence. */
+  readonly found: string;
+  /** Assumptions that a user should know, a sentence each. */
+  readonly notes: readonly string[];
+}
+
+/** Below this confidence a skeleton is refused. */
+export const leastConfidence = 0.45;
+
+/** Arms, legs if there are any, and the trunk between them. */
+interface Body {
+  readonly arms: LimbPair;
+  readonly legs: LimbPair | null;
+  /** Hips first, the joint that the arms leave last. */
+  readonly trunk: readonly number[];
+  /** From below the arms' joint to the head and beyond. */
+  readonly above: readonly number[];
+  readonly score: number;
+}
+
+class Matcher {
+  readonly tree: JointTree;
+  readonly map: Partial<Record<BoneName, BoneMatch>> = {};
+  readonly notes: string[] = [];
+
+  constructor(joints: readonly SkeletonJoint[]) {
+    this.tree = new JointTree(joints);
+  }
+
+  match(): HumanoidMatch {
+    if (!this.#takeVrmNames()) {
+      const body = this.#findBody();
+      if (body) this.#takeBody(body);
+      else this.#takeNamesAlone();
+    }
+    const missing = neededBones.filter((bone) => !this.map[bone]);
+    const sure = neededBones.map((bone) => this.map[bone]?.confidence ?? 0);
+    const confidence = missing.length > 0 ? 0 : sure.reduce((sum, each) => sum + each, 0) / sure.length;
+    return { map: this.map, confidence, missing, found: this.#found(), notes: this.notes };
+  }
+
+  /** Takes VRM's own names, which state the map, where all needed bones have them. */
+  #takeVrmNames(): boolean {
+    const byName = new Map<string, number>();
+    for (const i of this.tree.order) {
+      const { name } = this.tree.joints[i]!;
+      if (boneNames.has(name) && !byName.has(name)) byName.set(name, i);
+    }
+    if (!neededBones.every((bone) => byName.has(bone))) return false;
+    for (const [bone, joint] of byName)
+      this.map[bone as BoneName] = { joint, confidence: 1, reason: 'VRM’s name of the bone' };
+    return true;
+  }
+
+  #findBody(): Body | null {
+    const [arms, legs] = [findPairs(this.tree, 'arm'), findPairs(this.tree, 'leg')];
+    let best: Body | null = null;
+    for (const arm of arms) {
+      for (const leg of [...legs, null]) {
+        const body = this.#bodyOf(arm, leg);
+        if (body && (!best || body.score > best.score)) best = body;
+      }
+    }
+    return best;
+  }
+
+  #bodyOf(arms: LimbPair, legs: LimbPair | null): Body | null {
+    const { tree } = this;
+    const armAncestors = tree.ancestors(arms.root);
+    const within = (pair: LimbPair, joint: number): boolean => {
+      const ancestors = new Set(tree.ancestors(joint));
+      return pair.limbs.some(({ chain }) => ancestors.has(chain[0]!));
+    };
+    if (legs && (within(arms, legs.root) || within(legs, arms.root))) return null;
+    if (
+      legs &&
+      legs.root === arms.root &&
+      legs.limbs.some((leg) => arms.limbs.some((arm) => arm.chain[0] === leg.chain[0]))
+    )
+      return null;
+    const trunk = this.#trunk(armAncestors, legs);
+    const limbs = new Set([arms, legs].flatMap((pair) => pair?.limbs.map(({ chain }) => chain[0]!) ?? []));
+    const above = this.#above(arms.root, new Set([...limbs, ...trunk]), trunk);
+    let score = arms.score + (legs ? legs.score : 0.5);
+    if (above.length > 0) score += 1 + Math.max(...above.map((joint) => tree.vote(joint, 'head')));
+    if (trunk.length < 2) score -= 1;
+    score += Math.max(0, ...trunk.map((joint) => tree.vote(joint, 'spine'))) + tree.vote(trunk[0]!, 'hips');
+    if (legs) {
+      if (armAncestors.includes(legs.root) && legs.root !== arms.root) score += 0.6;
+      const share = limbLength(tree, legs.limbs[0]) / limbLength(tree, arms.limbs[0]);
+      if (share > 0.6 && share < 2.5) score += 0.4;
+      score += 0.5 * this.#legsBelow(legs, arms);
+    }
+    return { arms, legs, trunk, above, score };
+  }
+
+  /** From the hips to the joint that the arms leave. */
+  #trunk(armAncestors: readonly number[], legs: LimbPair | null): readonly number[] {
+    const { tree } = this;
+    const down = [...armAncestors].reverse();
+    const legAncestors = legs ? tree.ancestors(legs.root) : [];
+    if (!legs) {
+      const named = down.findIndex((joint) => tree.vote(joint, 'hips') > 0.5);
+      const first = down.findIndex((joint, i) => i > 0 && tree.segments[joint]! > 0.02 * tree.size) - 1;
+      return down.slice(named >= 0 ? named : Math.max(0, first));
+    }
+    const shared = legAncestors.find((joint) => armAncestors.includes(joint));
+    if (shared === undefined) return [legs.root, ...down];
+    const from = down.indexOf(shared);
+    // Hips that hang under the spine leave the shared joint to the spine.
+    if (shared === armAncestors[0] && legs.root !== shared) return [legs.root, shared];
+    const candidates = legAncestors.slice(0, legAncestors.indexOf(shared) + 1);
+    const hips = candidates.reduce((a, b) => (tree.vote(b, 'hips') >= tree.vote(a, 'hips') ? b : a));
+    return hips === shared || tree.vote(shared, 'spine') < 0.5 ? down.slice(from) : [hips, ...down.slice(from)];
+  }
+
+  /** How far the legs at rest point away from the trunk: 1 opposite, −1 along it. */
+  #legsBelow(legs: LimbPair, arms: LimbPair): number {
+    const { tree } = this;
+    const trunk = subtract(tree.position(arms.root), tree.position(legs.root));
+    const ways = legs.limbs.map(({ chain, at }) =>
+      normalise(subtract(tree.position(chain[at[2]]!), tree.position(chain[at[0]]!)), zero),
+    );
+    return ways.reduce((sum, way) => sum - dot(way, normalise(trunk, zero)) / 2, 0);
+  }
+
+  /** The chain from the arms' joint to the head, without what belongs to limbs and trunk. */
+  #above(root: number, taken: ReadonlySet<number>, trunk: readonly number[]): readonly number[] {
+    const { tree } = this;
+    const trunkWay = normalise(subtract(tree.position(root), tree.position(trunk[0]!)), zero);
+    const branches = tree.children[root]!.filter((child) => !taken.has(child));
+    let best: readonly number[] = [];
+    let most = 0;
+    for (const child of branches) {
+      const chain = this.#headChain(child);
+      const named = Math.max(...chain.map((joint) => Math.max(tree.vote(joint, 'head'), tree.vote(joint, 'neck'))));
+      const way = normalise(subtract(tree.position(chain.at(-1)!), tree.position(root)), zero);
+      const own = (tree.segments[child]! + tree.heights[child]!) / tree.size;
+      const score = 3 * named + dot(way, trunkWay) + Math.min(own, 0.3) + (chain.length > 1 ? 0.3 : 0) + 0.5;
+      if (score > most && !(tree.auxiliary[child] && named === 0)) [best, most] = [chain, score];
+    }
+    return best;
+  }
+
+  /** From a joint to the named head, else along the main chain. */
+  #headChain(child: number): readonly number[] {
+    const { tree } = this;
+    const below = tree.below(child);
+    const head = below.reduce((a, b) => (tree.vote(b, 'head') > tree.vote(a, 'head') ? b : a), child);
+    if (tree.vote(head, 'head') > 0.5) {
+      const ancestors = tree.ancestors(head);
+      return ancestors.slice(0, ancestors.indexOf(child) + 1).reverse();
+    }
+    return tree.mainChain(child, 12);
+  }
+
+  #takeBody(body: Body): void {
+    this.#takeTrunk(body);
+    const [legSides, armSides] = this.#sides(body);
+    for (const [i, limb] of body.arms.limbs.entries()) this.#takeArm(armSides[i]!, limb);
+    for (const [i, limb] of body.legs?.limbs.entries() ?? []) this.#takeLeg(legSides[i]!, limb);
+    this.#takeFace();
+  }
+
+  /** Adds a bone with the confidence that its name gives to what the structure shows. */
+  #take(bone: BoneName, joint: number, part: Part, structure: string): void {
+    const { tree } = this;
+    const { parts } = tree.votes[joint]!;
+    const vote = tree.vote(joint, part);
+    const others = Math.max(0, ...Object.entries(parts).map(([other, value]) => (other === part ? 0 : value)));
+    const confidence = vote > 0.4 ? 0.75 + 0.25 * vote : others > 0.7 ? 0.45 : 0.65;
+    const reason =
+      vote > 0.4 ? `${structure}; its name fits` : others > 0.7 ? `${structure}, against its name` : structure;
+    this.map[bone] = { joint, confidence, reason };
+  }
+
+  #takeTrunk({ trunk, above, arms }: Body): void {
+    const { tree } = this;
+    // Some programs let the clavicles hang under the neck.
+    const spines = trunk.slice(1);
+    const collared = spines.length > 1 && this.#isNeck(arms, trunk);
+    const head = this.#headAt(above, collared ? 0 : 1);
+    const necks = above.slice(0, Math.max(0, head));
+    if (necks.length === 0 && collared) necks.push(spines.pop()!);
+    const span = distance(tree.position(trunk[0]!), tree.position(arms.root));
+    const apart = spines.filter((joint, i) => {
+      const before = i > 0 ? spines[i - 1]! : trunk[0]!;
+      return distance(tree.position(joint), tree.position(before)) > 0.01 * span;
+    });
+    this.#take('hips', trunk[0]!, 'hips', 'legs and spine meet in it');
+    const [spine, chest, upperChest] = spread(apart.length > 0 ? apart : spines);
+    if (spine !== undefined) this.#take('spine', spine, 'spine', 'the first joint above the hips');
+    if (chest !== undefined) this.#take('chest', chest, 'spine', 'in the middle of the spine');
+    if (upperChest !== undefined) this.#take('upperChest', upperChest, 'spine', 'the arms leave it');
+    if (necks[0] !== undefined) this.#take('neck', necks[0], 'neck', 'between the arms and the head');
+    if (above[head] !== undefined) this.#take('head', above[head], 'head', 'ends the trunk upward');
+  }
+
+  /** Whether the joint that the arms leave is a neck: by its name, or because it lies above the shoulders. */
+  #isNeck(arms: LimbPair, trunk: readonly number[]): boolean {
+    const { tree } = this;
+    if (tree.vote(arms.root, 'neck') > 0.5) return true;
+    if (tree.vote(arms.root, 'spine') > 0.5) return false;
+    const [one, other] = arms.limbs.map(({ chain, at }) => tree.position(chain[at[0]]!)) as [Vec3, Vec3];
+    const trunkLine = subtract(tree.position(arms.root), tree.position(trunk[0]!));
+    const above = dot(subtract(tree.position(arms.root), lerp(one, other, 0.5)), normalise(trunkLine, zero));
+    return above > 0.03 * length(trunkLine);
+  }
+
+  /**
+   * The place of the head in the chain above the arms; −1: there is none. `least`: the first place that may be a head
+   * where the chain is longer.
+   */
+  #headAt(above: readonly number[], least: number): number {
+    const { tree } = this;
+    const named = above.findIndex((joint) => tree.vote(joint, 'head') > 0.5);
+    if (named >= 0 || above.length === 0) return named;
+    const fan = above.findIndex((joint) => tree.children[joint]!.length > 1);
+    const ends = above.findIndex((joint) => tree.joints[joint]!.end || tree.auxiliary[joint]);
+    const last = ends > 0 ? ends - 1 : above.length - 1;
+    if (fan >= least && fan <= last) return fan;
+    if (ends > 0 || last === 0) return last;
+    // A bone that is longer than the neck's bones ends at the top of the head, or is hair.
+    let head = last;
+    while (head > least && tree.segments[above[head]!]! > 1.3 * tree.segments[above[head - 1]!]!) head -= 1;
+    return head;
+  }
+
+  /** The sides of legs and arms, in the order of their limbs. */
+  #sides({ arms, legs, trunk }: Body): readonly [readonly Side[], readonly Side[]] {
+    const { tree } = this;
+    const pairs = [legs, arms];
+    const toLeft = this.#leftOf(trunk, arms, legs);
+    const found = pairs.map((pair) => {
+      if (!pair) return { named: null, placed: null };
+      const [one, other] = pair.limbs.map((limb) => sideByNames(tree, limb));
+      const named = one ?? (other ? otherSide(other!) : null);
+      const [a, b] = pair.limbs.map((limb) => this.#middle(limb));
+      const apart = toLeft ? dot(subtract(a!, b!), toLeft.axis) : 0;
+      const clear = Math.abs(apart) > 0.3 * distance(a!, b!) && distance(a!, b!) > 0.02 * tree.size;
+      const placed: Side | null = clear ? (apart > 0 ? 'left' : 'right') : null;
+      return { named, placed };
+    });
+    const against = found.map(({ named, placed }) => named !== null && placed !== null && named !== placed);
+    const disagree = against[0] !== against[1] && legs !== null && found.every(({ named, placed }) => named && placed);
+    // Toes show the front; without them a file that is consistent keeps its names.
+    const byPlace = against.some(Boolean) && (toLeft?.byToes === true || disagree);
+    if (byPlace) {
+      const which = disagree ? (against[0] ? 'legs' : 'arms') : 'both arms and legs';
+      this.notes.push(
+        `the names of left and right are exchanged on its ${which}: the positions of the joints were followed`,
+      );
+    }
+    return found.map(({ named, placed }) => {
+      const first = (byPlace ? (placed ?? named) : (named ?? placed)) ?? 'left';
+      return [first, otherSide(first)];
+    }) as unknown as readonly [readonly Side[], readonly Side[]];
+  }
+
+  #middle({ chain, at }: Limb): Vec3 {
+    return lerp(this.tree.position(chain[at[0]]!), this.tree.position(chain[at[2]]!), 0.5);
+  }
+
+  /** The direction to the left of a skeleton that stands at rest; null: it does not stand. */
+  #leftOf(trunk: readonly number[], arms: LimbPair, legs: LimbPair | null) {
+    const { tree } = this;
+    const up = subtract(tree.position(arms.root), tree.position(trunk[0]!));
+    if (!(length(up) > 0) || (legs && this.#legsBelow(legs, arms) < 0.5)) return null;
+    const upward = normalise(up, zero);
+    const front = { x: 0, y: 0, z: 0 };
+    let [reach, known] = [0, 0];
+    for (const { chain, at } of legs?.limbs ?? []) {
+      const [foot, toes] = [chain[at[2]]!, chain[at[2] + 1]];
+      reach = Math.max(reach, limbLength(tree, { chain, at } as Limb));
+      if (toes === undefined) continue;
+      const way = reject(subtract(tree.position(toes), tree.position(foot)), upward);
+      if (length(way) > 0.06 * reach) known += 1;
+      addScaled(front, way, 1, front);
+    }
+    const byToes = known === 2 && length(front) > 0.12 * reach;
+    const standing = Math.abs(upward.y) > 0.8 ? { x: 0, y: 0, z: 1 } : { x: 0, y: -1, z: 0 };
+    const ahead = byToes ? front : reject(standing, upward);
+    return length(ahead) > 0 ? { axis: normalise(cross(upward, ahead), zero), byToes } : null;
+  }
+
+  #takeArm(side: Side, limb: Limb): void {
+    const { tree } = this;
+    const { chain, at } = limb;
+    const [shoulder, elbow, hand] = at.map((i) => chain[i]!) as [number, number, number];
+    this.#take(`${side}UpperArm`, shoulder, 'upperArm', 'begins the upper of two long bones that leave the spine');
+    this.#take(`${side}LowerArm`, elbow, 'lowerArm', 'between shoulder and hand');
+    this.#take(
+      `${side}Hand`,
+      hand,
+      'hand',
+      tree.fansOut(hand) ? 'fingers leave it' : 'ends the two long bones of the arm',
+    );
+    const before = chain.slice(0, at[0]);
+    const clavicle = before.find((joint) => tree.vote(joint, 'shoulder') > 0.5) ?? before[0];
+    if (clavicle !== undefined) this.#take(`${side}Shoulder`, clavicle, 'shoulder', 'between spine and upper arm');
+    for (const { bone, joint, reason, confidence } of matchFingers(tree, hand))
+      this.map[`${side}${bone}` as BoneName] = { joint, reason, confidence };
+  }
+
+  #takeLeg(side: Side, { chain, at }: Limb): void {
+    const { tree } = this;
+    const [hip, knee, foot] = at.map((i) => chain[i]!) as [number, number, number];
+    this.#take(`${side}UpperLeg`, hip, 'upperLeg', 'begins the upper of two long bones that leave the hips');
+    this.#take(`${side}LowerLeg`, knee, 'lowerLeg', 'between hip and foot');
+    // Feet of some rigs follow a control and are no children of the shin.
+    const loose = tree.vote(foot, 'foot') > 0.4 ? -1 : this.#named(side, 'foot');
+    this.#take(
+      `${side}Foot`,
+      loose >= 0 ? loose : foot,
+      'foot',
+      loose >= 0 ? 'beside the leg' : 'ends the two long bones of the leg',
+    );
+    const toes =
+      loose >= 0
+        ? undefined
+        : (tree.children[foot]!.find((joint) => tree.vote(joint, 'toes') > 0.5) ?? chain[at[2] + 1]);
+    if (toes !== undefined && !tree.joints[toes]!.end && !tree.auxiliary[toes])
+      this.#take(`${side}Toes`, toes, 'toes', 'follows the foot');
+  }
+
+  /** The first joint that names a part of a side; −1: there is none. */
+  #named(side: Side | null, part: Part): number {
+    const { tree } = this;
+    return tree.order.find((i) => tree.votes[i]!.side === side && tree.vote(i, part) > 0.5) ?? -1;
+  }
+
+  /** Takes eyes and jaw, which names alone show. */
+  #takeFace(): void {
+    const head = this.map.head?.joint;
+    if (head === undefined) return;
+    const below = new Set(this.tree.below(head));
+    for (const [bone, side, part] of [
+      ['leftEye', 'left', 'eye'],
+      ['rightEye', 'right', 'eye'],
+      ['jaw', null, 'jaw'],
+    ] as const) {
+      const joint = this.#named(side, part);
+      if (below.has(joint)) this.map[bone] = { joint, confidence: 0.8, reason: 'its name, below the head' };
+    }
+  }
+
+  /** Takes what names alone show of a skeleton that is no humanoid by its structure: a start for a map by hand. */
+  #takeNamesAlone(): void {
+    const guess = (bone: BoneName, side: Side | null, part: Part) => {
+      const joint = this.#named(side, part);
+      if (joint >= 0) this.map[bone] = { joint, confidence: 0.3, reason: 'its name alone' };
+    };
+    for (const part of ['hips', 'spine', 'neck', 'head'] as const) guess(part, null, part);
+    for (const side of ['left', 'right'] as const) {
+      for (const [bone, part] of [
+        ['Shoulder', 'shoulder'],
+        ['UpperArm', 'upperArm'],
+        ['LowerArm', 'lowerArm'],
+        ['Hand', 'hand'],
+        ['UpperLeg', 'upperLeg'],
+        ['LowerLeg', 'lowerLeg'],
+        ['Foot', 'foot'],
+      ] as const)
+        guess(`${side}${bone}`, side, part);
+    }
+  }
+
+  #found(): string {
+    const has = Object.entries(this.map).map(([bone, { joint }]) => `${bone} (${this.tree.joints[joint]!.name})`);
+    if (has.length === 0) return `none of its ${this.tree.joints.length} joints is part of a humanoid`;
+    const some = has.slice(0, 6).join(', ');
+    return `found ${some}${has.length > 6 ? ` and ${has.length - 6} more` : ''}`;
+  }
+}
+
+/** Chooses spine, chest and upper chest of the joints of a spine. */
+function spread(spines: readonly number[]): readonly (number | undefined)[] {
+  if (spines.length <= 3) return spines;
+  return [spines[0], spines[spines.length >> 1], spines.at(-1)];
+}
+
+/**
+ * Finds the humanoid in a skeleton at rest. The tree, its lengths and its symmetry decide; names are evidence. A rest
+ * pose that is folded does no harm.
+ *
+ * @example
+ * const match = matchHumanoid(joints);
+ * const complaint = humanoidComplaint(match);
+ * if (complaint) throw new Error(complaint);
+ * const hips = joints[match.map.hips!.joint];
+ */
+export const matchHumanoid = (joints: readonly SkeletonJoint[]): HumanoidMatch => new Matcher(joints).match();
+
+/** Returns why a skeleton is refused, as a sentence with what was found and what is missing; null: it is taken. */
+export function humanoidComplaint({ missing, confidence, found }: HumanoidMatch): string | null {
+  if (missing.length > 0) return `its bones could not be matched to a humanoid: ${found}; no ${missing.join(', no ')}`;
+  return confidence < leastConfidence
+    ? `its bones could not be matched to a humanoid with confidence: ${found}, against their names`
+    : null;
+}

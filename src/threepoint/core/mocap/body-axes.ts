@@ -1,0 +1,196 @@
+import { angleBetween, conjugate, fromAxes, fromAxisAngle, multiply, type Quat, quat, rotate } from '../math/quat';
+import {
+  cross,
+  distance,
+  dot,
+  down,
+  length,
+  normalise,
+  reject,
+  right,
+  scale,
+  subtract,
+  type Vec3,
+  zero,
+} from '../math/vec3';
+import { type FileMotion, makeJointPoses } from '../motion/file-motion';
+import { directions } from './read-skeleton-map';
+import type { FileAxis } from './skeleton-map';
+
+/** The joints of a file by their index that show how a body stands; −1: the file has no such joint. */
+export interface StandingJoints {
+  readonly hips: number;
+  readonly neck: number;
+  readonly upperArms: readonly [number, number];
+  readonly upperLegs: readonly [number, number];
+  readonly feet: readonly [number, number];
+  readonly toes: readonly [number, number];
+}
+
+/** A body at rest leans or slouches less than this [rad]: more is another pose. */
+const mostLean = 0.6;
+/** The cosine to the vertical above which a trunk stands. */
+const standing = 0.7;
+/** Frames that are looked at to find how a clip stands. */
+const mostSamples = 300;
+
+const axisNames = Object.keys(directions) as FileAxis[];
+
+/** The rotation to the floor frame of a file in which these axes point up and ahead. */
+export const floorFromAxes = (above: Vec3, ahead: Vec3): Quat =>
+  conjugate(fromAxes(cross(ahead, above), above, scale(ahead, -1)));
+
+/** All rotations that take axes to axes, with the names of up and ahead. */
+const rightAngles = axisNames.flatMap((above) =>
+  axisNames
+    .filter((ahead) => above[1] !== ahead[1])
+    .map((ahead) => ({ above, ahead, turn: floorFromAxes(directions[above], directions[ahead]) })),
+);
+
+const nearestAxis = (way: Vec3): Vec3 =>
+  axisNames.map((axis) => directions[axis]).reduce((a, b) => (dot(b, way) > dot(a, way) ? b : a));
+
+/** The rotation that takes a body at rest to the floor frame, where it stands and faces −Z. */
+export interface BodyAxes {
+  readonly turn: Quat;
+  /** The file's axes that point up and ahead; null: no axes do. */
+  readonly axes: { readonly above: FileAxis; readonly ahead: FileAxis } | null;
+}
+
+/**
+ * How the trunk of a body stands at rest; null: left and right lie on each other. `turned`: the body may face anywhere,
+ * as in a frame of a motion.
+ */
+export function axesOfTrunk(rest: readonly Vec3[], joints: StandingJoints, turned = false): BodyAxes | null {
+  const above = normalise(subtract(rest[joints.neck]!, rest[joints.hips]!), zero);
+  const size = distance(rest[joints.neck]!, rest[joints.hips]!);
+  for (const [left, other] of [joints.upperLegs, joints.upperArms]) {
+    if (left < 0 || other < 0) continue;
+    const across = reject(subtract(rest[other]!, rest[left]!), above);
+    if (!(length(across) > 0.05 * size)) continue;
+    const vertical = nearestAxis(above);
+    if (turned) {
+      const upward = dot(vertical, above) > Math.cos(mostLean) ? vertical : above;
+      const level = normalise(reject(across, upward), zero);
+      return { turn: floorFromAxes(upward, cross(upward, level)), axes: null };
+    }
+    const exact = floorFromAxes(above, cross(above, normalise(across, zero)));
+    const nearest = rightAngles.reduce((a, b) => (angleBetween(b.turn, exact) < angleBetween(a.turn, exact) ? b : a));
+    return angleBetween(nearest.turn, exact) < mostLean
+      ? { turn: nearest.turn, axes: { above: nearest.above, ahead: nearest.ahead } }
+      : { turn: exact, axes: null };
+  }
+  return null;
+}
+
+/** The direction of the trunk. */
+export const trunkWay = (positions: readonly Vec3[], { hips, neck }: StandingJoints): Vec3 =>
+  normalise(subtract(positions[neck]!, positions[hips]!), zero);
+
+/** Yields some frames of a clip, evenly. */
+export function* sampledFrames(frameCount: number, most = mostSamples): Generator<number> {
+  const step = Math.max(1, Math.ceil(frameCount / most));
+  for (let frame = 0; frame < frameCount; frame += step) yield frame;
+}
+
+const median = (values: readonly number[]): number =>
+  [...values].sort((a, b) => a - b)[values.length >> 1] ?? Number.NaN;
+
+/** What a clip shows of its vertical, in floor axes of its rest pose. */
+interface Stance {
+  /** The share of frames in which the trunk stands along an axis. */
+  readonly shares: Readonly<Record<FileAxis, number>>;
+  /** The median of the lowest joint along an axis, as a share of the trunk's length. */
+  readonly lowest: Readonly<Record<FileAxis, number>>;
+}
+
+function stanceOf(file: FileMotion, floor: Quat, joints: StandingJoints): Stance {
+  const poses = makeJointPoses(file.names.length);
+  const shares = Object.fromEntries(axisNames.map((axis) => [axis, 0])) as Record<FileAxis, number>;
+  const lows = Object.fromEntries(axisNames.map((axis) => [axis, [] as number[]])) as Record<FileAxis, number[]>;
+  const bodies = [joints.hips, joints.neck, ...joints.upperArms, ...joints.upperLegs, ...joints.feet].filter(
+    (i) => i >= 0,
+  );
+  let count = 0;
+  for (const frame of sampledFrames(file.frameCount)) {
+    file.pose(frame, poses);
+    count += 1;
+    const at = (joint: number): Vec3 => rotate(floor, poses.positions[joint]!);
+    const trunk = subtract(at(joints.neck), at(joints.hips));
+    const size = length(trunk);
+    const way = normalise(trunk, zero);
+    const legs = joints.feet.filter((i) => i >= 0).map((foot) => normalise(subtract(at(foot), at(joints.hips)), zero));
+    for (const axis of axisNames) {
+      const above = directions[axis];
+      if (dot(way, above) > standing && legs.every((leg) => dot(leg, above) < 0)) shares[axis] += 1;
+      lows[axis].push(Math.min(...bodies.map((joint) => dot(at(joint), above))) / size);
+    }
+  }
+  for (const axis of axisNames) shares[axis] /= count;
+  const lowest = Object.fromEntries(axisNames.map((axis) => [axis, median(lows[axis])])) as Record<FileAxis, number>;
+  return { shares, lowest };
+}
+
+/**
+ * The axis, in floor axes of the rest pose, along which a clip stands where that is not up: its trunk lies in most
+ * frames and would stand by this axis. null: up is up. A body that lies on the floor, whose feet are not on the other
+ * one, lies.
+ */
+export function otherUp(file: FileMotion, floor: Quat, joints: StandingJoints): FileAxis | null {
+  const { shares, lowest } = stanceOf(file, floor, joints);
+  const best = axisNames.reduce((a, b) => (shares[b] > shares[a] ? b : a));
+  if (best === '+y' || shares[best] <= 0.5 || shares['+y'] >= 0.5) return null;
+  const liesOnFloor = Math.abs(lowest['+y']) < 0.4;
+  const standsOnOther = Math.abs(lowest[best]) < 0.5;
+  return liesOnFloor && !standsOnOther ? null : best;
+}
+
+/** The rotation by right angles that takes an axis to another one. */
+export function turnBetween(from: FileAxis, to: FileAxis): Quat {
+  const [before, after] = [directions[from], directions[to]];
+  const cosine = dot(before, after);
+  if (cosine > 0.5) return quat(0, 0, 0, 1);
+  const about = cosine < -0.5 ? directions[from[1] === 'z' ? '+x' : '+z'] : cross(before, after);
+  return fromAxisAngle(about, cosine < -0.5 ? Math.PI : Math.PI / 2);
+}
+
+/** Whether toes point back in most frames: left and right are exchanged. null: no toes show it. */
+export function facesBack(file: FileMotion, joints: StandingJoints): boolean | null {
+  const [leftHip, rightHip] = joints.upperLegs;
+  if ([leftHip, rightHip, ...joints.feet, ...joints.toes].some((i) => i < 0)) return null;
+  const poses = makeJointPoses(file.names.length);
+  let [back, clear] = [0, 0];
+  for (const frame of sampledFrames(file.frameCount, 100)) {
+    const { positions } = file.pose(frame, poses);
+    const above = subtract(positions[joints.neck]!, positions[joints.hips]!);
+    const ahead = cross(above, subtract(positions[rightHip]!, positions[leftHip]!));
+    for (const side of [0, 1] as const) {
+      const foot = subtract(positions[joints.toes[side]]!, positions[joints.feet[side]]!);
+      const cosine = dot(normalise(foot, zero), normalise(ahead, zero));
+      if (Math.abs(cosine) < 0.5) continue;
+      clear += 1;
+      if (cosine < 0) back += 1;
+    }
+  }
+  return clear === 0 ? null : back > 0.8 * clear;
+}
+
+/** The direction out of the body to a side, in a file's axes. */
+export const outward = (floor: Quat, side: 'left' | 'right'): Vec3 =>
+  rotate(conjugate(floor), scale(right, side === 'left' ? -1 : 1));
+
+/** Down in a file's axes. */
+export const downward = (floor: Quat): Vec3 => rotate(conjugate(floor), down);
+
+/** The rotation to the floor frame of a file with +Y up whose people face +Z. */
+export const usualFloor = floorFromAxes(directions['+y'], directions['+z']);
+
+/** The rotation from a file's axes to the floor where another axis of the rest's floor points up. */
+export const floorOfMotion = (floor: Quat, axis: FileAxis | null): Quat =>
+  axis === null ? floor : multiply(turnBetween(axis, '+y'), floor, quat(0, 0, 0, 1));
+
+/** The name of the file's axis that an axis of the floor is nearest to. */
+export function axisIn(floor: Quat, axis: FileAxis): FileAxis {
+  const way = rotate(conjugate(floor), directions[axis]);
+  return axisNames.reduce((a, b) => (dot(directions[b], way) > dot(directions[a], way) ? b : a));
+}

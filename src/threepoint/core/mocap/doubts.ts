@@ -1,0 +1,44 @@
+import { sides } from '../math/side';
+import { cross, dot, length, lerp, normalise, subtract, up, type Vec3, vec3, zero } from '../math/vec3';
+import { sampledFrames } from './body-axes';
+import { type OurMotion, positionsWidth } from './our-joints';
+import { type TruthJoint, truthJoints } from './skeleton-map';
+
+/** A pelvis is further than this [m] off the middle of the feet in no motion for long. */
+const furthestPelvis = 0.5;
+/** Elbows lie further than this [m] behind the shoulders, when they are behind the back. */
+const behindBack = 0.1;
+
+const median = (values: readonly number[]): number => [...values].sort((a, b) => a - b)[values.length >> 1] ?? 0;
+
+/** What cannot be right of a motion, a sentence each: figures that are measured on it are worth little. */
+export function doubtsOf({ positions, rest, frameCount }: OurMotion): readonly string[] {
+  const doubts: string[] = [];
+  const pelvis: number[] = [];
+  let [frames, behind, lying] = [0, 0, 0];
+  for (const frame of sampledFrames(frameCount)) {
+    frames += 1;
+    const at = (joint: TruthJoint): Vec3 => {
+      const i = frame * positionsWidth + 3 * truthJoints.indexOf(joint);
+      return vec3(positions[i]!, positions[i + 1]!, positions[i + 2]!);
+    };
+    const hips = at('hips');
+    const trunk = normalise(subtract(at('neck'), hips), zero);
+    if (dot(trunk, up) < 0.5) lying += 1;
+    else if (rest.has('leftFoot') && rest.has('rightFoot')) {
+      const middle = lerp(at('leftFoot'), at('rightFoot'), 0.5);
+      pelvis.push(length({ ...subtract(hips, middle), y: 0 }));
+    }
+    const ahead = normalise(cross(trunk, subtract(at('rightUpperArm'), at('leftUpperArm'))), zero);
+    const back = sides.every(
+      (side) => dot(subtract(at(`${side}LowerArm`), at(`${side}UpperArm`)), ahead) < -behindBack,
+    );
+    if (back) behind += 1;
+  }
+  const off = median(pelvis);
+  if (pelvis.length > frames / 2 && off > furthestPelvis)
+    doubts.push(`this cannot be right: the pelvis is ${Math.round(100 * off)} cm off the middle of the feet`);
+  if (behind > 0.6 * frames) doubts.push('this cannot be right: both elbows are behind the back in most frames');
+  if (lying > 0.5 * frames) doubts.push('the trunk lies in most frames');
+  return doubts;
+}

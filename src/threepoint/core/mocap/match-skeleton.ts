@@ -1,0 +1,228 @@
+import type { BoneName } from '../humanoid/bones';
+import { type HumanoidMatch, humanoidComplaint, matchHumanoid } from '../humanoid/match-humanoid';
+import { type Side, sides } from '../math/side';
+import { dot, normalise, subtract, type Vec3, zero } from '../math/vec3';
+import { type FileMotion, type JointPoses, makeJointPoses } from '../motion/file-motion';
+import {
+  axesOfTrunk,
+  axisIn,
+  type BodyAxes,
+  downward,
+  facesBack,
+  floorOfMotion,
+  otherUp,
+  outward,
+  type StandingJoints,
+  turnBetween,
+  usualFloor,
+} from './body-axes';
+import { handsOfCmuconvert } from './cmuconvert';
+import { countedFrom } from './mapped-motion';
+import { type MappedSkeleton, type TruthJoint, trackedJoints, truthJoints } from './skeleton-map';
+import { type Limbs, straightRest } from './straight-rest';
+import { axisOfRoot, withTurnedRest } from './turned-rest';
+
+/** A joint above this share of the trunk is a chest, below it a spine. */
+const chestShare = 0.33;
+
+/** A motion with the skeleton that was found in it. */
+export interface MatchedMotion {
+  /** The motion relative to a rest that is a T-pose, or arms between level and hanging. */
+  readonly file: FileMotion;
+  readonly skeleton: MappedSkeleton;
+  /** What was assumed, a sentence each. */
+  readonly notes: readonly string[];
+}
+
+type Joints = Partial<Record<TruthJoint, number>>;
+
+/** Joints by the match, VRM's bones being those of the truth; `between` holds the joints that the file lacks. */
+function jointsOf(match: HumanoidMatch, file: FileMotion) {
+  const notes: string[] = [];
+  const joints: Joints = {};
+  for (const joint of truthJoints) {
+    const found = match.map[joint satisfies BoneName];
+    if (found) joints[joint] = found.joint;
+  }
+  const between: MappedSkeleton['between'] = {};
+  const upperChest = match.map.upperChest?.joint;
+  if (joints.neck === undefined) {
+    Object.assign(between, { neck: { near: ['leftUpperArm', 'rightUpperArm'], far: ['head'], share: 0.25 } });
+    notes.push('it has no neck; one between shoulders and head is assumed');
+  }
+  if (joints.chest === undefined && upperChest !== undefined) joints.chest = upperChest;
+  if (joints.chest === undefined && shareOfTrunk(file.rest, joints) > chestShare) {
+    joints.chest = joints.spine!;
+    delete joints.spine;
+  }
+  if (joints.chest === undefined) {
+    Object.assign(between, { chest: { near: ['spine'], far: ['neck'], share: 0.5 } });
+    notes.push('it has no chest; one in the middle of spine and neck is assumed');
+  }
+  if (joints.spine === undefined) Object.assign(between, { spine: { near: ['hips'], far: ['chest'], share: 0.5 } });
+  return { joints, between, notes };
+}
+
+/** How far up the trunk the spine's only joint lies. */
+function shareOfTrunk(rest: readonly Vec3[], { hips, spine, neck, leftUpperArm }: Joints): number {
+  const [low, at, top] = [hips, spine, neck ?? leftUpperArm].map((joint) => rest[joint!]!) as [Vec3, Vec3, Vec3];
+  const trunk = subtract(top, low);
+  return dot(subtract(at, low), trunk) / (dot(trunk, trunk) || 1);
+}
+
+function standingJoints(joints: Joints, match: HumanoidMatch): StandingJoints {
+  const pair = (part: 'UpperArm' | 'UpperLeg' | 'Foot' | 'Toes'): [number, number] => [
+    joints[`left${part}`] ?? -1,
+    joints[`right${part}`] ?? -1,
+  ];
+  return {
+    hips: joints.hips!,
+    neck: joints.neck ?? match.map.head!.joint,
+    ...{ upperArms: pair('UpperArm'), upperLegs: pair('UpperLeg'), feet: pair('Foot'), toes: pair('Toes') },
+  };
+}
+
+function limbsOf(joints: Joints, match: HumanoidMatch): Limbs {
+  const at = (joint: TruthJoint): number => joints[joint] ?? -1;
+  const each = (limb: (side: Side) => readonly number[]) => ({ left: limb('left'), right: limb('right') });
+  return {
+    arms: each((side) => [
+      match.map[`${side}Shoulder`]?.joint ?? -1,
+      ...(['UpperArm', 'LowerArm', 'Hand'] as const).map((part) => at(`${side}${part}`)),
+    ]),
+    legs: each((side) => (['UpperLeg', 'LowerLeg', 'Foot'] as const).map((part) => at(`${side}${part}`))),
+  };
+}
+
+/** Whether arms at rest are straight and between level and hanging, and legs point down. */
+function restsAsPerson(rest: readonly Vec3[], { arms, legs }: Limbs, { turn }: BodyAxes): boolean {
+  const down = downward(turn);
+  const way = (from: number, to: number): Vec3 => normalise(subtract(rest[to]!, rest[from]!), zero);
+  return sides.every((side) => {
+    const [, shoulder, elbow, hand] = arms[side] as readonly [number, number, number, number];
+    const arm = way(shoulder, hand);
+    if (dot(arm, down) < -0.5 || dot(arm, outward(turn, side)) < -0.3) return false;
+    if (dot(way(shoulder, elbow), way(elbow, hand)) < 0) return false;
+    const [hip, knee, foot] = legs[side] as readonly [number, number, number];
+    return hip < 0 || knee < 0 || foot < 0 || dot(way(hip, foot), down) > 0.7;
+  });
+}
+
+/** Exchanges left and right. */
+function exchanged(joints: Joints): Joints {
+  const other = (joint: string): TruthJoint =>
+    joint.replace(/^(left|right)/, (side) => (side === 'left' ? 'right' : 'left')) as TruthJoint;
+  return Object.fromEntries(Object.entries(joints).map(([joint, at]) => [other(joint), at]));
+}
+
+/** Returns the pose of the first frame where a person stands in T-pose there; null: there is none. */
+function firstFrame(file: FileMotion, joints: StandingJoints, limbs: Limbs): JointPoses | null {
+  const pose = file.pose(0, makeJointPoses(file.names.length));
+  const axes = axesOfTrunk(pose.positions, joints, true);
+  if (!axes || !restsAsPerson(pose.positions, limbs, axes)) return null;
+  const level = sides.every((side) => {
+    const [, shoulder, elbow, hand] = limbs.arms[side] as readonly [number, number, number, number];
+    const out = outward(axes.turn, side);
+    const bones = [[shoulder, elbow], [elbow, hand]] as const; // biome-ignore format: one thought
+    return bones.every(
+      ([from, to]) => dot(normalise(subtract(pose.positions[to]!, pose.positions[from]!), zero), out) > 0.95,
+    );
+  });
+  return level ? pose : null;
+}
+
+/**
+ * Finds the skeleton of a person in a motion: which joint is which, how the body rests, and which way is up. Throws a
+ * sentence with what was found and what is missing.
+ */
+export function matchSkeleton(file: FileMotion): MatchedMotion {
+  const parents = file.parents!;
+  const match = matchHumanoid(
+    file.rest.map((position, i) => ({
+      ...{ name: file.names[i]!, parent: parents[i]!, position },
+      ...(file.names[i]!.endsWith(':end') && { end: true }),
+    })),
+  );
+  const complaint = humanoidComplaint(match);
+  if (complaint)
+    throw new Error(
+      `${complaint}. A map of it, a .json that is dropped too, says which joint is which: docs/accuracy.md`,
+    );
+  const found = jointsOf(match, file);
+  const notes = [...match.notes, ...found.notes];
+  let { joints } = found;
+  const known = standingJoints(joints, match);
+  if (facesBack(file, known)) {
+    notes.push('the names of left and right are exchanged: the toes point back; the motion was followed');
+    joints = exchanged(joints);
+  }
+  const standingAt = standingJoints(joints, match);
+  const limbs = limbsOf(joints, match);
+  const upright = restAsMoved(file, standingAt);
+  notes.push(...upright.notes);
+  const rested = restOf(upright.file, standingAt, limbs);
+  notes.push(...rested.notes);
+  const { turn } = rested.axes;
+  const floor = rested.stands ? turn : usualFloor;
+  const up = otherUp(rested.file, floor, standingAt);
+  if (up)
+    notes.push(
+      `the person would lie in most frames; the axis that makes them stand was taken as up (${axisIn(floor, up)})`,
+    );
+  const hands = handsOfCmuconvert(file.names);
+  const names = Object.fromEntries(Object.entries(joints).map(([joint, at]) => [joint, file.names[at!]!]));
+  return {
+    file: rested.file,
+    notes,
+    skeleton: {
+      joints: { ...names, ...hands },
+      columns: Object.fromEntries(
+        truthJoints.flatMap((joint) => {
+          const hand = hands[joint as keyof typeof hands];
+          const at = hand === undefined ? joints[joint] : file.names.indexOf(hand);
+          return at === undefined ? [] : [[joint, at]];
+        }),
+      ),
+      turning: trackedJoints.map((joint) => {
+        const hand = hands[joint as keyof typeof hands];
+        return hand === undefined ? joints[joint]! : file.names.indexOf(hand);
+      }),
+      between: found.between,
+      floor: turn,
+      motionFloor: floorOfMotion(floor, up),
+    },
+  };
+}
+
+/**
+ * Returns the motion with its rest turned to the axes in which its root moves: some programs turn the offsets alone. The
+ * root then keeps the height of the hips along another axis than that along which the rest stands.
+ */
+function restAsMoved(file: FileMotion, joints: StandingJoints) {
+  const axes = axesOfTrunk(file.rest, joints)?.axes;
+  const above = axes && axisOfRoot(file, joints, axes.above);
+  if (!axes || !above) return { file, notes: [] };
+  const note = `its rest stands along ${axes.above}, its root moves with ${above} up; the rest was turned to the motion`;
+  return { file: withTurnedRest(file, turnBetween(axes.above, above)), notes: [note] };
+}
+
+/** Returns the motion relative to a rest in which a person stands. */
+function restOf(file: FileMotion, joints: StandingJoints, limbs: Limbs) {
+  const axes = axesOfTrunk(file.rest, joints);
+  const notes: string[] = [];
+  if (axes && restsAsPerson(file.rest, limbs, axes)) {
+    if (axes.axes && (axes.axes.above !== '+y' || axes.axes.ahead !== '+z'))
+      notes.push(`it rests with ${axes.axes.above} up, facing ${axes.axes.ahead}`);
+    return { file, axes, notes, stands: true };
+  }
+  const first = firstFrame(file, joints, limbs);
+  if (first) {
+    const based = countedFrom(file, first);
+    notes.push('its bones at rest are no T-pose; the T-pose of its first frame was taken');
+    return { file: based, axes: axesOfTrunk(based.rest, joints, true)!, notes, stands: false };
+  }
+  if (!axes)
+    throw new Error('the rest pose is no T-pose: left and right lie on each other. Name a “restFrame” in a map');
+  const built = straightRest(file, file.parents!, limbs, axes.turn);
+  return { file: countedFrom(file, built.pose), axes, notes: built.notes, stands: false };
+}

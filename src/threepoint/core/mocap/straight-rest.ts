@@ -1,0 +1,113 @@
+import { conjugate, fromAxisAngle, multiply, type Quat, rotate, rotationBetween } from '../math/quat';
+import { type Side, sides } from '../math/side';
+import { add, cross, dot, length, normalise, reject, subtract, type Vec3, zero } from '../math/vec3';
+import { type FileMotion, type JointPoses, makeJointPoses } from '../motion/file-motion';
+import { downward, outward, sampledFrames } from './body-axes';
+
+/** A limb's joints by their index, from the trunk outwards; −1: the file has no such joint. */
+export type LimbJoints = readonly number[];
+
+/** The limbs of a body: arms from the clavicle to the hand, legs from the hip to the foot. */
+export interface Limbs {
+  readonly arms: Readonly<Record<Side, LimbJoints>>;
+  readonly legs: Readonly<Record<Side, LimbJoints>>;
+}
+
+/** A bone of a straight limb deviates less than this cosine. */
+const straight = 0.9;
+/** A clavicle may deviate more from the side. */
+const clavicleOutward = 0.5;
+/** An elbow that bends more [sine] shows the axis of its hinge. */
+const bentElbow = 0.35;
+
+/** Rotates joints of a pose about one of them, with all that hangs from it. */
+class Straightener {
+  readonly pose: JointPoses;
+
+  constructor(
+    readonly file: FileMotion,
+    readonly parents: readonly number[],
+  ) {
+    this.pose = makeJointPoses(file.names.length);
+    for (const [i, at] of file.rest.entries()) Object.assign(this.pose.positions[i]!, at);
+  }
+
+  #hangsFrom(joint: number, ancestor: number): boolean {
+    let at = joint;
+    while (at >= 0 && at !== ancestor) at = this.parents[at]!;
+    return at === ancestor;
+  }
+
+  turn(joint: number, rotation: Quat): void {
+    const { positions, rotations } = this.pose;
+    const pivot = { ...positions[joint]! };
+    for (const i of positions.keys()) {
+      if (!this.#hangsFrom(i, joint)) continue;
+      add(pivot, rotate(rotation, subtract(positions[i]!, pivot)), positions[i]!);
+      multiply(rotation, rotations[i]!, rotations[i]!);
+    }
+  }
+
+  /** Points every bone of a limb along a direction. */
+  point(limb: LimbJoints, way: Vec3, least: (bone: number) => number): void {
+    const { positions } = this.pose;
+    for (let i = 0; i + 1 < limb.length; i++) {
+      const [from, to] = [limb[i]!, limb[i + 1]!];
+      if (from < 0 || to < 0) continue;
+      const bone = subtract(positions[to]!, positions[from]!);
+      if (!(length(bone) > 0) || dot(normalise(bone, zero), way) > least(i)) continue;
+      this.turn(from, rotationBetween(normalise(bone, zero), way));
+    }
+  }
+}
+
+/**
+ * The axis about which an elbow bends, in the forearm's axes at rest; null: the elbow is straight in all frames. It
+ * points down in T-pose on the left, up on the right.
+ */
+function hingeOf(file: FileMotion, [, shoulder, elbow, hand]: LimbJoints): Vec3 | null {
+  const poses = makeJointPoses(file.names.length);
+  const sum = { x: 0, y: 0, z: 0 };
+  let count = 0;
+  for (const frame of sampledFrames(file.frameCount)) {
+    const { positions, rotations } = file.pose(frame, poses);
+    const upper = normalise(subtract(positions[elbow!]!, positions[shoulder!]!), zero);
+    const lower = normalise(subtract(positions[hand!]!, positions[elbow!]!), zero);
+    const axis = cross(upper, lower);
+    if (length(axis) < bentElbow) continue;
+    count += 1;
+    add(sum, rotate(conjugate(rotations[elbow!]!), axis), sum);
+  }
+  return count >= 3 && length(sum) > 0.3 * count * bentElbow ? normalise(sum, zero) : null;
+}
+
+/**
+ * The T-pose of a body whose bones lie otherwise when all angles are zero: limbs are straight there, so they are
+ * turned as a whole, arms to the sides and legs down. What elbows bend about shows how arms are twisted. `notes`: what
+ * was assumed, a sentence each.
+ */
+export function straightRest(
+  file: FileMotion,
+  parents: readonly number[],
+  limbs: Limbs,
+  floor: Quat,
+): { readonly pose: JointPoses; readonly notes: readonly string[] } {
+  const body = new Straightener(file, parents);
+  const notes = ['its bones at rest are no T-pose; the T-pose was built from its straight limbs'];
+  for (const side of sides) {
+    const arm = limbs.arms[side];
+    const out = outward(floor, side);
+    body.point(arm, out, (bone) => (bone === 0 ? clavicleOutward : 0.9999));
+    const hinge = hingeOf(file, arm);
+    const [, shoulder, elbow] = arm as readonly [number, number, number, number];
+    if (!hinge) notes.push(`its ${side} elbow never bends; the twist of the arm is assumed`);
+    else {
+      const turned = reject(rotate(body.pose.rotations[elbow]!, hinge), out);
+      const wanted = side === 'left' ? downward(floor) : rotate(fromAxisAngle(out, Math.PI), downward(floor));
+      const angle = Math.atan2(dot(cross(turned, wanted), out), dot(turned, wanted));
+      body.turn(shoulder, fromAxisAngle(out, angle));
+    }
+    body.point(limbs.legs[side], downward(floor), () => straight);
+  }
+  return { pose: body.pose, notes };
+}

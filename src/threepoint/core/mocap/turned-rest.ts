@@ -1,0 +1,71 @@
+import { conjugate, type Quat, quat, rotate } from '../math/quat';
+import { add, dot, subtract, type Vec3, vec3 } from '../math/vec3';
+import { type FileMotion, makeJointPoses } from '../motion/file-motion';
+import { type StandingJoints, sampledFrames, trunkWay } from './body-axes';
+import { directions } from './read-skeleton-map';
+import type { FileAxis } from './skeleton-map';
+
+/** The hips' height differs from that at rest by less than this share where a body stands. */
+const nearHeight = 0.2;
+
+/** The value below which a share of the values lies. */
+const quantile = (values: readonly number[], share: number): number =>
+  [...values].sort((a, b) => a - b)[Math.floor(share * (values.length - 1))]!;
+
+/**
+ * The axis along which the root keeps the height of the hips where that is not the axis along which the body stands, at
+ * rest and in its frames; null: it is, or no axis fits.
+ */
+export function axisOfRoot(file: FileMotion, joints: StandingJoints, restUp: FileAxis): FileAxis | null {
+  const above = directions[restUp];
+  const [foot] = joints.feet;
+  if (foot < 0) return null;
+  const height = dot(subtract(file.rest[joints.hips]!, file.rest[foot]!), above);
+  const poses = makeJointPoses(file.names.length);
+  const places: Vec3[] = [];
+  let standing = 0;
+  for (const frame of sampledFrames(file.frameCount)) {
+    file.pose(frame, poses);
+    places.push({ ...poses.positions[joints.hips]! });
+    if (dot(trunkWay(poses.positions, joints), above) > 0.7) standing += 1;
+  }
+  if (standing < 0.5 * places.length) return null;
+  const along = (axis: FileAxis): readonly number[] => places.map((place) => dot(place, directions[axis]));
+  const keeps = (axis: FileAxis): boolean => {
+    const values = along(axis);
+    const off = Math.abs(quantile(values, 0.5) / height - 1);
+    return off < nearHeight && quantile(values, 0.95) - quantile(values, 0.05) < 0.6 * height;
+  };
+  if (keeps(restUp)) return null;
+  return (Object.keys(directions) as FileAxis[]).find((axis) => axis !== restUp && keeps(axis)) ?? null;
+}
+
+/** Returns the motion with all offsets of its joints turned; rotations and the root's position stay. */
+export function withTurnedRest(file: FileMotion, turn: Quat): FileMotion {
+  const parents = file.parents!;
+  const order = parents.flatMap((parent, i) => (parent < 0 ? [i] : []));
+  for (let i = 0; i < order.length; i++)
+    order.push(...parents.flatMap((parent, child) => (parent === order[i] ? [child] : [])));
+  const before = makeJointPoses(file.names.length);
+  const back = quat(0, 0, 0, 1);
+  const offset = vec3(0, 0, 0);
+  return {
+    ...file,
+    rest: file.rest.map((at) => rotate(turn, at)),
+    pose(frame, target) {
+      file.pose(frame, before);
+      for (const i of order) {
+        const parent = parents[i]!;
+        Object.assign(target.rotations[i]!, before.rotations[i]);
+        const place = target.positions[i]!;
+        Object.assign(place, before.positions[i]);
+        if (parent < 0) continue;
+        const rotation = before.rotations[parent]!;
+        subtract(before.positions[i]!, before.positions[parent]!, offset);
+        rotate(turn, rotate(conjugate(rotation, back), offset, offset), offset);
+        add(target.positions[parent]!, rotate(rotation, offset, offset), place);
+      }
+      return target;
+    },
+  };
+}

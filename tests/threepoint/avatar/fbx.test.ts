@@ -1,0 +1,144 @@
+import { deflateSync } from 'node:zlib';
+import { avatarClip } from 'threepoint/avatar/avatar-clip';
+import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
+import { glbOfFile } from 'threepoint/avatar/file/glb-of-file';
+import { MotionWithoutBody } from 'threepoint/avatar/file/inspect-avatar';
+import { parseChecked } from 'threepoint/avatar/load-avatar';
+import { describe, expect, onTestFinished, test, vi } from 'vitest';
+import { builtFbx } from './built-fbx';
+import { type FbxNode, fbxBinary, fbxNode, fbxText, long } from './fbx-file';
+import { partsOf } from './glb';
+import { mixamo } from './rig-namings';
+import { expectBody, wear } from './worn-body';
+
+const nameOf = mixamo('mixamorig:');
+const name = 'person.fbx';
+const packed = (nodes: readonly FbxNode[]) => fbxBinary(nodes, deflateSync);
+const forms = [
+  ['text', fbxText],
+  ['binary', (nodes: readonly FbxNode[]) => fbxBinary(nodes)],
+  ['packed binary', packed],
+] as const;
+const check = (bytes: ArrayBuffer) => checkAvatar(bytes, { name, unpacked: [] });
+const wave = {
+  leftUpperArm: Array.from({ length: 40 }, (_, frame) => [0, 0, -frame] as const),
+  rightLowerArm: Array.from({ length: 40 }, (_, frame) => [0, 4 * frame, 0] as const),
+};
+
+describe.each(forms)('FBX as %s', (_, write) => {
+  test('is worn: wrists, fingers, palms and head where the wearer’s are', async () => {
+    expectBody(wear(await parseChecked(await check(write(builtFbx({ nameOf }))), name)));
+  });
+
+  test('with a camera, a light and a clip is worn', async () => {
+    expectBody(wear(await parseChecked(await check(write(builtFbx({ nameOf, turns: wave, studio: true }))), name)));
+  });
+
+  test('of bones and their motion alone is motion', async () => {
+    await expect(check(write(builtFbx({ nameOf, bare: true, turns: wave })))).rejects.toThrow(MotionWithoutBody);
+  });
+
+  test('keeps its motion as one clip', async () => {
+    const glb = await glbOfFile(write(builtFbx({ nameOf, turns: wave })), name, 'motion');
+    const { json } = partsOf(new Uint8Array(glb));
+    const [clip, ...others] = json.animations as { channels: { target: { node: number; path: string } }[] }[];
+    expect(others).toEqual([]);
+    const moved = clip!.channels.map(({ target }) => `${json.nodes[target.node]!.name} ${target.path}`);
+    expect(moved.toSorted()).toEqual(['mixamorig:LeftArm rotation', 'mixamorig:RightForeArm rotation']);
+    expect(json.meshes).toBeUndefined();
+  });
+});
+
+test('a picture inside FBX is on the body, and others see the converted file', async () => {
+  vi.spyOn(console, 'warn').mockReturnValue(undefined);
+  onTestFinished(() => void vi.restoreAllMocks());
+  const picture = Buffer.from(
+    'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==',
+    'base64',
+  );
+  const { bytes } = await check(packed(builtFbx({ nameOf, picture })));
+  const { json, binary } = partsOf(new Uint8Array(bytes));
+  const [{ bufferView, mimeType }] = json.images as [{ bufferView: number; mimeType: string }];
+  const view = json.bufferViews[bufferView]!;
+  expect(mimeType).toBe('image/png');
+  expect(binary.subarray(view.byteOffset, view.byteOffset! + view.byteLength)).toEqual(picture);
+  const [material] = json.materials as { pbrMetallicRoughness: object }[];
+  expect(material!.pbrMetallicRoughness).toMatchObject({
+    baseColorTexture: { index: 0 },
+    baseColorFactor: [1, 1, 1, 1],
+  });
+});
+
+test('an FBX avatar takes motion as GLB', async () => {
+  const writer = await avatarClip(packed(builtFbx({ nameOf })), name);
+  expect(writer.extension).toBe('glb');
+});
+
+describe('is refused with a sentence', () => {
+  const refused = (bytes: ArrayBuffer) => expect(check(bytes)).rejects;
+  const geometry = (...children: readonly FbxNode[]) =>
+    builtFbx({ nameOf }).map((node) =>
+      node.name === 'Objects'
+        ? { ...node, children: [...node.children, fbxNode('Geometry', [long(7), 'Geometry::More', 'Mesh'], children)] }
+        : node,
+    );
+
+  test('FBX of a version that is not read', async () => {
+    const old = new TextEncoder().encode('; FBX 6.1.0 project file\nFBXHeaderExtension:  {\n\tFBXVersion: 6100\n}\n');
+    await refused(old.buffer).toThrow(
+      'person.fbx: cannot be read as FBX (is FBX of version 6.1, and 7 is read; save it as FBX 2013 or later)',
+    );
+  });
+
+  test('a file that is called FBX and is none', async () => {
+    await refused(new TextEncoder().encode('hello').buffer).toThrow(
+      'person.fbx: cannot be read as FBX (is no FBX file)',
+    );
+  });
+
+  test('a file that is cut short', async () => {
+    await refused(packed(builtFbx({ nameOf })).slice(0, 5000)).toThrow(/^person\.fbx: .*cut short/);
+  });
+
+  test('an array that grows when it is unpacked', async () => {
+    const bomb = fbxBinary(geometry(fbxNode('Vertices', [[0, 0, 0]])), (bytes) =>
+      bytes.length === 24 ? deflateSync(new Uint8Array(2 ** 27)) : deflateSync(bytes),
+    );
+    await refused(bomb).toThrow('has an array that is longer than it says');
+  });
+
+  test('more numbers than a body has', async () => {
+    const file = new Uint8Array(fbxBinary(geometry(fbxNode('Vertices', [[0, 0, 0]]))));
+    const at = Buffer.from(file.buffer).lastIndexOf('Vertices') + 'Vertices'.length + 1;
+    new DataView(file.buffer).setUint32(at, 2 ** 31, true);
+    await refused(file.buffer).toThrow('holds more than 40 million numbers');
+  });
+
+  test('a polygon without end', async () => {
+    const corners = Int32Array.from({ length: 2000 }, (_, i) => i);
+    for (const [, write] of forms) {
+      await refused(write(geometry(fbxNode('PolygonVertexIndex', [corners])))).toThrow(
+        'polygon of more than 1000 corners',
+      );
+    }
+  });
+
+  test('a curve that turns without end', async () => {
+    for (const [, write] of forms) {
+      const turns = { hips: [[0, 0, 0], [1e30, 0, 0], [0, 0, 0]] as const }; // biome-ignore format: three angles
+      await refused(write(builtFbx({ nameOf, turns }))).toThrow('an animation that turns without end');
+    }
+  });
+
+  test('names that every object has', async () => {
+    for (const [, write] of forms) {
+      await refused(write(geometry(fbxNode('__proto__', [1])))).toThrow('a node is called “__proto__”');
+    }
+  });
+
+  test('a file of more than 60 MB, before it is read', async () => {
+    const large = new Uint8Array(61 * 2 ** 20);
+    large.set(new Uint8Array(packed(builtFbx({ nameOf }))));
+    await refused(large.buffer).toThrow('person.fbx: 61 MB; an FBX file may have 60 MB at most');
+  });
+});

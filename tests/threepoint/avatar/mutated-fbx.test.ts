@@ -1,0 +1,109 @@
+import { deflateSync } from 'node:zlib';
+import type { SceneParts } from 'threepoint/avatar/file/fbx/glb-of-scene';
+import { glbOfFile } from 'threepoint/avatar/file/glb-of-file';
+import { randomNumbers } from 'threepoint/core/math/random';
+import { expect, onTestFinished, test, vi } from 'vitest';
+import { isNightly } from '../../nightly';
+import { reportFigures } from '../../reliability/report-figures';
+import { builtFbx } from './built-fbx';
+import { type FbxNode, fbxBinary, fbxText } from './fbx-file';
+import { partsOf } from './glb';
+import { mixamo } from './rig-namings';
+
+const name = 'person.fbx';
+const fingers = ['Thumb', 'Index', 'Middle', 'Little'].flatMap((finger) =>
+  ['Metacarpal', 'Proximal', 'Intermediate', 'Distal'].flatMap((part) => [
+    `left${finger}${part}`,
+    `right${finger}${part}`,
+  ]),
+);
+const nodes = builtFbx({
+  ...{ nameOf: mixamo('mixamorig:'), without: fingers, studio: true },
+  turns: { leftUpperArm: Array.from({ length: 8 }, (_, frame) => [0, 0, -9 * frame] as const) },
+});
+
+type Write = (nodes: readonly FbxNode[]) => ArrayBuffer;
+const forms: readonly Write[] = [fbxText, (all) => fbxBinary(all), (all) => fbxBinary(all, deflateSync)];
+const whole = forms.map((write) => write(nodes));
+const oddNumbers = [0, -1, 0.5, 1e9, -1e9, 2 ** 31 - 1, 1e300, -1e-300];
+const oddNames = ['', '__proto__', 'constructor', 'Objects', 'a', 'Model::', 'Cluster', 'Skin', 'Mesh', 'BlendShape'];
+
+/** Ways to spoil a file: its bytes, or what its nodes say. */
+function spoilers(chance: () => number) {
+  const below = (end: number) => Math.floor(chance() * end);
+  const oneOf = <T>(values: readonly T[]): T => values[below(values.length)]!;
+  const spoiledBytes = (file: ArrayBuffer): ArrayBuffer => {
+    const bytes = new Uint8Array(file.slice(0));
+    // Half of the time in what every file begins with.
+    const end = chance() < 0.5 ? Math.min(4000, bytes.length) : bytes.length;
+    for (let i = 1 + below(4); i > 0; i--) bytes[below(end)]! ^= 1 << below(8);
+    return bytes.buffer;
+  };
+  const spoiledProperty = (property: FbxNode['properties'][number]): FbxNode['properties'][number] => {
+    if (typeof property === 'string') return oneOf(oddNames);
+    if (typeof property === 'number') return oneOf(oddNumbers);
+    if ('long' in property) return { long: Math.trunc(oneOf([0, -1, 1001, 1002, 1050, 2 ** 40])) };
+    const list = property.slice(0, below(property.length + 1)) as Int32Array;
+    if (list.length > 0 && !(list instanceof BigInt64Array)) list[below(list.length)] = oneOf(oddNumbers);
+    return list;
+  };
+  const spoiledNode = (node: FbxNode): FbxNode => {
+    const way = below(5);
+    if (way === 0) return { ...node, children: node.children.filter(() => chance() < 0.7) };
+    if (way === 1)
+      return { ...node, properties: node.properties.map((each) => (chance() < 0.5 ? spoiledProperty(each) : each)) };
+    if (way === 2) return { ...node, properties: node.properties.slice(1) };
+    if (way === 3) return { ...node, children: [...node.children, ...node.children] };
+    return { ...node, name: oneOf(oddNames) };
+  };
+  const spoiled = (node: FbxNode, share: number): FbxNode => {
+    const children = node.children.map((child) => spoiled(child, share));
+    return chance() < share ? spoiledNode({ ...node, children }) : { ...node, children };
+  };
+  return (): ArrayBuffer => {
+    const way = chance();
+    if (way < 0.3) return spoiledBytes(oneOf(whole));
+    const file = oneOf(whole);
+    if (way < 0.4) return file.slice(0, below(file.byteLength));
+    return oneOf(forms)(nodes.map((node) => spoiled(node, 0.003)));
+  };
+}
+
+async function growth(file: ArrayBuffer, parts: SceneParts) {
+  const before = process.memoryUsage().arrayBuffers;
+  const started = performance.now();
+  const read = await glbOfFile(file, name, parts).catch((error: Error) => error);
+  return { read, ms: performance.now() - started, bytes: process.memoryUsage().arrayBuffers - before };
+}
+
+async function expectMoments(files: number): Promise<void> {
+  // The reader warns of what it passes over.
+  vi.spyOn(console, 'warn').mockReturnValue(undefined);
+  vi.spyOn(console, 'error').mockReturnValue(undefined);
+  onTestFinished(() => void vi.restoreAllMocks());
+  const spoil = spoilers(randomNumbers(20261127));
+  const sound = Math.max(...(await Promise.all(whole.map((file) => growth(file, 'body')))).map(({ bytes }) => bytes));
+  const counts = { refused: 0, read: 0 };
+  let [longest, largest] = [0, 0];
+  for (let i = 0; i < files; i++) {
+    const { read, ms, bytes } = await growth(spoil(), i % 2 === 0 ? 'body' : 'motion');
+    longest = Math.max(longest, ms);
+    largest = Math.max(largest, bytes);
+    if (read instanceof Error) {
+      expect(read.message, `file ${i}`).toMatch(/^person\.fbx: cannot be read as FBX \(.+\)$/s);
+      counts.refused += 1;
+    } else {
+      expect(partsOf(new Uint8Array(read)).json.nodes.length, `file ${i}`).toBeGreaterThan(0);
+      counts.read += 1;
+    }
+  }
+  reportFigures('mutated-avatars', { 'FBX files': files, ...counts, 'longest reading of one [ms]': longest });
+  expect(longest, 'the longest [ms]').toBeLessThan(1000);
+  expect(largest, 'memory of one, against a whole one').toBeLessThan(3 * sound);
+  expect(counts.refused).toBeGreaterThan(files / 10);
+  expect(counts.read).toBeGreaterThan(files / 10);
+}
+
+const what = 'spoiled FBX files are refused in a sentence or read as GLB, each in a moment';
+test(`10,000 ${what}`, { timeout: 600_000 }, () => expectMoments(10_000));
+test(`more ${what}`, { tags: ['full'], timeout: 3_600_000 }, () => expectMoments(isNightly ? 1_000_000 : 100_000));

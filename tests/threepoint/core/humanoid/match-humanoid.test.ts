@@ -1,0 +1,129 @@
+import fc from 'fast-check';
+import { neededBones } from 'threepoint/core/humanoid/bones';
+import type { SkeletonJoint } from 'threepoint/core/humanoid/joint-tree';
+import { humanoidComplaint, leastConfidence, matchHumanoid } from 'threepoint/core/humanoid/match-humanoid';
+import { normaliseQuat, quat, rotate } from 'threepoint/core/math/quat';
+import { distance, scale } from 'threepoint/core/math/vec3';
+import { describe, expect, test } from 'vitest';
+import { rigs } from './rigs';
+
+/** The names of the matched joints by bone. */
+const named = (joints: readonly SkeletonJoint[]) => {
+  const { map } = matchHumanoid(joints);
+  return Object.fromEntries(Object.entries(map).map(([bone, { joint }]) => [bone, joints[joint]!.name]));
+};
+const renamed = (joints: readonly SkeletonJoint[], nameOf: (joint: SkeletonJoint, i: number) => string) =>
+  joints.map((joint, i) => ({ ...joint, name: nameOf(joint, i) }));
+const inner = (bone: string): boolean =>
+  !/Thumb|Index|Middle|Ring|Little|Eye|jaw|Toes|upperChest|Shoulder|neck/.test(bone);
+
+describe.each(rigs)('the skeleton of $name', ({ joints, bones }) => {
+  const expected = Object.fromEntries(Object.entries(bones).map(([bone, i]) => [bone, joints[i]!.name]));
+
+  test('has its bones', () => {
+    const match = matchHumanoid(joints);
+    expect(named(joints)).toMatchObject(expected);
+    expect(humanoidComplaint(match)).toBeNull();
+    expect(match.notes).toEqual([]);
+    expect(match.confidence).toBeGreaterThan(leastConfidence + 0.1);
+  });
+
+  test('has its hips, spine, head, arms and legs under any names', () => {
+    const main = Object.entries(bones).filter(([bone]) => inner(bone));
+    fc.assert(
+      fc.property(fc.infiniteStream(fc.stringMatching(/^[a-z]{3}\d$/)), (names) => {
+        const stream = names[Symbol.iterator]();
+        // Letters before the random ones keep the names from meaning anything.
+        const other = renamed(joints, () => `zq${stream.next().value}`.replaceAll(/[aeioulr]/g, 'x'));
+        const { map } = matchHumanoid(other);
+        // Wrist and hand may be two joints, 3 cm apart.
+        for (const [bone, joint] of main) {
+          const found = joints[map[bone as keyof typeof map]?.joint ?? -1];
+          expect(found && distance(found.position, joints[joint]!.position), bone).toBeLessThan(4);
+        }
+      }),
+      { numRuns: 3 },
+    );
+  });
+
+  test('is found in any unit and turned in any way', () => {
+    const turn = normaliseQuat(quat(0.3, -0.5, 0.2, 0.7));
+    const moved = joints.map((joint) => ({ ...joint, position: scale(rotate(turn, joint.position), 0.01) }));
+    expect(named(moved)).toMatchObject(expected);
+  });
+
+  test('has left and right by the joints where its names exchange them', () => {
+    const swap = (name: string) =>
+      name
+        .replace(/Left|Right/, (side) => (side === 'Left' ? 'Right' : 'Left'))
+        .replace(
+          /(?<![A-Za-z])[LRlr](?![a-z])|(?<=[a-z])[LR]$|^[lr](?=[A-Z])/,
+          (side) => ({ L: 'R', R: 'L', l: 'r', r: 'l' })[side]!,
+        );
+    const { map, notes } = matchHumanoid(renamed(joints, ({ name }) => swap(name)));
+    if (bones.leftToes === undefined) return;
+    expect(notes.join()).toMatch(/left and right are exchanged/);
+    for (const bone of ['leftHand', 'rightHand', 'leftFoot'] as const) expect(map[bone]?.joint).toBe(bones[bone]);
+  });
+});
+
+describe('what is no humanoid is refused with what was found and what is missing', () => {
+  const at = (x: number, y: number) => ({ x, y, z: 0 });
+  test.each<[string, readonly SkeletonJoint[], RegExp]>([
+    ['nothing', [], /none of its 0 joints is part of a humanoid; no hips, no spine/],
+    [
+      'a chain',
+      [0, 1, 2, 3].map((i) => ({ name: `bone${i}`, parent: i - 1, position: at(0, i) })),
+      /none of its 4 joints/,
+    ],
+    [
+      'a circle',
+      [0, 1, 2].map((i) => ({ name: `ring${i}`, parent: (i + 1) % 3, position: at(i, 0) })),
+      /none of its 3 joints/,
+    ],
+    [
+      'an upper half by name alone',
+      ['Hips', 'Spine', 'Head', 'LeftHand'].map((name, i) => ({ name, parent: i - 1, position: at(0, i) })),
+      /found hips \(Hips\), spine \(Spine\), head \(Head\), leftHand \(LeftHand\); no leftUpperArm/,
+    ],
+  ])('%s', (_, joints, sentence) => {
+    const match = matchHumanoid(joints);
+    expect(humanoidComplaint(match)).toMatch(sentence);
+    expect(match.missing.length).toBeGreaterThan(0);
+    expect(match.confidence).toBe(0);
+  });
+
+  test('any tree of joints gets an answer within a second', () => {
+    const joint = fc.record({
+      name: fc.oneof(
+        fc.string({ maxLength: 12 }),
+        fc.constantFrom('LeftArm', 'RightHand', 'Hips', 'L', 'spine_01', 'thigh.l'),
+      ),
+      parent: fc.integer({ min: -2, max: 60 }),
+      position: fc.record({ x: fc.float(), y: fc.float({ noNaN: true }), z: fc.float({ noNaN: true }) }),
+    });
+    fc.assert(
+      fc.property(fc.array(joint, { maxLength: 60 }), (joints) => {
+        const { map, missing } = matchHumanoid(joints);
+        for (const { joint: index } of Object.values(map)) expect(joints[index]).toBeDefined();
+        for (const bone of neededBones) expect(missing.includes(bone)).toBe(map[bone] === undefined);
+      }),
+    );
+  });
+
+  test.each([
+    ['a comb', (i: number) => (i % 4 === 0 ? i - 4 : i - 1)],
+    ['a chain', (i: number) => i - 1],
+    ['a star of chains', (i: number) => (i % 3 === 1 ? 0 : i - 1)],
+    ['a binary tree', (i: number) => (i - 1) >> 1],
+  ])('%s of 5000 joints gets an answer within a second', (_, parentOf) => {
+    const joints = Array.from({ length: 5000 }, (_, i) => ({
+      name: `LeftArm${i}`,
+      parent: i === 0 ? -1 : Math.max(0, parentOf(i)),
+      position: at(i % 7, i % 11),
+    }));
+    const start = performance.now();
+    matchHumanoid(joints);
+    expect(performance.now() - start).toBeLessThan(1000);
+  });
+});

@@ -1,0 +1,131 @@
+import { prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
+import { trackedWidth } from 'threepoint/core/mocap/simulate-trackers';
+import { truthJoints } from 'threepoint/core/mocap/skeleton-map';
+import { finishWork } from 'threepoint/core/motion/work';
+import { describe, expect, test } from 'vitest';
+import { type MadeOptions, madeBvh } from './made-bvh';
+
+const prepare = (text: string) => finishWork(prepareMocap({ format: 'bvh', name: 'wave.bvh', text }));
+const plain = madeBvh();
+const expected = prepare(plain).clips[0]!;
+
+/** How far joints and trackers lie from those of the plain file [mm], at most; joints that are assumed do not count. */
+function furthest(text: string, assumed: readonly string[] = []): number {
+  const { clips } = prepare(text);
+  expect(clips).toHaveLength(1);
+  const { truth, tracked, frameCount } = clips[0]!;
+  expect(frameCount).toBeGreaterThanOrEqual(expected.frameCount - 1);
+  let most = 0;
+  const width = 3 * truthJoints.length;
+  for (let frame = 0; frame < Math.min(frameCount, expected.frameCount); frame++) {
+    for (const [i, joint] of truthJoints.entries()) {
+      if (assumed.includes(joint)) continue;
+      for (let k = 0; k < 3; k++) {
+        const at = frame * width + 3 * i + k;
+        most = Math.max(most, Math.abs(truth[at]! - expected.truth[at]!));
+      }
+    }
+    for (let i = 0; i < trackedWidth; i++) {
+      // Rotations have both signs; trackers lie within a hand's breadth, so that an error of 0.01 counts 1 mm.
+      if (i % 7 >= 3) continue;
+      const at = frame * trackedWidth + i;
+      most = Math.max(most, Math.abs(tracked[at]! - expected.tracked[at]!));
+    }
+  }
+  return 1000 * most;
+}
+
+const collar = (name: string): string =>
+  name
+    .replace(/^Spine$/, 'Chest')
+    .replace(/^Spine1$/, 'Chest2')
+    .replace(/(Left|Right)(Shoulder|Arm|ForeArm|Hand|UpLeg|Leg|Foot)$/, (_, side: string, part: string) => {
+      const parts: Readonly<Record<string, string>> = {
+        ...{ Shoulder: 'Collar', Arm: 'Shoulder', ForeArm: 'Elbow', Hand: 'Wrist' },
+        ...{ UpLeg: 'Hip', Leg: 'Knee', Foot: 'Ankle' },
+      };
+      return side + parts[part];
+    });
+const smpl = (name: string): string =>
+  collar(name)
+    .replace('Hips', 'Pelvis')
+    .replace('Chest2', 'Spine3')
+    .replace('Chest', 'Spine1')
+    .replace('Left', 'L_')
+    .replace('Right', 'R_')
+    .replace('Toe', 'Foot');
+
+const lines = plain.split('\n');
+const named: readonly (readonly [string, MadeOptions])[] = [
+  ['a prefix of Mixamo', { nameOf: (name) => `mixamorig:${name}` }],
+  ['names with spaces', { nameOf: (name) => name.replace(/(Left|Right)/, '$1 ') }],
+  ['collar, shoulder, elbow and wrist', { nameOf: collar }],
+  ['the names of SMPL', { nameOf: smpl }],
+  ['names that mean nothing', { nameOf: (name) => `x${[...name].map((letter) => letter.charCodeAt(0)).join('')}q` }],
+  ['decimetres', { unit: 0.1 }],
+  ['metres', { unit: 0.01 }],
+  ['inches', { unit: 1 / 2.54 }],
+  ['six channels everywhere', { positionOf: (offset) => offset }],
+];
+
+describe('a BVH is read alike with', () => {
+  test.each(named)('%s', (_, options) => {
+    expect(furthest(madeBvh(options))).toBeLessThan(1);
+  });
+
+  test.each<[string, string, RegExp | null]>([
+    ['a byte order mark', `\ufeff${plain}`, null],
+    ['a brace on the joint’s line', plain.replaceAll(/\n\s*\{/g, ' {'), null],
+    ['lines that end with CR alone', plain.replaceAll('\n', '\r'), null],
+    ['lines that end with CR and LF', plain.replaceAll('\n', '\r\n'), null],
+    [
+      'commas for decimals',
+      madeBvh({ numberOf: (value) => value.toFixed(4).replace('.', ',') }),
+      /commas for decimals/,
+    ],
+    ['one frame too many declared', plain.replace('Frames: 60', 'Frames: 61'), /Frames says 61, there are 60/],
+    ['one frame too few declared', plain.replace('Frames: 60', 'Frames: 59'), /Frames says 59, there are 60/],
+    ['its last row cut', lines.with(-2, lines.at(-2)!.slice(0, 90)).join('\n'), /last row is cut short/],
+    ['zero positions on every joint', madeBvh({ positionOf: () => [0, 0, 0] }), /positions of \d+ joints are zero/],
+    ['a motion with Z up', madeBvh({ rootZUp: true }), /the axis that makes them stand was taken as up \(\+z\)/],
+    [
+      'a rest with Z up, the motion with Y up',
+      madeBvh({ offsetOf: ([x, y, z]) => [x, -z, y] }),
+      /rest stands along \+z.*turned to the motion/,
+    ],
+  ])('%s', (_, text, note) => {
+    expect(furthest(text)).toBeLessThan(1);
+    const { notes } = prepare(text);
+    if (note) expect(notes.join('\n')).toMatch(note);
+    else expect(notes).toEqual([]);
+  });
+
+  test('left and right exchanged in its names, which is said', () => {
+    const swapped = madeBvh({
+      nameOf: (name) => name.replace(/Left|Right/, (word) => (word === 'Left' ? 'Right' : 'Left')),
+    });
+    expect(furthest(swapped)).toBeLessThan(1);
+    expect(prepare(swapped).notes.join()).toMatch(/names of left and right are exchanged/);
+  });
+});
+
+describe('a BVH is refused with a sentence for', () => {
+  test.each<[string, string, RegExp]>([
+    ['no frame time', plain.replace(/Frame Time.*\n/, ''), /a line “Frame Time: seconds” is needed/],
+    [
+      'both commas and points',
+      madeBvh({ numberOf: (value) => (value === 95 ? '95,0' : value.toFixed(4)) }),
+      /both commas and points/,
+    ],
+    ['half of its frames', lines.slice(0, -30).join('\n'), /Frames says 60, but the file ends after/],
+    [
+      'no arms',
+      madeBvh({
+        without: lines.flatMap((line) => /JOINT ((?:Left|Right)(?:Shoulder|Arm|ForeArm|Hand))/.exec(line)?.[1] ?? []),
+      }),
+      /no leftUpperArm/,
+    ],
+  ])('%s', (_, text, sentence) => {
+    expect(() => prepare(text)).toThrow(sentence);
+  });
+});

@@ -1,0 +1,89 @@
+/** A joint of the person that the made files have: name, parent, offset in T-pose facing +Z [cm]. */
+type Bone = readonly [name: string, parent: string | null, offset: readonly [number, number, number]];
+
+const side = (sign: number, word: string): readonly Bone[] => [
+  [`${word}Shoulder`, 'Spine1', [3 * sign, 20, 0]],
+  [`${word}Arm`, `${word}Shoulder`, [14 * sign, 0, 0]],
+  [`${word}ForeArm`, `${word}Arm`, [28 * sign, 0, 0]],
+  [`${word}Hand`, `${word}ForeArm`, [25 * sign, 0, 0]],
+  [`${word}UpLeg`, 'Hips', [9 * sign, -5, 0]],
+  [`${word}Leg`, `${word}UpLeg`, [0, -42, 0]],
+  [`${word}Foot`, `${word}Leg`, [0, -41, 0]],
+  [`${word}Toe`, `${word}Foot`, [0, -6, 12]],
+];
+const bones: readonly Bone[] = [
+  ['Hips', null, [0, 95, 0]],
+  ['Spine', 'Hips', [0, 10, 0]],
+  ['Spine1', 'Spine', [0, 15, 0]],
+  ['Neck', 'Spine1', [0, 25, 0]],
+  ['Head', 'Neck', [0, 10, 1]],
+  ...side(1, 'Left'),
+  ...side(-1, 'Right'),
+];
+
+/** Angles about Z, X and Y [degrees] at a time [s]: one arm hangs, the other waves. */
+function anglesAt(name: string, time: number): readonly [number, number, number] {
+  if (name === 'LeftArm') return [-75, 0, 0];
+  if (name === 'RightArm') return [20, 0, 0];
+  if (name === 'RightForeArm') return [-70 + 25 * Math.sin(2 * Math.PI * time), 0, 0];
+  return [0, 0, 0];
+}
+
+export interface MadeOptions {
+  readonly nameOf?: (name: string) => string;
+  /** Every joint has six channels; its positions are those of `positionOf`. */
+  readonly positionOf?: (offset: Bone[2], name: string) => Bone[2];
+  readonly numberOf?: (value: number) => string;
+  /** The frame's motion is turned: a program turned the root alone. */
+  readonly rootZUp?: boolean;
+  /** Changes offsets and axes of the rest alone. */
+  readonly offsetOf?: (offset: Bone[2], name: string) => Bone[2];
+  /** Lengths of the file per centimetre. */
+  readonly unit?: number;
+  readonly without?: readonly string[];
+}
+
+const plainNumber = (value: number): string => value.toFixed(4);
+
+/** A BVH of one person of 1.70 m who waves for a second, in the form that the options describe. */
+export function madeBvh(options: MadeOptions = {}): string {
+  const { nameOf = (name) => name, numberOf = plainNumber, unit = 1, without = [] } = options;
+  const offsetOf = options.offsetOf ?? ((offset) => offset);
+  const kept = bones.filter(([name]) => !without.includes(name));
+  const row = (values: readonly number[]) => values.map(numberOf).join(' ');
+  const lengths = (values: readonly number[]) => values.map((value) => value * unit);
+  const order: Bone[] = [];
+  const lines = (bone: Bone, depth: number): string[] => {
+    const [name, parent, offset] = bone;
+    order.push(bone);
+    const tab = '\t'.repeat(depth);
+    const children = kept.filter(([, of]) => of === name);
+    const six = parent === null || options.positionOf !== undefined;
+    return [
+      `${tab}${parent === null ? 'ROOT' : 'JOINT'} ${nameOf(name)}`,
+      `${tab}{`,
+      `${tab}\tOFFSET ${row(lengths(parent === null ? [0, 0, 0] : offsetOf(offset, name)))}`,
+      `${tab}\tCHANNELS ${six ? '6 Xposition Yposition Zposition ' : '3 '}Zrotation Xrotation Yrotation`,
+      ...children.flatMap((child) => lines(child, depth + 1)),
+      ...(children.length === 0
+        ? [`${tab}\tEnd Site`, `${tab}\t{`, `${tab}\t\tOFFSET ${row(lengths([0, 8, 0]))}`, `${tab}\t}`]
+        : []),
+      `${tab}}`,
+    ];
+  };
+  const hierarchy = lines(kept[0]!, 0);
+  const frames = Array.from({ length: 60 }, (_, frame) =>
+    row(
+      order.flatMap(([name, parent, offset]) => {
+        const [z, x, y] = anglesAt(name, frame / 60);
+        const turned = parent === null && options.rootZUp === true;
+        const root = turned ? [offset[0], -offset[2], offset[1]] : offset;
+        const place = parent === null ? root : options.positionOf?.(offset, name);
+        return [...lengths(place ?? []), z, turned ? x + 90 : x, y];
+      }),
+    ),
+  );
+  return ['HIERARCHY', ...hierarchy, 'MOTION', 'Frames: 60', `Frame Time: ${numberOf(1 / 60)}`, ...frames, ''].join(
+    '\n',
+  );
+}
