@@ -202,7 +202,7 @@ async function measureSpeeds(corpus: Corpus) {
   for (const clip of index.clips.filter(({ person }) => judged.has(person))) {
     const calibration = clipCalibration(index, clip);
     const frames = readClip(recordings, index, clip);
-    for (const name of ['ik', 'learned'] as const) {
+    for (const name of measuredMethods) {
       tallies[name] ??= emptySpeedTally();
       const regressor = regressors.get(name) ?? null;
       await addSpeeds(tallies[name], name, { calibration, regressor, frames, rateHz: index.rateHz });
