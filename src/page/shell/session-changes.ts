@@ -12,7 +12,7 @@ export interface SessionChangesOptions {
   readonly recorder: Pick<Recorder, 'mode' | 'stop'>;
   readonly timing: FrameTiming;
   readonly view: DesktopView;
-  readonly body: Pick<BodySolver, 'startSession' | 'discontinuity'>;
+  readonly body: Pick<BodySolver, 'startSession' | 'endSession' | 'discontinuity'>;
   readonly activities: Pick<Activities, 'current' | 'sessionChanged'>;
   readonly controls: Pick<Controls, 'show' | 'setWorn' | 'layOut'>;
   readonly study: Pick<PageStudy, 'run'>;
@@ -35,9 +35,10 @@ export class SessionChanges implements HeadsetListener {
   }
 
   left(): void {
-    const { recorder, controls, view } = this.#options;
+    const { recorder, controls, view, body } = this.#options;
     // Another source moves the body now, which the recording's header does not name.
     if (recorder.mode === 'recording') recorder.stop();
+    body.endSession();
     controls.setWorn(false);
     view.setView(view.view);
     controls.layOut();

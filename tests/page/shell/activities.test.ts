@@ -253,7 +253,7 @@ describe('a player who takes the headset off', () => {
       recorder: new Recorder(),
       timing: createFrameTiming(() => 0),
       view: { view: 'third-person', setView: nothing } as unknown as SessionChangesOptions['view'],
-      body: { startSession: nothing, discontinuity: () => activities.current?.discontinuity?.() },
+      body: { startSession: nothing, endSession: nothing, discontinuity: () => activities.current?.discontinuity?.() },
       controls: { show: nothing, setWorn: nothing, layOut: nothing },
       activities,
       study,

@@ -1,3 +1,4 @@
+import { BodySolver } from 'threepoint/api/body-solver';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { OpenActivity } from 'threepoint-page/activity/activity';
@@ -9,6 +10,8 @@ import { afterEach, expect, test, vi } from 'vitest';
 
 afterEach(() => vi.unstubAllGlobals());
 
+const noNetworks = () => Promise.reject(new Error('inverse kinematics needs no network'));
+
 /**
  * A player in a match, with a headset to put on and a window that may lie behind others; `recorder`: keeps what is
  * tracked.
@@ -18,13 +21,14 @@ function player(recorder = new Recorder()) {
   vi.stubGlobal('document', page);
   const headset = { pictureRateHz: 72, visibility: 'none' as Headset['visibility'] };
   let away = false;
+  const body = new BodySolver({ estimator: 'ik', calibration: defaultCalibration, networks: noNetworks });
   const nothing = () => undefined;
   const changes = new SessionChanges({
     headset,
     recorder,
     timing: createFrameTiming(() => 0),
     view: { view: 'third-person', setView: nothing } as unknown as SessionChangesOptions['view'],
-    body: { startSession: nothing, discontinuity: nothing },
+    body,
     activities: {
       sessionChanged: nothing,
       current: {
@@ -38,6 +42,7 @@ function player(recorder = new Recorder()) {
   });
   changes.followWindow();
   return {
+    body,
     isAway: () => away,
     setWindow(hidden: boolean) {
       page.hidden = hidden;
@@ -97,4 +102,13 @@ test('a recording made in a session ends with it: what moves the body afterwards
   leave();
   track(3);
   expect([recorder.mode, recorder.frameCount]).toEqual(['idle', 2]);
+});
+
+test('the body of a session ends with it: no pose and no lost hand of the headset stays', () => {
+  const { body, enter, leave } = player();
+  enter();
+  body.tick(1000);
+  expect(body.update(actorFrame(1, defaultCalibration))).not.toBeNull();
+  leave();
+  expect(body.pose).toBeNull();
 });
