@@ -3,7 +3,7 @@ import { pageFolder } from 'threepoint-ui/page-folder';
 import type { ExperimenterClient } from '../client/study-client';
 import { type OpenStudy, receiptText } from './experimenter-view';
 import type { ParticipantActions } from './participant-row';
-import { askForSentence } from './sentence-dialog';
+import { askForSentence, type SentenceQuestion } from './sentence-dialog';
 import { askHowToVoid, isIn } from './void-block-dialog';
 
 /** Does something with the server; resolves with a notice for the experimenter, or null for none. */
@@ -48,75 +48,24 @@ export function participantActions(
     });
   }
 
-  async function stop(participant: string): Promise<void> {
-    const reason = await askForSentence({
-      title: `Stop the session of ${participant}`,
-      label: 'Why? It is recorded. The session is over at once and cannot be taken up again; what was recorded stays.',
-      confirm: 'Stop it',
-    });
-    if (reason === null) return;
-    await attempt(async (client) => {
-      await client.command(id, participant, { type: 'stop', by: 'experimenter', reason });
-      return `${participant}: the session is being stopped.`;
-    });
+  /** Asks for a sentence and acts with it; nothing happens if the experimenter cancels. */
+  async function withSentence(
+    question: SentenceQuestion,
+    act: (client: ExperimenterClient, sentence: string) => Promise<string>,
+  ): Promise<void> {
+    const sentence = await askForSentence(question);
+    if (sentence !== null) await attempt((client) => act(client, sentence));
   }
 
-  async function remark(participant: string): Promise<void> {
-    const text = await askForSentence({
-      title: `Remark on ${participant}`,
-      label: 'It is stored with the participant’s records.',
-      confirm: 'Store',
-    });
-    if (text === null) return;
-    await attempt(async (client) => {
-      await client.remark(id, participant, text);
-      return `${participant}: remark stored.`;
-    });
-  }
-
-  async function release(participant: string): Promise<void> {
-    const question = `Release ${participant}? Another device may then go on; data that this one has not sent are lost to the server.`;
-    if (!confirm(question)) return;
-    await attempt(async (client) => {
-      await client.release(id, participant);
-      return `${participant} may be taken by another device.`;
-    });
-  }
-
-  async function remove(participant: string): Promise<void> {
-    const typed = await askForSentence({
-      title: `Delete everything of ${participant}`,
-      label: `This cannot be undone. Type ${participant} to delete its records, movements and commands.`,
-      confirm: 'Delete',
-    });
-    if (typed === null) return;
-    await attempt(async (client) => {
-      if (typed !== participant) throw new Error(`Nothing was deleted: "${typed}" is not ${participant}.`);
-      return `${participant} is deleted. ${receiptText(await client.delete(id, participant))}`;
-    });
-  }
-
-  async function reinvite(participant: string): Promise<void> {
-    const holder = plan.entry === 'open' ? 'all participants' : participant;
-    const question = `Make a new link for ${holder}? The old link stops working; a place that is taken stays taken.`;
-    if (!confirm(question)) return;
-    await attempt(async (client) => {
-      await client.reinvite(id, participant);
-      return `${participant} has a new link.`;
-    });
-  }
-
-  function copyLink(participant: string, link: string): Promise<void> {
+  async function copyLink(participant: string, link: string): Promise<string> {
     const address = new URL(link, `${pageFolder()}/`).href;
-    return attempt(async () => {
-      try {
-        await navigator.clipboard.writeText(address);
-        return `The link of ${participant} is in the clipboard: give it to ${participant} alone.`;
-      } catch {
-        // reason: a browser that lets no page write to the clipboard still shows the link
-        return `The link of ${participant}: ${address}`;
-      }
-    });
+    try {
+      await navigator.clipboard.writeText(address);
+      return `The link of ${participant} is in the clipboard: give it to ${participant} alone.`;
+    } catch {
+      // reason: a browser that lets no page write to the clipboard still shows the link
+      return `The link of ${participant}: ${address}`;
+    }
   }
 
   return {
@@ -126,12 +75,61 @@ export function participantActions(
         return `${participant}: “${command.type}” sent.`;
       }),
     voidBlock: (participant) => void voidBlock(participant),
-    stop: (participant) => void stop(participant),
-    remark: (participant) => void remark(participant),
-    release: (participant) => void release(participant),
+    stop: (participant) =>
+      void withSentence(
+        {
+          title: `Stop the session of ${participant}`,
+          label:
+            'Why? It is recorded. The session is over at once and cannot be taken up again; what was recorded stays.',
+          confirm: 'Stop it',
+        },
+        async (client, reason) => {
+          await client.command(id, participant, { type: 'stop', by: 'experimenter', reason });
+          return `${participant}: the session is being stopped.`;
+        },
+      ),
+    remark: (participant) =>
+      void withSentence(
+        {
+          title: `Remark on ${participant}`,
+          label: 'It is stored with the participant’s records.',
+          confirm: 'Store',
+        },
+        async (client, text) => {
+          await client.remark(id, participant, text);
+          return `${participant}: remark stored.`;
+        },
+      ),
+    release(participant) {
+      const question = `Release ${participant}? Another device may then go on; data that this one has not sent are lost to the server.`;
+      if (!confirm(question)) return;
+      void attempt(async (client) => {
+        await client.release(id, participant);
+        return `${participant} may be taken by another device.`;
+      });
+    },
     exportZip: (participant) => void attempt((client) => download(client, id, { participant })),
-    remove: (participant) => void remove(participant),
-    copyLink: (participant, link) => void copyLink(participant, link),
-    reinvite: (participant) => void reinvite(participant),
+    remove: (participant) =>
+      void withSentence(
+        {
+          title: `Delete everything of ${participant}`,
+          label: `This cannot be undone. Type ${participant} to delete its records, movements and commands.`,
+          confirm: 'Delete',
+        },
+        async (client, typed) => {
+          if (typed !== participant) throw new Error(`Nothing was deleted: "${typed}" is not ${participant}.`);
+          return `${participant} is deleted. ${receiptText(await client.delete(id, participant))}`;
+        },
+      ),
+    copyLink: (participant, link) => void attempt(() => copyLink(participant, link)),
+    reinvite(participant) {
+      const holder = plan.entry === 'open' ? 'all participants' : participant;
+      const question = `Make a new link for ${holder}? The old link stops working; a place that is taken stays taken.`;
+      if (!confirm(question)) return;
+      void attempt(async (client) => {
+        await client.reinvite(id, participant);
+        return `${participant} has a new link.`;
+      });
+    },
   };
 }

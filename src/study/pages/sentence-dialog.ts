@@ -2,7 +2,7 @@ import { button, element } from 'threepoint-ui/element';
 import { askInDialog } from './ask-in-dialog';
 
 /** The texts of a dialog that asks for a sentence. */
-export interface Asked {
+export interface SentenceQuestion {
   readonly title: string;
   readonly label: string;
   /** The label of the confirming button. */
@@ -12,7 +12,7 @@ export interface Asked {
 }
 
 /** Asks for a sentence in a dialog; resolves with null if it is cancelled. */
-export function askForSentence({ title, label, confirm, extra = [] }: Asked): Promise<string | null> {
+export function askForSentence({ title, label, confirm, extra = [] }: SentenceQuestion): Promise<string | null> {
   const text = element('textarea', { maxlength: 500, 'aria-label': label });
   return askInDialog<string>(title, (answer) => {
     const go = button(confirm, () => answer(text.value.trim()), { class: 'primary', disabled: true });
