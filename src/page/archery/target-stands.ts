@@ -27,17 +27,6 @@ import { merged, painted } from '../scene/painted-geometry';
 import type { Quality } from '../scene/renderer';
 import { createRingTexture } from './target-rings';
 
-/** Four discs on wooden legs, each with a plate that shows its points; arena frame. */
-export interface TargetStands {
-  readonly object: Group;
-  /**
-   * Stands and plates for a state at a time of the match [s]: what has scored is lit, ticked and marked with its
-   * points.
-   */
-  show(state: ArcheryState, time: number): void;
-  dispose(): void;
-}
-
 const discThickness = 0.1;
 const gap = 0.05;
 
@@ -237,9 +226,8 @@ function changed(mesh: InstancedMesh): void {
   mesh.computeBoundingSphere();
 }
 
-export const createTargetStands = (quality: Quality): TargetStands => new Stands(quality);
-
-class Stands implements TargetStands {
+/** Four discs on wooden legs, each with a plate that shows its points; arena frame. */
+export class TargetStands {
   readonly object = new Group();
   readonly #quality: Quality;
   readonly #wood = new MeshLambertMaterial({ vertexColors: true });
@@ -268,6 +256,10 @@ class Stands implements TargetStands {
     this.#plateMaterial = new MeshBasicMaterial({ map: this.#plates.texture });
   }
 
+  /**
+   * Stands and plates for a state at a time of the match [s]: what has scored is lit, ticked and marked with its
+   * points.
+   */
   show(state: ArcheryState, time: number): void {
     const { targets } = state;
     this.#setTargets(targets);

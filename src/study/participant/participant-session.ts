@@ -1,9 +1,7 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { Side } from 'threepoint/core/math/side';
 import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../client/study-client';
 import { type Phrases, phrasesOf } from '../model/phrases/phrases';
 import { languagesOf } from '../model/plan/plan';
-import { type Schedule, type StudyStep, scheduleFor } from '../model/plan/schedule';
+import { type Schedule, scheduleFor } from '../model/plan/schedule';
 import { advance, type ProgressEvent } from '../model/progress/advance';
 import { begin, currentStep, type Progress, remainingSeconds, reported } from '../model/progress/progress';
 import type { Claim, NumberedCommand, PlayedTogether, SignedSeat } from '../model/progress/study-api';
@@ -29,44 +27,6 @@ export interface UploadStatus {
   readonly lockedOut: boolean;
 }
 
-/** The session of one participant on this device: its steps and the upload of its records. */
-export interface ParticipantSession {
-  readonly schedule: Schedule;
-  readonly progress: Progress;
-  readonly step: StudyStep;
-  readonly plan: KeptSession['plan'];
-  /** The phrases of the page in the participant's language. */
-  readonly phrases: Phrases;
-  readonly simulated: boolean;
-  /** The withdrawal code; null: the participant has noted it. */
-  readonly withdrawalCode: string | null;
-  readonly preferredHand: Side | null;
-  /** The newest measures of the body; null: not measured yet. */
-  readonly calibration: Calibration | null;
-  readonly uploadStatus: UploadStatus;
-  /** Returns the seconds left of this step, or null if it has no limit. */
-  remaining(): number | null;
-  /** Applies an event and stores its consequences; returns why it is refused, or null. */
-  apply(event: ProgressEvent): string | null;
-  codeNoted(): void;
-  /**
-   * Resolves with the participant's seat in the room of a trial that the group plays together; rejects with the reason
-   * if there is none.
-   */
-  seat(trial: PlayedTogether): Promise<SignedSeat>;
-  /** Keeps the tracking frames of a trial until the server has them. */
-  keepMotion(trial: string, recording: string): void;
-  /**
-   * Sends the unsent records, reports the progress and follows the experimenter's commands, then starts to upload
-   * recordings without waiting for them. Never rejects.
-   */
-  exchange(): Promise<void>;
-  /** Resolves when no upload of a recording is under way. Failed uploads are repeated with a later exchange. */
-  motionSent(): Promise<void>;
-  /** Resolves when the device has stored everything so far or has reported that it cannot. */
-  settled(): Promise<void>;
-}
-
 export interface ParticipantSessionOptions {
   readonly client: ParticipantClient;
   /** null: the browser stores nothing; records are kept in memory until they are sent. */
@@ -79,29 +39,15 @@ export interface ParticipantSessionOptions {
 }
 
 /** Returns the first session of a participant on this device; another device may have begun it. */
-export function startSession(claim: Claim, study: string, participant: string): KeptSession {
-  const schedule = scheduleFor(claim.plan, participant);
-  return {
-    study,
-    participant,
-    token: claim.token,
-    withdrawalCode: claim.withdrawalCode,
-    plan: claim.plan,
-    simulated: claim.simulated,
-    progress: claim.progress ?? begin(schedule, claim.simulated),
-    preferredHand: claim.preferredHand,
-    calibration: claim.calibration,
-  };
-}
+export const startSession = (claim: Claim, study: string, participant: string): KeptSession => ({
+  ...claim,
+  study,
+  participant,
+  progress: claim.progress ?? begin(scheduleFor(claim.plan, participant), claim.simulated),
+});
 
-/** `unsent` is the data that an earlier visit of this page left in the vault. */
-export const createParticipantSession = (
-  kept: KeptSession,
-  unsent: Unsent,
-  options: ParticipantSessionOptions,
-): ParticipantSession => new DeviceSession(kept, unsent, options);
-
-class DeviceSession implements ParticipantSession {
+/** The session of one participant on this device: its steps and the upload of its records. */
+export class ParticipantSession {
   readonly schedule: Schedule;
   readonly #client: ParticipantClient;
   readonly #store: SessionStore;
@@ -141,6 +87,7 @@ class DeviceSession implements ParticipantSession {
     return this.#session.plan;
   }
 
+  /** The phrases of the page in the participant's language. */
   get phrases(): Phrases {
     const language = this.progress.language ?? languagesOf(this.plan)[0];
     if (this.#phrases?.language !== language) this.#phrases = phrasesOf(this.plan, language);
@@ -159,6 +106,7 @@ class DeviceSession implements ParticipantSession {
     return currentStep(this.schedule, this.progress);
   }
 
+  /** The withdrawal code; null: the participant has noted it. */
   get withdrawalCode() {
     return this.#session.withdrawalCode;
   }
@@ -167,6 +115,7 @@ class DeviceSession implements ParticipantSession {
     return this.#session.preferredHand;
   }
 
+  /** The newest measures of the body; null: not measured yet. */
   get calibration() {
     return this.#session.calibration;
   }
@@ -183,10 +132,12 @@ class DeviceSession implements ParticipantSession {
     };
   }
 
+  /** Returns the seconds left of this step, or null if it has no limit. */
   remaining(): number | null {
     return remainingSeconds(this.schedule, this.progress, this.#now());
   }
 
+  /** Applies an event and stores its consequences; returns why it is refused, or null. */
   apply(event: ProgressEvent): string | null {
     return this.#take(event);
   }
@@ -195,15 +146,24 @@ class DeviceSession implements ParticipantSession {
     this.#store.change({ ...this.#session, withdrawalCode: null });
   }
 
+  /**
+   * Resolves with the participant's seat in the room of a trial that the group plays together; rejects with the reason
+   * if there is none.
+   */
   seat(trial: PlayedTogether): Promise<SignedSeat> {
     const { study, participant, token } = this.#session;
     return this.#client.seat(study, participant, token, trial);
   }
 
+  /** Keeps the tracking frames of a trial until the server has them. */
   keepMotion(trial: string, recording: string): void {
     this.#store.keepMotion({ trial, recording });
   }
 
+  /**
+   * Sends the unsent records, reports the progress and follows the experimenter's commands, then starts to upload
+   * recordings without waiting for them. Never rejects.
+   */
   exchange(): Promise<void> {
     this.#exchanging ??= this.#exchangeOnce().finally(() => {
       this.#exchanging = null;
@@ -211,10 +171,12 @@ class DeviceSession implements ParticipantSession {
     return this.#exchanging;
   }
 
+  /** Resolves when no upload of a recording is under way. Failed uploads are repeated with a later exchange. */
   motionSent(): Promise<void> {
     return this.#motion.sent();
   }
 
+  /** Resolves when the device has stored everything so far or has reported that it cannot. */
   settled(): Promise<void> {
     return this.#store.settled();
   }

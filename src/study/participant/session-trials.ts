@@ -5,14 +5,7 @@ import { placeOf } from '../model/progress/progress';
 import type { ParticipantSession } from './participant-session';
 import { reasonFor } from './reasons';
 import type { StudyHost } from './study-host';
-import {
-  type FinishedTrial,
-  isPlayed,
-  lastPlayedBefore,
-  type PlayedStep,
-  type PlayedTrial,
-  playTrial,
-} from './study-trial';
+import { type FinishedTrial, isPlayed, lastPlayedBefore, type PlayedStep, PlayedTrial } from './study-trial';
 import type { TaskPlace, TaskRunner } from './task-runner';
 import { type Prepared, TrialPreparation } from './trial-preparation';
 
@@ -118,7 +111,7 @@ export class SessionTrials {
     const { plan, progress } = this.#session;
     const motion = progress.motion === true && plan.consent.motion !== null && step.kind === 'trial';
     const options = { key: this.attempt, motion, seed: this.#seedOf(step), now: this.#now };
-    this.#trial = playTrial(step, runner, this.#host, options);
+    this.#trial = new PlayedTrial(step, runner, this.#host, options);
     this.#onChange();
   }
 

@@ -37,29 +37,6 @@ export interface FinishedTrial {
   readonly recording: string | null;
 }
 
-/** A trial under way and its log. */
-export interface PlayedTrial {
-  /** The step, run and attempt of the trial. When the session changes to another one, the trial is void. */
-  readonly key: string;
-  /** The participants that the trial waits for, empty if unknown; null: none. */
-  readonly waitingFor: readonly string[] | null;
-  /** Whether the game is paused by another participant of the group. */
-  readonly standing: boolean;
-  /** Whether the game was lost, so that the trial is void. */
-  readonly interrupted: boolean;
-  /** Pauses or resumes game and clock; nothing is counted in a pause. */
-  pause(on: boolean): void;
-  /**
-   * Takes a drawn frame into account; `frame` null: the head was not seen. Returns the result once, when the end was on
-   * display for a moment, otherwise null.
-   */
-  follow(time: number, frame: TrackingFrame | null): FinishedTrial | null;
-  /** Ends a game whose end is on display, without the rest of the moment; returns null if the game goes on. */
-  conclude(): FinishedTrial | null;
-  /** Ends the game without a result. */
-  abort(): void;
-}
-
 /** The time for which the end of a round is on display before the sheet [s]. */
 const afterglow = 2.5;
 /** Participants consent to keeping the motion of head and wrists only. */
@@ -80,11 +57,9 @@ export interface TrialOptions {
   readonly now: () => number;
 }
 
-/** Starts a trial. */
-export const playTrial = (step: PlayedStep, runner: TaskRunner, host: TrialHost, options: TrialOptions): PlayedTrial =>
-  new LoggedTrial(step, runner, host, options);
-
-class LoggedTrial implements PlayedTrial {
+/** A trial under way and its log. */
+export class PlayedTrial {
+  /** The step, run and attempt of the trial. When the session changes to another one, the trial is void. */
   readonly key: string;
   readonly #step: PlayedStep;
   readonly #runner: TaskRunner;
@@ -120,24 +95,32 @@ class LoggedTrial implements PlayedTrial {
     runner.start({ seed, seconds: step.seconds });
   }
 
+  /** The participants that the trial waits for, empty if unknown; null: none. */
   get waitingFor(): readonly string[] | null {
     return this.#runner.waitingFor;
   }
 
+  /** Whether the game is paused by another participant of the group. */
   get standing(): boolean {
     return this.#runner.standing;
   }
 
+  /** Whether the game was lost, so that the trial is void. */
   get interrupted(): boolean {
     return this.#runner.interrupted;
   }
 
+  /** Pauses or resumes game and clock; nothing is counted in a pause. */
   pause(on: boolean): void {
     if (on === this.#paused) return;
     this.#paused = on;
     this.#runner.pause(on);
   }
 
+  /**
+   * Takes a drawn frame into account; `frame` null: the head was not seen. Returns the result once, when the end was on
+   * display for a moment, otherwise null.
+   */
   follow(pageTime: number, frame: TrackingFrame | null): FinishedTrial | null {
     if (this.#runner.waitingFor !== null) return null;
     if (this.#stands) {
@@ -157,11 +140,13 @@ class LoggedTrial implements PlayedTrial {
     return null;
   }
 
+  /** Ends a game whose end is on display, without the rest of the moment; returns null if the game goes on. */
   conclude(): FinishedTrial | null {
     const { end } = this.#runner;
     return end && this.#endedAt !== null ? this.#finish(end) : null;
   }
 
+  /** Ends the game without a result. */
   abort(): void {
     this.#host.listenToFrames(null);
     this.#runner.abort();

@@ -7,21 +7,10 @@ import { height, pixelsPerMetre, type Target, width } from './sheet-target';
 import type { StudyScreen } from './study-screen';
 import { paintSheet, targetsOf } from './study-sheet';
 
-/** The sheet of the study in the headset, a little beyond arm's length, with targets as large as a palm. */
-export interface VrStudyPanel {
-  readonly object: Group;
-  /** null hides it. */
-  show(screen: StudyScreen | null): void;
-  /** Places the sheet in front of a head (floor frame). Called with every frame. */
-  follow(head: {
-    readonly position: { x: number; y: number; z: number };
-    readonly forward: { x: number; z: number };
-  }): void;
-  point(pointers: readonly Pointer[]): void;
-  /** The id of the target that a hand points at; null: none. */
-  readonly pointedAt: string | null;
-  /** Returns the centre of each target in the world [m]. */
-  targets(): readonly { readonly id: string; readonly at: readonly [number, number, number] }[];
+/** A head in the floor frame [m]. */
+interface SeenHead {
+  readonly position: { readonly x: number; readonly y: number; readonly z: number };
+  readonly forward: { readonly x: number; readonly z: number };
 }
 
 /** The distance of the sheet from the eyes, and how far its centre is below them [m]. */
@@ -34,9 +23,8 @@ const mostTurn = 0.7;
 const mostStep = 0.8;
 const mostRise = 0.3;
 
-export const createVrStudyPanel = (): VrStudyPanel => new StudySheet();
-
-class StudySheet implements VrStudyPanel {
+/** The sheet of the study in the headset, a little beyond arm's length, with targets as large as a palm. */
+export class VrStudyPanel {
   readonly object = new Group();
   readonly #panel = createVrPanel(width, height, pixelsPerMetre);
   readonly #touch = createPanelTouch(this.#panel);
@@ -54,10 +42,12 @@ class StudySheet implements VrStudyPanel {
     this.object.visible = false;
   }
 
+  /** The id of the target that a hand points at; null: none. */
   get pointedAt(): string | null {
     return this.#hovered;
   }
 
+  /** null hides it. */
   show(screen: StudyScreen | null): void {
     this.#screen = screen;
     this.#targets = screen ? targetsOf(screen) : [];
@@ -67,7 +57,8 @@ class StudySheet implements VrStudyPanel {
     this.#redraw();
   }
 
-  follow({ position, forward }: Parameters<VrStudyPanel['follow']>[0]): void {
+  /** Places the sheet in front of a head (floor frame). Called with every frame. */
+  follow({ position, forward }: SeenHead): void {
     if (!this.#screen) return;
     const { object } = this;
     const yaw = Math.atan2(-forward.x, -forward.z);
@@ -90,7 +81,8 @@ class StudySheet implements VrStudyPanel {
     this.#redraw();
   }
 
-  targets(): ReturnType<VrStudyPanel['targets']> {
+  /** Returns the centre of each target in the world [m]. */
+  targets(): readonly { readonly id: string; readonly at: readonly [number, number, number] }[] {
     if (!this.object.visible) return [];
     const { mesh } = this.#panel;
     mesh.updateWorldMatrix(true, false);
