@@ -13,7 +13,7 @@ import { createBallPlay } from 'threepoint-page/ball/ball-play';
 import { createFrameLoop } from 'threepoint-page/shell/frame-loop';
 import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
 import { Recorder } from 'threepoint-page/studio/recorder';
-import { type PlayedStep, PlayedTrial } from 'threepoint-study/participant/study-trial';
+import { type PlayedStep, PlayedTrial } from 'threepoint-study/participant/trial/study-trial';
 import { describe, expect, test } from 'vitest';
 import { studiedArcher } from '../study/participant/played-round';
 import { reportFigures } from './report-figures';

@@ -3,10 +3,10 @@ import { PhrasedError } from '../model/phrases/phrases';
 import { scheduleFor } from '../model/plan/schedule';
 import { isLater, type Progress } from '../model/progress/progress';
 import type { PublicStudy } from '../model/progress/study-api';
-import { ParticipantSession, type ParticipantSessionOptions, startSession } from './participant-session';
-import type { Unsent } from './session-store';
-import type { ConsentChoices } from './study-form';
-import { type KeptSession, openStudyVault, type StudyVault } from './study-vault';
+import type { ConsentChoices } from './forms/study-form';
+import { ParticipantSession, type ParticipantSessionOptions, startSession } from './session/participant-session';
+import type { Unsent } from './session/session-store';
+import { type KeptSession, openStudyVault, type StudyVault } from './session/study-vault';
 
 /** A participant's place in a study. */
 export interface Place {

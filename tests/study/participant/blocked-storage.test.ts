@@ -1,6 +1,6 @@
 import { IDBFactory } from 'fake-indexeddb';
 import { openDB } from 'idb';
-import { openStudyVault } from 'threepoint-study/participant/study-vault';
+import { openStudyVault } from 'threepoint-study/participant/session/study-vault';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
 import { aWomanOf26 } from '../model/studies';

@@ -1,4 +1,4 @@
-import { openStudyVault } from 'threepoint-study/participant/study-vault';
+import { openStudyVault } from 'threepoint-study/participant/session/study-vault';
 import { expect, test } from 'vitest';
 import { beforeTheQuestions, choose } from './participant-steps';
 import { studyServer } from './study-server';

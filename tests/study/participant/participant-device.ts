@@ -1,7 +1,7 @@
 import 'fake-indexeddb/auto';
 import { createParticipantClient } from 'threepoint-study/client/study-client';
-import { ParticipantSession, startSession } from 'threepoint-study/participant/participant-session';
-import { openStudyVault, type StudyVault } from 'threepoint-study/participant/study-vault';
+import { ParticipantSession, startSession } from 'threepoint-study/participant/session/participant-session';
+import { openStudyVault, type StudyVault } from 'threepoint-study/participant/session/study-vault';
 import { expect, vi } from 'vitest';
 import { aWomanOf26, outcomeOf, paperPlan } from '../model/studies';
 

@@ -1,6 +1,6 @@
 import { createParticipantClient } from 'threepoint-study/client/study-client';
 import { isLater } from 'threepoint-study/model/progress/progress';
-import { ParticipantSession, startSession } from 'threepoint-study/participant/participant-session';
+import { ParticipantSession, startSession } from 'threepoint-study/participant/session/participant-session';
 import { afterEach, expect, test, vi } from 'vitest';
 import { calibration, device, fillDevice, toTheFirstQuestion, toTheFirstRest } from './participant-device';
 import { studyServer } from './study-server';

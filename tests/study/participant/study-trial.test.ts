@@ -2,7 +2,7 @@ import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { parseRecording } from 'threepoint/core/tracking/recording';
 import { mostMotionBytes } from 'threepoint-study/model/progress/study-api';
 import { recordingTime } from 'threepoint-study/model/records/trial-clock';
-import { PlayedTrial } from 'threepoint-study/participant/study-trial';
+import { PlayedTrial } from 'threepoint-study/participant/trial/study-trial';
 import { describe, expect, test } from 'vitest';
 import { epoch, frameSeconds, playedRound } from './played-round';
 import { OneShotGame } from './study-browser';

@@ -1,5 +1,5 @@
 import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
-import { openStudyVault } from 'threepoint-study/participant/study-vault';
+import { openStudyVault } from 'threepoint-study/participant/session/study-vault';
 import { describe, expect, test } from 'vitest';
 import { aWomanOf26 } from '../model/studies';
 import {

@@ -1,10 +1,10 @@
 import { button, element } from 'threepoint-ui/element';
-import type { Phrases } from '../model/phrases/phrases';
+import type { Phrases } from '../../model/phrases/phrases';
+import { dotNodes, questionNodes } from '../questions/question-card';
+import type { StudyScreen } from '../screens/study-screen';
 import { formNodes, formNote } from './form-nodes';
 import { paragraphs } from './form-parts';
-import { dotNodes, questionNodes } from './questions/question-card';
 import type { StudyForm } from './study-form';
-import type { StudyScreen } from './study-screen';
 
 /** The card of the study over the page on the desktop. */
 export interface StudyCard {

@@ -1,6 +1,6 @@
 import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
-import type { Phrases } from '../model/phrases/phrases';
-import type { RemoteTerms } from '../model/plan/remote-setup';
+import type { Phrases } from '../../model/phrases/phrases';
+import type { RemoteTerms } from '../../model/plan/remote-setup';
 import { askToStopButton, calibrateButton, enterButton, pauseButton, type ScreenParts } from './screen-parts';
 import type { StudyScreen } from './study-screen';
 import type { StudySituation } from './study-situation';

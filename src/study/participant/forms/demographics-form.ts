@@ -1,6 +1,6 @@
 import { button, element } from 'threepoint-ui/element';
-import type { Phrases } from '../model/phrases/phrases';
-import { type DemographicField, demographicFields } from '../model/records/demographics';
+import type { Phrases } from '../../model/phrases/phrases';
+import { type DemographicField, demographicFields } from '../../model/records/demographics';
 import { complaintLine, type FormOf } from './form-parts';
 
 type Given = string | number | undefined;

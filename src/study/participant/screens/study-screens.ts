@@ -1,17 +1,17 @@
-import type { Phrases } from '../model/phrases/phrases';
-import { inLanguage } from '../model/phrases/words';
-import { taskTitle } from '../model/plan/plan';
-import type { RemoteTerms } from '../model/plan/remote-setup';
-import type { StudyStep } from '../model/plan/schedule';
-import { clockText, type Progress } from '../model/progress/progress';
-import { screenQuestions } from './answering';
+import type { Phrases } from '../../model/phrases/phrases';
+import { inLanguage } from '../../model/phrases/words';
+import { taskTitle } from '../../model/plan/plan';
+import type { RemoteTerms } from '../../model/plan/remote-setup';
+import type { StudyStep } from '../../model/plan/schedule';
+import { clockText, type Progress } from '../../model/progress/progress';
+import { screenQuestions } from '../answering';
+import { questionPart } from '../questions/question-screen';
+import type { UploadStatus } from '../session/participant-session';
+import { noStorage } from '../session/session-store';
+import { silentStorage } from '../session/storage-timeout';
 import { calibrationScreen } from './calibration-screens';
-import type { UploadStatus } from './participant-session';
-import { questionPart } from './questions/question-screen';
 import { roundScreen } from './round-screens';
 import { askToStopButton, pauseButton, type ScreenParts } from './screen-parts';
-import { noStorage } from './session-store';
-import { silentStorage } from './storage-timeout';
 import type { StudyScreen } from './study-screen';
 import type { ScreenActions, ShownSession, StudySituation } from './study-situation';
 

@@ -1,5 +1,5 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import type { StudyRecord } from '../model/records/study-record';
+import type { StudyRecord } from '../../model/records/study-record';
 import { type KeptMotion, type KeptSession, SessionForgotten, type StudyVault } from './study-vault';
 
 /** The data that an earlier visit of the page left in the vault. */

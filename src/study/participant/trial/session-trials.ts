@@ -1,10 +1,10 @@
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { PhrasedError } from '../model/phrases/phrases';
-import { randomFor } from '../model/plan/shuffle';
-import { placeOf } from '../model/progress/progress';
-import type { ParticipantSession } from './participant-session';
-import { reasonFor } from './reasons';
-import type { StudyHost } from './study-host';
+import { PhrasedError } from '../../model/phrases/phrases';
+import { randomFor } from '../../model/plan/shuffle';
+import { placeOf } from '../../model/progress/progress';
+import { reasonFor } from '../reasons';
+import type { ParticipantSession } from '../session/participant-session';
+import type { StudyHost } from '../study-host';
 import { type FinishedTrial, isPlayed, lastPlayedBefore, type PlayedStep, PlayedTrial } from './study-trial';
 import type { TaskPlace, TaskRunner } from './task-runner';
 import { type Prepared, TrialPreparation } from './trial-preparation';

@@ -1,5 +1,5 @@
-import type { Phrases } from '../model/phrases/phrases';
-import type { PublicStudy } from '../model/progress/study-api';
+import type { Phrases } from '../../model/phrases/phrases';
+import type { PublicStudy } from '../../model/progress/study-api';
 
 /** A participant and the invitation. */
 export interface Invited {

@@ -1,4 +1,4 @@
-import { ServerRefusal, ServerUnreachable } from '../client/study-client';
+import { ServerRefusal, ServerUnreachable } from '../../client/study-client';
 import type { SessionStore } from './session-store';
 
 /** The most exchanges that pass before failed uploads are repeated. Each may be 16 MiB. */

@@ -1,5 +1,5 @@
-import type { SignedSeat } from '../model/progress/study-api';
-import type { TrialEvent, TrialOutcome } from '../model/records/trial-log';
+import type { SignedSeat } from '../../model/progress/study-api';
+import type { TrialEvent, TrialOutcome } from '../../model/records/trial-log';
 
 /** An event of a task: a shot or throw, or its result. */
 export type TaskEvent = { readonly type: 'shot' } | TrialEvent;

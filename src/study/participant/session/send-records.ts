@@ -1,5 +1,5 @@
-import { ServerRefusal } from '../client/study-client';
-import type { StudyRecord } from '../model/records/study-record';
+import { ServerRefusal } from '../../client/study-client';
+import type { StudyRecord } from '../../model/records/study-record';
 import type { SessionStore } from './session-store';
 
 type Send = (records: readonly StudyRecord[]) => Promise<readonly string[]>;

@@ -2,10 +2,10 @@ import type { Calibration } from 'threepoint/core/body/calibration';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import { cutRecording } from 'threepoint/core/tracking/recording';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { Schedule, StudyStep } from '../model/plan/schedule';
-import { mostMotionBytes } from '../model/progress/study-api';
-import { TrialSeconds } from '../model/records/trial-clock';
-import { createTrialLog, type FrameListener, type TrialLog, type TrialOutcome } from '../model/records/trial-log';
+import type { Schedule, StudyStep } from '../../model/plan/schedule';
+import { mostMotionBytes } from '../../model/progress/study-api';
+import { TrialSeconds } from '../../model/records/trial-clock';
+import { createTrialLog, type FrameListener, type TrialLog, type TrialOutcome } from '../../model/records/trial-log';
 import type { TaskEnd, TaskRunner } from './task-runner';
 
 /** The steps that are played. */

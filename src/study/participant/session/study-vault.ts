@@ -1,8 +1,8 @@
 import { type DBSchema, type IDBPDatabase, openDB } from 'idb';
-import type { StudyPlan } from '../model/plan/plan';
-import type { Progress } from '../model/progress/progress';
-import type { ParticipantProfile } from '../model/records/participant-profile';
-import type { StudyRecord } from '../model/records/study-record';
+import type { StudyPlan } from '../../model/plan/plan';
+import type { Progress } from '../../model/progress/progress';
+import type { ParticipantProfile } from '../../model/records/participant-profile';
+import type { StudyRecord } from '../../model/records/study-record';
 import { StorageTimeout } from './storage-timeout';
 
 /** A session as this device stores it. */

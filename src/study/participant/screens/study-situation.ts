@@ -1,9 +1,9 @@
 import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
-import type { ProgressEvent } from '../model/progress/advance';
-import type { Answer } from '../model/questionnaires/question-kind';
-import type { Question } from '../model/questionnaires/questionnaire-schema';
-import type { ParticipantSession } from './participant-session';
-import type { Prepared } from './trial-preparation';
+import type { ProgressEvent } from '../../model/progress/advance';
+import type { Answer } from '../../model/questionnaires/question-kind';
+import type { Question } from '../../model/questionnaires/questionnaire-schema';
+import type { ParticipantSession } from '../session/participant-session';
+import type { Prepared } from '../trial/trial-preparation';
 
 /** The parts of a session that screens show. */
 export type ShownSession = Pick<

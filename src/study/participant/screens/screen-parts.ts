@@ -1,5 +1,5 @@
-import type { PhraseKey } from '../model/phrases/catalogue';
-import type { Phrases } from '../model/phrases/phrases';
+import type { PhraseKey } from '../../model/phrases/catalogue';
+import type { Phrases } from '../../model/phrases/phrases';
 import type { ScreenButton, StudyScreen } from './study-screen';
 import type { ScreenActions } from './study-situation';
 
