@@ -1,5 +1,5 @@
-import { checkedPlan, type StudyPlan } from '../model/plan/plan';
-import { simulatedPlan } from '../simulation/simulate-study';
+import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
+import { simulatedPlan } from '../../simulation/simulate-study';
 
 /**
  * Returns the plan of a study file, renamed if it is simulated. Throws an Error with a sentence for the experimenter.

@@ -1,11 +1,11 @@
 import { button, element } from 'threepoint-ui/element';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { storePreviewPlan } from 'threepoint-ui/preview-plan';
-import { type StudyPlan, studyTitle } from '../model/plan/plan';
-import { remarksOn } from '../model/plan/plan-remarks';
-import type { ParticipantState, Receipt, StudyInfo } from '../model/progress/study-api';
+import { type StudyPlan, studyTitle } from '../../model/plan/plan';
+import { remarksOn } from '../../model/plan/plan-remarks';
+import type { ParticipantState, Receipt, StudyInfo } from '../../model/progress/study-api';
+import { tableNode } from '../table';
 import { type ParticipantActions, participantHeads, participantRow } from './participant-row';
-import { tableNode } from './table';
 
 /** A study that is open on the experimenter's page. */
 export interface OpenStudy extends StudyInfo {

@@ -1,10 +1,10 @@
 import { element } from 'threepoint-ui/element';
-import { cohortIn } from '../model/results/exported-results';
-import { frameTimes } from '../model/results/frame-times';
-import { frameTimeTable } from '../model/results/result-tables';
+import { cohortIn } from '../../model/results/exported-results';
+import { frameTimes } from '../../model/results/frame-times';
+import { frameTimeTable } from '../../model/results/result-tables';
+import { tableNode } from '../table';
 import { bar, csvButton, fixed } from './result-cells';
 import type { ShownResults } from './shown-results';
-import { tableNode } from './table';
 
 const frameTimeHeads = [
   { text: 'Task' },

@@ -1,5 +1,5 @@
 import { button, element } from 'threepoint-ui/element';
-import type { StudyPlan } from '../model/plan/plan';
+import type { StudyPlan } from '../../model/plan/plan';
 import { askInDialog } from './ask-in-dialog';
 import type { Simulation } from './store-simulation';
 

@@ -1,6 +1,6 @@
 import { element } from 'threepoint-ui/element';
-import { cohortTable } from '../model/results/cohort-table';
-import { type CohortComparison, type ComparedCohorts, compareCohorts } from '../model/results/compare-cohorts';
+import { cohortTable } from '../../model/results/cohort-table';
+import { type CohortComparison, type ComparedCohorts, compareCohorts } from '../../model/results/compare-cohorts';
 import { cohortTesting, comparedTable } from './compared-tables';
 import { type Chart, meansFigure, questionCharts, scaleCharts, scoreCharts, stripFigure } from './comparison-figures';
 import { bar, csvButton, plannedNote } from './result-cells';

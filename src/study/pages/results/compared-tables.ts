@@ -1,10 +1,10 @@
-import type { CohortComparison } from '../model/results/compare-cohorts';
-import type { Comparison } from '../model/results/compare-conditions';
-import type { Measured } from '../model/results/measures';
-import type { Interval } from '../statistics/summaries';
+import type { CohortComparison } from '../../model/results/compare-cohorts';
+import type { Comparison } from '../../model/results/compare-conditions';
+import type { Measured } from '../../model/results/measures';
+import type { Interval } from '../../statistics/summaries';
+import { type TableHead, type TableRow, tableNode } from '../table';
 import { fixed, meanCell, measureCell, none, pText } from './result-cells';
 import type { Compared, ShownResults } from './shown-results';
-import { type TableHead, type TableRow, tableNode } from './table';
 
 const significance = 0.05;
 

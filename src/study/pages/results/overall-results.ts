@@ -1,11 +1,11 @@
 import { element } from 'threepoint-ui/element';
-import type { OverallComparison } from '../model/results/compare-all';
-import { comparedAsAWhole, overallComparisons } from '../model/results/exported-results';
-import type { Measure } from '../model/results/measures';
-import { effectsOf, overallTable } from '../model/results/result-tables';
+import type { OverallComparison } from '../../model/results/compare-all';
+import { comparedAsAWhole, overallComparisons } from '../../model/results/exported-results';
+import type { Measure } from '../../model/results/measures';
+import { effectsOf, overallTable } from '../../model/results/result-tables';
+import { type TableRow, tableNode } from '../table';
 import { bar, csvButton, fixed, meanCell, measureCell, none, plannedNote, pText } from './result-cells';
 import type { ShownResults } from './shown-results';
-import { type TableRow, tableNode } from './table';
 
 const heads = [
   { text: 'Measure' },

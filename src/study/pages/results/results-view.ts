@@ -1,11 +1,11 @@
 import { offerDownload } from 'threepoint-ui/downloads';
 import { button, element } from 'threepoint-ui/element';
-import type { StudyPlan } from '../model/plan/plan';
-import type { StudyRecord } from '../model/records/study-record';
-import { cohortViews } from '../model/results/exported-results';
-import type { Exclusion } from '../model/results/measures';
-import { studyTables } from '../model/tables/study-tables';
-import { tidyCsv } from '../model/tables/tidy-csv';
+import type { StudyPlan } from '../../model/plan/plan';
+import type { StudyRecord } from '../../model/records/study-record';
+import { cohortViews } from '../../model/results/exported-results';
+import type { Exclusion } from '../../model/results/measures';
+import { studyTables } from '../../model/tables/study-tables';
+import { tidyCsv } from '../../model/tables/tidy-csv';
 import { chooser, pairChooser } from './choosers';
 import { cohortResults } from './cohort-results';
 import { frameTimeParts } from './frame-time-results';

@@ -1,6 +1,6 @@
 import * as Plot from '@observablehq/plot';
-import type { CohortComparison } from '../model/results/compare-cohorts';
-import type { Comparison } from '../model/results/compare-conditions';
+import type { CohortComparison } from '../../model/results/compare-cohorts';
+import type { Comparison } from '../../model/results/compare-conditions';
 import { swarm } from './swarm';
 
 /** The labels of the two conditions or cohorts that are compared. */

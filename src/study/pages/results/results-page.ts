@@ -1,12 +1,12 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import { studyTitle } from '../model/plan/plan';
+import { studyTitle } from '../../model/plan/plan';
 import 'threepoint-ui/styles/document.css';
 import { button, element, pageElement } from 'threepoint-ui/element';
+import { StudyAccess } from '../study-access';
+import { openStudyFile } from '../study-file';
 import { paperCheck } from './paper-check';
 import { firstSelection, type Selection, simulatedNotice, studyResults } from './results-view';
 import type { ShownStudy } from './shown-results';
-import { StudyAccess } from './study-access';
-import { openStudyFile } from './study-file';
 
 /** The page of results: a study of this server or of an export, and what it shows about it. */
 class ResultsPage {

@@ -1,12 +1,12 @@
-import { questionnairesOf, type StudyPlan, taskTitle } from '../model/plan/plan';
-import type { PlanVersion } from '../model/progress/study-api';
-import type { Questionnaire } from '../model/questionnaires/questionnaires';
-import type { StudyRecord } from '../model/records/study-record';
-import type { Comparison } from '../model/results/compare-conditions';
-import { aboutIn, measuresIn, type StudyMeasures } from '../model/results/exported-results';
-import type { Measured } from '../model/results/measures';
-import { isPlanned } from '../model/results/planned';
-import type { TableFacts } from '../model/results/result-tables';
+import { questionnairesOf, type StudyPlan, taskTitle } from '../../model/plan/plan';
+import type { PlanVersion } from '../../model/progress/study-api';
+import type { Questionnaire } from '../../model/questionnaires/questionnaires';
+import type { StudyRecord } from '../../model/records/study-record';
+import type { Comparison } from '../../model/results/compare-conditions';
+import { aboutIn, measuresIn, type StudyMeasures } from '../../model/results/exported-results';
+import type { Measured } from '../../model/results/measures';
+import { isPlanned } from '../../model/results/planned';
+import type { TableFacts } from '../../model/results/result-tables';
 
 /** The data from which results are computed. */
 export interface ShownStudy {

@@ -1,8 +1,8 @@
 import { element } from 'threepoint-ui/element';
-import { checkedPaperRows, paperDf, paperFrameTimes, paperScores, savedShare } from '../model/results/paper-tables';
-import { paperTable } from '../model/results/result-tables';
+import { checkedPaperRows, paperDf, paperFrameTimes, paperScores, savedShare } from '../../model/results/paper-tables';
+import { paperTable } from '../../model/results/result-tables';
+import { tableNode } from '../table';
 import { csvButton, fixed, paperAboutOf, pText } from './result-cells';
-import { tableNode } from './table';
 
 /** Returns the paper's printed numbers, recomputed from its t values and tables. */
 export function paperCheck(): readonly Node[] {

@@ -1,6 +1,6 @@
 import { element } from 'threepoint-ui/element';
-import { scheduleFor } from '../model/plan/schedule';
-import type { MeantBlock } from '../model/progress/study-api';
+import { scheduleFor } from '../../model/plan/schedule';
+import type { MeantBlock } from '../../model/progress/study-api';
 import { type OpenStudy, planOf } from './experimenter-view';
 import { askForSentence } from './sentence-dialog';
 

@@ -1,9 +1,9 @@
 import { offerDownload } from 'threepoint-ui/downloads';
 import { button, element } from 'threepoint-ui/element';
-import { shippedQuestionnaires } from '../model/questionnaires/questionnaires';
-import type { Measured } from '../model/results/measures';
-import { type Table, tidyCsv } from '../model/tables/tidy-csv';
-import type { Interval } from '../statistics/summaries';
+import { shippedQuestionnaires } from '../../model/questionnaires/questionnaires';
+import type { Measured } from '../../model/results/measures';
+import { type Table, tidyCsv } from '../../model/tables/tidy-csv';
+import type { Interval } from '../../statistics/summaries';
 import type { ShownResults } from './shown-results';
 
 /** The text of a cell without a number. */

@@ -1,6 +1,6 @@
 import { offerDownload } from 'threepoint-ui/downloads';
 import { pageFolder } from 'threepoint-ui/page-folder';
-import type { ExperimenterClient } from '../client/study-client';
+import type { ExperimenterClient } from '../../client/study-client';
 import { type OpenStudy, receiptText } from './experimenter-view';
 import type { ParticipantActions } from './participant-row';
 import { askForSentence, type SentenceQuestion } from './sentence-dialog';

@@ -1,6 +1,6 @@
 import { element } from 'threepoint-ui/element';
-import { type Comparison, compareConditions, type Results } from '../model/results/compare-conditions';
-import { comparisonTable } from '../model/results/result-tables';
+import { type Comparison, compareConditions, type Results } from '../../model/results/compare-conditions';
+import { comparisonTable } from '../../model/results/result-tables';
 import { comparedTable, pairTesting } from './compared-tables';
 import { type Chart, meansFigure, pairsFigure, questionCharts, scaleCharts, scoreCharts } from './comparison-figures';
 import { bar, csvButton, plannedNote } from './result-cells';

@@ -1,10 +1,10 @@
 import { button, element } from 'threepoint-ui/element';
-import { studyLink } from '../client/study-link';
-import type { StudyPlan } from '../model/plan/plan';
-import { type Schedule, scheduleFor } from '../model/plan/schedule';
-import { clockText } from '../model/progress/progress';
-import type { ParticipantState, StudyCommand } from '../model/progress/study-api';
-import type { TableRow } from './table';
+import { studyLink } from '../../client/study-link';
+import type { StudyPlan } from '../../model/plan/plan';
+import { type Schedule, scheduleFor } from '../../model/plan/schedule';
+import { clockText } from '../../model/progress/progress';
+import type { ParticipantState, StudyCommand } from '../../model/progress/study-api';
+import type { TableRow } from '../table';
 
 /** A page that was silent for longer than this counts as lost [s]. */
 const silentAfter = 12;

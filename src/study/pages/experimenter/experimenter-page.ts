@@ -2,10 +2,11 @@ import 'threepoint-ui/styles/document.css';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { element, pageElement } from 'threepoint-ui/element';
 import { sentence } from 'threepoint-ui/phrase-parts';
-import { type ExperimenterClient, ServerRefusal } from '../client/study-client';
-import type { StudyPlan } from '../model/plan/plan';
-import type { StudyInfo } from '../model/progress/study-api';
-import { statedInWords } from '../simulation/simulate-study';
+import { type ExperimenterClient, ServerRefusal } from '../../client/study-client';
+import type { StudyPlan } from '../../model/plan/plan';
+import type { StudyInfo } from '../../model/progress/study-api';
+import { statedInWords } from '../../simulation/simulate-study';
+import { StudyAccess } from '../study-access';
 import {
   type NewStudy,
   type NewStudyActions,
@@ -18,7 +19,6 @@ import { planToBegin } from './new-study';
 import { download, participantActions, type ServerAction } from './participant-actions';
 import { askForSimulation } from './simulation-dialog';
 import { storeSimulation } from './store-simulation';
-import { StudyAccess } from './study-access';
 
 /** The interval at which states are requested [ms]. */
 const refreshEveryMs = 1500;

@@ -1,6 +1,6 @@
-import type { ExperimenterClient } from '../client/study-client';
-import { checkedPlan, participantsOf, type StudyPlan } from '../model/plan/plan';
-import { modelsWith, type StatedEffects, simulatedParticipants, simulatedPlan } from '../simulation/simulate-study';
+import type { ExperimenterClient } from '../../client/study-client';
+import { checkedPlan, participantsOf, type StudyPlan } from '../../model/plan/plan';
+import { modelsWith, type StatedEffects, simulatedParticipants, simulatedPlan } from '../../simulation/simulate-study';
 
 /** The parameters of a simulation: the same seed and effects give the same answers. */
 export interface Simulation {
