@@ -309,19 +309,19 @@ export const attackRows = {
     inject: 'Another program locks the database for 30 s (8 s by day)',
     sees: 'Rooms continue; reads work; writes get 503',
     target: 'event loop p99 20 ms; 0 answered 408; 0 acknowledged and lost',
-    tests: ['tests/study/server/hung-database.test.ts'],
+    tests: ['tests/study/server/faults/hung-database.test.ts'],
   },
   'study-disk': {
     inject: 'A flush takes 30 s (12 s by day)',
     sees: 'Rooms continue; reads work; writes get 503',
     target: 'event loop p99 20 ms; 0 answered 408; 0 acknowledged and lost',
-    tests: ['tests/study/server/hung-database.test.ts'],
+    tests: ['tests/study/server/faults/hung-database.test.ts'],
   },
   'study-folder': {
     inject: 'The studies’ folder is readable by others, deleted, replaced, damaged, locked, newer or foreign',
     sees: 'Closed to others; 507 until it is back; a refused start names file and remedy',
     target: '0 files open to others; 0 acknowledged and lost',
-    tests: ['tests/study/server/study-folder.test.ts'],
+    tests: ['tests/study/server/faults/study-folder.test.ts'],
   },
   'study-replays': {
     inject: 'A page’s requests arrive twice, out of order or after revoked consent; twenty people open one link',
@@ -363,7 +363,7 @@ export const attackRows = {
     inject: 'A heap of 64 MB, no free file handles or a full disk during an export',
     sees: 'A sentence with what is short; the server continues',
     target: '0 faults, 0 acknowledged and lost',
-    tests: ['tests/study/server/study-shortage.test.ts'],
+    tests: ['tests/study/server/faults/study-shortage.test.ts'],
   },
   'server-clock': {
     inject: 'The server’s clock jumps by an hour, either way',

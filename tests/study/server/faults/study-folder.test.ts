@@ -6,12 +6,12 @@ import { serve } from 'threepoint-http/web-server';
 import { openStudyService } from 'threepoint-study/server/service';
 import { openStudyStore } from 'threepoint-study/server/storage/store';
 import { describe, expect, onTestFinished, test } from 'vitest';
-import { reportFigures } from '../../reliability/report-figures';
-import { testSecret } from '../../rooms/server/running-relay';
-import { directoryWith } from '../../temporary-directory';
-import { paperPlan } from '../model/studies';
-import { withoutInvitations } from './older-databases';
-import { experimenter, studyThread, testSoftware } from './running-studies';
+import { reportFigures } from '../../../reliability/report-figures';
+import { testSecret } from '../../../rooms/server/running-relay';
+import { directoryWith } from '../../../temporary-directory';
+import { paperPlan } from '../../model/studies';
+import { withoutInvitations } from '../older-databases';
+import { experimenter, studyThread, testSoftware } from '../running-studies';
 
 /** The studies of this folder on a port of loopback, until the test is over; throws what a start throws. */
 async function started(directory: string) {

@@ -3,8 +3,8 @@ import { exportZip } from 'threepoint-study/server/export/export-zip';
 import { unpacked } from 'threepoint-study/server/storage/motion';
 import type { StudyStore } from 'threepoint-study/server/storage/store';
 import { describe, expect, test } from 'vitest';
-import { now, testSoftware } from './running-studies';
-import { completed, withPaperStudy } from './stored-studies';
+import { now, testSoftware } from '../running-studies';
+import { completed, withPaperStudy } from '../stored-studies';
 
 describe('an export', () => {
   const contentOf = (store: StudyStore, participant?: string) => {

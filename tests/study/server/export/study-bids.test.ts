@@ -6,10 +6,10 @@ import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import type { StudyRecord } from 'threepoint-study/model/records/study-record';
 import { bidsDataset } from 'threepoint-study/server/export/bids';
 import { beforeAll, describe, expect, test } from 'vitest';
-import { installed } from '../../server/installed';
-import { directoryWith } from '../../temporary-directory';
-import { paperPlan, session } from '../model/studies';
-import { epoch, frameSeconds, playedRound, type RoundTroubles } from '../participant/played-round';
+import { installed } from '../../../server/installed';
+import { directoryWith } from '../../../temporary-directory';
+import { paperPlan, session } from '../../model/studies';
+import { epoch, frameSeconds, playedRound, type RoundTroubles } from '../../participant/played-round';
 
 const troubles: readonly RoundTroubles[] = [
   {},

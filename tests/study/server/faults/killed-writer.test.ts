@@ -3,10 +3,10 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { DatabaseSync } from '@photostructure/sqlite';
 import { describe, expect, test } from 'vitest';
-import { now } from './running-studies';
-import { completed, opened, withPaperStudy } from './stored-studies';
+import { now } from '../running-studies';
+import { completed, opened, withPaperStudy } from '../stored-studies';
 
-const root = fileURLToPath(new URL('../../..', import.meta.url));
+const root = fileURLToPath(new URL('../../../..', import.meta.url));
 
 describe('a server killed while it writes (kill -9)', () => {
   /** Lets the writer live for some acknowledgements and then kills it; what it acknowledged. */
@@ -14,7 +14,7 @@ describe('a server killed while it writes (kill -9)', () => {
     new Promise<string[]>((resolve, reject) => {
       const writer = spawn(
         process.execPath,
-        ['--import', 'tsx', join(root, 'tests/study/server/study-writer.ts'), file, String(first)],
+        ['--import', 'tsx', join(root, 'tests/study/server/faults/study-writer.ts'), file, String(first)],
         { cwd: root, stdio: ['ignore', 'pipe', 'pipe'] },
       );
       let said = '';

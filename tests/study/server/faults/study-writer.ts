@@ -1,5 +1,5 @@
 // Stores one record after the other for as long as it lives and says which were acknowledged, one id per line.
-// node --import tsx tests/study/server/study-writer.ts DATABASE FIRST
+// node --import tsx tests/study/server/faults/study-writer.ts DATABASE FIRST
 import { writeSync } from 'node:fs';
 import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/study-record';
 import { openStudyStore } from 'threepoint-study/server/storage/store';

@@ -6,7 +6,7 @@ import { openStudyService } from 'threepoint-study/server/service';
 const secret = 'a secret of the tests, long enough for them';
 const { service } = await openStudyService({
   // A bundle of this file has the thread's script next to it.
-  thread: new URL(process.argv[3] ?? '../../../server/study-thread-worker.mjs', import.meta.url),
+  thread: new URL(process.argv[3] ?? '../../../../server/study-thread-worker.mjs', import.meta.url),
   directory: process.argv[2] as string,
   token: process.env.EXPERIMENTER_TOKEN ?? null,
   software: { name: 'threepoint', version: '0.1.0', weights: [] },

@@ -4,7 +4,7 @@ import { verifyExport } from 'threepoint-study/cli/verify/verify-export';
 import type { StudyRecord } from 'threepoint-study/model/records/study-record';
 import { type ExportContent, exportFiles, exportZip } from 'threepoint-study/server/export/export-zip';
 import { beforeAll, describe, expect, test } from 'vitest';
-import { playedRound } from '../participant/played-round';
+import { playedRound } from '../../participant/played-round';
 import { designs, exportedStudy } from './exported-studies';
 
 /** A whole study of three conditions, with one recording of motion. */

@@ -10,13 +10,13 @@ import type { ParticipantState } from 'threepoint-study/model/progress/study-api
 import type { StudyRecord } from 'threepoint-study/model/records/study-record';
 import { openStudyStore } from 'threepoint-study/server/storage/store';
 import { type RandomSource, randomSource } from 'threepoint-study/simulation/random-source';
-import { sourceResolution } from '../../../scripts/source-condition.mjs';
-import { heardFrom, isAlive, kill } from '../../server/child-process';
-import { directoryWith } from '../../temporary-directory';
-import { paperPlan, session } from '../model/studies';
+import { sourceResolution } from '../../../../scripts/source-condition.mjs';
+import { heardFrom, isAlive, kill } from '../../../server/child-process';
+import { directoryWith } from '../../../temporary-directory';
+import { paperPlan, session } from '../../model/studies';
 
 const experimenter = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
-const root = fileURLToPath(new URL('../../..', import.meta.url));
+const root = fileURLToPath(new URL('../../../..', import.meta.url));
 
 /** What kills found; every list is empty where nothing was lost. */
 export interface KillReport {
@@ -39,7 +39,7 @@ async function bundledServer(): Promise<string> {
   const folder = join(root, '.cache/study-process');
   const bundle = await rolldown({
     input: {
-      'study-process': join(root, 'tests/study/server/study-process.ts'),
+      'study-process': join(root, 'tests/study/server/faults/study-process.ts'),
       'study-thread-worker': join(root, 'server/study-thread-work.ts'),
     },
     platform: 'node',

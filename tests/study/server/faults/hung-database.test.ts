@@ -4,14 +4,14 @@ import { fileURLToPath } from 'node:url';
 import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/study-record';
 import { openStudyStore } from 'threepoint-study/server/storage/store';
 import { describe, expect, onTestFinished, test } from 'vitest';
-import { isNightly } from '../../nightly';
-import { reportFigures } from '../../reliability/report-figures';
-import { arrive, pause, until } from '../../rooms/server/running-relay';
-import { heardFrom, kill } from '../../server/child-process';
-import { installed } from '../../server/installed';
-import { experimenterToken, forkServer } from '../../server/server-child';
-import { directoryWith } from '../../temporary-directory';
-import { paperPlan } from '../model/studies';
+import { isNightly } from '../../../nightly';
+import { reportFigures } from '../../../reliability/report-figures';
+import { arrive, pause, until } from '../../../rooms/server/running-relay';
+import { heardFrom, kill } from '../../../server/child-process';
+import { installed } from '../../../server/installed';
+import { experimenterToken, forkServer } from '../../../server/server-child';
+import { directoryWith } from '../../../temporary-directory';
+import { paperPlan } from '../../model/studies';
 
 const now = 1_800_000_000;
 /** How long the disk hangs, or another program holds the lock [s]. */

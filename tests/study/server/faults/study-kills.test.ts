@@ -1,6 +1,6 @@
 // @module-tag full
 import { expect, test } from 'vitest';
-import { printFigures } from '../../print-figures';
+import { printFigures } from '../../../print-figures';
 import { killedStudy } from './killed-study';
 
 /** By night a thousand (STUDY_KILLS). */

@@ -5,11 +5,11 @@ import { join } from 'node:path';
 import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/study-record';
 import { openStudyStore } from 'threepoint-study/server/storage/store';
 import { expect, onTestFinished, test } from 'vitest';
-import { withSourceCondition } from '../../../scripts/source-condition.mjs';
-import { reportFigures } from '../../reliability/report-figures';
-import { experimenterToken, forkServer } from '../../server/server-child';
-import { directoryWith } from '../../temporary-directory';
-import { paperPlan } from '../model/studies';
+import { withSourceCondition } from '../../../../scripts/source-condition.mjs';
+import { reportFigures } from '../../../reliability/report-figures';
+import { experimenterToken, forkServer } from '../../../server/server-child';
+import { directoryWith } from '../../../temporary-directory';
+import { paperPlan } from '../../model/studies';
 
 /** A folder of a server with a study in which P01 has stored so many remarks of 2 kB. */
 function studyWith(remarks: number) {

@@ -6,8 +6,8 @@ import { csvRows } from 'threepoint-study/cli/verify/csv-rows';
 import type { StudyRecord } from 'threepoint-study/model/records/study-record';
 import { exportFiles } from 'threepoint-study/server/export/export-zip';
 import { describe, expect, test } from 'vitest';
-import { installed } from '../../server/installed';
-import { directoryWith } from '../../temporary-directory';
+import { installed } from '../../../server/installed';
+import { directoryWith } from '../../../temporary-directory';
 import { designs, exportedStudy } from './exported-studies';
 
 /** Python with the packages of requirements.txt, or the first that is found; null: none has SciPy. */

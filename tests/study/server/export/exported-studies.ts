@@ -3,8 +3,8 @@ import type { ExportContent } from 'threepoint-study/server/export/export-zip';
 import { answerModelWith } from 'threepoint-study/simulation/answer-model';
 import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
 import { simulatedPlan, simulateStudy } from 'threepoint-study/simulation/simulate-study';
-import { examplePlan, paperPlan } from '../model/studies';
-import { now, testSoftware } from './running-studies';
+import { examplePlan, paperPlan } from '../../model/studies';
+import { now, testSoftware } from '../running-studies';
 
 const late = (latencyMs: number) =>
   ({ id: `late-${latencyMs}`, label: `${latencyMs} ms`, estimator: 'learned', latencyMs }) as const;
