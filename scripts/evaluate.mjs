@@ -75,7 +75,7 @@ await main(async () => {
       limitSeconds: twoHours,
     });
     if (prepared.code !== 0) return prepared.code;
-    const program = given.legs ? 'bench/evaluate/legs.ts' : 'bench/evaluate/main.ts';
+    const program = given.legs ? 'bench/evaluate/legs/legs.ts' : 'bench/evaluate/main.ts';
     const drive = ['--recordings', recordings];
     drive.push('--models', given.models ? typedPath(given.models) : join(root, 'public/models'));
     if (given.json) drive.push('--json', typedPath(given.json));

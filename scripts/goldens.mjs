@@ -86,5 +86,5 @@ await main(async () => {
   drive.push('--frames', given.frames ? typedPath(given.frames) : join(root, '.cache/goldens/frames'));
   for (const flag of ['write', 'quick', 'all']) if (given[flag]) drive.push(`--${flag}`);
   if (given.only) drive.push('--only', given.only);
-  return runProgram('bench/evaluate/goldens.ts', drive, { limitSeconds: halfAnHour });
+  return runProgram('bench/evaluate/golden/goldens.ts', drive, { limitSeconds: halfAnHour });
 });

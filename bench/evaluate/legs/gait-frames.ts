@@ -7,9 +7,9 @@ import { reasonOf } from 'threepoint/core/errors/reasons';
 import { gaitOutputCount } from 'threepoint/core/estimation/gait';
 import { GaitFeatures, gaitFeatureCount, yawOfHips } from 'threepoint/core/estimation/gait-features';
 import type { Vec3 } from 'threepoint/core/math/vec3';
+import { loadRegressors } from '../networks';
+import { readIndex } from '../recordings';
 import { type DrivenLegs, driveLegs } from './leg-drivers';
-import { loadRegressors } from './networks';
-import { readIndex } from './recordings';
 
 /** Bodies that people wear: with both kinds of pelvis above them the feet are the same. */
 const drivers = ['ik', 'learned'] as const;

@@ -4,11 +4,11 @@ import { parseArgs } from 'node:util';
 import { LegPosture } from 'threepoint/avatar/legs/leg-posture';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { Gait, type GaitNetwork, shippedGait } from 'threepoint/core/estimation/gait';
+import { mannequinLegs } from '../leg-proportions';
+import { loadRegressors } from '../networks';
+import { readIndex } from '../recordings';
 import { bodyOf, driveLegs, type LegDriver, legDrivers } from './leg-drivers';
 import { addLegs, emptyLegMeasures, type LegMeasures, type LegReport, legReport, meanReport } from './leg-measures';
-import { mannequinLegs } from './leg-proportions';
-import { loadRegressors } from './networks';
-import { readIndex } from './recordings';
 
 type ByDriver<T> = Record<LegDriver, T>;
 const byDriver = <T>(of: (driver: LegDriver) => T): ByDriver<T> =>

@@ -1,10 +1,10 @@
 import { distance, type Vec3 } from 'threepoint/core/math/vec3';
-import type { Loss } from './disturbances';
-import { addLosses, emptyLossTally, type LossTally, reportLosses } from './losses';
-import { addClip, emptyMeasures, type MeasuredFrame, type Measures, report, reportNames, rounded } from './measures';
-import { truthJoints } from './recordings';
-import { addErrorsAndJerk } from './robustness';
-import type { StagedFrame } from './situations';
+import type { Loss } from '../disturbances';
+import { addLosses, emptyLossTally, type LossTally, reportLosses } from '../losses';
+import { addClip, emptyMeasures, type MeasuredFrame, type Measures, report, reportNames, rounded } from '../measures';
+import { truthJoints } from '../recordings';
+import { addErrorsAndJerk } from '../robustness';
+import type { StagedFrame } from '../situations';
 
 /** Figures of one estimator in one situation by name; the name says the unit, and `kindOf` how it may differ. */
 export type GoldenFigures = Readonly<Record<string, number>>;

@@ -1,12 +1,12 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import { createDriver, type MeasuredMethod } from './drive';
+import { createDriver, type MeasuredMethod } from '../drive';
+import type { MeasuredFrame } from '../measures';
+import { loadRegressors } from '../networks';
+import { type RecordingIndex, readIndex } from '../recordings';
+import { onTruthsFloor, type Staged, undisturbed } from '../situations';
 import { addPiece, emptyGoldenTally, type GoldenFigures, goldenFigures, type StepPlaces } from './golden-figures';
 import { type KeptFrames, keepFrames } from './golden-frames';
 import { type Extent, type GoldenJob, planGoldens, readPiece, stageOf } from './golden-plan';
-import type { MeasuredFrame } from './measures';
-import { loadRegressors } from './networks';
-import { type RecordingIndex, readIndex } from './recordings';
-import { onTruthsFloor, type Staged, undisturbed } from './situations';
 
 /** The first message to a worker, which then requests rows by name until none is left. */
 export interface WorkerTask {

@@ -6,11 +6,11 @@ import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import * as v from 'valibot';
+import { readIndex } from '../recordings';
 import { compareTables, type Difference, type GoldenTable } from './golden-figures';
 import { compareFrames, type FrameTable, readFrames, writeFrames } from './golden-frames';
 import { type Extent, planGoldens } from './golden-plan';
 import type { RowResult, WorkerMessage, WorkerTask } from './golden-worker';
-import { readIndex } from './recordings';
 
 const { values: options } = parseArgs({
   options: {

@@ -5,9 +5,9 @@ import { createIk, createWithNetwork } from 'threepoint/core/estimation/estimato
 import type { GaitPoints } from 'threepoint/core/estimation/gait-features';
 import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
 import type { Pose } from 'threepoint/core/math/pose';
+import { calibrationOf, type RecordedFrame, type RecordingIndex, readClip } from '../recordings';
 import type { LegClip } from './leg-measures';
 import { type Contact, contactsOf, footHeights, readLegs, type TrueLegs } from './leg-truth';
-import { calibrationOf, type RecordedFrame, type RecordingIndex, readClip } from './recordings';
 
 /** The source of the hips that the legs follow: the recording, or a body that the page draws. */
 export const legDrivers = ['truth', 'ik', 'learned'] as const;

@@ -3,8 +3,8 @@ import type { GaitPoints } from 'threepoint/core/estimation/gait-features';
 import { rotate } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { add, copyVec3, distance, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { rounded } from '../measures';
 import type { Contact, TrueLeg, TrueLegs } from './leg-truth';
-import { rounded } from './measures';
 
 const sides = ['left', 'right'] as const;
 

@@ -1,9 +1,9 @@
 import { nextRandom } from 'threepoint/core/math/random';
-import { seedOf } from './disturbances';
-import { type MeasuredMethod, measuredMethods } from './drive';
-import { calibrationOf, type RecordingIndex, readClip } from './recordings';
-import { chooseClips } from './robustness';
-import { type Piece, situations, undisturbed } from './situations';
+import { seedOf } from '../disturbances';
+import { type MeasuredMethod, measuredMethods } from '../drive';
+import { calibrationOf, type RecordingIndex, readClip } from '../recordings';
+import { chooseClips } from '../robustness';
+import { type Piece, situations, undisturbed } from '../situations';
 
 /** Another laboratory's people (HDM05): joints are defined elsewhere, so that they make a row of their own. */
 const otherLaboratory: ReadonlySet<string> = new Set(['901', '902', '903']);

@@ -1,8 +1,8 @@
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import * as v from 'valibot';
-import type { MeasuredFrame } from './measures';
-import { rounded } from './measures';
+import type { MeasuredFrame } from '../measures';
+import { rounded } from '../measures';
 
 /** Every so many frames of a piece are kept. */
 export const frameInterval = 3;
