@@ -11,11 +11,11 @@ import { Sounds } from './archery-sounds';
 import { makeArrowPose } from './arrow-pose';
 import { createArrows } from './arrows';
 import { createBow } from './bow-model';
-import { createRange, type Range } from './range';
+import { createRange, type Range } from './range/range';
+import { TargetStands } from './range/target-stands';
 import { createResultPanel, type ResultPanel } from './result-panel';
 import { ScorePops } from './score-pops';
 import { createScoreboard } from './scoreboard';
-import { TargetStands } from './target-stands';
 import { createTrails } from './trails';
 
 /** Everything that is seen of archery. */

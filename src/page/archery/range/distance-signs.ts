@@ -8,11 +8,11 @@ import {
   PlaneGeometry,
 } from 'three';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
-import { signFont } from '../scene/boards/lettering';
-import { createDrawnTexture } from '../scene/drawn-texture';
-import { woodColor } from '../scene/outdoors/wood';
-import { merged, painted } from '../scene/painted-geometry';
-import type { Quality } from '../scene/renderer';
+import { signFont } from '../../scene/boards/lettering';
+import { createDrawnTexture } from '../../scene/drawn-texture';
+import { woodColor } from '../../scene/outdoors/wood';
+import { merged, painted } from '../../scene/painted-geometry';
+import type { Quality } from '../../scene/renderer';
 
 const signWidth = 0.56;
 const signHeight = 0.28;

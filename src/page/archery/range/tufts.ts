@@ -9,7 +9,7 @@ import {
   Vector3,
 } from 'three';
 import { walls } from 'threepoint-games/archery/rules';
-import { createScatter } from '../scene/outdoors/scatter';
+import { createScatter } from '../../scene/outdoors/scatter';
 import { field } from './field';
 
 /** A few blades that lean apart; they are lit like the ground they grow from. */

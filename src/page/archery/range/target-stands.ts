@@ -18,13 +18,13 @@ import {
 } from 'three';
 import { clamp } from 'threepoint/core/math/damper';
 import type { ArcheryState, Target } from 'threepoint-games/archery/archery-state';
-import { ink, signFont } from '../scene/boards/lettering';
-import { disposeTree } from '../scene/dispose-tree';
-import { createDrawnTexture, type DrawnTexture } from '../scene/drawn-texture';
-import { createContactShadows } from '../scene/outdoors/contact-shadows';
-import { woodColor } from '../scene/outdoors/wood';
-import { merged, painted } from '../scene/painted-geometry';
-import type { Quality } from '../scene/renderer';
+import { ink, signFont } from '../../scene/boards/lettering';
+import { disposeTree } from '../../scene/dispose-tree';
+import { createDrawnTexture, type DrawnTexture } from '../../scene/drawn-texture';
+import { createContactShadows } from '../../scene/outdoors/contact-shadows';
+import { woodColor } from '../../scene/outdoors/wood';
+import { merged, painted } from '../../scene/painted-geometry';
+import type { Quality } from '../../scene/renderer';
 import { createRingTexture } from './target-rings';
 
 const discThickness = 0.1;

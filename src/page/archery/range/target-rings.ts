@@ -1,6 +1,6 @@
 import { Color, type DataTexture, SRGBColorSpace } from 'three';
-import { createPixelTexture } from '../scene/pixel-texture';
-import type { Quality } from '../scene/renderer';
+import { createPixelTexture } from '../../scene/pixel-texture';
+import type { Quality } from '../../scene/renderer';
 
 /**
  * The rings of a target from the outside in, each as a share of its radius. Neighbours differ in brightness as well as

@@ -9,8 +9,8 @@ import {
   PlaneGeometry,
   ShaderMaterial,
 } from 'three';
-import { bothSides } from '../scene/both-sides';
-import { merged, painted } from '../scene/painted-geometry';
+import { bothSides } from '../../scene/both-sides';
+import { merged, painted } from '../../scene/painted-geometry';
 import { field } from './field';
 
 /** The mark on the floor where the archer stands. */

@@ -15,11 +15,11 @@ import {
   Vector3,
 } from 'three';
 import { walls } from 'threepoint-games/archery/rules';
-import { bothSides } from '../scene/both-sides';
-import { woodColor } from '../scene/outdoors/wood';
-import { merged, painted } from '../scene/painted-geometry';
-import { createPixelTexture } from '../scene/pixel-texture';
-import type { Quality } from '../scene/renderer';
+import { bothSides } from '../../scene/both-sides';
+import { woodColor } from '../../scene/outdoors/wood';
+import { merged, painted } from '../../scene/painted-geometry';
+import { createPixelTexture } from '../../scene/pixel-texture';
+import type { Quality } from '../../scene/renderer';
 import { field } from './field';
 
 /** One mesh of a net: cords along two edges of a square that repeats; far away it becomes an even veil. */

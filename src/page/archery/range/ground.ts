@@ -1,5 +1,5 @@
 import { Color, type Mesh, type MeshLambertMaterial, type PlaneGeometry, type Texture } from 'three';
-import { createPaintedGround } from '../scene/outdoors/painted-ground';
+import { createPaintedGround } from '../../scene/outdoors/painted-ground';
 import { field } from './field';
 
 /**
