@@ -147,7 +147,7 @@ const [command, ...words] = [
     process.execPath,
     '--import',
     'tsx',
-    fileURLToPath(new URL('../tests/study/server/study-process.ts', import.meta.url)),
+    fileURLToPath(new URL('../tests/study/server/faults/study-process.ts', import.meta.url)),
   ],
   directory,
 ];

@@ -1,9 +1,8 @@
 // npm run bench:study [-- --participants 200 --seconds 60 --flush-ms 25 --json FILE]: measures concurrent remote
 // participants of one study on one server process. --flush-ms delays each flush of the disk, by strace.
-import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';
-import { main, root, run } from './run-command.mjs';
+import { main, runProgram, typedPath } from './run-command.mjs';
 
 await main(async () => {
   const { values } = parseArgs({
@@ -15,10 +14,8 @@ await main(async () => {
     },
   });
   await ensureInstalled();
-  const measure = ['--import', 'tsx', 'bench/study-load.ts'];
+  const measure = [];
   for (const name of ['participants', 'seconds', 'flush-ms']) if (values[name]) measure.push(`--${name}`, values[name]);
-  // The path is relative to the directory in which the command was typed.
-  if (values.json) measure.push('--json', resolve(process.env.INIT_CWD ?? process.cwd(), values.json));
-  const { code } = await run(process.execPath, measure, { cwd: root, limitSeconds: 3600 });
-  return code;
+  if (values.json) measure.push('--json', typedPath(values.json));
+  return runProgram('bench/study-load.ts', measure);
 });

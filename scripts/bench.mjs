@@ -5,12 +5,11 @@
 // ends; ratios of frames have 95 % confidence intervals. npm run bench -- --allocations [ik paper learned mirror
 // archery ball3 ball8 hands stillScene]: measures only the garbage that frames allocate, and the functions that
 // allocate it.
-import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { buildWhenStale } from './build.mjs';
 import { ensureChromium } from './chromium.mjs';
 import { ensureInstalled } from './installation.mjs';
-import { main, root, run } from './run-command.mjs';
+import { main, root, run, runProgram, typedPath } from './run-command.mjs';
 
 const vite = (...options) => run('npx', ['vite', 'build', '--logLevel', 'warn', ...options], { cwd: root });
 /** The build options of benchmarks: function names and source maps are kept. */
@@ -35,15 +34,12 @@ await main(async () => {
   } else await buildWhenStale();
   const page = await vite('--config', 'bench/vite.config.ts', ...(values.allocations ? readable : []));
   if (page.code !== 0) return page.code;
-  const measure = ['--import', 'tsx', 'bench/main.ts'];
-  // Paths are relative to the directory in which the command was typed.
-  const from = process.env.INIT_CWD ?? process.cwd();
-  if (values.json) measure.push('--json', resolve(from, values.json));
-  if (values.avatar) measure.push('--avatar', resolve(from, values.avatar));
+  const measure = [];
+  if (values.json) measure.push('--json', typedPath(values.json));
+  if (values.avatar) measure.push('--avatar', typedPath(values.avatar));
   if (values.rounds) measure.push('--rounds', values.rounds);
   if (values.allocations) measure.push('--allocations');
   if (values.device) measure.push('--device');
   measure.push(...positionals);
-  const { code } = await run(process.execPath, measure, { cwd: root });
-  return code;
+  return runProgram('bench/main.ts', measure);
 });

@@ -5,11 +5,11 @@
 // of the page, with the body that the device reported as ground truth.
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join, resolve } from 'node:path';
+import { join } from 'node:path';
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';
 import { pythonEnvironment } from './python-environment.mjs';
-import { main, root, run, SetupError } from './run-command.mjs';
+import { main, root, run, runProgram, SetupError, typedPath } from './run-command.mjs';
 
 const usage =
   'npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--robustness] [--speed] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR]\n' +
@@ -56,22 +56,18 @@ function options() {
 
 await main(async () => {
   const given = options();
-  // Paths are relative to the directory in which the command was typed.
-  const path = (name) => resolve(process.env.INIT_CWD ?? process.cwd(), name);
   await ensureInstalled();
   if (given.recording) {
-    const measure = ['--import', 'tsx', 'bench/evaluate/recorded.ts', '--models'];
-    measure.push(given.models ? path(given.models) : join(root, 'public/models'));
-    for (const file of given.recording) measure.push('--recording', path(file));
-    if (given.json) measure.push('--json', path(given.json));
-    const { code } = await run(process.execPath, measure, { cwd: root, limitSeconds: twoHours });
-    return code;
+    const measure = ['--models', given.models ? typedPath(given.models) : join(root, 'public/models')];
+    for (const file of given.recording) measure.push('--recording', typedPath(file));
+    if (given.json) measure.push('--json', typedPath(given.json));
+    return runProgram('bench/evaluate/recorded.ts', measure, { limitSeconds: twoHours });
   }
   const python = await pythonEnvironment();
   const recordings = mkdtempSync(join(tmpdir(), 'threepoint-recordings-'));
   try {
-    const prepare = ['-m', 'threepoint_training.recordings', '--mocap', path(given.mocap), '--out', recordings];
-    if (given.skeleton) prepare.push('--skeleton', path(given.skeleton));
+    const prepare = ['-m', 'threepoint_training.recordings', '--mocap', typedPath(given.mocap), '--out', recordings];
+    if (given.skeleton) prepare.push('--skeleton', typedPath(given.skeleton));
     if (given.people) prepare.push('--people', given.people);
     const prepared = await run(python, prepare, {
       cwd: root,
@@ -79,15 +75,14 @@ await main(async () => {
       limitSeconds: twoHours,
     });
     if (prepared.code !== 0) return prepared.code;
-    const program = given.legs ? 'bench/evaluate/legs.ts' : 'bench/evaluate/main.ts';
-    const drive = ['--import', 'tsx', program, '--recordings', recordings];
-    drive.push('--models', given.models ? path(given.models) : join(root, 'public/models'));
-    if (given.json) drive.push('--json', path(given.json));
-    for (const name of ['figures', 'fp32', 'gaits']) if (given[name]) drive.push(`--${name}`, path(given[name]));
+    const program = given.legs ? 'bench/evaluate/legs/legs.ts' : 'bench/evaluate/main.ts';
+    const drive = ['--recordings', recordings];
+    drive.push('--models', given.models ? typedPath(given.models) : join(root, 'public/models'));
+    if (given.json) drive.push('--json', typedPath(given.json));
+    for (const name of ['figures', 'fp32', 'gaits']) if (given[name]) drive.push(`--${name}`, typedPath(given[name]));
     for (const name of ['robustness', 'speed', 'hands-measured', 'forearm-typed'])
       if (given[name]) drive.push(`--${name}`);
-    const { code } = await run(process.execPath, drive, { cwd: root, limitSeconds: twoHours });
-    return code;
+    return await runProgram(program, drive, { limitSeconds: twoHours });
   } finally {
     rmSync(recordings, { recursive: true, force: true });
   }

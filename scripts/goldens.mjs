@@ -2,11 +2,11 @@
 // estimates of recorded motion with tests/golden/estimates.json; --write replaces that file.
 import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, statSync } from 'node:fs';
-import { join, resolve } from 'node:path';
+import { join } from 'node:path';
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';
 import { pythonEnvironment } from './python-environment.mjs';
-import { main, root, run, SetupError } from './run-command.mjs';
+import { main, root, run, runProgram, SetupError, typedPath } from './run-command.mjs';
 
 const usage =
   'npm run goldens -- --mocap DIR [--compare | --write] [--quick] [--all] [--only ROWS] [--frames DIR] [--models DIR]\n' +
@@ -77,17 +77,14 @@ async function prepareRecordings(mocap) {
 
 await main(async () => {
   const given = options();
-  // Paths are relative to the directory in which the command was typed.
-  const path = (name) => resolve(process.env.INIT_CWD ?? process.cwd(), name);
   await ensureInstalled();
-  const { folder, code: failed } = await prepareRecordings(path(given.mocap));
+  const { folder, code: failed } = await prepareRecordings(typedPath(given.mocap));
   if (!folder) return failed;
-  const drive = ['--import', 'tsx', 'bench/evaluate/goldens.ts', '--recordings', folder];
-  drive.push('--models', given.models ? path(given.models) : join(root, 'public/models'));
+  const drive = ['--recordings', folder];
+  drive.push('--models', given.models ? typedPath(given.models) : join(root, 'public/models'));
   drive.push('--golden', join(root, 'tests/golden/estimates.json'));
-  drive.push('--frames', given.frames ? path(given.frames) : join(root, '.cache/goldens/frames'));
+  drive.push('--frames', given.frames ? typedPath(given.frames) : join(root, '.cache/goldens/frames'));
   for (const flag of ['write', 'quick', 'all']) if (given[flag]) drive.push(`--${flag}`);
   if (given.only) drive.push('--only', given.only);
-  const { code } = await run(process.execPath, drive, { cwd: root, limitSeconds: halfAnHour });
-  return code;
+  return runProgram('bench/evaluate/golden/goldens.ts', drive, { limitSeconds: halfAnHour });
 });

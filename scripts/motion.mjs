@@ -1,9 +1,8 @@
 // npm run motion -- FILE --to bvh|csv|vrma|glb [--estimator NAME] [--out FILE] [--unit m|cm] [--rate HZ] [--avatar
 // FILE]: converts a recording of the page for other programs (docs/motion.md).
-import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';
-import { main, run, SetupError } from './run-command.mjs';
+import { main, runProgram, SetupError, typedPath } from './run-command.mjs';
 
 const usage =
   'npm run motion -- FILE --to bvh|csv|vrma|glb [--estimator learned|ik|paper|device] [--out FILE] [--unit m|cm] [--rate HZ] [--avatar FILE]\n' +
@@ -38,11 +37,7 @@ await main(async () => {
   }
   const { file, values } = given;
   await ensureInstalled();
-  // Paths are relative to the directory in which the command was typed.
-  const path = (name) => resolve(process.env.INIT_CWD ?? process.cwd(), name);
-  const request = { ...values, file: path(file) };
-  for (const name of ['out', 'avatar']) if (request[name]) request[name] = path(request[name]);
-  const args = ['--import', 'tsx', 'scripts/motion/main.ts', JSON.stringify(request)];
-  const { code } = await run(process.execPath, args, { limitSeconds: twoHours });
-  return code;
+  const request = { ...values, file: typedPath(file) };
+  for (const name of ['out', 'avatar']) if (request[name]) request[name] = typedPath(request[name]);
+  return runProgram('scripts/motion/main.ts', [JSON.stringify(request)], { limitSeconds: twoHours });
 });

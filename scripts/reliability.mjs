@@ -4,7 +4,7 @@
 import { buildWhenStale } from './build.mjs';
 import { ensureChromium } from './chromium.mjs';
 import { ensureInstalled } from './installation.mjs';
-import { main, run } from './run-command.mjs';
+import { main, runProgram } from './run-command.mjs';
 
 await main(async () => {
   const options = process.argv.slice(2);
@@ -13,8 +13,5 @@ await main(async () => {
     process.env.CHROMIUM_PATH = await ensureChromium();
     await buildWhenStale();
   }
-  const { code } = await run(process.execPath, ['--import', 'tsx', 'scripts/reliability/main.ts', ...options], {
-    limitSeconds: 7200,
-  });
-  return code;
+  return runProgram('scripts/reliability/main.ts', options, { limitSeconds: 7200 });
 });

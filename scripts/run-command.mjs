@@ -1,8 +1,12 @@
 import { spawn, spawnSync } from 'node:child_process';
+import { resolve as resolvePath } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
 /** The root of the repository, without a trailing slash. */
 export const root = fileURLToPath(new URL('..', import.meta.url)).replace(/[\\/]$/, '');
+
+/** Resolves a path relative to the folder in which the npm command was typed. */
+export const typedPath = (path) => resolvePath(process.env.INIT_CWD ?? process.cwd(), path);
 
 /** An error whose message is shown without a stack. */
 export class SetupError extends Error {}
@@ -73,6 +77,12 @@ export function run(command, args, { env = {}, cwd = root, capture = false, limi
     child.once('error', (error) => settle(() => reject(error)));
     child.once('close', (code, signal) => settle(() => resolve({ code: code ?? 1, signal, output, timedOut })));
   });
+}
+
+/** Runs a TypeScript program of the repository; resolves to its exit code. */
+export async function runProgram(program, args, options) {
+  const { code } = await run(process.execPath, ['--import', 'tsx', program, ...args], options);
+  return code;
 }
 
 /** Like `run` with captured output; resolves to null if the program is not installed. */

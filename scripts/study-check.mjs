@@ -1,9 +1,8 @@
 // npm run study:check -- PLAN.json [--participant P01]: prints the errors of a plan, or its duration and what its
 // participants see.
-import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';
-import { main, run, SetupError } from './run-command.mjs';
+import { main, runProgram, SetupError, typedPath } from './run-command.mjs';
 
 const usage = 'npm run study:check -- PLAN.json [--participant P01]';
 
@@ -20,9 +19,5 @@ function options() {
 await main(async () => {
   const { file, participant } = options();
   await ensureInstalled();
-  // Paths are relative to the directory in which the command was typed.
-  const path = resolve(process.env.INIT_CWD ?? process.cwd(), file);
-  const args = ['--import', 'tsx', 'src/study/cli/check/main.ts', path, ...(participant ? [participant] : [])];
-  const { code } = await run(process.execPath, args);
-  return code;
+  return runProgram('src/study/cli/check/main.ts', [typedPath(file), ...(participant ? [participant] : [])]);
 });

@@ -2,7 +2,7 @@
 // 1]: prints how many participants a study needs.
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';
-import { main, run, SetupError } from './run-command.mjs';
+import { main, runProgram, SetupError } from './run-command.mjs';
 
 const usage =
   'npm run study:power -- --effect 0.5 [--design paired|between] [--power 0.8] [--alpha 0.05] [--studies 10000] [--seed 1]';
@@ -22,11 +22,5 @@ function options() {
 await main(async () => {
   const given = options();
   await ensureInstalled();
-  const { code } = await run(process.execPath, [
-    '--import',
-    'tsx',
-    'src/study/cli/power/main.ts',
-    JSON.stringify(given),
-  ]);
-  return code;
+  return runProgram('src/study/cli/power/main.ts', [JSON.stringify(given)]);
 });

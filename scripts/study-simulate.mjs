@@ -1,10 +1,10 @@
 // npm run study:simulate -- STUDY.json [--out DIR] [--participants 15] [--seed 7] [--effect late-200=-0.8 …]
 // [--score-effect late-200=-0.1 …]: simulates a whole study, with simulated participants in the real sessions, store
 // and exports. docs/study.md describes their model.
-import { basename, join, resolve } from 'node:path';
+import { basename, join } from 'node:path';
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';
-import { main, root, run, SetupError } from './run-command.mjs';
+import { main, root, runProgram, SetupError, typedPath } from './run-command.mjs';
 
 const usage =
   'npm run study:simulate -- [STUDY.json] [--out DIR] [--participants 15] [--seed NUMBER] [--effect CONDITION=POINTS …] ' +
@@ -32,12 +32,9 @@ await main(async () => {
   const study = plan ?? join(root, 'public/studies/paper.json');
   const into = out ?? `SIMULATED-${basename(study, '.json')}`;
   await ensureInstalled();
-  // Paths are relative to the directory in which the command was typed.
-  const path = (name) => resolve(process.env.INIT_CWD ?? process.cwd(), name);
-  const args = ['--import', 'tsx', 'src/study/cli/simulate/main.ts', '--out', path(into), '--plan', path(study)];
+  const args = ['--out', typedPath(into), '--plan', typedPath(study)];
   for (const [name, value] of Object.entries(rest)) {
     for (const one of [value].flat()) args.push(`--${name}=${one}`);
   }
-  const { code } = await run(process.execPath, args);
-  return code;
+  return runProgram('src/study/cli/simulate/main.ts', args);
 });

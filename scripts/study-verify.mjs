@@ -1,8 +1,7 @@
 // npm run study:verify -- FILE.zip: recomputes an exported study from its raw records and prints the differences.
-import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';
-import { main, run, SetupError } from './run-command.mjs';
+import { main, runProgram, SetupError, typedPath } from './run-command.mjs';
 
 function file() {
   try {
@@ -15,9 +14,7 @@ function file() {
 }
 
 await main(async () => {
-  // Paths are relative to the directory in which the command was typed.
-  const path = resolve(process.env.INIT_CWD ?? process.cwd(), file());
+  const path = typedPath(file());
   await ensureInstalled();
-  const { code } = await run(process.execPath, ['--import', 'tsx', 'src/study/cli/verify/main.ts', path]);
-  return code;
+  return runProgram('src/study/cli/verify/main.ts', [path]);
 });

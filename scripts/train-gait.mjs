@@ -39,7 +39,7 @@ await main(async () => {
   const prepare = ['-m', 'threepoint_training.recordings', '--mocap', path(given.mocap), '--out', recordings];
   if (given.skeleton) prepare.push('--skeleton', path(given.skeleton));
   if (given.people) prepare.push('--people', given.people);
-  const inputs = ['--import', 'tsx', 'bench/evaluate/gait-frames.ts', '--recordings', recordings, '--out', frames];
+  const inputs = ['--import', 'tsx', 'bench/evaluate/legs/gait-frames.ts', '--recordings', recordings, '--out', frames];
   inputs.push('--models', join(root, 'public/models'));
   const train = ['-m', 'threepoint_training.train_gait', '--frames', frames, '--held-out', heldOut];
   for (const name of ['steps', 'seed']) if (given[name]) train.push(`--${name}`, given[name]);

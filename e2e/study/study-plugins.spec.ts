@@ -93,7 +93,7 @@ test('a kind of question from outside works in command line, server, export and 
   const questions = Object.entries(unzipSync(new Uint8Array(await exported.arrayBuffer()))).find(([name]) =>
     name.endsWith('questions.csv'),
   );
-  expect(new TextDecoder().decode(questions?.[1])).toContain('yes: I agree; no: I disagree');
+  expect(new TextDecoder().decode(questions?.[1])).toContain('1: I agree; 0: I disagree');
 
   const { errors } = collectErrors(page, `${origin}/`);
   await page.route(

@@ -152,29 +152,3 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
   await expect(page.getByRole('row', { name: /^Q1 presence 1 / })).toBeVisible();
   await expect(page.getByRole('img', { name: /Archery: scores, means/ })).toBeVisible();
 });
-
-test('a link without its invitation asks for it, a wrong one is said, and the link of the experimenter’s page opens the place @realtime', async ({
-  page,
-  origin,
-  complaints,
-}) => {
-  complaints.allow(/403.*\/claim/);
-  await experimenter(origin).begin(shortStudy('invited'), true);
-  await page.goto(`${origin}/?study=invited&participant=P02&quality=low`);
-  await expect(page.getByLabel(/Your code/)).toHaveValue('P02');
-  await page.getByRole('button', { name: 'Continue' }).click();
-  await expect(page.getByRole('alert').filter({ hasText: 'The place needs an invitation' })).toBeVisible();
-  await page.getByLabel('Your invitation').fill('aaaa-bbbb-cccc-dddd');
-  await page.getByRole('button', { name: 'Continue' }).click();
-  const agree = async () => {
-    await page.getByLabel(/I have read this/).check();
-    await page.getByRole('button', { name: 'I agree' }).click();
-  };
-  await agree();
-  await expect(page.getByText('This is not the invitation of P02.')).toBeVisible();
-  const link = await experimenter(origin).link('invited', 'P02', '&quality=low');
-  // The whole link is entered as the address of the same tab.
-  await page.evaluate((address) => location.assign(address), link);
-  await agree();
-  await expect(page.getByText('write this down')).toBeVisible();
-});

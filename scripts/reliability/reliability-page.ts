@@ -24,29 +24,28 @@ const formatted = (value: string | number): string =>
   typeof value === 'number' ? String(Number(value.toPrecision(3))) : value;
 const cell = (text: string): string => text.replaceAll('|', '\\|');
 
+/** The most figures of a row on the page; docs/reliability.json has all. */
+const mostFigures = 3;
+
 function table(part: Readonly<Record<string, Row>>, figures: Figures): string {
-  const lines = Object.entries(part).map(([name, { inject, sees, target }]) => {
-    const own = Object.entries(figures[name as RowName] ?? {}).map(([what, value]) => `${what}: ${formatted(value)}`);
-    return `| ${[inject, sees, target, own.join('; ')].map(cell).join(' | ')} |`;
+  const lines = Object.entries(part).map(([name, { inject, sees, target, tests }]) => {
+    const all = Object.entries(figures[name as RowName] ?? {}).map(([what, value]) => `${what}: ${formatted(value)}`);
+    const own = all.length > mostFigures ? [...all.slice(0, mostFigures), '…'] : all;
+    const files = tests.map((file) => `\`${file}\``);
+    return `| ${[inject, sees, target, own.join('; '), files.join(' ')].map(cell).join(' | ')} |`;
   });
-  return ['| what is done | what must be seen | target | measured |', '| --- | --- | --- | --- |', ...lines].join('\n');
+  return ['| fault | result | target | measured | tests |', '| --- | --- | --- | --- | --- |', ...lines].join('\n');
 }
 
 /** Returns the text of docs/reliability.md. */
 export function reliabilityPage(figures: Figures): string {
-  const manual = Object.values(rows).flatMap((row) =>
-    row.manual ? [`- **${row.inject}.** ${row.manual.join(' ')} Expected: ${row.sees.toLowerCase()}.`] : [],
-  );
-  const tests = (Object.entries(rows) as [RowName, Row][]).map(
-    ([name, row]) => `| ${name} | ${row.tests.map((file) => `\`${file}\``).join(', ')} |`,
-  );
+  const manual = Object.values(rows).flatMap(({ inject, manual }) => (manual ? [`- ${inject}: ${manual}`] : []));
   return `# Reliability
 
-What the page survives, and what it promises: each row is tried by tests, which print the figures below. This page is written by
-\`npm run reliability\` from \`tests/reliability/rows.ts\`; \`docs/reliability.json\` keeps the figures. \`npm run reliability -- --unit\` runs what
-needs no browser, \`npm run reliability -- --long\` also the twenty minutes of play.
-
-Measured on two cores with software rendering and an emulated headset: durations on a headset will differ.
+Each row is a fault, a promise or an attack with the tests that measure it. \`npm run reliability\` writes this page from
+\`tests/reliability/rows.ts\`. [reliability.json](reliability.json) has all figures; a row shows ${mostFigures} at most.
+\`-- --unit\` runs what needs no browser, \`-- --long\` also twenty minutes of play. Durations are those of two cores with
+software rendering.
 
 ## Tracking and device
 
@@ -60,16 +59,10 @@ ${table(promiseRows, figures)}
 
 ${table(attackRows, figures)}
 
-## By hand, with a headset
+## By hand, once per release
 
-An emulated headset has no cameras, no batteries, no menu of the system and no graphics layer of its own. Once per release, on the headset:
+An emulated headset has no cameras, batteries, system menu or graphics layer. In a headset:
 
 ${manual.join('\n')}
-
-## Which test tries what
-
-| row | tests |
-| --- | --- |
-${tests.join('\n')}
 `;
 }

@@ -4,10 +4,16 @@ import { join } from 'node:path';
 import { distance } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
 import { createDriver } from '../../bench/evaluate/drive';
-import { addPiece, compareTables, emptyGoldenTally, goldenFigures, worse } from '../../bench/evaluate/golden-figures';
-import { compareFrames, keepFrames, readFrames, writeFrames } from '../../bench/evaluate/golden-frames';
-import { planGoldens } from '../../bench/evaluate/golden-plan';
-import { driveStaged } from '../../bench/evaluate/golden-worker';
+import {
+  addPiece,
+  compareTables,
+  emptyGoldenTally,
+  goldenFigures,
+  worse,
+} from '../../bench/evaluate/golden/golden-figures';
+import { compareFrames, keepFrames, readFrames, writeFrames } from '../../bench/evaluate/golden/golden-frames';
+import { planGoldens } from '../../bench/evaluate/golden/golden-plan';
+import { driveStaged } from '../../bench/evaluate/golden/golden-worker';
 import { type Piece, situations, undisturbed } from '../../bench/evaluate/situations';
 import { person, recordedMotion } from './recorded-motion';
 

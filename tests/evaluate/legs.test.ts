@@ -3,9 +3,9 @@ import type { GaitPoints } from 'threepoint/core/estimation/gait-features';
 import { rotate } from 'threepoint/core/math/quat';
 import { add, vec3 } from 'threepoint/core/math/vec3';
 import { expect, test } from 'vitest';
-import { addLegs, emptyLegMeasures, legReport } from '../../bench/evaluate/leg-measures';
 import { mannequinLegs } from '../../bench/evaluate/leg-proportions';
-import { contactsOf, footHeights, type TrueLeg, type TrueLegs } from '../../bench/evaluate/leg-truth';
+import { addLegs, emptyLegMeasures, legReport } from '../../bench/evaluate/legs/leg-measures';
+import { contactsOf, footHeights, type TrueLeg, type TrueLegs } from '../../bench/evaluate/legs/leg-truth';
 import { eyeHeight, proportions, standing, walking } from '../threepoint/avatar/walking-person';
 
 const rateHz = 60;

@@ -1,5 +1,5 @@
 import { allReleased } from 'threepoint/core/input/button-presses';
-import { createArcheryGestures, defaultArcheryGestureSettings } from 'threepoint-games/archery/gestures';
+import { ArcheryGestures, defaultArcheryGestureSettings } from 'threepoint-games/archery/gestures';
 import { expect, test } from 'vitest';
 import { bowman, posed } from '../games/archery/bowman';
 import { ballThrower } from './ball-thrower';
@@ -10,7 +10,7 @@ const menuSeconds = 10;
 
 /** Runs an archer at full draw through the system menu; afterwards the trigger has this value. */
 function archerBehindMenu(pressure: number) {
-  const gestures = createArcheryGestures(() => defaultArcheryGestureSettings);
+  const gestures = new ArcheryGestures(() => defaultArcheryGestureSettings);
   const actions: string[] = [];
   const cues: string[] = [];
   let time = 5;

@@ -13,7 +13,7 @@ import { createBallPlay } from 'threepoint-page/ball/ball-play';
 import { createFrameLoop } from 'threepoint-page/shell/frame-loop';
 import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
 import { Recorder } from 'threepoint-page/studio/recorder';
-import { type PlayedStep, playTrial } from 'threepoint-study/participant/study-trial';
+import { type PlayedStep, PlayedTrial } from 'threepoint-study/participant/trial/study-trial';
 import { describe, expect, test } from 'vitest';
 import { studiedArcher } from '../study/participant/played-round';
 import { reportFigures } from './report-figures';
@@ -183,7 +183,7 @@ function goesOn(step: number): void {
   test('a recording and the log of a trial have every frame once, in order', () => {
     const recorder = new Recorder();
     const { play, runner } = studiedArcher(7);
-    const trial = playTrial(
+    const trial = new PlayedTrial(
       {
         kind: 'trial',
         id: 'archery/1/trial-1',

@@ -10,7 +10,7 @@ import { arrowLength } from 'threepoint-games/archery/bow';
 import { releaseTowards } from 'threepoint-games/archery/flight';
 import { archeryRules, delayed } from 'threepoint-games/archery/rules';
 import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
-import { createHandVelocity } from 'threepoint-games/ball/hand-velocity';
+import { HandVelocity } from 'threepoint-games/ball/hand-velocity';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { rackPosition } from 'threepoint-games/ball/stations';
 import { createMatch } from 'threepoint-games/match';
@@ -112,7 +112,7 @@ test('a hand throws equally fast at every rate', () => {
     return vec3(0.1 * time, 1.4 + 0.65 * Math.cos(angle), -0.65 * Math.sin(angle));
   };
   const speedBy = (times: readonly number[]): Vec3 => {
-    const speed = createHandVelocity();
+    const speed = new HandVelocity();
     for (const time of times) speed.follow(time, path(time));
     return speed.velocity();
   };

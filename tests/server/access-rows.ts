@@ -46,18 +46,18 @@ const place = `${study}/participants/:participant`;
 /** One row for every route of the server: a route without one fails tests/server/access.test.ts. */
 export const httpRows: Readonly<Record<string, HttpRow>> = {
   'GET /': { gives: 'the page and its files', status: readable(200) },
-  'GET /healthz': { gives: 'that the server lives, and how many are there', status: readable(200) },
+  'GET /healthz': { gives: 'health and the number of players', status: readable(200) },
   'GET /metrics': {
-    gives: 'counts of the relay, for programs on this machine',
+    gives: 'counts of the relay',
     status: readable(403),
     also: { who: 'this machine', status: 200 },
   },
-  'GET /relay': { gives: 'nothing without an upgrade (below)', status: readable(426) },
-  'GET /api/rooms': { gives: 'rooms that are open to all', status: forAll(200) },
-  'POST /api/rooms/match': { gives: 'the name of such a room', json: { kind: 'ball' }, status: forAll(200) },
-  'POST /api/rooms/new': { gives: 'the name of a new one', json: { kind: 'ball' }, status: forAll(200) },
+  'GET /relay': { gives: 'nothing without an upgrade', status: readable(426) },
+  'GET /api/rooms': { gives: 'open rooms', status: forAll(200) },
+  'POST /api/rooms/match': { gives: 'the name of an open room', json: { kind: 'ball' }, status: forAll(200) },
+  'POST /api/rooms/new': { gives: 'the name of a new room', json: { kind: 'ball' }, status: forAll(200) },
   'POST /api/rooms/token': {
-    gives: 'a pass to such a room',
+    gives: 'a pass to an open room',
     json: { room: 'meadow', kind: 'ball' },
     status: forAll(200),
   },
@@ -68,25 +68,25 @@ export const httpRows: Readonly<Record<string, HttpRow>> = {
     also: { who: 'admin', status: 200 },
   },
   'GET /api/avatars': {
-    gives: 'what may be stored of the avatars of a room, and what of one’s own is',
+    gives: 'which avatars of the room may be stored',
     query: '?room=meadow',
     status: forAll(401),
     also: { who: 'player', status: 200 },
   },
   'GET /api/avatars/:hash': {
-    gives: 'the file of an avatar that a player of the room has on',
+    gives: 'an avatar’s file',
     query: '?room=meadow',
     status: forAll(401),
     also: { who: 'player', status: 200 },
   },
   'PUT /api/avatars/:hash': {
-    gives: 'the file of one’s own avatar to the others of the room',
+    gives: 'one’s own avatar to the room',
     query: '?room=meadow',
     status: forAll(401),
     also: { who: 'player', status: 204 },
   },
   'GET /api/voices': {
-    gives: 'whether people can talk in the room, and the servers by which their pages find each other',
+    gives: 'whether the room has voices, and their servers',
     query: '?room=meadow',
     status: forAll(401),
     also: { who: 'player', status: 200 },
@@ -98,15 +98,15 @@ export const httpRows: Readonly<Record<string, HttpRow>> = {
   [`GET ${study}/records`]: { gives: 'everything recorded', status: forExperimenter(200) },
   [`GET ${study}/receipts`]: { gives: 'receipts of deletions', status: forExperimenter(200) },
   [`GET ${study}/export`]: { gives: 'everything, as a zip file', status: forExperimenter(200) },
-  [`GET ${study}/participants`]: { gives: 'where all are, and their invitations', status: forExperimenter(200) },
+  [`GET ${study}/participants`]: { gives: 'progress and invitations of all', status: forExperimenter(200) },
   [`POST ${study}/withdraw`]: {
-    gives: 'the deletion of everything under a withdrawal code',
+    gives: 'deletion under a withdrawal code',
     json: { code: 'ZZZZ-ZZZZ-ZZZZ-ZZZZ' },
     status: forAll(404),
     also: { who: 'withdrawing', status: 200 },
   },
   [`POST ${place}/claim`]: {
-    gives: 'a free place, by its invitation',
+    gives: 'a free place',
     json: {},
     status: { ...forAll(403), experimenter: 201 },
     also: { who: 'invited', status: 201 },
@@ -131,12 +131,12 @@ export const httpRows: Readonly<Record<string, HttpRow>> = {
     status: forParticipant(204),
   },
   [`POST ${place}/seat`]: {
-    gives: 'a pass to the room of a trial: the own seat, to an experimenter a place to watch from',
+    gives: 'a pass to the trial’s room, for an experimenter to watch',
     json: 'seat',
     status: forParticipant(200),
   },
-  [`GET ${place}/export`]: { gives: 'everything of the participant, as a zip file', status: forParticipant(200) },
-  [`DELETE ${place}`]: { gives: 'the deletion of everything of the participant', status: forExperimenter(200) },
+  [`GET ${place}/export`]: { gives: 'the participant’s data, as a zip file', status: forParticipant(200) },
+  [`DELETE ${place}`]: { gives: 'the deletion of the participant’s data', status: forExperimenter(200) },
 };
 
 /** Who speaks to a room. */
@@ -167,9 +167,9 @@ const seated: SocketRow['outcome'] = { ...all('taken'), spectator: 'no-seat', ex
 
 /** One row for every message of a client, and for what is none. */
 export const socketRows: Readonly<Record<ClientMessage['type'] | 'pose' | 'unknown', SocketRow>> = {
-  join: { gives: 'a place: any that is free, in the room of a trial the own one', outcome: all('taken') },
-  pose: { gives: 'the own body to the others; who watches shows none', outcome: all('taken') },
-  ready: { gives: 'the match its start', outcome: seated },
+  join: { gives: 'a free seat; in a trial the own one', outcome: all('taken') },
+  pose: { gives: 'the own body to the others; spectators show none', outcome: all('taken') },
+  ready: { gives: 'the start of the match', outcome: seated },
   rotate: { gives: 'other roles with the next match', outcome: seated },
   away: { gives: 'that the player is away', outcome: all('taken') },
   sit: {
@@ -181,49 +181,48 @@ export const socketRows: Readonly<Record<ClientMessage['type'] | 'pose' | 'unkno
     gives: 'another avatar to the own seat',
     outcome: { ...all('taken'), participant: 'assigned', experimenter: 'assigned' },
   },
-  voice: { gives: 'a part in the voices of the room', outcome: inVoices },
-  signal: { gives: 'what connects two pages of the voices, and nothing else', outcome: inVoices },
-  pause: { gives: 'a clock that stands', outcome: { ...seated, player: 'not-pausable' } },
+  voice: { gives: 'the room’s voices', outcome: inVoices },
+  signal: { gives: 'what connects two pages’ voices', outcome: inVoices },
+  pause: { gives: 'a paused clock', outcome: { ...seated, player: 'not-pausable' } },
   ping: { gives: 'the room’s time', outcome: all('taken') },
   leave: { gives: 'the own seat back', outcome: all('taken') },
-  action: { gives: 'what hands do, as the rules judge it', outcome: seated },
+  action: { gives: 'what the hands do, judged by the rules', outcome: seated },
   unknown: { gives: 'nothing', outcome: all('ends') },
 };
 
 const table = (head: readonly string[], rows: readonly (readonly string[])[]): string =>
   [head, head.map(() => '---'), ...rows].map((cells) => `| ${cells.join(' | ')} |`).join('\n');
 
-const word = (status: number): string => (status < 300 ? `**yes** ${status}` : `no ${status}`);
+/** Returns the roles by outcome. The most frequent outcome stands last, for “others” or “all”. */
+function byOutcome<Role extends string>(roles: readonly Role[], outcomeOf: (role: Role) => string): string {
+  const groups = new Map<string, Role[]>();
+  for (const role of roles) groups.set(outcomeOf(role), [...(groups.get(outcomeOf(role)) ?? []), role]);
+  const ordered = [...groups].toSorted(([, a], [, b]) => a.length - b.length);
+  const usual = ordered.pop()?.[0];
+  const named = ordered.map(([outcome, some]) => `${some.join(', ')}: ${outcome}`);
+  return [...named, `${named.length ? 'others' : 'all'}: ${usual}`].join('; ');
+}
 
-/** What docs/security.md has between its marks. */
+const emphasised = (status: number): string => (status < 300 ? `**${status}**` : `${status}`);
+
+/** Returns the answers to a request, without those that every page of another site or name gets. */
+function answers({ status, also }: HttpRow): string {
+  const usual: Readonly<Record<string, number>> = shut;
+  const roles = (Object.keys(httpRoles) as HttpRole[]).filter((role) => status[role] !== usual[role]);
+  const listed = byOutcome(roles, (role) => emphasised(status[role]));
+  const others = roles.includes('otherSite') ? `${listed}, other sites too` : listed;
+  return also ? `${also.who}: ${emphasised(also.status)}; ${others}` : others;
+}
+
+/** Returns the tables that docs/security.md has between its marks. */
 export function accessTables(): string {
-  const roles = Object.keys(httpRoles) as HttpRole[];
-  const names = [
-    'stranger',
-    'same network',
-    'other site',
-    'name pointed here',
-    'participant',
-    'another',
-    'experimenter',
-  ];
-  const http = Object.entries(httpRows).map(([route, { gives, status, also }]) => [
-    `\`${route}\``,
-    also ? `${gives} (${also.who}: ${word(also.status)})` : gives,
-    ...roles.map((role) => word(status[role])),
-  ]);
+  const http = Object.entries(httpRows).map(([route, row]) => [`\`${route}\``, row.gives, answers(row)]);
   const sockets = Object.entries(socketRows).map(([type, { gives, outcome }]) => [
     `\`${type}\``,
     gives,
-    ...(Object.keys(socketRoles) as SocketRole[]).map((role) =>
-      outcome[role] === 'taken' ? '**yes**' : `no: ${outcome[role]}`,
-    ),
+    byOutcome(Object.keys(socketRoles) as SocketRole[], (role) => outcome[role]),
   ]);
-  return [
-    table(['request', 'gives', ...names], http),
-    '',
-    table(['message', 'gives', 'player', 'spectator', 'participant, in a trial', 'experimenter, in a trial'], sockets),
-  ].join('\n');
+  return [table(['request', 'gives', 'status'], http), '', table(['message', 'gives', 'outcome'], sockets)].join('\n');
 }
 
 export const marks = ['<!-- written by scripts/security-table.ts -->', '<!-- up to here -->'] as const;

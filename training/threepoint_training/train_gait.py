@@ -2,8 +2,8 @@
 The gait network: where feet are expected, and which stand, from a second of hips, head and hands. `npm run train:gait`
 calls this.
 
-The page makes the inputs (bench/evaluate/gait-frames.ts): a row has those of a frame, those of the mirrored person and
-the true feet.
+The page makes the inputs (bench/evaluate/legs/gait-frames.ts): a row has those of a frame, those of the mirrored
+person and the true feet.
 """
 
 import argparse

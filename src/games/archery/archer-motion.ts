@@ -3,7 +3,7 @@ import { clamp } from 'threepoint/core/math/damper';
 import { addScaled, subtract } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { minimumJerk, yawOf } from '../posture';
-import { type ArcherBody, createArcherPostures, mix, type Posture } from './archer-postures';
+import { type ArcherBody, ArcherPostures, mix, type Posture } from './archer-postures';
 import type { ArcheryState, Target } from './archery-state';
 
 /** A movement to a posture, with its pressure on the button; at rest at both ends. */
@@ -39,7 +39,7 @@ function nextTarget(state: ArcheryState): Target | null {
  * Deterministic.
  */
 export function createArcher(body: ArcherBody): Archer {
-  const postures = createArcherPostures(body);
+  const postures = new ArcherPostures(body);
   const { eyes } = postures;
 
   /** Returns the movements of a shot: take an arrow, nock, raise, draw, aim, release, follow through. */

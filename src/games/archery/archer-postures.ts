@@ -99,26 +99,8 @@ export interface ArcherInput {
 }
 
 /** The postures of one archer, and their head, hands and buttons. */
-export interface ArcherPostures {
+export class ArcherPostures {
   /** The eyes of the archer at the centre of the zone, arena frame. */
-  readonly eyes: Vec3;
-  /** Returns a resting posture that faces a yaw [rad, 0: ahead, positive: to the left]. */
-  resting(yaw: number): Posture;
-  /** Returns the posture with the bow at the chest, and the string hand about to take an arrow. */
-  ready(yaw: number): Posture;
-  /** Returns full draw, aimed to hit a point of the arena. */
-  drawn(target: Vec3): Posture;
-  /** Returns the posture just after the release. */
-  followedThrough(shot: Posture): Posture;
-  /**
-   * Returns head, hands (floor frame) and buttons of a posture at a time [s]. `pressure`: on the string hand's button,
-   * 0 to 1. `swing`: outward offset of that hand [m].
-   */
-  seen(posture: Posture, time: number, pressure: number, swing: number): ArcherInput;
-}
-
-/** Computes the postures for one body. */
-class BodyPostures implements ArcherPostures {
   readonly eyes: Vec3;
   readonly #bowSide: Side;
   readonly #stringSide: Side;
@@ -146,6 +128,7 @@ class BodyPostures implements ArcherPostures {
     this.#aside = bowSide === 'left' ? 1 : -1;
   }
 
+  /** Returns a resting posture that faces a yaw [rad, 0: ahead, positive: to the left]. */
   resting(yaw: number): Posture {
     const arm = this.#arm;
     const gaze = fromAxisAngle(up, yaw);
@@ -169,6 +152,7 @@ class BodyPostures implements ArcherPostures {
     };
   }
 
+  /** Returns the posture with the bow at the chest, and the string hand about to take an arrow. */
   ready(yaw: number): Posture {
     const arm = this.#arm;
     const gaze = multiply(fromAxisAngle(up, yaw - this.#aside * 0.12), fromAxisAngle(right, -0.3));
@@ -192,6 +176,7 @@ class BodyPostures implements ArcherPostures {
     };
   }
 
+  /** Returns full draw, aimed to hit a point of the arena. */
   drawn(target: Vec3): Posture {
     const arm = this.#arm;
     const to = subtract(target, this.eyes);
@@ -217,6 +202,7 @@ class BodyPostures implements ArcherPostures {
     };
   }
 
+  /** Returns the posture just after the release. */
   followedThrough(shot: Posture): Posture {
     const { arrowRest, direction, draw } = shot.hold;
     const nock = addScaled(arrowRest, direction, -braceHeight - draw);
@@ -228,6 +214,10 @@ class BodyPostures implements ArcherPostures {
     };
   }
 
+  /**
+   * Returns head, hands (floor frame) and buttons of a posture at a time [s]. `pressure`: on the string hand's button,
+   * 0 to 1. `swing`: outward offset of that hand [m].
+   */
   seen(now: Posture, time: number, pressure: number, swing: number): ArcherInput {
     const head = add(this.eyes, swayAt(time));
     const bowHand = this.#inFloor(head, this.#bowWrist(now));
@@ -300,5 +290,3 @@ class BodyPostures implements ArcherPostures {
     return seen;
   }
 }
-
-export const createArcherPostures = (body: ArcherBody): ArcherPostures => new BodyPostures(body);

@@ -93,14 +93,6 @@ export interface GestureFrame {
   readonly cues: readonly BowCue[];
 }
 
-/** Turns tracked hands and their buttons into archery actions (src/games/README.md). */
-export interface ArcheryGestures {
-  /** Processes a frame; times must rise, at any interval. The result is valid until the next call. */
-  follow(frame: TrackingFrame, buttons: Buttons): GestureFrame;
-  /** Announces that the floor frame jumps before the next frame. */
-  discontinuity(): void;
-}
-
 /** A press nocks within this distance of the fist from the nocking point [m]; the margin is hysteresis. */
 export const nockReach = 0.18;
 const nearMargin = 0.03;
@@ -127,7 +119,8 @@ interface Roles {
   stringHand: TrackedPose | null;
 }
 
-class BowGestures implements ArcheryGestures {
+/** Turns tracked hands and their buttons into archery actions (src/games/README.md). */
+export class ArcheryGestures {
   readonly #settings: () => ArcheryGestureSettings;
   readonly #presses = createButtonPresses();
   /** The last `bowSide` of the settings. */
@@ -165,6 +158,7 @@ class BowGestures implements ArcheryGestures {
     this.#settings = settings;
   }
 
+  /** Processes a frame; times must rise, at any interval. The result is valid until the next call. */
   follow(frame: TrackingFrame, buttons: Buttons): GestureFrame {
     this.#begin(frame, buttons);
     if (frame.suspended) this.#wait();
@@ -172,6 +166,7 @@ class BowGestures implements ArcheryGestures {
     return this.#result;
   }
 
+  /** Announces that the floor frame jumps before the next frame. */
   discontinuity(): void {
     this.#bow.discontinuity();
     this.#nocked?.discontinuity();
@@ -395,7 +390,3 @@ class BowGestures implements ArcheryGestures {
     return view;
   }
 }
-
-/** Creates the gestures of one archer. */
-export const createArcheryGestures = (settings: () => ArcheryGestureSettings): ArcheryGestures =>
-  new BowGestures(settings);

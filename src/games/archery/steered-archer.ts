@@ -3,7 +3,7 @@ import { clamp, dampVec3 } from 'threepoint/core/math/damper';
 import { subtract, type Vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { minimumJerk, yawOf } from '../posture';
-import { type ArcherBody, createArcherPostures, mix, type Posture } from './archer-postures';
+import { type ArcherBody, ArcherPostures, mix, type Posture } from './archer-postures';
 
 /** The mouse input that steers an archer. */
 export interface Steering {
@@ -34,7 +34,7 @@ type Phase = 'ready' | 'nocking' | 'grabbing' | 'drawing' | 'loosing' | 'followi
 
 /** Creates an archer at the centre of the zone, with the postures of the built-in archer. */
 export function createSteeredArcher(body: ArcherBody): SteeredArcher {
-  const postures = createArcherPostures(body);
+  const postures = new ArcherPostures(body);
   const { eyes } = postures;
   let phase: Phase = 'ready';
   let began = 0;

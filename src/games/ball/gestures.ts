@@ -24,7 +24,7 @@ import { ballInPalm, fistOf } from '../fist';
 import { slowestThrow } from './actions';
 import type { BallAction, BallEvent, BallInput, BallState } from './ball-state';
 import { ballRadius } from './flight';
-import { createHandVelocity, type HandVelocity } from './hand-velocity';
+import { HandVelocity } from './hand-velocity';
 import { ballInHand } from './state-readings';
 import { rackPosition } from './stations';
 
@@ -64,21 +64,6 @@ export interface BallGestureFrame {
   readonly held: Readonly<Record<Side, number | null>>;
   /** The ball that a press would take; null: none. */
   readonly near: Readonly<Record<Side, number | null>>;
-}
-
-/** Turns tracked hands and their buttons into actions of the ball game. */
-export interface BallGestures {
-  /** Processes a frame; times must rise, at any interval. */
-  follow(frame: TrackingFrame, buttons: Buttons): BallGestureFrame;
-  /** Processes events of the match: a refused ball leaves the hand. */
-  onEvents(events: readonly BallEvent[]): void;
-  /** Announces that the floor frame jumps: velocities start over. */
-  discontinuity(): void;
-  /**
-   * Announces a new state of the match, which may lack actions of these hands. From the next frame on the hands release
-   * balls that it has elsewhere, and return balls that only it has in them.
-   */
-  resume(): void;
 }
 
 /** A press takes a ball within this distance of the fist [m]. */
@@ -127,7 +112,7 @@ interface HandMemory {
 }
 
 const makeHandMemory = (): HandMemory => ({
-  speed: createHandVelocity(),
+  speed: new HandVelocity(),
   holding: null,
   thrown: null,
   unthrown: false,
@@ -138,7 +123,8 @@ const makeHandMemory = (): HandMemory => ({
 
 type PoseAction = Extract<BallInput, { type: 'pose' }>;
 
-class PlayerGestures implements BallGestures {
+/** Turns tracked hands and their buttons into actions of the ball game. */
+export class BallGestures {
   /** The number of the last action. */
   private sequence = 0;
   /** Whether the hands must be compared with a new state of the match. */
@@ -165,6 +151,7 @@ class PlayerGestures implements BallGestures {
     this.pose = { type: 'pose', player: 0, at: 0, head: this.head, left: null, right: null };
   }
 
+  /** Processes a frame; times must rise, at any interval. */
   follow(frame: TrackingFrame, buttons: Buttons): BallGestureFrame {
     this.begin(frame);
     if (frame.suspended) return this.wait();
@@ -188,16 +175,22 @@ class PlayerGestures implements BallGestures {
     return this.finish();
   }
 
+  /** Processes events of the match: a refused ball leaves the hand. */
   onEvents(events: readonly BallEvent[]): void {
     if (events.length === 0) return;
     const { player } = this.settings();
     for (const event of events) for (const side of sides) this.onEvent(side, event, player);
   }
 
+  /** Announces that the floor frame jumps: velocities start over. */
   discontinuity(): void {
     for (const side of sides) this.hands[side].speed.reset();
   }
 
+  /**
+   * Announces a new state of the match, which may lack actions of these hands. From the next frame on the hands release
+   * balls that it has elsewhere, and return balls that only it has in them.
+   */
   resume(): void {
     this.stale = true;
   }
@@ -378,7 +371,7 @@ class PlayerGestures implements BallGestures {
 }
 
 /** Creates the gestures of one player; actions are numbered from 1. */
-export const createBallGestures = (settings: () => BallGestureSettings): BallGestures => new PlayerGestures(settings);
+export const createBallGestures = (settings: () => BallGestureSettings): BallGestures => new BallGestures(settings);
 
 /** Returns the ball in a rack that a fist would take, without those that a hand has just taken. */
 function nearestBall(state: BallState, fist: Vec3, left: Holding | null, right: Holding | null): number | null {

@@ -10,15 +10,6 @@ import {
   zero,
 } from 'threepoint/core/math/vec3';
 
-/** Measures the velocity of a hand over its recent path. */
-export interface HandVelocity {
-  /** Adds a position; it is copied. A time that does not rise is ignored. */
-  follow(time: number, position: Vec3): void;
-  /** Returns the velocity [m/s] over the last `throwWindow`; zero with fewer than two positions. */
-  velocity(): Vec3;
-  reset(): void;
-}
-
 /** A throw has the hand's average velocity over this time [s]. */
 export const throwWindow = 0.08;
 
@@ -35,17 +26,15 @@ interface Place {
 
 const makePlace = (): Place => ({ time: 0, position: vec3(0, 0, 0) });
 
-/**
- * Computes the slope of a least-squares line through the path, which is linear between frames; a dropped frame
- * therefore changes little.
- */
-class PathVelocity implements HandVelocity {
+/** Measures the velocity of a hand over its recent path. */
+export class HandVelocity {
   /** Oldest first. */
   readonly #path: Place[] = [];
   /** Objects for reuse. */
   readonly #spare: Place[] = [];
   readonly #at = vec3(0, 0, 0);
 
+  /** Adds a position; it is copied. A time that does not rise is ignored. */
   follow(time: number, position: Vec3): void {
     const path = this.#path;
     const last = path.at(-1);
@@ -59,6 +48,7 @@ class PathVelocity implements HandVelocity {
     while (path.length > 2 && path[1]!.time <= time - throwWindow) this.#spare.push(path.shift()!);
   }
 
+  /** Returns the velocity [m/s] over the last `throwWindow`; zero with fewer than two positions. */
   velocity(): Vec3 {
     const path = this.#path;
     const last = path.at(-1);
@@ -85,5 +75,3 @@ class PathVelocity implements HandVelocity {
     while (this.#path.length > 0) this.#spare.push(this.#path.pop()!);
   }
 }
-
-export const createHandVelocity = (): HandVelocity => new PathVelocity();

@@ -5,7 +5,7 @@ import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
 import type { PageClock } from 'threepoint/core/tracking/page-clock';
 import type { ServerPresence } from 'threepoint-http/server-presence';
-import type { TaskPlace } from 'threepoint-study/participant/task-runner';
+import type { TaskPlace } from 'threepoint-study/participant/trial/task-runner';
 import type { MouseAim } from 'threepoint-ui/mouse-aim';
 import type { Notices } from 'threepoint-ui/notices';
 import type { Quality } from '../scene/renderer';

@@ -10,7 +10,7 @@ import type { Side } from 'threepoint/core/math/side';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Pulse } from 'threepoint/xr/haptics';
-import type { TaskPlace, TaskRunner } from 'threepoint-study/participant/task-runner';
+import type { TaskPlace, TaskRunner } from 'threepoint-study/participant/trial/task-runner';
 import type { CameraScene } from '../scene/desktop-view';
 import type { ActivityContext, ActivitySettings, ActivitySettingsWriter } from './activity-context';
 import type { ActivityMenu } from './activity-menu';

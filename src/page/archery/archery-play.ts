@@ -8,8 +8,8 @@ import { aimPoint } from 'threepoint-games/archery/aim-point';
 import { type Archer, createArcher } from 'threepoint-games/archery/archer-motion';
 import type { ArcheryAction, ArcheryEvent, ArcheryState, BowView } from 'threepoint-games/archery/archery-state';
 import {
+  ArcheryGestures,
   type BowCue,
-  createArcheryGestures,
   defaultArcheryGestureSettings,
   type HapticPulse,
 } from 'threepoint-games/archery/gestures';
@@ -123,7 +123,7 @@ export function createArcheryPlay(
   let followedAt = Number.NaN;
   let signalled = false;
   let otherHands = false;
-  const gestures = createArcheryGestures(() => ({
+  const gestures = new ArcheryGestures(() => ({
     ...defaultArcheryGestureSettings,
     bowSide: settings().bowSide,
     oneHanded: settings().oneHanded,

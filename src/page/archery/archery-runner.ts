@@ -1,6 +1,6 @@
 import { fullScore, matchTime } from 'threepoint-games/archery/rules';
 import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
-import type { TaskEnd, TaskEvent } from 'threepoint-study/participant/task-runner';
+import type { TaskEnd, TaskEvent } from 'threepoint-study/participant/trial/task-runner';
 import type { ActivityRunner, StudyHost } from '../activity/activity';
 import type { ArcheryFrame } from './archery-play';
 

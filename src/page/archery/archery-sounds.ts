@@ -5,28 +5,10 @@ import type { ArcheryEvent, ArcheryState, Arrow } from 'threepoint-games/archery
 import { maximumDraw } from 'threepoint-games/archery/bow';
 import type { BowCue } from 'threepoint-games/archery/gestures';
 import { positionAt } from 'threepoint-games/ballistics';
-import {
-  type AudibleStage,
-  createSoundStage,
-  type Player,
-  type Recipe,
-  type Recipes,
-  type SoundStage,
-} from '../scene/sound/sound-stage';
+import { createSoundStage, type Player, type Recipe, type Recipes, type SoundStage } from '../scene/sound/sound-stage';
 import { bell, chime, click, warning, whoosh } from '../scene/sound/sound-synthesis';
 import { cueCaption, eventCaption } from './archery-captions';
 import { creak, earth, rattle, thud, twang } from './archery-synthesis';
-
-/** Plays the sounds of archery from where they happen, with captions. */
-export interface Sounds {
-  /** The stage that plays the sounds. It must be unlocked; captions work without it. */
-  readonly stage: AudibleStage;
-  /** Plays and captions what happened in this frame; cues are in the floor frame, events in the arena frame. */
-  playEvents(state: ArcheryState, events: readonly ArcheryEvent[], cues: readonly BowCue[]): void;
-  /** Sets the pose of the listener's head, floor frame. */
-  setListener(head: Pose<'floor'>): void;
-  dispose(): void;
-}
 
 export interface SoundsOptions {
   readonly floorFromArena: Transform<'floor', 'arena'>;
@@ -67,12 +49,12 @@ function playCue({ type, position, draw }: BowCue, { play }: Player): void {
   else if (type === 'lost') play('warning', position);
 }
 
-export const createSounds = (options: SoundsOptions): Sounds => new RangeSounds(options);
-
-class RangeSounds implements Sounds {
+/** Plays the sounds of archery from where they happen, with captions. */
+export class Sounds {
   readonly #floorFromArena: Transform<'floor', 'arena'>;
   readonly #arenaFromFloor: Transform<'arena', 'floor'>;
   readonly #onCaption: (text: string) => void;
+  /** The stage that plays the sounds. It must be unlocked; captions work without it. */
   readonly stage: SoundStage;
   /** The sound of each arrow in the air. */
   readonly #flying = new Map<number, AudioBufferSourceNode>();
@@ -87,6 +69,7 @@ class RangeSounds implements Sounds {
     this.stage = createSoundStage(recipes, createContext);
   }
 
+  /** Plays and captions what happened in this frame; cues are in the floor frame, events in the arena frame. */
   playEvents({ targets, options }: ArcheryState, events: readonly ArcheryEvent[], cues: readonly BowCue[]): void {
     const playing = this.stage.player;
     for (const cue of cues) {
@@ -101,6 +84,7 @@ class RangeSounds implements Sounds {
     }
   }
 
+  /** Sets the pose of the listener's head, floor frame. */
   setListener(head: Pose<'floor'>): void {
     this.#head = head;
     this.stage.setListener(head);

@@ -7,15 +7,15 @@ import { arrowLength, braceHeight } from 'threepoint-games/archery/bow';
 import type { BowCue } from 'threepoint-games/archery/gestures';
 import type { Quality } from '../scene/renderer';
 import type { AudibleStage } from '../scene/sound/sound-stage';
-import { createSounds } from './archery-sounds';
+import { Sounds } from './archery-sounds';
 import { makeArrowPose } from './arrow-pose';
 import { createArrows } from './arrows';
 import { createBow } from './bow-model';
-import { createRange, type Range } from './range';
+import { createRange, type Range } from './range/range';
+import { TargetStands } from './range/target-stands';
 import { createResultPanel, type ResultPanel } from './result-panel';
 import { ScorePops } from './score-pops';
 import { createScoreboard } from './scoreboard';
-import { createTargetStands } from './target-stands';
 import { createTrails } from './trails';
 
 /** Everything that is seen of archery. */
@@ -51,13 +51,13 @@ export interface ArcheryViewOptions {
 export function createArcheryView({ quality, floorFromArena, distances, onCaption }: ArcheryViewOptions): ArcheryView {
   const arenaFromFloor = invertTransform(floorFromArena);
   const range = createRange(quality, floorFromArena, distances);
-  const stands = createTargetStands(quality);
+  const stands = new TargetStands(quality);
   const arrows = createArrows(arrowLength);
   const trails = createTrails(arrowLength);
   const scoreboard = createScoreboard(quality);
   const pops = new ScorePops(quality);
   const result = createResultPanel(quality);
-  const sounds = createSounds({ floorFromArena, onCaption });
+  const sounds = new Sounds({ floorFromArena, onCaption });
   let shown: ArcheryState | null = null;
   const onString = makeArrowPose();
   const eyes = vec3(0, 0, 0);

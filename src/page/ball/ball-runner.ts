@@ -1,5 +1,5 @@
 import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
-import type { TaskEnd, TaskEvent, TaskPlace } from 'threepoint-study/participant/task-runner';
+import type { TaskEnd, TaskEvent, TaskPlace } from 'threepoint-study/participant/trial/task-runner';
 import type { ActivityRunner, StudyHost } from '../activity/activity';
 import type { BallFrame } from './ball-frame';
 import type { BallPlay } from './ball-play';

@@ -26,30 +26,6 @@ export interface Insets {
   readonly bottom: number;
 }
 
-/** The camera of the desktop; in a session the headset moves the camera and this rests. */
-export interface DesktopView {
-  readonly camera: PerspectiveCamera;
-  /** From where and whereto the camera looks. */
-  readonly pose: Pose<'floor'>;
-  readonly view: ViewName;
-  setView(view: ViewName): void;
-  /** Moves the camera to the start of a scene. */
-  setScene(scene: CameraScene): void;
-  /** Whether mouse and touch turn the camera; arrow keys always do. */
-  setOrbit(on: boolean): void;
-  setInsets(insets: Insets): void;
-  /** The window changed its size. */
-  resize(): void;
-  /** Back to where the view began. */
-  recentre(): void;
-  /** The ray through a point of the window (from −1 to 1, right and up); unit direction, floor frame. */
-  rayThrough(x: number, y: number): Ray;
-  /** Follows a body: its pelvis and eyes, floor frame; elapsed [s] since the last call. */
-  update(pelvis: Point, eyes: Eyes, elapsed: number): void;
-  /** How high the body's head reaches [m]: what is taller than people are is seen whole too. */
-  setHeight(height: number): void;
-}
-
 /** Seconds in which the camera makes half the way to a body that walks. */
 const followHalfLife = 0.35;
 /** What is no taller [m] is seen whole from where the view begins. */
@@ -108,10 +84,8 @@ function moveArm(arm: Vector3, key: string): boolean {
   return true;
 }
 
-/** Orbit by mouse, touch and arrow keys around the body, a front view, and the view through the body's own eyes. */
-export const createDesktopView = (canvas: HTMLCanvasElement): DesktopView => new DesktopCamera(canvas);
-
-class DesktopCamera implements DesktopView {
+/** The camera of the desktop; in a session the headset moves the camera and this rests. */
+export class DesktopView {
   readonly camera = new PerspectiveCamera(42, 1, 0.05, 90);
   readonly #controls: OrbitControls;
   readonly #raycaster = new Raycaster();
@@ -133,6 +107,7 @@ class DesktopCamera implements DesktopView {
     this.#project();
   }
 
+  /** From where and whereto the camera looks. */
   get pose(): Pose<'floor'> {
     const { position, quaternion } = this.camera;
     return {
@@ -153,6 +128,7 @@ class DesktopCamera implements DesktopView {
     this.#project();
   }
 
+  /** Moves the camera to the start of a scene. */
   setScene(scene: CameraScene): void {
     this.#scene = scene;
     this.#controls.enablePan = scene.free ?? false;
@@ -161,6 +137,7 @@ class DesktopCamera implements DesktopView {
     this.#project();
   }
 
+  /** Whether mouse and touch turn the camera; arrow keys always do. */
   setOrbit(on: boolean): void {
     this.#orbit = on;
     this.#controls.enabled = on && this.#view !== 'first-person';
@@ -171,20 +148,24 @@ class DesktopCamera implements DesktopView {
     this.#project();
   }
 
+  /** The window changed its size. */
   resize(): void {
     this.#project();
   }
 
+  /** Back to where the view began. */
   recentre(): void {
     this.#place();
   }
 
+  /** The ray through a point of the window (from −1 to 1, right and up); unit direction, floor frame. */
   rayThrough(x: number, y: number): Ray {
     this.#raycaster.setFromCamera(new Vector2(x, y), this.camera);
     const { origin, direction } = this.#raycaster.ray;
     return { origin: { ...origin }, direction: { ...direction } };
   }
 
+  /** How high the body's head reaches [m]: what is taller than people are is seen whole too. */
   setHeight(height: number): void {
     const rise = Math.max(0, height - tallest) / 2;
     if (rise === this.#rise) return;
@@ -192,6 +173,7 @@ class DesktopCamera implements DesktopView {
     this.#project();
   }
 
+  /** Follows a body: its pelvis and eyes, floor frame; elapsed [s] since the last call. */
   update(pelvis: Point, { position, orientation }: Eyes, elapsed: number): void {
     const { camera } = this;
     if (this.#view === 'first-person') {

@@ -8,7 +8,7 @@ import type { Pose } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Pulse } from 'threepoint/xr/haptics';
-import type { TaskPlace } from 'threepoint-study/participant/task-runner';
+import type { TaskPlace } from 'threepoint-study/participant/trial/task-runner';
 import type { Activity, OpenActivity, PlayerInput } from '../activity/activity';
 import type { ActivityContext, ActivityServices, InputSource } from '../activity/activity-context';
 import type { Recorder } from '../studio/recorder';

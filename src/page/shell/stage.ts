@@ -6,7 +6,7 @@ import type { Side } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { createVrCaptions } from 'threepoint-ui/vr-captions';
 import type { Watched } from '../activity/activity';
-import { createDesktopView, type DesktopView, type Insets } from '../scene/desktop-view';
+import { DesktopView, type Insets } from '../scene/desktop-view';
 import { createHeadsetCamera, createRenderer, fitToWindow, type Quality } from '../scene/renderer';
 import { createVignette, type Vignette } from '../scene/vignette';
 import { createStudio, type Studio } from '../studio/studio';
@@ -61,7 +61,7 @@ export interface Stage {
 export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage {
   const renderer = createRenderer(canvas, quality);
   const studio = createStudio(renderer, quality);
-  const view = createDesktopView(canvas);
+  const view = new DesktopView(canvas);
   const mirror = createMirror({
     distance: mirrorDistance,
     ...(quality === 'low' && { resolution: 400, samples: 0 }),

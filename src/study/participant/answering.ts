@@ -1,7 +1,7 @@
 import type { Answer } from '../model/questionnaires/question-kind';
 import type { Question } from '../model/questionnaires/questionnaire-schema';
 import { typedAnswer, unanswered } from '../model/questionnaires/questionnaires';
-import type { ParticipantSession } from './participant-session';
+import type { ParticipantSession } from './session/participant-session';
 
 type Answered = Pick<ParticipantSession, 'step' | 'progress' | 'apply'>;
 

@@ -1,8 +1,8 @@
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
 import { type CalibrationGuide, createCalibrationGuide } from 'threepoint-ui/calibration-guide';
-import type { ParticipantSession } from './participant-session';
 import { remoteFaults } from './remote-faults';
+import type { ParticipantSession } from './session/participant-session';
 import type { StudyHost } from './study-host';
 
 /**

@@ -1,5 +1,5 @@
 import { setupFaults } from '../model/plan/remote-setup';
-import type { ParticipantSession } from './participant-session';
+import type { ParticipantSession } from './session/participant-session';
 import type { StudyHost } from './study-host';
 
 /**

@@ -3,17 +3,17 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { ProgressEvent } from '../model/progress/advance';
 import { Answering } from './answering';
 import { BodyMeasurement } from './body-measurement';
-import { ExchangeTimer } from './exchange-timer';
-import type { ParticipantSession } from './participant-session';
+import type { StudyForm } from './forms/study-form';
 import { RaisedHands } from './raised-hands';
 import { reasonFor, refusalFor } from './reasons';
-import { SessionTrials } from './session-trials';
-import type { StudyForm } from './study-form';
+import { lockedOutScreen, screenOf } from './screens/study-screens';
+import type { ScreenActions } from './screens/study-situation';
+import { ExchangeTimer } from './session/exchange-timer';
+import type { ParticipantSession } from './session/participant-session';
 import type { StudyHost } from './study-host';
 import type { StudyPage } from './study-page';
-import { lockedOutScreen, screenOf } from './study-screens';
-import type { ScreenActions } from './study-situation';
-import type { FinishedTrial } from './study-trial';
+import { SessionTrials } from './trial/session-trials';
+import type { FinishedTrial } from './trial/study-trial';
 
 /** The interval at which the screen follows the clock [ms]. */
 const tickEveryMs = 250;

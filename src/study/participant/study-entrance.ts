@@ -3,8 +3,8 @@ import { NoStudyServer, ServerRefusal } from '../client/study-client';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../model/phrases/phrases';
 import { inLanguage } from '../model/phrases/words';
 import type { PublicStudy } from '../model/progress/study-api';
-import type { ParticipantSession } from './participant-session';
 import { reasonFor } from './reasons';
+import type { ParticipantSession } from './session/participant-session';
 import type { Opened } from './study-opening';
 import type { StudyPage } from './study-page';
 

@@ -3,15 +3,10 @@ import { PhrasedError } from '../model/phrases/phrases';
 import { scheduleFor } from '../model/plan/schedule';
 import { isLater, type Progress } from '../model/progress/progress';
 import type { PublicStudy } from '../model/progress/study-api';
-import {
-  createParticipantSession,
-  type ParticipantSession,
-  type ParticipantSessionOptions,
-  startSession,
-} from './participant-session';
-import type { Unsent } from './session-store';
-import type { ConsentChoices } from './study-form';
-import { type KeptSession, openStudyVault, type StudyVault } from './study-vault';
+import type { ConsentChoices } from './forms/study-form';
+import { ParticipantSession, type ParticipantSessionOptions, startSession } from './session/participant-session';
+import type { Unsent } from './session/session-store';
+import { type KeptSession, openStudyVault, type StudyVault } from './session/study-vault';
 
 /** A participant's place in a study. */
 export interface Place {
@@ -118,7 +113,7 @@ export async function openSession(place: Place, opening: OpeningOptions): Promis
     const known = await reportedProgress(client, kept.session);
     const later = known && isLater(scheduleFor(kept.session.plan, participant), known, kept.session.progress);
     const newest = later ? { ...kept.session, progress: known } : kept.session;
-    const session = createParticipantSession(newest, kept, options);
+    const session = new ParticipantSession(newest, kept, options);
     session.apply({ type: 'reload' });
     return { kind: 'resumed', session };
   }
@@ -133,7 +128,7 @@ export async function openSession(place: Place, opening: OpeningOptions): Promis
         const claimed = startSession(await client.claim(id, participant, invitation, version), id, participant);
         const begun = claimed.progress.motion !== null;
         const nothing = { records: [], motion: [] };
-        const session = createParticipantSession(begun ? withChoices(claimed, choices) : claimed, nothing, options);
+        const session = new ParticipantSession(begun ? withChoices(claimed, choices) : claimed, nothing, options);
         if (begun) {
           session.apply({ type: 'reload' });
           if (claimed.progress.motion && !motion) session.apply({ type: 'remark', text: noMotionHere });

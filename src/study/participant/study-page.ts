@@ -1,5 +1,5 @@
-import type { Invited, StudyForm } from './study-form';
-import type { StudyScreen } from './study-screen';
+import type { Invited, StudyForm } from './forms/study-form';
+import type { StudyScreen } from './screens/study-screen';
 
 /** The display on which a participant reads and answers. */
 export interface StudyDisplay {

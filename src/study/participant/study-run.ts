@@ -7,11 +7,11 @@ import { pageFolder } from 'threepoint-ui/page-folder';
 import type { Pointer } from 'threepoint-ui/vr-pointers';
 import { createParticipantClient } from '../client/study-client';
 import { invitationIn, studyLink, withdrawalLink } from '../client/study-link';
-import { createStudyCard, type StudyCard } from './study-card';
+import { createStudyCard, type StudyCard } from './forms/study-card';
+import { VrStudyPanel } from './sheet/vr-study-panel';
 import type { StudyHost } from './study-host';
 import type { After, StudyAddressBar, StudyDisplay } from './study-page';
 import { type AskedStudy, StudyVisit, type VisitState } from './study-visit';
-import { createVrStudyPanel, type VrStudyPanel } from './vr-study-panel';
 
 /** The study on the page, for its frame loop. */
 export interface StudyRun {
@@ -82,7 +82,7 @@ const addressBarOf = (study: string): StudyAddressBar => ({
 /** Opens the study in the address, which has the page to itself while it runs. */
 export function createStudyRun(asked: AskedStudy, host: StudyHost): StudyRun {
   document.body.classList.add('in-study');
-  const sheet = createVrStudyPanel();
+  const sheet = new VrStudyPanel();
   const visit = new StudyVisit(asked, createParticipantClient(pageFolder()), host, {
     display: createDisplay(createStudyCard(), sheet),
     address: addressBarOf(asked.study),

@@ -2,7 +2,7 @@ import fc from 'fast-check';
 import type { Side } from 'threepoint/core/math/side';
 import { length } from 'threepoint/core/math/vec3';
 import { maximumDraw } from 'threepoint-games/archery/bow';
-import { createArcheryGestures, defaultArcheryGestureSettings } from 'threepoint-games/archery/gestures';
+import { ArcheryGestures, defaultArcheryGestureSettings } from 'threepoint-games/archery/gestures';
 import { describe, expect, test } from 'vitest';
 import { evenly, rotation, seed } from '../../threepoint/core/arbitraries';
 import { posed } from './bowman';
@@ -71,7 +71,7 @@ describe('any hands at all', () => {
     fc.assert(
       fc.property(fc.array(attempt, { minLength: 1, maxLength: 6 }), (attempts) => {
         let settings = defaultArcheryGestureSettings;
-        const gestures = createArcheryGestures(() => settings);
+        const gestures = new ArcheryGestures(() => settings);
         let time = 100;
         let onString = false;
         for (const { seconds, frames, draw, wild, left, right, settings: change } of attempts.flat()) {

@@ -8,7 +8,7 @@ import type { BowView } from 'threepoint-games/archery/archery-state';
 import { arrowRestHeight, braceHeight } from 'threepoint-games/archery/bow';
 import {
   type ArcheryGestureSettings,
-  createArcheryGestures,
+  ArcheryGestures,
   defaultArcheryGestureSettings,
   type GestureFrame,
 } from 'threepoint-games/archery/gestures';
@@ -63,7 +63,7 @@ const moments = (from: number, to: number, rateHz: number): number[] =>
 /** An archer who is moved step by step at a frame rate; collects all results. */
 export function bowman(changes: Partial<ArcheryGestureSettings> = {}, rateHz = 90) {
   let settings: ArcheryGestureSettings = { ...defaultArcheryGestureSettings, ...changes };
-  const gestures = createArcheryGestures(() => settings);
+  const gestures = new ArcheryGestures(() => settings);
   let time = 5;
   let frames: GestureFrame[] = [];
   const bowSide = (): Side => settings.bowSide ?? 'left';

@@ -4,8 +4,8 @@ import { createArcher } from 'threepoint-games/archery/archer-motion';
 import type { ArcherBody } from 'threepoint-games/archery/archer-postures';
 import type { ArcheryAction, ArcheryEvent, ArcheryOptions, ArcheryState } from 'threepoint-games/archery/archery-state';
 import {
+  ArcheryGestures,
   type BowCue,
-  createArcheryGestures,
   defaultArcheryGestureSettings,
   type GestureFrame,
 } from 'threepoint-games/archery/gestures';
@@ -44,7 +44,7 @@ export function playRound({ archer: body, seed = 1, options = {}, times, spoil }
   const ticks: (readonly ArcheryAction[])[] = [];
   const match = createMatch(archeryRules, start, { delayed, onTick: (actions) => ticks.push(actions) });
   const archer = createArcher(body);
-  const gestures = createArcheryGestures(() => ({
+  const gestures = new ArcheryGestures(() => ({
     ...defaultArcheryGestureSettings,
     bowSide: body.bowSide,
     armed: isArmed(match.state),

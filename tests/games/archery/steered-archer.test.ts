@@ -1,4 +1,4 @@
-import { createArcheryGestures, defaultArcheryGestureSettings } from 'threepoint-games/archery/gestures';
+import { ArcheryGestures, defaultArcheryGestureSettings } from 'threepoint-games/archery/gestures';
 import { archeryRules, delayed } from 'threepoint-games/archery/rules';
 import { createSteeredArcher, type Steering } from 'threepoint-games/archery/steered-archer';
 import { createMatch } from 'threepoint-games/match';
@@ -12,7 +12,7 @@ function play(
 ) {
   const match = createMatch(archeryRules, archeryRules.start(['mouse'], 3), { delayed });
   const archer = createSteeredArcher({ bowSide, eyeHeight: 1.6 });
-  const gestures = createArcheryGestures(() => ({ ...defaultArcheryGestureSettings, bowSide }));
+  const gestures = new ArcheryGestures(() => ({ ...defaultArcheryGestureSettings, bowSide }));
   const cues: string[] = [];
   for (let i = 0; i < seconds * 60 && match.state.phase !== 'over'; i++) {
     const time = i / 60;

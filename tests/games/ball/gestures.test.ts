@@ -7,7 +7,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import { ballRadius } from 'threepoint-games/ball/flight';
 import { createBallGestures, holdSeconds } from 'threepoint-games/ball/gestures';
-import { createHandVelocity, throwWindow } from 'threepoint-games/ball/hand-velocity';
+import { HandVelocity, throwWindow } from 'threepoint-games/ball/hand-velocity';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { rackPosition, stations } from 'threepoint-games/ball/stations';
 import { ballInPalm, fistOf, wristAround } from 'threepoint-games/fist';
@@ -180,7 +180,7 @@ describe('a hand', () => {
 
 describe('the speed of a hand', () => {
   const follow = (path: (time: number) => Vec3, times: readonly number[]): Vec3 => {
-    const speed = createHandVelocity();
+    const speed = new HandVelocity();
     for (const time of times) speed.follow(time, path(time));
     return speed.velocity();
   };

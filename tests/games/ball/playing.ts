@@ -38,6 +38,8 @@ export const inFront = add(stations[holder]!.position, vec3(0, 1.1, 0.45));
 export const velocityTo = (from: Vec3, to: Vec3, seconds: number): Vec3 =>
   addScaled(scale(subtract(to, from), 1 / seconds), vec3(0, 1, 0), 0.5 * gravity * seconds);
 
+type Throw = Extract<BallAction, { type: 'throw' }>;
+
 /** A match that is stepped tick by tick; all players are present, and ready unless `ready` is false. */
 export function told(options: Partial<BallOptions> = {}, ready = true) {
   const events: BallEvent[] = [];
@@ -67,14 +69,18 @@ export function told(options: Partial<BallOptions> = {}, ready = true) {
       stand(player, now(), rackPosition(ball, state.options.balls)),
       action(player, { type: 'grab', side, ball }),
     );
-  const toss = (player: number, ball: number, to: Vec3, seconds = 1, side: 'left' | 'right' = 'right') => {
-    const from = release(player);
+  /** Lets a player who stands at their station throw the ball in their right hand, as the change says. */
+  const hurl = (player: number, ball: number, change: Partial<Throw> = {}) => {
+    const position = release(player);
+    const velocity = velocityTo(position, inFront, 1);
     return step(
       hold(now(), inFront),
-      stand(player, now(), from),
-      action(player, { type: 'throw', side, ball, at: now(), position: from, velocity: velocityTo(from, to, seconds) }),
+      stand(player, now(), position),
+      action(player, { type: 'throw', side: 'right', ball, at: now(), position, velocity, ...change }),
     );
   };
+  const toss = (player: number, ball: number, to: Vec3, seconds = 1, side: 'left' | 'right' = 'right') =>
+    hurl(player, ball, { side, velocity: velocityTo(release(player), to, seconds) });
   if (ready) {
     step(...[0, 1, 2].map((player): BallInput => ({ type: 'join', player })));
     step(hold(0, inFront), ...[0, 1, 2].map((player): BallInput => ({ type: 'ready', player, ready: true })));
@@ -89,8 +95,8 @@ export function told(options: Partial<BallOptions> = {}, ready = true) {
     step,
     pass,
     action,
-    release,
     take,
+    hurl,
     toss,
     happened: <T extends BallEvent['type']>(type: T) =>
       events.filter((event): event is Extract<BallEvent, { type: T }> => event.type === type),

@@ -10,18 +10,7 @@ import { rackPosition, stations, throwingDistance } from 'threepoint-games/ball/
 import { wristAround } from 'threepoint-games/fist';
 import { describe, expect, test } from 'vitest';
 import { evenly, seed, vector } from '../../threepoint/core/arbitraries';
-import {
-  headOf,
-  hold,
-  holder,
-  inFront,
-  leftThrower,
-  rightThrower,
-  stand,
-  tickSeconds,
-  told,
-  velocityTo,
-} from './playing';
+import { headOf, hold, holder, inFront, leftThrower, rightThrower, stand, tickSeconds, told } from './playing';
 
 test.each([0, -1, 3601, Number.NaN])('a round of %s s is refused with the bounds of one', (seconds) => {
   expect(() => ballRules.start(['Ann'], 0, { seconds })).toThrow(
@@ -154,14 +143,7 @@ describe('a match', () => {
     match.take(leftThrower, 1);
     match.pass(0.7);
     expect(match.now()).toBeGreaterThan(5);
-    const position = match.release(leftThrower);
-    const velocity = velocityTo(position, inFront, 1);
-    const thrown = { type: 'throw', side: 'right', ball: 1, at: 4.9, position, velocity } as const;
-    match.step(
-      hold(match.now(), inFront),
-      stand(leftThrower, match.now(), position),
-      match.action(leftThrower, thrown),
-    );
+    match.hurl(leftThrower, 1, { at: 4.9 });
     expect(match.refusals()).toEqual([]);
     match.pass(1);
     expect(match.happened('ended')).toEqual([{ type: 'ended', end: 'time', score: 1 }]);
@@ -226,18 +208,7 @@ describe('a ball', () => {
   test('let go of without speed goes back to the rack', () => {
     const match = told();
     match.take(leftThrower, 4);
-    const from = match.release(leftThrower);
-    match.step(
-      stand(leftThrower, match.now(), from),
-      match.action(leftThrower, {
-        type: 'throw',
-        side: 'right',
-        ball: 4,
-        at: match.now(),
-        position: from,
-        velocity: vec3(0.1, 0.2, -0.3),
-      }),
-    );
+    match.hurl(leftThrower, 4, { velocity: vec3(0.1, 0.2, -0.3) });
     expect(match.state.balls[4]).toEqual({ on: 'rack' });
     expect(match.happened('returned').length).toBe(1);
   });
@@ -251,21 +222,9 @@ describe('what no body can do is refused', () => {
   };
   const thrown = (
     match: ReturnType<typeof told>,
-    change: { position?: Vec3; velocity?: Vec3; at?: number; ball?: number },
+    { ball = 0, ...change }: { position?: Vec3; velocity?: Vec3; at?: number; ball?: number },
   ) => {
-    const from = match.release(leftThrower);
-    match.step(
-      stand(leftThrower, match.now(), from),
-      match.action(leftThrower, {
-        type: 'throw',
-        side: 'right',
-        ball: 0,
-        at: match.now(),
-        position: from,
-        velocity: velocityTo(from, inFront, 1),
-        ...change,
-      }),
-    );
+    match.hurl(leftThrower, ball, change);
     return match.refusals();
   };
 

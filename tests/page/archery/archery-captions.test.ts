@@ -3,7 +3,7 @@ import { up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { Arrow, Landing, Target } from 'threepoint-games/archery/archery-state';
 import { archeryRules } from 'threepoint-games/archery/rules';
 import { eventCaption } from 'threepoint-page/archery/archery-captions';
-import { createSounds } from 'threepoint-page/archery/archery-sounds';
+import { Sounds } from 'threepoint-page/archery/archery-sounds';
 import { directionOf } from 'threepoint-page/scene/directions';
 import { describe, expect, it } from 'vitest';
 
@@ -66,7 +66,7 @@ describe('captions', () => {
 describe('sounds before the browser allows any', () => {
   it('are captions all the same, a creaking bow only once in a draw', () => {
     const captions: string[] = [];
-    const sounds = createSounds({
+    const sounds = new Sounds({
       floorFromArena: { position: vec3(0, 0, 0), orientation: identity },
       onCaption: (text) => captions.push(text),
       createContext: () => {
@@ -83,7 +83,7 @@ describe('sounds before the browser allows any', () => {
 
   it('are heard from the floor even when the range is turned in the room: directions are for the head in it', () => {
     const captions: string[] = [];
-    const sounds = createSounds({
+    const sounds = new Sounds({
       floorFromArena: { position: vec3(2, 0, 0), orientation: fromAxisAngle(up, Math.PI / 2) },
       onCaption: (text) => captions.push(text),
     });

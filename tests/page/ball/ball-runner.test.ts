@@ -6,12 +6,7 @@ import { type BallConnection, createBallLoopbackHost } from 'threepoint-games/ba
 import { createBallPlay } from 'threepoint-page/ball/ball-play';
 import { createBallRunner } from 'threepoint-page/ball/ball-runner';
 import type { ConnectionStatus, Visitor } from 'threepoint-rooms/client/connection';
-import {
-  type FinishedTrial,
-  type PlayedStep,
-  type PlayedTrial,
-  playTrial,
-} from 'threepoint-study/participant/study-trial';
+import { type FinishedTrial, type PlayedStep, PlayedTrial } from 'threepoint-study/participant/trial/study-trial';
 import { expect, test } from 'vitest';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 import { activityServices } from '../activity-services';
@@ -110,7 +105,7 @@ async function group({ stopped = false } = {}) {
       return {
         play,
         start() {
-          trial = playTrial(
+          trial = new PlayedTrial(
             step,
             runner,
             {

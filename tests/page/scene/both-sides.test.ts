@@ -1,7 +1,7 @@
 import { DoubleSide, type Material, Mesh, type Object3D } from 'three';
-import { createBackstop } from 'threepoint-page/archery/backstop';
+import { createBackstop } from 'threepoint-page/archery/range/backstop';
+import { createZone } from 'threepoint-page/archery/range/zone';
 import { createTrails } from 'threepoint-page/archery/trails';
-import { createZone } from 'threepoint-page/archery/zone';
 import { createAimArc } from 'threepoint-page/ball/aim-arc';
 import { createZoneRing } from 'threepoint-page/ball/zone-ring';
 import { expect, test } from 'vitest';

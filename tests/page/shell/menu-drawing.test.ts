@@ -5,47 +5,16 @@ import { drawMenu } from 'threepoint-page/shell/vr-menu/menu-drawing';
 import { qrCode } from 'threepoint-ui/qr-code';
 import { encode } from 'uqr';
 import { describe, expect, test } from 'vitest';
+import { paper, studioMenu } from './menu-parts';
 
 const address = 'https://play.example.org/?play=ball&room=meadow';
-
-/** What is written and filled on a canvas, in order; letters are as wide as half their height. */
-function paper() {
-  const texts: { readonly text: string; readonly size: number; readonly y: number }[] = [];
-  const boxes: { readonly fill: string; readonly at: readonly number[] }[] = [];
-  const context = {
-    font: '',
-    fillStyle: '',
-    textAlign: '',
-    textBaseline: '',
-    globalAlpha: 1,
-    lineWidth: 1,
-    strokeStyle: '',
-    beginPath: () => undefined,
-    roundRect: () => undefined,
-    fill: () => undefined,
-    stroke: () => undefined,
-    measureText: (text: string) => ({ width: text.length * 0.5 * sizeOf(context.font) }),
-    fillText: (text: string, _: number, y: number) => void texts.push({ text, size: sizeOf(context.font), y }),
-    fillRect: (...at: readonly number[]) => void boxes.push({ fill: context.fillStyle, at }),
-  };
-  return { context: context as unknown as CanvasRenderingContext2D, texts, boxes };
-}
-
-const sizeOf = (font: string) => Number(/(\d+)px/.exec(font)?.[1]);
 
 const actions = {} as VrMenuActions;
 
 function drawn(change: Partial<ShownInvitation>) {
   const invitation: ShownInvitation = { room: 'meadow', address, limit: null, code: 'loading', ...change };
   const state: VrMenuState = {
-    estimator: 'ik',
-    unavailable: {},
-    calibration: null,
-    overlay: false,
-    deviceBody: false,
-    builtInBody: 'mannequin',
-    skinTone: undefined,
-    places: [],
+    ...studioMenu,
     activity: { entries: [], sheet: invitationSheet(invitation, () => undefined) },
     notice: 'Waiting for you.',
   };

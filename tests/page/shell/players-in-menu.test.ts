@@ -10,6 +10,7 @@ import { longestName } from 'threepoint-rooms/protocol/names';
 import type { Pointer } from 'threepoint-ui/vr-pointers';
 import { describe, expect, test } from 'vitest';
 import { drawNowhere } from './drawing-in-node';
+import { expectApart, paper, studioMenu } from './menu-parts';
 
 drawNowhere();
 
@@ -40,14 +41,7 @@ function recorded() {
 
 /** The menu while it lists the other players. */
 const listing = (others: readonly OtherPlayer[], { actions } = recorded()): VrMenuState => ({
-  estimator: 'ik',
-  unavailable: {},
-  calibration: null,
-  overlay: false,
-  deviceBody: false,
-  builtInBody: 'mannequin',
-  skinTone: undefined,
-  places: [],
+  ...studioMenu,
   activity: { entries: [], sheet: playersSheet(others, actions) },
   notice: 'Waiting.',
 });
@@ -87,34 +81,16 @@ describe('the other players in the headset', () => {
   test('the buttons of all that a spectator sees lie apart and inside the sheet, as big as a palm', () => {
     const buttons = buttonsFor(...stations.map((_, seat) => player(seat)));
     expect(buttons).toHaveLength(2 * stations.length + 1);
-    for (const [index, { at }] of buttons.entries()) {
+    for (const { at } of buttons) {
       const [x, y, w, h] = at;
       expect(Math.min(w, h)).toBeGreaterThanOrEqual(80);
       expect(Math.min(x, y, menuWidth - x - w, menuHeight - y - h)).toBeGreaterThanOrEqual(menuMargin);
-      for (const { at: other } of buttons.slice(index + 1)) {
-        const beside = other[0] >= x + w || other[0] + other[2] <= x;
-        const below = other[1] >= y + h || other[1] + other[3] <= y;
-        expect(beside || below).toBe(true);
-      }
     }
+    expectApart(buttons);
   });
 
   test('are written above their buttons, with role and voice, no wider than the sheet', () => {
-    const texts: { text: string; y: number; most: number | undefined }[] = [];
-    const context = {
-      font: '',
-      fillStyle: '',
-      textAlign: '',
-      textBaseline: '',
-      globalAlpha: 1,
-      lineWidth: 1,
-      strokeStyle: '',
-      beginPath: () => undefined,
-      roundRect: () => undefined,
-      fill: () => undefined,
-      stroke: () => undefined,
-      fillText: (text: string, _: number, y: number, most?: number) => void texts.push({ text, y, most }),
-    } as unknown as CanvasRenderingContext2D;
+    const { context, texts } = paper();
     const long = player(1, { name: 'W'.repeat(longestName) });
     const state = listing([ben, long]);
     const buttons = menuButtons(state, menuActions);

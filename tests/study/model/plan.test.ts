@@ -10,7 +10,7 @@ import {
 import { blindLabel, scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { describe, expect, test } from 'vitest';
 import { seed } from '../../threepoint/core/arbitraries';
-import { paperFile, paperPlan } from './studies';
+import { paperFile, paperPlan, planWith } from './studies';
 
 const orderNames = (plan: StudyPlan, task: StudyTask) =>
   ordersByGroup(plan, task).map((order) => order.map(({ id }) => id).join(' '));
@@ -194,96 +194,27 @@ describe('the order of conditions', () => {
 });
 
 describe('a study file with a mistake', () => {
-  const broken = (change: (plan: Record<string, never>) => void) => {
-    const plan = JSON.parse(paperFile);
-    change(plan);
-    return () => parsePlan(JSON.stringify(plan), 'mine.json');
-  };
-
-  // biome-ignore lint/suspicious/noExplicitAny: reason: a file from outside may hold anything.
-  type Anything = any;
-
-  test.each<[string, (plan: Anything) => void, string]>([
-    ['a missing field', (plan) => delete plan.seed, 'mine.json: seed: '],
-    [
-      'an unknown method',
-      (plan) => {
-        plan.conditions[1].estimator = 'magic';
-      },
-      'mine.json: conditions[1].estimator: expected one of',
-    ],
-    [
-      'a number in quotes',
-      (plan) => {
-        plan.tasks[0].trialSeconds = '70';
-      },
-      'mine.json: tasks[0].trialSeconds: expected a number from 1 to 3600',
-    ],
-    [
-      'half a repetition',
-      (plan) => {
-        plan.tasks[1].repetitions = 1.5;
-      },
-      'mine.json: tasks[1].repetitions: expected a whole number',
-    ],
-    [
-      'a field that is not read',
-      (plan) => {
-        plan.tasks[0].restSecond = 60;
-      },
-      'mine.json: tasks[0].restSecond: ',
-    ],
+  test.each<[string, string, unknown, string]>([
+    ['a missing field', 'seed', undefined, 'seed: '],
+    ['an unknown method', 'conditions.1.estimator', 'magic', 'conditions[1].estimator: expected one of'],
+    ['a number in quotes', 'tasks.0.trialSeconds', '70', 'tasks[0].trialSeconds: expected a number from 1 to 3600'],
+    ['half a repetition', 'tasks.1.repetitions', 1.5, 'tasks[1].repetitions: expected a whole number'],
+    ['a field that is not read', 'tasks.0.restSecond', 60, 'tasks[0].restSecond: '],
     [
       'two conditions of one name',
-      (plan) => {
-        plan.conditions[1].id = 'ik';
-      },
-      'mine.json: conditions[1].id: "ik" is the name of conditions[0].id too',
+      'conditions.1.id',
+      'ik',
+      'conditions[1].id: "ik" is the name of conditions[0].id too',
     ],
-    [
-      'one condition',
-      (plan) => {
-        plan.conditions.pop();
-      },
-      'mine.json: conditions: expected at least two',
-    ],
-    [
-      'groups that do not come out even',
-      (plan) => {
-        plan.participants = 16;
-      },
-      'mine.json: tasks[1].groupSize: 16 participants cannot be divided into groups of 3',
-    ],
-    [
-      'an empty consent',
-      (plan) => {
-        plan.consent.paragraphs = [''];
-      },
-      'mine.json: consent.paragraphs[0]: expected text, found none',
-    ],
-    [
-      'a newer version',
-      (plan) => {
-        plan.version = 2;
-      },
-      'mine.json: version: expected 1',
-    ],
-    [
-      'another file',
-      (plan) => {
-        plan.format = 'recording';
-      },
-      'mine.json: format: expected "threepoint-study"',
-    ],
-    [
-      'too many orders',
-      (plan) => {
-        plan.conditions = conditionsOf(5);
-      },
-      'mine.json: orders: all orders of 5 conditions',
-    ],
-  ])('%s: the message names file and field', (_, change, message) => {
-    expect(broken(change)).toThrow(message);
+    ['one condition', 'conditions', conditionsOf(1), 'conditions: expected at least two'],
+    ['uneven groups', 'participants', 16, 'tasks[1].groupSize: 16 participants cannot be divided into groups of 3'],
+    ['an empty consent', 'consent.paragraphs', [''], 'consent.paragraphs[0]: expected text, found none'],
+    ['a newer version', 'version', 2, 'version: expected 1'],
+    ['another file', 'format', 'recording', 'format: expected "threepoint-study"'],
+    ['too many orders', 'conditions', conditionsOf(5), 'orders: all orders of 5 conditions'],
+  ])('%s: the message names file and field', (_, path, value, message) => {
+    const wrong = JSON.stringify(planWith(JSON.parse(paperFile), path, value));
+    expect(() => parsePlan(wrong, 'mine.json')).toThrow(`mine.json: ${message}`);
   });
 
   test('that is no JSON says so', () => {

@@ -9,16 +9,28 @@ import { questionKind } from 'threepoint-study/model/questionnaires/question-kin
 import type { StudyRecord } from 'threepoint-study/model/records/study-record';
 import { createTrialLog, type TrialOutcome } from 'threepoint-study/model/records/trial-log';
 
-export const paperFile = readFileSync(
-  fileURLToPath(new URL('../../../public/studies/paper.json', import.meta.url)),
-  'utf8',
-);
+const shippedFile = (name: string): string =>
+  readFileSync(fileURLToPath(new URL(`../../../public/studies/${name}.json`, import.meta.url)), 'utf8');
+
+export const paperFile = shippedFile('paper');
 
 /** The shipped study, with changes. */
 export const paperPlan = (changes: Partial<StudyPlan> = {}): StudyPlan => ({
   ...parsePlan(paperFile, 'paper.json'),
   ...changes,
 });
+
+/** Returns a copy of a plan with another value at a path, as `tasks.0.title.de`; undefined removes the field. */
+export function planWith(plan: object, path: string, value: unknown): unknown {
+  const copy = structuredClone(plan);
+  const keys = path.split('.');
+  const last = keys.pop() as string;
+  // biome-ignore lint/suspicious/noExplicitAny: reason: a file from outside may hold anything
+  const parent = keys.reduce((part: any, key) => part[key], copy);
+  if (value === undefined) delete parent[last];
+  else parent[last] = value;
+  return copy;
+}
 
 export const aWomanOf26 = {
   gender: 'woman',
@@ -39,18 +51,11 @@ export function outcomeOf(score = 40): TrialOutcome {
 }
 
 /** The shipped example, which asks questions of every kind in two languages. */
-export const examplePlan = (): StudyPlan =>
-  parsePlan(
-    readFileSync(fileURLToPath(new URL('../../../public/studies/example.json', import.meta.url)), 'utf8'),
-    'example.json',
-  );
+export const examplePlan = (): StudyPlan => parsePlan(shippedFile('example'), 'example.json');
 
 /** The second shipped study: three latencies, questionnaires on the body and on the work load. */
 export const latencyPlan = (changes: Partial<StudyPlan> = {}): StudyPlan => ({
-  ...parsePlan(
-    readFileSync(fileURLToPath(new URL('../../../public/studies/latency.json', import.meta.url)), 'utf8'),
-    'latency.json',
-  ),
+  ...parsePlan(shippedFile('latency'), 'latency.json'),
   ...changes,
 });
 

@@ -1,4 +1,4 @@
-import { planToBegin } from 'threepoint-study/pages/new-study';
+import { planToBegin } from 'threepoint-study/pages/experimenter/new-study';
 import { expect, test } from 'vitest';
 import { examplePlan } from '../model/studies';
 import { now, servedStudies } from '../server/running-studies';

@@ -1,7 +1,7 @@
 import { checkedPlan, type StudyTask } from 'threepoint-study/model/plan/plan';
 import { compareConditions } from 'threepoint-study/model/results/compare-conditions';
-import { scaleCharts } from 'threepoint-study/pages/comparison-figures';
-import { shownResults } from 'threepoint-study/pages/shown-results';
+import { scaleCharts } from 'threepoint-study/pages/results/comparison-figures';
+import { shownResults } from 'threepoint-study/pages/results/shown-results';
 import { modelsWith, simulateStudy } from 'threepoint-study/simulation/simulate-study';
 import { expect, test } from 'vitest';
 import { latencyPlan } from '../model/studies';

@@ -1,7 +1,7 @@
 import { createExperimenterClient } from 'threepoint-study/client/study-client';
 import { measuresIn, overallComparisons } from 'threepoint-study/model/results/exported-results';
 import { answersIn, trialsIn } from 'threepoint-study/model/tables/study-tables';
-import { storeSimulation } from 'threepoint-study/pages/store-simulation';
+import { storeSimulation } from 'threepoint-study/pages/experimenter/store-simulation';
 import { expect, test } from 'vitest';
 import { examplePlan, latencyPlan } from '../model/studies';
 import { experimenter, now, servedStudies } from '../server/running-studies';

@@ -3,7 +3,7 @@ import { compareAnswers } from 'threepoint-study/model/results/compare-condition
 import { comparisonTable, paperTable } from 'threepoint-study/model/results/result-tables';
 import { answersIn } from 'threepoint-study/model/tables/study-tables';
 import { tidyCsv } from 'threepoint-study/model/tables/tidy-csv';
-import { shownResults } from 'threepoint-study/pages/shown-results';
+import { shownResults } from 'threepoint-study/pages/results/shown-results';
 import { openStudyFile } from 'threepoint-study/pages/study-file';
 import { exportZip } from 'threepoint-study/server/export/export-zip';
 import { nullAnswerModel } from 'threepoint-study/simulation/answer-model';

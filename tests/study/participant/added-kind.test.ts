@@ -1,94 +1,54 @@
-import { text } from 'threepoint/core/validation/validation';
 import { planJsonSchema } from 'threepoint-study/cli/check/plan-json-schema';
 import { phrasesOf } from 'threepoint-study/model/phrases/phrases';
+import { inLanguage, words } from 'threepoint-study/model/phrases/words';
 import { checkedPlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { begin } from 'threepoint-study/model/progress/progress';
 import type { Answer, QuestionKind } from 'threepoint-study/model/questionnaires/question-kind';
 import { questionKindNames, registerQuestionKind } from 'threepoint-study/model/questionnaires/question-kinds';
 import type { Question } from 'threepoint-study/model/questionnaires/questionnaire-schema';
+import type { StudyPlugin } from 'threepoint-study/model/questionnaires/study-plugin';
 import { checkedRecord } from 'threepoint-study/model/records/study-record';
 import { measuresIn } from 'threepoint-study/model/results/exported-results';
 import { answersIn, studyTables } from 'threepoint-study/model/tables/study-tables';
-import { questionNodes } from 'threepoint-study/participant/questions/question-card';
 import { questionPart } from 'threepoint-study/participant/questions/question-screen';
 import { questionTargets } from 'threepoint-study/participant/questions/question-sheet';
 import type { QuestionView } from 'threepoint-study/participant/questions/question-view';
-import { registerQuestionView } from 'threepoint-study/participant/questions/question-views';
-import type { ShownSession } from 'threepoint-study/participant/study-situation';
+import { questionView, registerQuestionView } from 'threepoint-study/participant/questions/question-views';
+import type { ShownSession } from 'threepoint-study/participant/screens/study-situation';
 import { nullAnswerModel } from 'threepoint-study/simulation/answer-model';
 import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
 import { simulateStudy } from 'threepoint-study/simulation/simulate-study';
-import { button } from 'threepoint-ui/element';
 import * as v from 'valibot';
-import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
+import { afterEach, beforeEach, describe, expect, test } from 'vitest';
 import { paperPlan, session } from '../model/studies';
+import agreement from '../plugins/agreement.mjs';
 
 // A laboratory adds a kind of question from outside the package: agreement, which is 1 or 0.
 
-interface AgreementForm {
-  readonly kind: 'agreement';
-  readonly yes: string;
-  readonly no: string;
-}
-
-interface AgreementField {
-  readonly kind: 'agreement';
-  readonly options: readonly (readonly [0 | 1, string])[];
-  readonly answer: Answer | undefined;
-  choose(value: number): void;
-}
-
 declare module 'threepoint-study/model/questionnaires/question-kind' {
   interface AnswerForms {
-    agreement: AgreementForm;
+    agreement: { readonly kind: 'agreement'; readonly yes: string; readonly no: string };
   }
 }
 
-declare module 'threepoint-study/participant/questions/question-view' {
-  interface ScreenFields {
-    agreement: AgreementField;
+/** A button without a document. */
+class PlainButton {
+  readonly press: () => void;
+  readonly label: string;
+  pressed = '';
+
+  constructor(label: string, press: () => void) {
+    this.label = label;
+    this.press = press;
+  }
+
+  setAttribute(_: string, value: string): void {
+    this.pressed = value;
   }
 }
 
-const agreement: QuestionKind<AgreementForm> = {
-  kind: 'agreement',
-  schema: v.strictObject({ kind: v.literal('agreement'), yes: text(40), no: text(40) }),
-  answer: () => v.picklist([0, 1], 'expected 1 or 0'),
-  range: () => [0, 1],
-  options: () => null,
-  texts: ({ yes, no }) => [
-    ['yes', yes],
-    ['no', no],
-  ],
-  columns: ({ yes, no }) => ({ answers: `1: ${yes}; 0: ${no}` }),
-  simulate: (_, part) => Math.round(part),
-};
-
-const agreementView: QuestionView<AgreementForm, AgreementField> = {
-  kind: 'agreement',
-  field: ({ yes, no }, { given, choose }) => ({
-    kind: 'agreement',
-    options: [
-      [1, yes],
-      [0, no],
-    ],
-    answer: given,
-    choose,
-  }),
-  card: ({ options, choose }) => options.map(([value, label]) => button(label, () => choose(value))),
-  sheet: {
-    targets: ({ options, answer, choose }) =>
-      options.map(([value, label], index) => ({
-        kind: 'option',
-        id: `answer-${value}`,
-        label,
-        look: answer === value ? 'chosen' : 'plain',
-        at: [60 + index * 550, 400, 530, 150],
-        act: () => choose(value),
-      })),
-  },
-};
+const button = (label: string, press: () => void) => new PlainButton(label, press);
 
 const [archery] = paperPlan().tasks as [StudyPlan['tasks'][number]];
 const plan = (): StudyPlan =>
@@ -109,40 +69,6 @@ const plan = (): StudyPlan =>
     planned: ['archery/presence/owned'],
   });
 
-/** An element without layout: tags, text and listeners, which is what a card is made of. */
-class PlainElement {
-  readonly children: (PlainElement | string)[] = [];
-  readonly #listeners = new Map<string, () => void>();
-  readonly attributes = new Map<string, string>();
-  readonly tag: string;
-
-  constructor(tag: string) {
-    this.tag = tag;
-  }
-
-  setAttribute(name: string, value: string): void {
-    this.attributes.set(name, value);
-  }
-
-  append(...nodes: readonly (PlainElement | string)[]): void {
-    this.children.push(...nodes);
-  }
-
-  addEventListener(type: string, listener: () => void): void {
-    this.#listeners.set(type, listener);
-  }
-
-  click(): void {
-    this.#listeners.get('click')?.();
-  }
-
-  /** Returns the elements of a tag in the order of the document. */
-  all(tag: string): readonly PlainElement[] {
-    const below = this.children.flatMap((child) => (typeof child === 'string' ? [] : child.all(tag)));
-    return this.tag === tag ? [this, ...below] : below;
-  }
-}
-
 /** Shows the first question of the plan with this answer; `choose` receives what is pressed. */
 function shown(answer: Answer | undefined, choose: (value: Answer) => void) {
   const schedule = scheduleFor(plan(), 'P01');
@@ -162,9 +88,13 @@ function shown(answer: Answer | undefined, choose: (value: Answer) => void) {
 }
 
 describe('a kind of question that is registered from outside', () => {
+  // reason: the module is JavaScript, as a plug-in is
+  const plugin = agreement({ v, words, inLanguage, button }) as unknown as StudyPlugin<QuestionView>;
+  const [kind] = plugin.questionKinds as [QuestionKind];
+  const [view] = plugin.questionViews as [QuestionView];
   let remove: (() => void)[] = [];
   beforeEach(() => {
-    remove = [registerQuestionKind(agreement), registerQuestionView(agreementView)];
+    remove = [registerQuestionKind(kind), registerQuestionView(view)];
   });
   afterEach(() => {
     for (const one of remove) one();
@@ -193,18 +123,18 @@ describe('a kind of question that is registered from outside', () => {
   });
 
   test('is registered once', () => {
-    expect(() => registerQuestionKind(agreement)).toThrow('"agreement" is registered already');
-    expect(() => registerQuestionView(agreementView)).toThrow('"agreement" has a view already');
+    expect(() => registerQuestionKind(kind)).toThrow('"agreement" is registered already');
+    expect(() => registerQuestionView(view)).toThrow('"agreement" has a view already');
   });
 
-  test('is answered on the desk card', () => {
-    vi.stubGlobal('document', { createElement: (tag: string) => new PlainElement(tag) });
+  test('is answered on the desk card, which shows the answer', () => {
     const chosen: Answer[] = [];
-    const [card] = questionNodes(shown(undefined, (value) => chosen.push(value))) as unknown as [PlainElement];
-    const buttons = card.all('button');
-    expect(buttons.map(({ children }) => children)).toEqual([['I agree'], ['I disagree']]);
-    for (const one of buttons) one.click();
+    const { id, field, phrases } = shown(0, (value) => chosen.push(value));
+    const buttons = questionView(field).card(field, id, phrases) as unknown as readonly PlainButton[];
+    expect(buttons.map(({ label }) => label)).toEqual(['I agree', 'I disagree']);
+    for (const one of buttons) one.press();
     expect(chosen).toEqual([1, 0]);
+    expect(buttons.map(({ pressed }) => pressed)).toEqual(['false', 'true']);
   });
 
   test('is answered on the VR sheet, which shows the answer', () => {

@@ -38,10 +38,8 @@ async function roundsRecorded(server: StudyServer, choices: typeof silently) {
   return server.store.motion.all('paper').map(({ trial }) => trial);
 }
 
-const remarks = ({ store }: StudyServer) =>
-  store.records
-    .all('paper')
-    .flatMap((record) => (record.kind === 'event' && record.body.type === 'remark' ? [record.body.text] : []));
+const remarks = (server: StudyServer) =>
+  server.bodies('event').flatMap((event) => (event.type === 'remark' ? [event.text] : []));
 
 describe('a participant who goes on with another device', () => {
   test('has the bow in the same hand there, and the body that was measured', async () => {

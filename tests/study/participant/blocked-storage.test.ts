@@ -1,10 +1,10 @@
 import { IDBFactory } from 'fake-indexeddb';
 import { openDB } from 'idb';
-import { openStudyVault } from 'threepoint-study/participant/study-vault';
+import { openStudyVault } from 'threepoint-study/participant/session/study-vault';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
 import { aWomanOf26 } from '../model/studies';
-import { agree, beforeTheQuestions } from './participant-steps';
+import { agree, beforeTheQuestions, choose } from './participant-steps';
 import { browser, type Tab } from './study-browser';
 import { type StudyServer, studyServer } from './study-server';
 
@@ -91,9 +91,7 @@ test.each(Object.entries(failures))(
     const { tab } = await beforeTheQuestions(server);
     await tab.exchange();
     await fail();
-    const field = tab.display.screen?.question?.field;
-    if (field?.kind !== 'likert') throw new Error('expected a Likert scale');
-    field.choose(4);
+    choose(tab, 4);
     await staysInTouch(server, tab);
     reportFigures('storage-blocked', { [`IndexedDB ${how} under way`]: 'goes on' });
   },

@@ -1,6 +1,6 @@
-import { openStudyVault } from 'threepoint-study/participant/study-vault';
+import { openStudyVault } from 'threepoint-study/participant/session/study-vault';
 import { expect, test } from 'vitest';
-import { beforeTheQuestions } from './participant-steps';
+import { beforeTheQuestions, choose } from './participant-steps';
 import { studyServer } from './study-server';
 
 test('after a withdrawal in another tab nothing that is pressed here stores the participant in this browser again', async () => {
@@ -10,9 +10,7 @@ test('after a withdrawal in another tab nothing that is pressed here stores the 
   server.store.deletion.delete('paper', 'P01', 'withdrawn', 1e9);
   const vault = await openStudyVault();
   await vault.forget('paper', 'P01');
-  const field = tab.display.screen?.question?.field;
-  if (field?.kind !== 'likert') throw new Error('expected a Likert scale');
-  field.choose(4);
+  choose(tab, 4);
   tab.display.press('pause');
   await tab.exchange();
   expect(tab.display.shown).toBe('locked-out');

@@ -1,12 +1,8 @@
 import 'fake-indexeddb/auto';
 import { createParticipantClient } from 'threepoint-study/client/study-client';
-import {
-  createParticipantSession,
-  type ParticipantSession,
-  startSession,
-} from 'threepoint-study/participant/participant-session';
-import { openStudyVault, type StudyVault } from 'threepoint-study/participant/study-vault';
-import { expect } from 'vitest';
+import { ParticipantSession, startSession } from 'threepoint-study/participant/session/participant-session';
+import { openStudyVault, type StudyVault } from 'threepoint-study/participant/session/study-vault';
+import { expect, vi } from 'vitest';
 import { aWomanOf26, outcomeOf, paperPlan } from '../model/studies';
 
 const plan = paperPlan();
@@ -33,7 +29,7 @@ export async function device(
   });
   const vault = await openStudyVault(name);
   const claim = await client.claim('paper', 'P01', invitation, plan.consent.version);
-  const first = createParticipantSession(
+  const first = new ParticipantSession(
     startSession(claim, 'paper', 'P01'),
     { records: [], motion: [] },
     options(vault),
@@ -49,7 +45,7 @@ export async function device(
       const kept = await again.session('paper', 'P01');
       if (!kept) throw new Error('the vault holds no session');
       const left = { records: await again.records('paper', 'P01'), motion: await again.motion('paper', 'P01') };
-      const session = createParticipantSession(kept, left, options(again));
+      const session = new ParticipantSession(kept, left, options(again));
       session.apply({ type: 'reload' });
       return session;
     },
@@ -80,4 +76,12 @@ export function toTheFirstQuestion(session: ParticipantSession, motion = false):
   // A rest is over when enough ticks of this clock have passed.
   for (let i = 0; i < 200 && session.step.kind === 'rest'; i++) session.apply({ type: 'tick' });
   expect(session.step.kind).toBe('questionnaire');
+}
+
+/** Makes every write to the device fail as a full disk does; returns a function that makes room again. */
+export function fillDevice(): () => void {
+  const put = vi.spyOn(IDBObjectStore.prototype, 'put').mockImplementation(() => {
+    throw new DOMException('the quota is used up', 'QuotaExceededError');
+  });
+  return () => put.mockRestore();
 }

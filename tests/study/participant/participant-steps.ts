@@ -51,3 +51,19 @@ export async function beforeTheQuestions(server: StudyServer) {
   expect(visit.tab.display.shown).toBe('question-Q1');
   return visit;
 }
+
+/** Gives the question shown an answer of its scale. */
+export function choose({ display }: Tab, value: number): void {
+  const field = display.screen?.question?.field;
+  if (field?.kind !== 'likert') throw new Error(`expected a Likert scale on "${display.shown}"`);
+  field.choose(value);
+}
+
+/** Gives the seven questions after a round the same answer and submits them. */
+export function handIn(tab: Tab, value: number): void {
+  for (let index = 1; index <= 7; index++) {
+    expect(tab.display.shown).toBe(`question-Q${index}`);
+    choose(tab, value);
+    tab.display.press(index < 7 ? 'next' : 'submit');
+  }
+}

@@ -1,7 +1,7 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createArcheryPlay } from 'threepoint-page/archery/archery-play';
 import { createArcheryRunner } from 'threepoint-page/archery/archery-runner';
-import { type FinishedTrial, playTrial } from 'threepoint-study/participant/study-trial';
+import { type FinishedTrial, PlayedTrial } from 'threepoint-study/participant/trial/study-trial';
 import { activityServices } from '../../page/activity-services';
 
 export const frameSeconds = 1 / 72;
@@ -51,10 +51,13 @@ export function studiedArcher(seed: number) {
 export function playedRound({ paused = never, headless = never, handless = never }: RoundTroubles, began = 345.6) {
   const { play, runner } = studiedArcher(3);
   let time = began;
-  const step = { kind: 'trial', id: 'archery/1/trial-1', embodiment: { estimator: 'ik' }, seconds: 70 } as Parameters<
-    typeof playTrial
-  >[0];
-  const trial = playTrial(
+  const step = {
+    kind: 'trial',
+    id: 'archery/1/trial-1',
+    embodiment: { estimator: 'ik' },
+    seconds: 70,
+  } as ConstructorParameters<typeof PlayedTrial>[0];
+  const trial = new PlayedTrial(
     step,
     runner,
     {

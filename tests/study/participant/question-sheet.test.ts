@@ -4,11 +4,12 @@ import { begin } from 'threepoint-study/model/progress/progress';
 import type { Answer } from 'threepoint-study/model/questionnaires/question-kind';
 import type { Question } from 'threepoint-study/model/questionnaires/questionnaire-schema';
 import { type Answers, shippedQuestionnaires, typedAnswer } from 'threepoint-study/model/questionnaires/questionnaires';
-import type { ParticipantSession } from 'threepoint-study/participant/participant-session';
 import { questionPart } from 'threepoint-study/participant/questions/question-screen';
 import { questionTargets } from 'threepoint-study/participant/questions/question-sheet';
-import { height, width } from 'threepoint-study/participant/sheet-target';
+import type { ParticipantSession } from 'threepoint-study/participant/session/participant-session';
+import { height, width } from 'threepoint-study/participant/sheet/sheet-target';
 import { describe, expect, test } from 'vitest';
+import { expectApart } from '../../page/shell/menu-parts';
 import { examplePlan } from '../model/studies';
 
 const plan = examplePlan();
@@ -103,20 +104,15 @@ describe('a question on the sheet in the headset', () => {
     const all = [...questions, ...Object.values(shippedQuestionnaires).flatMap((shipped) => shipped.questions)];
     for (const question of all) {
       const targets = questionTargets(reader([question]).part().question);
-      for (const [index, { id, at, kind }] of targets.entries()) {
+      for (const { id, at, kind } of targets) {
         const [x, y, wide, high] = at;
         expect(
           x >= 0 && y >= 0 && x + wide <= width + 1e-6 && y + high <= Math.min(height, 646),
           `${question.id} ${id}`,
         ).toBe(true);
         if (kind !== 'tick') expect(Math.min(wide, high), `${question.id} ${id}`).toBeGreaterThan(40);
-        for (const other of targets.slice(index + 1)) {
-          const [left, top, w, h] = other.at;
-          const apart =
-            x + wide <= left + 1e-6 || left + w <= x + 1e-6 || y + high <= top + 1e-6 || top + h <= y + 1e-6;
-          expect(apart, `${question.id}: ${id} and ${other.id}`).toBe(true);
-        }
       }
+      expectApart(targets);
     }
   });
 });

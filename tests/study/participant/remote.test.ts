@@ -1,6 +1,6 @@
 import { Phrases } from 'threepoint-study/model/phrases/phrases';
 import { setupFaults } from 'threepoint-study/model/plan/remote-setup';
-import { uploadStatusText } from 'threepoint-study/participant/study-screens';
+import { uploadStatusText } from 'threepoint-study/participant/screens/study-screens';
 import { describe, expect, test } from 'vitest';
 import { aWomanOf26 } from '../model/studies';
 import { agree, canStart } from './participant-steps';

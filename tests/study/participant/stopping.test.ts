@@ -1,12 +1,9 @@
 import { describe, expect, test } from 'vitest';
-import { agree, beforeTheQuestions, beforeTheRound, play } from './participant-steps';
+import { agree, beforeTheQuestions, beforeTheRound, handIn, play } from './participant-steps';
 import { browser, type Tab } from './study-browser';
 import { type StudyServer, studyServer } from './study-server';
 
-const stops = ({ store }: StudyServer) =>
-  store.records
-    .all('paper')
-    .flatMap((record) => (record.kind === 'event' && record.body.type === 'stop' ? [record.body] : []));
+const stops = (server: StudyServer) => server.bodies('event').filter(({ type }) => type === 'stop');
 
 const stateOf = ({ store }: StudyServer) => store.overview('paper', 1e9)[0]?.session;
 
@@ -66,28 +63,18 @@ describe('a participant stops', () => {
     const server = await studyServer();
     const visit = await beforeTheQuestions(server);
     visit.tab.wear(false);
-    visit.tab.display.press('pause');
-    visit.tab.display.press('ask-to-stop');
-    visit.tab.display.press('stop');
+    for (const button of ['pause', 'ask-to-stop', 'stop']) visit.tab.display.press(button);
     await expectStopped(server, visit);
     expect(stops(server)).toMatchObject([{ by: 'participant', step: 'archery/1/questionnaire' }]);
   });
 
-  test('at the desk, when asked about themselves', async () => {
-    const server = await studyServer();
-    const device = browser(server);
-    const tab = await device.open();
-    await agree(tab);
-    tab.display.asked('demographics').stop();
-    await expectStopped(server, { device, tab });
-  });
-
-  test('at the desk, as soon as the withdrawal code is noted', async () => {
+  test.each(['code', 'demographics'] as const)('at the desk, at the form %s', async (form) => {
     const server = await studyServer();
     const device = browser(server);
     const tab = await device.open();
     expect(await tab.display.asked('consent').agree({ motion: false, language: null })).toBeNull();
-    tab.display.asked('code').stop();
+    if (form === 'demographics') tab.display.asked('code').noted();
+    tab.display.asked(form).stop();
     await expectStopped(server, { device, tab });
     expect(tab.display.screen?.text.join(' ')).toContain('/withdraw?study=paper');
   });
@@ -109,25 +96,18 @@ describe('a participant stops', () => {
 describe('the experimenter stops a participant', () => {
   const stop = { type: 'stop', by: 'experimenter', reason: 'looked pale' } as const;
 
-  test('in the middle of a round', async () => {
-    const server = await studyServer();
-    const visit = await beforeTheRound(server);
-    visit.tab.display.press('start');
-    visit.tab.draw(1);
-    server.store.commands.add('paper', 'P01', stop, 1e9);
-    await visit.tab.exchange();
-    await expectStopped(server, visit);
-    expect(stops(server)).toMatchObject([{ by: 'experimenter', reason: 'looked pale', step: 'archery/1/trial-1' }]);
-  });
-
-  test.each(['rest', 'questions', 'pause'])('in the %s', async (where) => {
+  test.each(['round', 'rest', 'questions', 'pause'])('in the %s', async (where) => {
     const server = await studyServer();
     const visit = where === 'questions' ? await beforeTheQuestions(server) : await beforeTheRound(server);
-    if (where === 'rest') play(visit.tab, 40);
-    if (where === 'pause') visit.tab.display.press('pause');
+    const { tab } = visit;
+    if (where === 'round') tab.display.press('start');
+    if (where === 'rest') play(tab, 40);
+    if (where === 'pause') tab.display.press('pause');
+    const { step } = tab.visit.state();
     server.store.commands.add('paper', 'P01', stop, 1e9);
-    await visit.tab.exchange();
+    await tab.exchange();
     await expectStopped(server, visit);
+    expect(stops(server)).toMatchObject([{ by: 'experimenter', reason: 'looked pale', step }]);
   });
 
   test('before they were asked about themselves, at the desk', async () => {
@@ -142,8 +122,7 @@ describe('the experimenter stops a participant', () => {
 });
 
 describe('a round whose end is still being looked at counts as played', () => {
-  const playedIn = ({ store }: StudyServer) =>
-    store.records.all('paper').flatMap((record) => (record.kind === 'trial' ? [record.body.outcome.score] : []));
+  const playedIn = (server: StudyServer) => server.bodies('trial').map(({ outcome }) => outcome.score);
 
   /** The shot has hit, which ended the round, and the sheet has not come yet. */
   async function justOver(server: StudyServer) {
@@ -191,15 +170,6 @@ describe('a round whose end is still being looked at counts as played', () => {
 describe('answers over a value of the plan', () => {
   const unwellFrom = (atLeast: number) => ({ askToStop: [{ questionnaire: 'archery', measure: 'Q2', atLeast }] });
 
-  const handIn = (tab: Tab, answer: number) => {
-    for (let index = 1; index <= 7; index++) {
-      const field = tab.display.screen?.question?.field;
-      if (field?.kind !== 'likert') throw new Error(`expected a Likert scale on "${tab.display.shown}"`);
-      field.choose(answer);
-      tab.display.press(index < 7 ? 'next' : 'submit');
-    }
-  };
-
   test('ask to stop, and that a participant was asked and went on is recorded', async () => {
     const server = await studyServer(unwellFrom(4));
     const { tab } = await beforeTheQuestions(server);
@@ -211,10 +181,7 @@ describe('answers over a value of the plan', () => {
     tab.display.press('go-on');
     expect(tab.display.shown).toBe('calibration');
     await tab.exchange();
-    const events = server.store.records
-      .all('paper')
-      .flatMap((record) => (record.kind === 'event' ? [record.body] : []));
-    expect(events).toMatchObject([
+    expect(server.bodies('event')).toMatchObject([
       { type: 'unwell', questionnaire: 'archery', measure: 'Q2', value: 4 },
       { type: 'go-on' },
     ]);

@@ -9,12 +9,12 @@ import { createParticipantClient } from 'threepoint-study/client/study-client';
 import type { Embodiment } from 'threepoint-study/model/plan/embodiment';
 import type { DeviceFault } from 'threepoint-study/model/plan/remote-setup';
 import type { FrameListener } from 'threepoint-study/model/records/trial-log';
-import type { Invited, StudyForm } from 'threepoint-study/participant/study-form';
+import type { Invited, StudyForm } from 'threepoint-study/participant/forms/study-form';
+import type { StudyScreen } from 'threepoint-study/participant/screens/study-screen';
 import type { StudyHost } from 'threepoint-study/participant/study-host';
 import type { StudyAddressBar, StudyDisplay, StudyPage } from 'threepoint-study/participant/study-page';
-import type { StudyScreen } from 'threepoint-study/participant/study-screen';
 import { StudyVisit } from 'threepoint-study/participant/study-visit';
-import type { TaskEnd, TaskEvent, TaskPlace, TaskRunner } from 'threepoint-study/participant/task-runner';
+import type { TaskEnd, TaskEvent, TaskPlace, TaskRunner } from 'threepoint-study/participant/trial/task-runner';
 import { expect, onTestFinished, vi } from 'vitest';
 import type { StudyServer } from './study-server';
 

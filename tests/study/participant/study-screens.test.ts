@@ -1,11 +1,9 @@
 import { createParticipantClient } from 'threepoint-study/client/study-client';
 import { Phrases } from 'threepoint-study/model/phrases/phrases';
 import type { ProgressEvent } from 'threepoint-study/model/progress/advance';
-import { typedAnswer } from 'threepoint-study/model/questionnaires/questionnaires';
-import { createParticipantSession, startSession } from 'threepoint-study/participant/participant-session';
-import type { StudyScreen } from 'threepoint-study/participant/study-screen';
-import { screenOf, uploadStatusText } from 'threepoint-study/participant/study-screens';
-import type { ScreenActions, StudySituation } from 'threepoint-study/participant/study-situation';
+import { screenOf, uploadStatusText } from 'threepoint-study/participant/screens/study-screens';
+import type { ScreenActions, StudySituation } from 'threepoint-study/participant/screens/study-situation';
+import { ParticipantSession, startSession } from 'threepoint-study/participant/session/participant-session';
 import { describe, expect, test } from 'vitest';
 import { aWomanOf26, outcomeOf, paperPlan } from '../model/studies';
 
@@ -21,29 +19,16 @@ const measured = { type: 'calibrated', calibration: { eyeHeight: 1.62, armSpan: 
 function participant(...events: readonly ProgressEvent[]) {
   let now = 1_800_000_000;
   const claim = { plan, token: 'a token', withdrawalCode: 'a code', simulated: false, progress: null };
-  const session = createParticipantSession(
+  const session = new ParticipantSession(
     startSession(claim as Parameters<typeof startSession>[0], plan.id, 'P01'),
     { records: [], motion: [] },
     { client: createParticipantClient('http://127.0.0.1:9'), vault: null, now: () => now, onChange: () => undefined },
   );
   const tell = (event: ProgressEvent) => expect(session.apply(event)).toBeNull();
   events.forEach(tell);
-  const done: string[] = [];
-  const actions: ScreenActions = {
-    apply: tell,
-    goTo: (index) => void done.push(`question ${index}`),
-    choose: (question, value) => tell({ type: 'answer', question, value }),
-    type: ({ id, answer }, typed) => tell({ type: 'answer', question: id, value: typedAnswer(answer, typed) }),
-    submit: () => void done.push('submit'),
-    calibrate: () => void done.push('calibrate'),
-    enterVr: () => void done.push('enter VR'),
-    prepareAgain: () => void done.push('prepare again'),
-    askToStop: (on) => void done.push(on ? 'ask to stop' : 'go on'),
-  };
   return {
     session,
     tell,
-    done,
     pass(seconds: number) {
       now += seconds;
     },
@@ -66,16 +51,10 @@ function participant(...events: readonly ProgressEvent[]) {
           ...{ prepared: { state: 'ready', reason: '' }, playing: false, waitingFor: null, standing: false },
           ...situation,
         },
-        actions,
+        // Nothing is pressed on these screens.
+        {} as ScreenActions,
       ),
   };
-}
-
-/** Gives the question shown an answer of its scale. */
-function chooseOn(screen: StudyScreen | null, value: number): void {
-  const field = screen?.question?.field;
-  if (field?.kind !== 'likert') throw new Error(`expected a Likert scale, not ${field?.kind}`);
-  field.choose(value);
 }
 
 /** A participant who has played the practice and the first round and sits before the questions. */
@@ -96,17 +75,6 @@ function beforeTheQuestions() {
 }
 
 describe('a participant who is to be measured', () => {
-  test('is asked to put the headset on first, then to measure', () => {
-    const one = participant(consent, demographics);
-    const before = one.screen({ inSession: false });
-    expect(before?.id).toBe('calibration-enter');
-    before?.buttons.find(({ id }) => id === 'enter')?.act();
-    const worn = one.screen();
-    expect(worn?.id).toBe('calibration');
-    worn?.buttons.find(({ id }) => id === 'calibrate')?.act();
-    expect(one.done).toEqual(['enter VR', 'calibrate']);
-  });
-
   test('is told why it did not succeed, and may try again', () => {
     const failed = participant(consent, demographics).screen({
       calibration: { kind: 'failed', fault: 'handsUnseen', text: '' },
@@ -132,14 +100,6 @@ describe('a participant before a round', () => {
     expect(ready?.text.join(' ')).toContain(`${Math.round(step.seconds)} seconds`);
   });
 
-  test('calls the experimenter where the game cannot be loaded', () => {
-    const one = participant(consent, demographics, measured);
-    const failed = one.screen({ prepared: { state: 'failed', reason: 'The range could not be opened.' } });
-    expect(failed).toMatchObject({ id: 'trial-failed', text: ['The range could not be opened.'], trouble: true });
-    failed?.buttons[0]?.act();
-    expect(one.done).toEqual(['prepare again']);
-  });
-
   test('never learns the condition, only the number of the round', () => {
     const one = beforeTheQuestions();
     const seen = JSON.stringify(one.screen());
@@ -153,10 +113,6 @@ describe('a participant before a round', () => {
 describe('a participant who plays', () => {
   const playing = () => participant(consent, demographics, measured, { type: 'start' });
 
-  test('sees the game and no sheet', () => {
-    expect(playing().screen({ playing: true })).toBeNull();
-  });
-
   test('is told for whom the game waits, and when it stands for another', () => {
     const one = playing();
     expect(one.screen({ playing: true, waitingFor: ['P02', 'P03'] })).toMatchObject({
@@ -166,54 +122,9 @@ describe('a participant who plays', () => {
     expect(one.screen({ playing: true, waitingFor: ['P02'] })?.text[0]).toContain('P02 is ready');
     expect(one.screen({ playing: true, standing: true })?.id).toBe('standing');
   });
-
-  test('who takes the headset off is asked to put it on', () => {
-    expect(playing().screen({ playing: true, inSession: false })?.id).toBe('trial-enter');
-  });
-});
-
-describe('a participant with a pause', () => {
-  test('sees that and nothing else until it is over', () => {
-    const one = participant(consent, demographics);
-    one
-      .screen()
-      ?.buttons.find(({ id }) => id === 'pause')
-      ?.act();
-    const paused = one.screen({ calibration: { kind: 'failed', fault: 'gaze', text: '' } });
-    expect(paused?.id).toBe('paused');
-    paused?.buttons.find(({ id }) => id === 'resume')?.act();
-    expect(one.screen()?.id).toBe('calibration');
-  });
 });
 
 describe('a participant with a questionnaire', () => {
-  test('goes from question to question, hands in at the last, and is told what is missing', () => {
-    const one = beforeTheQuestions();
-    const { step } = one.session;
-    if (step.kind !== 'questionnaire') throw new Error(`expected a questionnaire, not ${step.kind}`);
-    const { questions } = step.questionnaire;
-    const first = one.screen();
-    expect(first?.id).toBe(`question-${questions[0]?.id}`);
-    expect(first?.hint).toBe(`* ${questions.length} of ${questions.length} still need an answer.`);
-    expect(first?.buttons.map(({ id, look }) => [id, look])).toEqual([
-      ['back', 'off'],
-      ['pause', 'plain'],
-      ['next', 'primary'],
-    ]);
-    first?.buttons[2]?.act();
-    expect(one.done).toEqual(['question 1']);
-    chooseOn(first, 4);
-    expect(one.screen()?.question?.field).toMatchObject({ kind: 'likert', answer: 4 });
-    const last = one.screen({ question: questions.length - 1, triedToSubmit: true });
-    expect(last?.hint).toBe('* This question still needs an answer.');
-    expect(last?.question?.all.map(({ state }) => state)).toEqual([
-      'answered',
-      ...questions.slice(1).map(() => 'missing'),
-    ]);
-    last?.buttons[2]?.act();
-    expect(one.done).toEqual(['question 1', 'submit']);
-  });
-
   test('sees how much time is left, and is not hurried when it is over', () => {
     const one = beforeTheQuestions();
     expect(one.screen()?.footnote).toMatch(/^7:00 left/);

@@ -3,11 +3,15 @@ import { createRouter, noPage } from 'threepoint-http/router';
 import { serve, type WebServer } from 'threepoint-http/web-server';
 import { createExperimenterClient } from 'threepoint-study/client/study-client';
 import type { StudyPlan } from 'threepoint-study/model/plan/plan';
+import type { StudyRecord } from 'threepoint-study/model/records/study-record';
 import { openStudyStore } from 'threepoint-study/server/storage/store';
 import { onTestFinished } from 'vitest';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan } from '../model/studies';
 import { studiesInThisThread } from '../server/running-studies';
+
+/** The contents of records by kind. */
+type Bodies = { readonly [One in StudyRecord as One['kind']]: One['body'] };
 
 const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 
@@ -41,6 +45,11 @@ export async function studyServer(changes: Partial<StudyPlan> = {}) {
     /** What the link of P01 says. */
     invitation: store.overview(plan.id, 1e9)[0]?.invitation as string,
     stop,
+    /** Returns the contents of the stored records of a kind. */
+    bodies: <Kind extends keyof Bodies>(kind: Kind): readonly Bodies[Kind][] =>
+      store.records.all(plan.id).flatMap((record) => (record.kind === kind ? [record.body as Bodies[Kind]] : [])),
+    /** Returns the types of the stored events. */
+    events: () => store.records.all(plan.id).flatMap((record) => (record.kind === 'event' ? [record.body.type] : [])),
     async restart() {
       server = await listen(port);
     },

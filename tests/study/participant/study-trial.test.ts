@@ -2,7 +2,7 @@ import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { parseRecording } from 'threepoint/core/tracking/recording';
 import { mostMotionBytes } from 'threepoint-study/model/progress/study-api';
 import { recordingTime } from 'threepoint-study/model/records/trial-clock';
-import { playTrial } from 'threepoint-study/participant/study-trial';
+import { PlayedTrial } from 'threepoint-study/participant/trial/study-trial';
 import { describe, expect, test } from 'vitest';
 import { epoch, frameSeconds, playedRound } from './played-round';
 import { OneShotGame } from './study-browser';
@@ -58,7 +58,7 @@ test('of a round that is longer than the server takes at once, the first frames 
     listenToFrames: () => undefined,
   };
   const options = { key: 'archery/1/trial-1@1.1', motion: true, seed: 3, now: () => epoch };
-  const trial = playTrial(step as Parameters<typeof playTrial>[0], game, host, options);
+  const trial = new PlayedTrial(step as ConstructorParameters<typeof PlayedTrial>[0], game, host, options);
   // A headset's numbers have single precision and are written in double.
   const a = Math.fround(-0.123_456_7);
   const pose = { position: { x: a, y: a, z: a }, orientation: { x: a, y: a, z: a, w: Math.sqrt(1 - 3 * a * a) } };

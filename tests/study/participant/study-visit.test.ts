@@ -1,15 +1,19 @@
 import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
-import { openStudyVault } from 'threepoint-study/participant/study-vault';
+import { openStudyVault } from 'threepoint-study/participant/session/study-vault';
 import { describe, expect, test } from 'vitest';
 import { aWomanOf26 } from '../model/studies';
-import { agree, beforeTheQuestions, beforeTheRound, canStart, measure, play } from './participant-steps';
-import { browser, ofAnother, type Tab } from './study-browser';
-import { type StudyServer, studyServer } from './study-server';
-
-const eventsOf = ({ store }: StudyServer) =>
-  store.records.all('paper').flatMap((record) => (record.kind === 'event' ? [record.body.type] : []));
-const trialsOf = ({ store }: StudyServer) =>
-  store.records.all('paper').flatMap((record) => (record.kind === 'trial' ? [record.body] : []));
+import {
+  agree,
+  beforeTheQuestions,
+  beforeTheRound,
+  canStart,
+  choose,
+  handIn,
+  measure,
+  play,
+} from './participant-steps';
+import { browser, ofAnother } from './study-browser';
+import { studyServer } from './study-server';
 
 describe('the entrance', () => {
   test('an address without a participant asks who takes part, and leads to the place that is told', async () => {
@@ -128,7 +132,7 @@ describe('a round', () => {
     const { tab } = await beforeTheRound(server, true);
     play(tab, 40);
     await tab.exchange();
-    const [practice, round] = trialsOf(server);
+    const [practice, round] = server.bodies('trial');
     expect(practice?.condition).toBeNull();
     expect(round).toMatchObject({
       condition: tab.host.estimator(),
@@ -139,40 +143,29 @@ describe('a round', () => {
     expect(tab.visit.state()).toMatchObject({ unsent: 0, unsaved: 0, online: true });
   });
 
-  test('under way is void when the headset comes off in the middle of it, and is played again', async () => {
+  test.each([
+    ['the headset comes off', 'playing'],
+    ['its game breaks off', 'playing'],
+    ['its game breaks off', 'paused'],
+  ] as const)('is void and is played again when %s while it is %s', async (what, state) => {
     const server = await studyServer();
     const { tab } = await beforeTheRound(server);
     const { archery } = tab.host.games;
     tab.display.press('start');
     tab.draw(1);
     expect(tab.visit.state()).toMatchObject({ screen: 'playing', running: true });
-    tab.wear(false);
-    expect(archery.running).toBe(false);
-    expect(tab.visit.idle).toBe(true);
-    expect(tab.display.shown).toBe('trial-enter');
-    tab.wear(true);
-    expect(tab.display.shown).toBe('trial-ready');
-    expect(tab.display.inHeadset?.text[0]).toBe('The last attempt was interrupted and does not count.');
-    await canStart(tab);
-    play(tab, 20);
-    await tab.exchange();
-    expect(eventsOf(server)).toEqual(['interrupted']);
-    expect(trialsOf(server).map(({ place, outcome }) => [place.attempt, outcome.score])).toEqual([
-      [1, 10],
-      [2, 20],
-    ]);
-  });
-
-  test.each([false, true])('whose game breaks off is void and is played again; in a pause: %s', async (paused) => {
-    const server = await studyServer();
-    const { tab } = await beforeTheRound(server);
-    const { archery } = tab.host.games;
-    tab.display.press('start');
-    tab.draw(1);
+    const paused = state === 'paused';
     if (paused) await server.experimenter.command('paper', 'P01', { type: 'pause' });
     await tab.exchange();
-    archery.breakOff();
-    tab.draw(1);
+    if (what === 'the headset comes off') {
+      tab.wear(false);
+      expect(tab.visit.idle).toBe(true);
+      expect(tab.display.shown).toBe('trial-enter');
+      tab.wear(true);
+    } else {
+      archery.breakOff();
+      tab.draw(1);
+    }
     expect(archery.running).toBe(false);
     if (paused) tab.display.press('resume');
     expect(tab.display.shown).toBe('trial-ready');
@@ -180,8 +173,8 @@ describe('a round', () => {
     await canStart(tab);
     play(tab, 20);
     await tab.exchange();
-    expect(eventsOf(server)).toEqual(paused ? ['pause', 'interrupted', 'resume'] : ['interrupted']);
-    expect(trialsOf(server).map(({ place, outcome }) => [place.attempt, outcome.score])).toEqual([
+    expect(server.events()).toEqual(paused ? ['pause', 'interrupted', 'resume'] : ['interrupted']);
+    expect(server.bodies('trial').map(({ place, outcome }) => [place.attempt, outcome.score])).toEqual([
       [1, 10],
       [2, 20],
     ]);
@@ -207,8 +200,8 @@ describe('a round', () => {
     archery.hit(30);
     tab.draw(3);
     await tab.exchange();
-    expect(trialsOf(server).map(({ place }) => place.attempt)).toEqual([1, 1]);
-    expect(eventsOf(server)).toEqual(['pause', 'resume']);
+    expect(server.bodies('trial').map(({ place }) => place.attempt)).toEqual([1, 1]);
+    expect(server.events()).toEqual(['pause', 'resume']);
   });
 
   test('of a block that the experimenter voids is loaded again for the block’s next run', async () => {
@@ -230,7 +223,7 @@ describe('a round', () => {
     await canStart(tab);
     play(tab, 30);
     await tab.exchange();
-    const rounds = trialsOf(server).filter(({ condition }) => condition !== null);
+    const rounds = server.bodies('trial').filter(({ condition }) => condition !== null);
     expect(rounds.map(({ place, outcome }) => [place.run, outcome.score])).toEqual([[2, 30]]);
   });
 
@@ -248,8 +241,7 @@ describe('a round', () => {
 
   test('lies alike in both conditions, and the practice does not', async () => {
     const { tab } = await beforeTheQuestions(await studyServer());
-    answer(tab, ['Q1', 'Q2', 'Q3', 'Q4', 'Q5', 'Q6', 'Q7']);
-    tab.display.press('submit');
+    handIn(tab, 4);
     expect(tab.display.shown).toBe('calibration');
     await measure(tab);
     play(tab, 40);
@@ -280,31 +272,14 @@ describe('a round', () => {
 
   test('is not played with another body than the plan’s', async () => {
     const { tab } = await beforeTheQuestions(await studyServer());
-    answer(tab, ['Q1', 'Q2', 'Q3', 'Q4', 'Q5', 'Q6', 'Q7']);
     for (const estimator of estimatorNames) tab.host.missing.add(estimator);
-    tab.display.press('submit');
+    handIn(tab, 4);
     tab.display.press('calibrate');
     tab.draw(6);
     await tab.display.reaches('trial-failed');
     expect(tab.display.screen?.text).toEqual(['The body of this round could not be loaded.']);
   });
 });
-
-/** Gives the question shown an answer of its scale. */
-function choose(tab: Tab, value: number): void {
-  const field = tab.display.screen?.question?.field;
-  if (field?.kind !== 'likert') throw new Error(`expected a Likert scale, not ${field?.kind}`);
-  field.choose(value);
-}
-
-/** Gives every one of these questions the answer 4, each after the next. */
-function answer(tab: Tab, questions: readonly string[]): void {
-  for (const [index, id] of questions.entries()) {
-    expect(tab.display.shown).toBe(`question-${id}`);
-    choose(tab, 4);
-    if (index < questions.length - 1) tab.display.press('next');
-  }
-}
 
 describe('a questionnaire', () => {
   test('goes on after a reload where the first answer is missing, in the body of its round', async () => {

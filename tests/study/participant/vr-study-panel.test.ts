@@ -1,6 +1,6 @@
 import { Phrases } from 'threepoint-study/model/phrases/phrases';
-import type { StudyScreen } from 'threepoint-study/participant/study-screen';
-import { createVrStudyPanel } from 'threepoint-study/participant/vr-study-panel';
+import type { StudyScreen } from 'threepoint-study/participant/screens/study-screen';
+import { VrStudyPanel } from 'threepoint-study/participant/sheet/vr-study-panel';
 import { expect, test } from 'vitest';
 import { drawNowhere } from '../../page/shell/drawing-in-node';
 
@@ -17,7 +17,7 @@ const eyesAt = (y: number, x = 0) => ({ position: { x, y, z: 0 }, forward: ahead
 
 /** A sheet before a person whose eyes are at this height [m]. */
 function sheetBefore(eyes: number) {
-  const sheet = createVrStudyPanel();
+  const sheet = new VrStudyPanel();
   sheet.show(screen);
   sheet.follow(eyesAt(eyes));
   return sheet;

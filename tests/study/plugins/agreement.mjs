@@ -4,15 +4,15 @@ export default ({ v, words, inLanguage, button }) => ({
     {
       kind: 'agreement',
       schema: v.strictObject({ kind: v.literal('agreement'), yes: words(40), no: words(40) }),
-      answer: () => v.picklist(['yes', 'no'], 'expected yes or no'),
-      range: () => null,
-      options: () => ['yes', 'no'],
+      answer: () => v.picklist([0, 1], 'expected 1 or 0'),
+      range: () => [0, 1],
+      options: () => null,
       texts: ({ yes, no }) => [
         ['yes', yes],
         ['no', no],
       ],
-      columns: ({ yes, no }, inWords) => ({ answers: `yes: ${inWords(yes)}; no: ${inWords(no)}` }),
-      simulate: (_, part) => (part < 0.5 ? 'no' : 'yes'),
+      columns: ({ yes, no }, inWords) => ({ answers: `1: ${inWords(yes)}; 0: ${inWords(no)}` }),
+      simulate: (_, part) => Math.round(part),
     },
   ],
   questionViews: [
@@ -21,8 +21,8 @@ export default ({ v, words, inLanguage, button }) => ({
       field: ({ yes, no }, { phrases: { language }, given, choose }) => ({
         kind: 'agreement',
         options: [
-          ['yes', inLanguage(yes, language)],
-          ['no', inLanguage(no, language)],
+          [1, inLanguage(yes, language)],
+          [0, inLanguage(no, language)],
         ],
         answer: given,
         choose,

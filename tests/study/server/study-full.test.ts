@@ -80,7 +80,7 @@ describe('storage that is full', () => {
         process.execPath,
         '--import',
         'tsx',
-        'tests/study/server/study-writer.ts',
+        'tests/study/server/faults/study-writer.ts',
         file,
         '1',
       ],

@@ -66,6 +66,22 @@ describe('two groups', () => {
     expectAsInR(slept.p, 0.0693275754336266);
   });
 
+  test('of unequal size and with ties: ChickWeight after 20 days, diet 2 − diet 1', () => {
+    const after20 = chicks.map((members) => members.map((weights) => weights[2] as number));
+    const [first = [], second = []] = after20;
+    const { t, df, p, interval, ds, dsInterval } = welchTest(second, first);
+    expectAsInR(t, 1.35508831546105);
+    expectAsInR(df, 15.6215784565446);
+    expectAsInR(p, 0.194661758986376);
+    expectAsInR(interval?.low, -19.9689507726847);
+    expectAsInR(ds, 0.575117002922592);
+    expectAsInR(dsInterval?.high, 1.36665233343678);
+    const ranks = rankSumTest(second, first);
+    expect(ranks.w).toBe(112.5);
+    expectAsInR(ranks.p, 0.175075494769451);
+    expectAsInR(ranks.effectInterval?.low, -0.123031835807507);
+  });
+
   test('the ways to choose ranks are as many as there are', () => {
     const binomial = (n: number, k: number): number => (k === 0 ? 1 : (binomial(n - 1, k - 1) * n) / k);
     for (const [m, n] of [

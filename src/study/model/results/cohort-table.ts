@@ -1,6 +1,7 @@
 import { type Column, number, type Table, text } from '../tables/tidy-csv';
 import type { CohortComparison, ComparedCohorts } from './compare-cohorts';
 import {
+  biserialCells,
   biserialColumns,
   familyText,
   meanCells,
@@ -10,6 +11,7 @@ import {
   noncentralColumns,
   share,
   type TableFacts,
+  testCells,
 } from './result-tables';
 
 const ids = 'small letters, digits, hyphens';
@@ -57,23 +59,13 @@ const cells = ({ first, second, test, rankSum, holmP, ranksHolmP }: CohortCompar
   n_second: second?.n ?? 0,
   ...meanCells('first', first),
   ...meanCells('second', second),
-  difference: test?.meanDifference ?? null,
-  low_difference: test?.interval?.low ?? null,
-  high_difference: test?.interval?.high ?? null,
-  t: test?.t ?? null,
-  df: test?.df ?? null,
-  p: test?.p ?? null,
+  ...testCells(test, 'ds', test?.ds, test?.dsInterval),
   p_holm: holmP,
-  ds: test?.ds ?? null,
-  low_ds: test?.dsInterval?.low ?? null,
-  high_ds: test?.dsInterval?.high ?? null,
   w: rankSum?.w ?? null,
   p_rank_sum: rankSum?.p ?? null,
   p_rank_sum_holm: ranksHolmP,
   method_rank_sum: rankSum?.method ?? '',
-  rank_biserial: rankSum?.effect ?? null,
-  low_rank_biserial: rankSum?.effectInterval?.low ?? null,
-  high_rank_biserial: rankSum?.effectInterval?.high ?? null,
+  ...biserialCells(rankSum),
 });
 
 /** Comparisons that belong together. */

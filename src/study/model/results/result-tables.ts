@@ -1,5 +1,7 @@
 import type { Effect, VarianceAnalysis } from '../../statistics/analysis-of-variance';
-import type { MeanSummary } from '../../statistics/summaries';
+import type { WelchTest } from '../../statistics/between-tests';
+import type { SignedRankTest } from '../../statistics/paired-tests';
+import type { Interval, MeanSummary } from '../../statistics/summaries';
 import { boolean, type Column, number, type Table, text } from '../tables/tidy-csv';
 import type { OverallComparison } from './compare-all';
 import type { Comparison } from './compare-conditions';
@@ -64,8 +66,35 @@ export const meanColumns = (side: 'first' | 'second', what: string, source: (fig
 /** Returns the cells of one side. */
 export const meanCells = (side: 'first' | 'second', summary: MeanSummary | null) => ({
   [`mean_${side}`]: summary?.mean ?? null,
-  [`low_${side}`]: summary?.interval?.low ?? null,
-  [`high_${side}`]: summary?.interval?.high ?? null,
+  ...endCells(side, summary?.interval),
+});
+
+/** Returns the cells of the ends of an interval. */
+const endCells = (name: string, ends: Interval | null | undefined) => ({
+  [`low_${name}`]: ends?.low ?? null,
+  [`high_${name}`]: ends?.high ?? null,
+});
+
+/** Returns the cells of a t-test and its effect size, which is named `ds` or `dz`. */
+export const testCells = (
+  test: Pick<WelchTest, 'meanDifference' | 'interval' | 't' | 'df' | 'p'> | null | undefined,
+  effect: 'ds' | 'dz',
+  size: number | null | undefined,
+  ends: Interval | null | undefined,
+) => ({
+  difference: test?.meanDifference ?? null,
+  ...endCells('difference', test?.interval),
+  t: test?.t ?? null,
+  df: test?.df ?? null,
+  p: test?.p ?? null,
+  [effect]: size ?? null,
+  ...endCells(effect, ends),
+});
+
+/** Returns the cells of a rank-biserial correlation. */
+export const biserialCells = (ranks: Pick<SignedRankTest, 'effect' | 'effectInterval'> | null | undefined) => ({
+  rank_biserial: ranks?.effect ?? null,
+  ...endCells('rank_biserial', ranks?.effectInterval),
 });
 
 /** Returns the columns of the ends of an effect's interval. */
@@ -133,23 +162,13 @@ const comparisonCells = (one: Comparison) => ({
   n: one.pairs.length,
   ...meanCells('first', one.first),
   ...meanCells('second', one.second),
-  difference: one.test?.meanDifference ?? null,
-  low_difference: one.test?.interval?.low ?? null,
-  high_difference: one.test?.interval?.high ?? null,
-  t: one.test?.t ?? null,
-  df: one.test?.df ?? null,
-  p: one.test?.p ?? null,
+  ...testCells(one.test, 'dz', one.test?.dz, one.test?.dzInterval),
   p_holm: one.holmP,
-  dz: one.test?.dz ?? null,
-  low_dz: one.test?.dzInterval?.low ?? null,
-  high_dz: one.test?.dzInterval?.high ?? null,
   v: one.signedRank?.v ?? null,
   p_wilcoxon: one.signedRank?.p ?? null,
   p_wilcoxon_holm: one.ranksHolmP,
   method_wilcoxon: one.signedRank?.method ?? '',
-  rank_biserial: one.signedRank?.effect ?? null,
-  low_rank_biserial: one.signedRank?.effectInterval?.low ?? null,
-  high_rank_biserial: one.signedRank?.effectInterval?.high ?? null,
+  ...biserialCells(one.signedRank),
 });
 
 /** Returns comparisons of conditions as a tidy table in full precision. */
@@ -205,8 +224,7 @@ const effectCells = (effect: Effect) => ({
   epsilon: effect.epsilon,
   p_corrected: effect.correctedP,
   partial_eta_squared: effect.partialEtaSquared,
-  low_eta: effect.interval?.low ?? null,
-  high_eta: effect.interval?.high ?? null,
+  ...endCells('eta', effect.interval),
 });
 
 /** Returns the analysed effects by name. */
@@ -219,23 +237,15 @@ export const effectsOf = (variance: VarianceAnalysis | null): readonly (readonly
     ] as const
   ).flatMap(([name, effect]) => (effect ? [[name, effect] as const] : []));
 
-/** Returns the cells of the whole measure, which are in the row of its first effect. */
-const wholeCells = ({ holmP, ranksHolmP, ranks: byRanks }: OverallComparison) => ({
-  p_holm: holmP,
-  chi_squared: byRanks?.chiSquared ?? null,
-  df_ranks: byRanks?.df ?? null,
-  p_ranks: byRanks?.p ?? null,
-  effect_ranks: byRanks?.effect ?? null,
-  p_ranks_holm: ranksHolmP,
+/** Returns the cells of a whole measure, which are in the row of its first effect; null: another row. */
+const wholeCells = (one: OverallComparison | null) => ({
+  p_holm: one?.holmP ?? null,
+  chi_squared: one?.ranks?.chiSquared ?? null,
+  df_ranks: one?.ranks?.df ?? null,
+  p_ranks: one?.ranks?.p ?? null,
+  effect_ranks: one?.ranks?.effect ?? null,
+  p_ranks_holm: one?.ranksHolmP ?? null,
 });
-const noWhole = {
-  p_holm: null,
-  chi_squared: null,
-  df_ranks: null,
-  p_ranks: null,
-  effect_ranks: null,
-  p_ranks_holm: null,
-};
 
 /** Returns the analyses of all conditions and cohorts as a tidy table with a row for each effect. */
 export const overallTable = (name: string, comparisons: readonly OverallComparison[], facts: TableFacts): Table => ({
@@ -247,7 +257,7 @@ export const overallTable = (name: string, comparisons: readonly OverallComparis
       effect,
       n: one.n,
       ...effectCells(found),
-      ...(index === 0 ? wholeCells(one) : noWhole),
+      ...wholeCells(index === 0 ? one : null),
     })),
   ),
 });

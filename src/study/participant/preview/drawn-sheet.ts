@@ -1,7 +1,7 @@
 import { element } from 'threepoint-ui/element';
-import { height, type Target, width } from '../sheet-target';
-import type { StudyScreen } from '../study-screen';
-import { paintSheet, targetsOf } from '../study-sheet';
+import type { StudyScreen } from '../screens/study-screen';
+import { height, type Target, width } from '../sheet/sheet-target';
+import { paintSheet, targetsOf } from '../sheet/study-sheet';
 
 /** The sheet of the headset on a flat page, drawn by the same code and pressed with the mouse. */
 export interface DrawnSheet {

@@ -6,7 +6,7 @@ import { withdrawalLink } from '../../client/study-link';
 import { languagesOf, participantsOf, type StudyPlan, studyTitle } from '../../model/plan/plan';
 import { durationOf } from '../../model/plan/plan-outline';
 import { remarksOn } from '../../model/plan/plan-remarks';
-import { createStudyCard } from '../study-card';
+import { createStudyCard } from '../forms/study-card';
 import { createDrawnSheet } from './drawn-sheet';
 import { planFrom, type ReadPlan, readPlan } from './plan-source';
 import { PreviewWalk } from './preview-walk';

@@ -6,12 +6,12 @@ import { type Schedule, type StudyStep, scheduleFor } from '../../model/plan/sch
 import { advance, type ProgressEvent } from '../../model/progress/advance';
 import { begin, currentStep, type Progress } from '../../model/progress/progress';
 import { Answering } from '../answering';
-import type { UploadStatus } from '../participant-session';
+import type { StudyForm } from '../forms/study-form';
 import { refusalFor } from '../reasons';
-import type { StudyForm } from '../study-form';
-import type { StudyScreen } from '../study-screen';
-import { screenOf } from '../study-screens';
-import type { ScreenActions, ShownSession, StudySituation } from '../study-situation';
+import type { StudyScreen } from '../screens/study-screen';
+import { screenOf } from '../screens/study-screens';
+import type { ScreenActions, ShownSession, StudySituation } from '../screens/study-situation';
+import type { UploadStatus } from '../session/participant-session';
 import { type PreviewStop, previewStops } from './preview-stops';
 
 /** The content of a stop: a screen, a form of the desk, or a sentence about a round. */

@@ -1,5 +1,5 @@
 import { button, element } from 'threepoint-ui/element';
-import type { ScreenQuestion } from '../study-screen';
+import type { ScreenQuestion } from '../screens/study-screen';
 import { questionView } from './question-views';
 
 const phraseOfState = {

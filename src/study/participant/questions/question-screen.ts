@@ -1,8 +1,8 @@
 import { inLanguage } from '../../model/phrases/words';
 import type { Question } from '../../model/questionnaires/questionnaire-schema';
 import { typedAnswer, unanswered } from '../../model/questionnaires/questionnaires';
-import type { ScreenQuestion } from '../study-screen';
-import type { ScreenActions, StudySituation } from '../study-situation';
+import type { ScreenQuestion } from '../screens/study-screen';
+import type { ScreenActions, StudySituation } from '../screens/study-situation';
 import { questionView } from './question-views';
 
 type Asking = Pick<StudySituation, 'session' | 'typed' | 'triedToSubmit' | 'refusal'>;

@@ -1,6 +1,6 @@
 import { vrColors, vrFont, wrap } from 'threepoint-ui/vr-panel';
-import { inner, margin, type Target, width } from '../sheet-target';
-import type { ScreenQuestion } from '../study-screen';
+import type { ScreenQuestion } from '../screens/study-screen';
+import { inner, margin, type Target, width } from '../sheet/sheet-target';
 import { questionView } from './question-views';
 
 /** The most questions for which each has a dot; otherwise their number is in the corner. */

@@ -7,9 +7,9 @@ import { createWithdrawalClient, ServerRefusal, ServerUnreachable } from '../../
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../../model/phrases/phrases';
 import { inLanguage } from '../../model/phrases/words';
 import type { PublicStudy, Receipt } from '../../model/progress/study-api';
-import { languageChoice } from '../language-choice';
+import { languageChoice } from '../forms/language-choice';
 import { reasonFor } from '../reasons';
-import { openStudyVault } from '../study-vault';
+import { openStudyVault } from '../session/study-vault';
 
 const client = createWithdrawalClient(pageFolder());
 

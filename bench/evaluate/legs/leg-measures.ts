@@ -1,0 +1,189 @@
+import type { LegPose, LegPosture, LegProportions } from 'threepoint/avatar/legs/leg-posture';
+import type { GaitPoints } from 'threepoint/core/estimation/gait-features';
+import { rotate } from 'threepoint/core/math/quat';
+import type { Side } from 'threepoint/core/math/side';
+import { add, copyVec3, distance, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { rounded } from '../measures';
+import type { Contact, TrueLeg, TrueLegs } from './leg-truth';
+
+const sides = ['left', 'right'] as const;
+
+/** The ball of the mannequin's foot: ahead of the ankle and over the floor, in heights of its ankle. */
+const ballAhead = 1.58;
+const ballHeight = 0.32;
+/** A drawn foot stands where its sole is no higher than this [m]. */
+const onFloor = 0.01;
+
+/** Sums over feet and frames of some clips. */
+export interface LegMeasures {
+  feet: number;
+  pelvis: number;
+  knee: number;
+  ankle: number;
+  /**
+   * Frames of feet that truly stand, the drawn and the true foot's speed [m/s] and the height of the drawn sole [m] in
+   * them.
+   */
+  standing: number;
+  skate: number;
+  trueSkate: number;
+  float: number;
+  /** Frames of drawn feet that stand, and their speed [m/s]. */
+  drawnStanding: number;
+  slide: number;
+  sink: number;
+  /** Frames in which drawn and true foot agree on whether they stand. */
+  agreed: number;
+}
+
+export const emptyLegMeasures = (): LegMeasures => ({
+  feet: 0,
+  pelvis: 0,
+  knee: 0,
+  ankle: 0,
+  standing: 0,
+  skate: 0,
+  trueSkate: 0,
+  float: 0,
+  drawnStanding: 0,
+  slide: 0,
+  sink: 0,
+  agreed: 0,
+});
+
+/** What is drawn of one leg, floor frame [m]. */
+interface Drawn {
+  readonly knee: MutableVec3;
+  readonly ankle: MutableVec3;
+  readonly ball: MutableVec3;
+}
+
+const makeDrawn = (): Drawn => ({ knee: vec3(0, 0, 0), ankle: vec3(0, 0, 0), ball: vec3(0, 0, 0) });
+
+function drawnOf({ knee, ankle, foot }: LegPose, { ankleHeight }: LegProportions, target: Drawn): void {
+  copyVec3(knee, target.knee);
+  copyVec3(ankle, target.ankle);
+  rotate(foot, vec3(0, (ballHeight - 1) * ankleHeight, -ballAhead * ankleHeight), target.ball);
+  add(ankle, target.ball, target.ball);
+}
+
+const across = (a: Vec3, b: Vec3): number => Math.hypot(a.x - b.x, a.z - b.z);
+
+/** A foot that rolls over heel or toes does not skate: the slower of ankle and ball, along the floor. */
+const skateOf = (now: { ankle: Vec3; ball: Vec3 }, before: { ankle: Vec3; ball: Vec3 }, rateHz: number): number =>
+  Math.min(across(now.ankle, before.ankle), across(now.ball, before.ball)) * rateHz;
+
+export interface LegClip {
+  readonly truth: readonly TrueLegs[];
+  readonly contacts: readonly Contact[];
+  /** The drawn body above the legs, in order at `rateHz`. */
+  readonly body: readonly GaitPoints[];
+  readonly rateHz: number;
+}
+
+/** Lets legs stand and step under the hips of one clip and adds how they fit the truth. */
+export function addLegs(
+  measures: LegMeasures,
+  { truth, contacts, body, rateHz }: LegClip,
+  posture: LegPosture,
+  proportions: LegProportions,
+): void {
+  const now: Record<Side, Drawn> = { left: makeDrawn(), right: makeDrawn() };
+  const before: Record<Side, Drawn> = { left: makeDrawn(), right: makeDrawn() };
+  truth.forEach((frame, row) => {
+    const points = body[row]!;
+    posture.update(points, row === 0 ? 0 : 1 / rateHz);
+    const last = truth[row - 1];
+    for (const side of sides) {
+      copyVec3(now[side].ankle, before[side].ankle);
+      copyVec3(now[side].ball, before[side].ball);
+      drawnOf(posture.legs[side], proportions, now[side]);
+      if (!last) continue;
+      measures.pelvis += distance(points.hips.position, frame.hips.position);
+      addFoot(measures, {
+        drawn: now[side],
+        drawnBefore: before[side],
+        truth: frame[side],
+        truthBefore: last[side],
+        stands: contacts[row]![side],
+        ankleHeight: proportions.ankleHeight,
+        rateHz,
+      });
+    }
+  });
+}
+
+/** A leg in one frame as drawn and as it was, each with the frame before. */
+interface FootFrame {
+  readonly drawn: Drawn;
+  readonly drawnBefore: Drawn;
+  readonly truth: TrueLeg;
+  readonly truthBefore: TrueLeg;
+  readonly stands: boolean;
+  readonly ankleHeight: number;
+  readonly rateHz: number;
+}
+
+function addFoot(measures: LegMeasures, foot: FootFrame): void {
+  const { drawn, truth, stands, ankleHeight, rateHz } = foot;
+  measures.feet += 1;
+  measures.knee += distance(drawn.knee, truth.knee);
+  measures.ankle += distance(drawn.ankle, truth.ankle);
+  const sole = Math.min(drawn.ankle.y - ankleHeight, drawn.ball.y - ballHeight * ankleHeight);
+  const skate = skateOf(drawn, foot.drawnBefore, rateHz);
+  measures.sink += Math.max(0, -sole);
+  if (stands) {
+    measures.standing += 1;
+    measures.skate += skate;
+    measures.trueSkate += skateOf(truth, foot.truthBefore, rateHz);
+    measures.float += Math.max(0, sole);
+  }
+  const drawnStands = sole < onFloor;
+  if (drawnStands) {
+    measures.drawnStanding += 1;
+    measures.slide += skate;
+  }
+  if (drawnStands === stands) measures.agreed += 1;
+}
+
+export interface LegReport {
+  readonly pelvisCm: number;
+  readonly kneeCm: number;
+  readonly footCm: number;
+  /** The speed of drawn and true feet while the true foot stands, and of drawn feet while they stand [cm/s]. */
+  readonly skateCmS: number;
+  readonly trueSkateCmS: number;
+  readonly slideCmS: number;
+  /** The height of the drawn sole while the true foot stands, and its depth below the floor at any time [cm]. */
+  readonly floatCm: number;
+  readonly sinkCm: number;
+  /** Feet that truly stand, and feet of which drawn and truth agree on that [share]. */
+  readonly standing: number;
+  readonly agreed: number;
+}
+
+export function legReport(m: LegMeasures): LegReport {
+  const cm = (sum: number, count: number): number => rounded((sum / Math.max(1, count)) * 100, 2);
+  return {
+    pelvisCm: cm(m.pelvis, m.feet),
+    kneeCm: cm(m.knee, m.feet),
+    footCm: cm(m.ankle, m.feet),
+    skateCmS: cm(m.skate, m.standing),
+    trueSkateCmS: cm(m.trueSkate, m.standing),
+    slideCmS: cm(m.slide, m.drawnStanding),
+    floatCm: cm(m.float, m.standing),
+    sinkCm: cm(m.sink, m.feet),
+    standing: rounded(m.standing / Math.max(1, m.feet), 3),
+    agreed: rounded(m.agreed / Math.max(1, m.feet), 3),
+  };
+}
+
+/** All people alike: the mean over people of each figure. */
+export function meanReport(reports: readonly LegReport[]): LegReport {
+  const mean = (key: keyof LegReport): number =>
+    rounded(reports.reduce((sum, report) => sum + report[key], 0) / reports.length, 3);
+  return Object.fromEntries((Object.keys(reports[0]!) as (keyof LegReport)[]).map((key) => [key, mean(key)])) as Record<
+    keyof LegReport,
+    number
+  >;
+}

@@ -1,0 +1,96 @@
+import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { parseArgs } from 'node:util';
+import { LegPosture } from 'threepoint/avatar/legs/leg-posture';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import { Gait, type GaitNetwork, shippedGait } from 'threepoint/core/estimation/gait';
+import { mannequinLegs } from '../leg-proportions';
+import { loadRegressors } from '../networks';
+import { readIndex } from '../recordings';
+import { bodyOf, driveLegs, type LegDriver, legDrivers } from './leg-drivers';
+import { addLegs, emptyLegMeasures, type LegMeasures, type LegReport, legReport, meanReport } from './leg-measures';
+
+type ByDriver<T> = Record<LegDriver, T>;
+const byDriver = <T>(of: (driver: LegDriver) => T): ByDriver<T> =>
+  Object.fromEntries(legDrivers.map((driver) => [driver, of(driver)])) as ByDriver<T>;
+
+function print(title: string, reports: readonly (readonly [string, LegReport])[]): void {
+  console.log(`\n${title}`);
+  const keys = Object.keys(reports[0]?.[1] ?? {}) as (keyof LegReport)[];
+  console.log(`  ${''.padEnd(12)}${keys.map((key) => key.padStart(13)).join('')}`);
+  for (const [name, report] of reports) {
+    console.log(`  ${name.padEnd(12)}${keys.map((key) => report[key].toFixed(2).padStart(13)).join('')}`);
+  }
+}
+
+/**
+ * The network of each person: the page's where it has not seen them; else one of the folder that has not, where there
+ * is one.
+ */
+function gaitsOf(folder: string | undefined): (person: string) => GaitNetwork {
+  const held = folder
+    ? readdirSync(folder)
+        .filter((name) => name.endsWith('.json'))
+        .sort()
+    : [];
+  const networks = held.map((name) => JSON.parse(readFileSync(join(folder!, name), 'utf8')) as GaitNetwork);
+  return (person) => [shippedGait, ...networks].find(({ trainedOn }) => !trainedOn.includes(person)) ?? shippedGait;
+}
+
+interface PersonLegs extends ByDriver<LegReport> {
+  /** Whether the body's network, and the gait network, were trained on this person. */
+  readonly seen: boolean;
+  readonly gaitSeen: boolean;
+  readonly minutes: number;
+}
+
+async function main(): Promise<void> {
+  const text = { type: 'string' } as const;
+  const { values } = parseArgs({ options: { recordings: text, models: text, json: text, gaits: text } });
+  const { recordings, models, json } = values;
+  if (!recordings || !models)
+    throw new Error('legs: --recordings and --models are needed; `npm run evaluate` gives them');
+  const index = readIndex(recordings);
+  const learned = (await loadRegressors(models)).get('learned') ?? null;
+  const seen = new Set(learned?.contract.trainedOn.people);
+  const gaitOf = gaitsOf(values.gaits);
+  const legsOf = await mannequinLegs();
+  const people: Record<string, PersonLegs> = {};
+  for (const person of [...new Set(index.clips.map((clip) => clip.person))].sort()) {
+    const measures: ByDriver<LegMeasures> = byDriver(emptyLegMeasures);
+    const clips = await driveLegs(recordings, index, person, learned);
+    const network = gaitOf(person);
+    for (const clip of clips) {
+      const proportions = legsOf(clip.calibration);
+      for (const driver of legDrivers) {
+        const posture = new LegPosture(proportions, clip.calibration.eyeHeight, new Gait(network));
+        addLegs(measures[driver], bodyOf(clip, driver, index.rateHz), posture, proportions);
+      }
+    }
+    const frames = clips.reduce((sum, { truth }) => sum + truth.length, 0);
+    if (frames === 0) console.log(`${person}: no legs with toes in these recordings`);
+    else
+      people[person] = {
+        seen: seen.has(person),
+        gaitSeen: network.trainedOn.includes(person),
+        minutes: frames / index.rateHz / 60,
+        ...byDriver((driver) => legReport(measures[driver])),
+      };
+  }
+  const reports = Object.entries(people);
+  if (reports.length === 0) throw new Error('legs: none of these recordings has legs with toes');
+  for (const problem of index.problems) console.log(`  ${problem}`);
+  for (const driver of legDrivers) {
+    const all = meanReport(reports.map(([, report]) => report[driver]));
+    print(`Legs under the hips of: ${driver}`, [
+      ...reports.map(([name, report]) => [name, report[driver]] as const),
+      ['all alike', all],
+    ]);
+  }
+  if (json) writeFileSync(json, `${JSON.stringify({ people, problems: index.problems }, null, 2)}\n`);
+}
+
+await main().catch((error: unknown) => {
+  console.error(reasonOf(error));
+  process.exitCode = 1;
+});

@@ -1,0 +1,77 @@
+import { Group, Vector3 } from 'three';
+import type { Transform } from 'threepoint/core/math/pose';
+import { disposeTree } from '../../scene/dispose-tree';
+import { daylight } from '../../scene/outdoors/daylight';
+import { createLandscape } from '../../scene/outdoors/landscape';
+import { createNoiseTexture } from '../../scene/outdoors/noise-texture';
+import { createSky } from '../../scene/outdoors/sky';
+import type { Quality } from '../../scene/renderer';
+import type { Surroundings } from '../../scene/surroundings';
+import { createBackstop } from './backstop';
+import { createDistanceSigns } from './distance-signs';
+import { createGround } from './ground';
+import { createTufts } from './tufts';
+import { createZone } from './zone';
+
+/**
+ * The place where archery is played, instead of the studio. Its object is in the arena frame, placed in the floor
+ * frame.
+ */
+export interface Range extends Surroundings {
+  readonly object: Group;
+  setZoneWarning(on: boolean): void;
+  /** Moves what moves by itself; time [s]. */
+  animate(time: number): void;
+  dispose(): void;
+}
+
+/**
+ * Towards the sun, arena frame: behind the archer's right shoulder, so that the targets are lit and shadows fall ahead.
+ */
+const towardsSun = new Vector3(8.5, 11, 7.5);
+
+/**
+ * Builds the range: floorFromArena puts its zone and its direction into the room; signs stand at these distances [m].
+ */
+export function createRange(
+  quality: Quality,
+  floorFromArena: Transform<'floor', 'arena'>,
+  distances: readonly number[],
+): Range {
+  const object = new Group();
+  object.name = 'archery range';
+  object.position.copy(floorFromArena.position);
+  object.quaternion.copy(floorFromArena.orientation);
+  const noise = createNoiseTexture(quality);
+  const zone = createZone();
+  object.add(
+    createSky(noise, towardsSun, quality),
+    createGround(noise, distances),
+    createLandscape(quality),
+    createBackstop(quality),
+    createDistanceSigns(distances, quality),
+    zone.object,
+  );
+  if (quality === 'high') object.add(createTufts());
+  return {
+    object,
+    lighting: daylight(
+      {
+        quality,
+        towardsSun,
+        sunIntensity: 2.7,
+        skyIntensity: 0.85,
+        groundColor: '#6f7f45',
+        shadows: { middle: new Vector3(0, 0, -5), halfSize: 7.4 },
+      },
+      floorFromArena,
+    ),
+    setZoneWarning: zone.setWarning,
+    animate: zone.animate,
+    dispose() {
+      object.removeFromParent();
+      disposeTree(object);
+      noise.dispose();
+    },
+  };
+}

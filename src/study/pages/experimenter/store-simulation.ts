@@ -1,0 +1,41 @@
+import type { ExperimenterClient } from '../../client/study-client';
+import { checkedPlan, participantsOf, type StudyPlan } from '../../model/plan/plan';
+import { modelsWith, type StatedEffects, simulatedParticipants, simulatedPlan } from '../../simulation/simulate-study';
+
+/** The parameters of a simulation: the same seed and effects give the same answers. */
+export interface Simulation {
+  readonly seed: number;
+  readonly effects: StatedEffects;
+}
+
+export interface StoredSimulationOptions extends Simulation {
+  /** The time at which the last participant finishes, in seconds since 1970. */
+  readonly at: number;
+  /** Called with the number of participants that are done and of all. */
+  readonly onProgress?: (done: number, all: number) => void;
+}
+
+const secondsPerParticipant = 7200;
+
+/**
+ * Stores simulated participants, who go through a plan to its end, in a separate study, which replaces that of an
+ * earlier simulation. Resolves with the id of that study.
+ */
+export async function storeSimulation(
+  client: Pick<ExperimenterClient, 'studies' | 'addStudy' | 'addSimulated' | 'deleteSimulated'>,
+  plan: StudyPlan,
+  { seed, effects, at, onProgress = () => undefined }: StoredSimulationOptions,
+): Promise<string> {
+  const simulated = checkedPlan(simulatedPlan(plan));
+  const models = modelsWith(simulated, effects);
+  if ((await client.studies()).some(({ id }) => id === simulated.id)) await client.deleteSimulated(simulated.id);
+  await client.addStudy(simulated, true);
+  const all = participantsOf(simulated).length;
+  let done = 0;
+  for (const one of simulatedParticipants(simulated, models, seed, at - all * secondsPerParticipant)) {
+    await client.addSimulated(simulated.id, one);
+    done += 1;
+    onProgress(done, all);
+  }
+  return simulated.id;
+}

@@ -1,0 +1,279 @@
+import * as Plot from '@observablehq/plot';
+import type { CohortComparison } from '../../model/results/compare-cohorts';
+import type { Comparison } from '../../model/results/compare-conditions';
+import { swarm } from './swarm';
+
+/** The labels of the two conditions or cohorts that are compared. */
+export interface ComparedLabels {
+  readonly first: string;
+  readonly second: string;
+}
+
+/** A comparison with a mean on either side. */
+export type TwoSided = Pick<Comparison, 'first' | 'second'>;
+
+export interface ChartOptions<One extends TwoSided> {
+  readonly title: string;
+  readonly labels: ComparedLabels;
+  /** Returns the name of a comparison below the axis. */
+  readonly nameOf: (comparison: One) => string;
+  readonly axis: string;
+  /** Ends of the scale. */
+  readonly domain: readonly [number, number];
+  readonly simulated: boolean;
+}
+
+const colours = { first: '#c8681e', second: '#2b6cb0' } as const;
+const ink = '#1d2733';
+const sides = ['first', 'second'] as const;
+const svgNamespace = 'http://www.w3.org/2000/svg';
+
+function svgNode(tag: string, attributes: Readonly<Record<string, string | number>>, text = ''): SVGElement {
+  const node = document.createElementNS(svgNamespace, tag);
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, String(value));
+  node.textContent = text;
+  return node;
+}
+
+/**
+ * Wraps a note that would not fit the picture after the first part of its sentence; `letter` is the mean width of a
+ * letter [pixels].
+ */
+const noteLines = (note: string, width: number, letter = 6.3): readonly string[] =>
+  note.length * letter <= width ? [note] : note.split(/(?<=;) /);
+
+/** Adds the title, the key and the mark of simulation inside the picture, so that copies of it keep them. */
+function headed(
+  plot: SVGSVGElement | HTMLElement,
+  { title, labels, simulated }: Omit<ChartOptions<never>, 'nameOf'>,
+  note: string,
+): SVGSVGElement {
+  if (!(plot instanceof SVGSVGElement)) throw new Error('ui/charts: expected a plain SVG from the plot');
+  const width = Number(plot.getAttribute('width'));
+  // Plots centre their labels by default.
+  const text = { 'font-family': 'Inter, "Segoe UI", system-ui, sans-serif', fill: ink, 'text-anchor': 'start' };
+  plot.prepend(svgNode('rect', { width: '100%', height: '100%', fill: 'white' }));
+  plot.append(svgNode('text', { ...text, x: 12, y: 24, 'font-size': 16, 'font-weight': 650 }, title));
+  let x = 12;
+  for (const side of sides) {
+    plot.append(svgNode('rect', { x, y: 38, width: 12, height: 12, rx: 2, fill: colours[side] }));
+    plot.append(svgNode('text', { ...text, x: x + 18, y: 48.5, 'font-size': 13 }, labels[side]));
+    x += 38 + labels[side].length * 7.4;
+  }
+  for (const [index, line] of noteLines(note, width - 24).entries()) {
+    plot.append(svgNode('text', { ...text, x: 12, y: 66 + 15 * index, 'font-size': 12, fill: '#5b6776' }, line));
+  }
+  if (simulated) {
+    const mark = {
+      ...text,
+      x: width - 12,
+      y: 24,
+      'text-anchor': 'end',
+      'font-size': 15,
+      'font-weight': 700,
+      fill: '#b3261e',
+    };
+    plot.append(svgNode('text', mark, 'SIMULATED'));
+  }
+  return plot;
+}
+
+const shared = {
+  marginTop: 92,
+  marginLeft: 52,
+  marginBottom: 40,
+  style: { fontSize: '13px', color: ink, background: 'white', fontFamily: 'Inter, "Segoe UI", system-ui, sans-serif' },
+} as const;
+
+/** Answers are whole numbers; other scales choose their own ticks. */
+const ticksOf = ({ domain: [low, high] }: Pick<ChartOptions<never>, 'domain'>) =>
+  high - low < 10 ? Array.from({ length: high - low + 1 }, (_, index) => low + index) : 5;
+
+/** Formats ends of scales as whole numbers: "3", not "3.0". */
+const tickText = (value: number): string => String(Number(value.toFixed(6)));
+
+const widthFor = (count: number, each = 100) => Math.max(520, 90 + count * each);
+const height = 360;
+
+/** Returns the mean of each side with its 95 % confidence interval, clipped to the scale. */
+const meansOf = <One extends TwoSided>(comparisons: readonly One[], { nameOf, domain }: ChartOptions<One>) =>
+  comparisons.flatMap((comparison) =>
+    sides.flatMap((side) => {
+      const summary = comparison[side];
+      if (!summary) return [];
+      const { mean, interval } = summary;
+      const from = Math.max(domain[0], interval?.low ?? mean);
+      const to = Math.min(domain[1], interval?.high ?? mean);
+      return [{ of: nameOf(comparison), side, mean, from, to }];
+    }),
+  );
+
+/** Draws means as bars with their 95 % confidence intervals, as figures 11 to 14 of the paper. */
+export function barChart<One extends TwoSided>(comparisons: readonly One[], options: ChartOptions<One>): SVGSVGElement {
+  const [low, high] = options.domain;
+  const bars = meansOf(comparisons, options);
+  const plot = Plot.plot({
+    ...shared,
+    width: widthFor(comparisons.length),
+    height,
+    x: { axis: null, domain: [...sides], padding: 0.12 },
+    fx: { label: null, domain: comparisons.map(options.nameOf), padding: 0.25 },
+    y: { label: null, domain: [low, high], grid: true, ticks: ticksOf(options), tickFormat: tickText },
+    color: { domain: [...sides], range: [colours.first, colours.second] },
+    marks: [
+      Plot.barY(bars, { fx: 'of', x: 'side', y1: low, y2: 'mean', fill: 'side' }),
+      Plot.ruleX(bars, { fx: 'of', x: 'side', y1: 'from', y2: 'to', stroke: ink, strokeWidth: 1.5 }),
+      Plot.tickY(bars, { fx: 'of', x: 'side', y: 'from', stroke: ink, insetLeft: 10, insetRight: 10 }),
+      Plot.tickY(bars, { fx: 'of', x: 'side', y: 'to', stroke: ink, insetLeft: 10, insetRight: 10 }),
+      Plot.text(bars, {
+        fx: 'of',
+        x: 'side',
+        y: low,
+        text: ({ mean }: { mean: number }) => (mean >= 10 ? mean.toFixed(1) : mean.toFixed(2)),
+        dy: -9,
+        fill: 'white',
+        fontWeight: 600,
+      }),
+      Plot.ruleY([low]),
+    ],
+  });
+  return headed(plot as SVGSVGElement, options, `${options.axis}; mean and 95 % confidence interval`);
+}
+
+/** Draws every participant (or group) as a line from one condition to the other. Equal lines make a thicker one. */
+export function pairedChart(comparisons: readonly Comparison[], options: ChartOptions<Comparison>): SVGSVGElement {
+  const lines = comparisons.flatMap((comparison) => {
+    const alike = new Map<string, { second: number; first: number; count: number }>();
+    for (const { first, second } of comparison.pairs) {
+      const key = `${first} ${second}`;
+      const line = alike.get(key) ?? { first, second, count: 0 };
+      line.count += 1;
+      alike.set(key, line);
+    }
+    return [...alike].flatMap(([key, { first, second, count }]) => {
+      const of = options.nameOf(comparison);
+      const common = {
+        of,
+        key: `${of} ${key}`,
+        count,
+        rises: first > second ? 'up' : first < second ? 'down' : 'same',
+      };
+      return [
+        { ...common, side: 'second', value: second },
+        { ...common, side: 'first', value: first },
+      ];
+    });
+  });
+  const means = comparisons.flatMap((comparison) =>
+    sides.flatMap((side) => {
+      const summary = comparison[side];
+      return summary ? [{ of: options.nameOf(comparison), side, value: summary.mean }] : [];
+    }),
+  );
+  const plot = Plot.plot({
+    ...shared,
+    width: widthFor(comparisons.length),
+    height,
+    x: { axis: null, domain: ['second', 'first'], padding: 0.5 },
+    fx: { label: null, domain: comparisons.map(options.nameOf), padding: 0.2 },
+    y: { label: null, domain: [...options.domain], grid: true, ticks: ticksOf(options), tickFormat: tickText },
+    color: {
+      domain: ['up', 'same', 'down', 'first', 'second'],
+      range: [colours.first, '#8a95a3', colours.second, colours.first, colours.second],
+    },
+    marks: [
+      Plot.line(lines, {
+        fx: 'of',
+        x: 'side',
+        y: 'value',
+        z: 'key',
+        stroke: 'rises',
+        strokeOpacity: 0.55,
+        strokeWidth: ({ count }: { count: number }) => 0.8 + 1.1 * count,
+        strokeLinecap: 'round',
+      }),
+      Plot.dot(means, { fx: 'of', x: 'side', y: 'value', fill: 'side', r: 5, stroke: 'white', strokeWidth: 1.5 }),
+    ],
+  });
+  return headed(
+    plot as SVGSVGElement,
+    options,
+    `${options.axis}; left ${options.labels.second}, right ${options.labels.first}`,
+  );
+}
+
+/** The diameter of a dot [pixels]. */
+const dotDiameter = 7;
+/** Positions across a comparison, from −0.5 to 0.5: means in the middle, dots outside. */
+const strip = { mean: 0.07, dots: 0.29, width: 0.34 } as const;
+
+/** Draws every participant (or group) of two cohorts as a dot next to means and 95 % confidence intervals. */
+export function stripChart(
+  comparisons: readonly CohortComparison[],
+  options: ChartOptions<CohortComparison> & { readonly each: string },
+): SVGSVGElement {
+  const [low, high] = options.domain;
+  const width = widthFor(comparisons.length, 130);
+  const padding = 0.1;
+  const comparisonWidth = ((width - shared.marginLeft - 20) * (1 - padding)) / (comparisons.length + padding);
+  const diameter = ((high - low) * dotDiameter) / (height - shared.marginTop - shared.marginBottom);
+  const outwards = { first: -1, second: 1 } as const;
+  const dots = comparisons.flatMap((comparison) =>
+    sides.flatMap((side) => {
+      const values = comparison.values[side];
+      const beside = swarm(
+        values.map((value) => value / diameter),
+        (strip.width * comparisonWidth) / dotDiameter,
+      );
+      return values.map((value, index) => ({
+        of: options.nameOf(comparison),
+        side,
+        value,
+        x: outwards[side] * strip.dots + ((beside[index] as number) * dotDiameter) / comparisonWidth,
+      }));
+    }),
+  );
+  const means = meansOf(comparisons, options).map((one) => ({ ...one, x: outwards[one.side] * strip.mean }));
+  const plot = Plot.plot({
+    ...shared,
+    width,
+    height,
+    x: { axis: null, domain: [-0.5, 0.5] },
+    fx: { label: null, domain: comparisons.map(options.nameOf), padding },
+    y: { label: null, domain: [low, high], grid: true, ticks: ticksOf(options), tickFormat: tickText },
+    color: { domain: [...sides], range: [colours.first, colours.second] },
+    marks: [
+      Plot.dot(dots, { fx: 'of', x: 'x', y: 'value', fill: 'side', fillOpacity: 0.65, r: dotDiameter / 2 }),
+      Plot.ruleX(means, { fx: 'of', x: 'x', y1: 'from', y2: 'to', stroke: 'side', strokeWidth: 2.5 }),
+      Plot.dot(means, { fx: 'of', x: 'x', y: 'mean', fill: 'side', r: 5, stroke: 'white', strokeWidth: 1.5 }),
+    ],
+  });
+  const legend = `each dot a ${options.each}, mean and 95 % confidence interval`;
+  return headed(plot as SVGSVGElement, options, `${options.axis}; ${legend}`);
+}
+
+/** Returns the picture as an SVG file. */
+export const svgText = (svg: SVGSVGElement): string => new XMLSerializer().serializeToString(svg);
+
+/** Resolves with the picture at twice its size as PNG, for slides and papers that do not accept SVG. */
+export async function pngOf(svg: SVGSVGElement): Promise<Blob> {
+  const width = Number(svg.getAttribute('width'));
+  const height = Number(svg.getAttribute('height'));
+  const address = URL.createObjectURL(new Blob([svgText(svg)], { type: 'image/svg+xml' }));
+  try {
+    const image = new Image();
+    image.src = address;
+    await image.decode();
+    const canvas = document.createElement('canvas');
+    canvas.width = 2 * width;
+    canvas.height = 2 * height;
+    const context = canvas.getContext('2d');
+    if (!context) throw new Error('ui/charts: this browser offers no 2D canvas');
+    context.drawImage(image, 0, 0, canvas.width, canvas.height);
+    return await new Promise((resolve, reject) =>
+      canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('the picture could not be made'))), 'image/png'),
+    );
+  } finally {
+    URL.revokeObjectURL(address);
+  }
+}

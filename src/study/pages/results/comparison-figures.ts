@@ -1,0 +1,141 @@
+import { inLanguage } from '../../model/phrases/words';
+import { languagesOf } from '../../model/plan/plan';
+import type { AnswerForm } from '../../model/questionnaires/question-kind';
+import { questionKind } from '../../model/questionnaires/question-kinds';
+import { scaleRange } from '../../model/questionnaires/questionnaire-scores';
+import type { CohortComparison } from '../../model/results/compare-cohorts';
+import type { Comparison } from '../../model/results/compare-conditions';
+import type { Measured } from '../../model/results/measures';
+import { barChart, pairedChart, stripChart, type TwoSided } from './charts';
+import { figure } from './figure';
+import type { Compared } from './shown-results';
+
+type Two = Measured & TwoSided;
+
+/** Comparisons on one scale in one chart. */
+export interface Chart<One extends Two> {
+  readonly comparisons: readonly One[];
+  readonly title: string;
+  readonly file: string;
+  readonly axis: string;
+  readonly domain: readonly [number, number];
+  readonly nameOf: (one: One) => string;
+  /** A note after the caption of the means. */
+  readonly note: string;
+  /** The unit that has one value each. */
+  readonly each: 'participant' | 'group';
+}
+
+/** Returns the means of a chart as a figure. */
+export function meansFigure<One extends Two>({ results, labels }: Compared<One>, chart: Chart<One>): HTMLElement {
+  const { comparisons, title, file, note, each: _, ...options } = chart;
+  const { simulated } = results.study;
+  const bars = barChart(comparisons, { title, labels, simulated, ...options });
+  return figure(bars, `${title}, means${note}`, results.fileOf(file));
+}
+
+/** Returns every pair of a chart as a figure. */
+export function pairsFigure({ results, labels }: Compared<Comparison>, chart: Chart<Comparison>): HTMLElement {
+  const { comparisons, title, file, note: _, each, ...options } = chart;
+  const { simulated } = results.study;
+  const lines = pairedChart(comparisons, { title: `${title}, pairs`, labels, simulated, ...options });
+  return figure(lines, `${title}, every ${each}`, results.fileOf(`${file}-pairs`));
+}
+
+/** Returns every participant of two cohorts as a figure. */
+export function stripFigure(
+  { results, labels }: Compared<CohortComparison>,
+  chart: Chart<CohortComparison>,
+): HTMLElement {
+  const { comparisons, title, file, note: _, each, ...options } = chart;
+  const { simulated } = results.study;
+  const dots = stripChart(comparisons, { title, labels, simulated, each, ...options });
+  return figure(dots, `${title}, every ${each}`, results.fileOf(`${file}-strip`));
+}
+
+function axisOf(form: AnswerForm, [from, to]: readonly [number, number], language: string): string {
+  const { low, high } = questionKind(form).ends?.(form) ?? {};
+  if (low === undefined || high === undefined) return `answer, ${from} to ${to}`;
+  const label = (text: typeof low) => inLanguage(text, language).toLowerCase();
+  return `answer, ${from} ${label(low)} to ${to} ${label(high)}`;
+}
+
+/** The figure of the paper that shows these answers, for captions. */
+const paperFigures: Readonly<Record<string, string>> = {
+  archery: ' (the paper’s figure 11)',
+  ball: ' (the paper’s figure 13)',
+};
+
+/** Returns a chart for the questions of a task and questionnaire that share a scale. */
+export function questionCharts<One extends Two>({ results, answers }: Compared<One>): readonly Chart<One>[] {
+  const { asked } = results;
+  const [language] = languagesOf(results.study.plan);
+  const charts = new Map<string, Chart<One>>();
+  for (const one of answers) {
+    const questionnaire = asked.find(({ id }) => id === one.asked?.questionnaire);
+    const form = questionnaire?.questions.find(({ id }) => id === one.asked?.question)?.answer;
+    const range = form && questionKind(form).range(form);
+    if (!questionnaire || !one.asked || !range) continue;
+    const axis = axisOf(form, range, language);
+    const key = `${one.asked.task} ${questionnaire.id} ${axis}`;
+    const before = charts.get(key);
+    const name = inLanguage(questionnaire.title, language);
+    const task = results.titleOf(one.asked.task);
+    const number = [...charts.keys()].filter((other) =>
+      other.startsWith(`${one.asked?.task} ${questionnaire.id} `),
+    ).length;
+    charts.set(key, {
+      title: `${task === name ? name : `${task}, ${name}`}: questionnaire`,
+      file: `${one.asked.task === questionnaire.id ? '' : `${one.asked.task}-`}${questionnaire.id}-answers${number > 0 ? `-${number + 1}` : ''}`,
+      axis,
+      domain: range,
+      nameOf: ({ asked: of }) => of?.question ?? '',
+      note: paperFigures[questionnaire.id] ?? '',
+      each: 'participant',
+      ...before,
+      comparisons: [...(before?.comparisons ?? []), one],
+    });
+  }
+  return [...charts.values()];
+}
+
+/** Returns a chart for each scale, with all tasks side by side. */
+export function scaleCharts<One extends Two>({ results, scales }: Compared<One>): readonly Chart<One>[] {
+  const { asked } = results;
+  const charts = new Map<string, Chart<One>>();
+  for (const one of scales) {
+    const questionnaire = asked.find(({ id }) => id === one.asked?.questionnaire);
+    const scale = questionnaire?.scales.find(({ id }) => id === one.asked?.question);
+    if (!questionnaire || !scale) continue;
+    const key = `${questionnaire.id}-${scale.id}`;
+    const domain = scaleRange(questionnaire, scale);
+    charts.set(key, {
+      title: scale.label,
+      file: key,
+      axis: `${scale.label}, ${domain[0]} to ${domain[1]}`,
+      domain,
+      nameOf: ({ asked: of }) => results.titleOf(of?.task ?? ''),
+      note: '',
+      each: 'participant',
+      comparisons: [...(charts.get(key)?.comparisons ?? []), one],
+    });
+  }
+  return [...charts.values()];
+}
+
+/** Returns a chart for each task that has scores. */
+export const scoreCharts = <One extends Two>({ results, percent }: Compared<One>): readonly Chart<One>[] =>
+  percent.map((comparison) => {
+    const name = results.titleOf(comparison.of);
+    const task = results.study.plan.tasks.find(({ id }) => id === comparison.of);
+    return {
+      comparisons: [comparison],
+      title: `${name}: scores`,
+      file: `${comparison.of}-scores`,
+      axis: 'score in per cent of the maximum',
+      domain: [0, 100],
+      nameOf: () => name,
+      note: ` (the paper’s figure ${task?.game === 'ball' ? 14 : 12})`,
+      each: (task?.groupSize ?? 1) === 1 ? 'participant' : 'group',
+    };
+  });

@@ -1,0 +1,50 @@
+import { offerDownload } from 'threepoint-ui/downloads';
+import { button, element } from 'threepoint-ui/element';
+import { shippedQuestionnaires } from '../../model/questionnaires/questionnaires';
+import type { Measured } from '../../model/results/measures';
+import { type Table, tidyCsv } from '../../model/tables/tidy-csv';
+import type { Interval } from '../../statistics/summaries';
+import type { ShownResults } from './shown-results';
+
+/** The text of a cell without a number. */
+export const none = '–';
+export const fixed = (value: number | null | undefined, digits: number) =>
+  value == null ? none : value.toFixed(digits).replace('-', '−');
+export const pText = (p: number | null | undefined) =>
+  p == null ? none : p < 0.0005 ? '< .001' : p.toFixed(3).replace(/^0/, '');
+const interval = (between: Interval | null | undefined, digits: number) =>
+  between ? `[${fixed(between.low, digits)}, ${fixed(between.high, digits)}]` : '';
+export const meanCell = (mean: number | undefined, between: Interval | null | undefined, digits: number): Node =>
+  element('div', {}, fixed(mean, digits), element('div', { class: 'soft interval' }, interval(between, digits)));
+
+/** Returns the name of a measure, marked if it is planned and the table also has others. */
+export const measureCell = ({ nameOf, factsOf }: ShownResults, measure: Measured, tagged: boolean): Node =>
+  element(
+    'span',
+    {},
+    nameOf(measure),
+    ...(tagged && factsOf('explored').isPlanned(measure)
+      ? [' ', element('span', { class: 'badge', title: 'Its planned test is in the table above' }, 'planned')]
+      : []),
+  );
+
+/** Returns the subject of a question of the paper, or an empty text for other questions. */
+export const paperAboutOf = (id: string): string =>
+  [shippedQuestionnaires.archery, shippedQuestionnaires.ball]
+    .flatMap((asked) => asked?.questions ?? [])
+    .find((question) => question.id === id)?.about ?? '';
+
+/** Returns a button that saves a table as `file`.csv. */
+export const csvButton = (table: Table, file: string) =>
+  button('CSV', () => offerDownload(`${file}.csv`, 'text/csv;charset=utf-8', tidyCsv(table)), { class: 'small' });
+
+/** Returns buttons in a row. */
+export const bar = (...buttons: readonly Node[]) => element('div', { class: 'bar' }, ...buttons);
+
+/** Returns the note below planned tests. */
+export const plannedNote = () =>
+  element(
+    'p',
+    { class: 'soft', role: 'note' },
+    'The following results are exploratory: Holm’s p is adjusted over each table.',
+  );

@@ -1,0 +1,186 @@
+import { offerDownload } from 'threepoint-ui/downloads';
+import { button, element } from 'threepoint-ui/element';
+import type { StudyPlan } from '../../model/plan/plan';
+import type { StudyRecord } from '../../model/records/study-record';
+import { cohortViews } from '../../model/results/exported-results';
+import type { Exclusion } from '../../model/results/measures';
+import { studyTables } from '../../model/tables/study-tables';
+import { tidyCsv } from '../../model/tables/tidy-csv';
+import { chooser, pairChooser } from './choosers';
+import { cohortResults } from './cohort-results';
+import { frameTimeParts } from './frame-time-results';
+import { overallResults } from './overall-results';
+import { pairResults } from './pair-results';
+import { bar } from './result-cells';
+import { type ShownResults, type ShownStudy, shownResults } from './shown-results';
+
+/** The sides that are compared on the page: first − second. */
+export interface Selection {
+  /** null: the plan has one condition. */
+  readonly conditions: readonly [string, string] | null;
+  /** null: the plan has no cohorts. */
+  readonly cohorts: readonly [string, string] | null;
+  /** The conditions under which cohorts are compared. */
+  readonly under: readonly string[];
+}
+
+/** Returns the initial selection: the second entry of the plan against the first, which is the reference. */
+export function firstSelection(plan: Pick<StudyPlan, 'conditions' | 'cohorts'>): Selection {
+  const pairOf = ([baseline, other]: readonly { readonly id: string }[]) =>
+    baseline && other ? ([other.id, baseline.id] as const) : null;
+  const [under = []] = cohortViews(plan);
+  return { conditions: pairOf(plan.conditions), cohorts: pairOf(plan.cohorts ?? []), under };
+}
+
+/** Returns lines such as "P03, P07: voided: the phone rang (archery)"; equal reasons share a line. */
+function exclusionList(all: readonly Exclusion[]): readonly string[] {
+  const lines = new Map<string, { who: Set<string>; of: Set<string> }>();
+  for (const { participant, of, reason } of all) {
+    const line = lines.get(`${participant} ${reason}`) ?? { who: new Set(), of: new Set() };
+    line.who.add(participant);
+    line.of.add(of);
+    lines.set(`${participant} ${reason}`, line);
+  }
+  return [...lines].map(([key, { who, of }]) => {
+    const [participant] = [...who];
+    return `${participant} (${[...of].join(', ')}): ${key.slice((participant?.length ?? 0) + 1)}`;
+  });
+}
+
+function demographicsText(records: readonly StudyRecord[]): string {
+  const people = records.flatMap((record) => (record.kind === 'demographics' ? [record.body] : []));
+  if (people.length === 0) return 'No participant has answered the questions about themselves yet.';
+  const ages = people.map(({ age }) => age);
+  const mean = ages.reduce((sum, age) => sum + age, 0) / ages.length;
+  const deviation = Math.sqrt(ages.reduce((sum, age) => sum + (age - mean) ** 2, 0) / Math.max(1, ages.length - 1));
+  const count = (test: (one: (typeof people)[number]) => boolean) => people.filter(test).length;
+  return (
+    `${people.length} people, ${mean.toFixed(1)} years old on average (SD ${deviation.toFixed(1)}): ` +
+    `${count(({ gender }) => gender === 'woman')} women, ${count(({ gender }) => gender === 'man')} men, ${count(({ gender }) => gender !== 'woman' && gender !== 'man')} others or not said; ` +
+    `${count(({ handedness }) => handedness === 'right')} right-handed; ` +
+    `${count(({ vision }) => vision !== 'normal')} with corrected or impaired vision; ` +
+    `${count(({ vrExperience }) => vrExperience === 'none')} new to virtual reality.`
+  );
+}
+
+/** Returns the notice above all results of simulated participants. */
+export const simulatedNotice = ({ simulated }: Pick<ShownStudy, 'simulated'>): readonly Node[] => {
+  const text = 'SIMULATED: a program made these data. They say nothing about people.';
+  return simulated ? [element('p', { class: 'simulated', role: 'note' }, text)] : [];
+};
+
+/** Returns everything computed from a study: figures, tables, exclusions. `choose` is called with another selection. */
+export function studyResults(
+  study: ShownStudy,
+  selection: Selection,
+  choose: (selection: Selection) => void,
+): readonly Node[] {
+  if (!study.records.some(({ kind }) => kind === 'answers' || kind === 'trial')) {
+    return [element('p', { class: 'card' }, 'Nothing has been answered or played yet.')];
+  }
+  const results = shownResults(study);
+  const pairs = conditionParts(results, selection, choose);
+  return [
+    ...summary(results),
+    ...overallResults(results),
+    ...pairs.nodes,
+    ...cohortParts(results, selection, choose),
+    ...frameTimeParts(results),
+    ...leftOutParts(results, pairs.excluded),
+    ...exportParts(results),
+  ];
+}
+
+function summary({ study: { plan, records }, measures }: ShownResults): readonly Node[] {
+  const participants = new Set(records.map(({ participant }) => participant));
+  const text = `${participants.size} of ${plan.participants} participants have records. ${demographicsText(records)}`;
+  const planned =
+    measures.planned.length === 0
+      ? 'The plan names no measure as planned: everything here is exploratory.'
+      : 'Planned measures come first, as a separate family. All other tables are exploratory; planned measures are marked in them.';
+  return [
+    element(
+      'section',
+      { class: 'card' },
+      element('p', {}, text),
+      element('p', { class: 'soft', role: 'note' }, planned),
+    ),
+  ];
+}
+
+type Choose = (selection: Selection) => void;
+
+function conditionParts(results: ShownResults, selection: Selection, choose: Choose) {
+  const { conditions } = selection;
+  const { plan } = results.study;
+  if (!conditions) {
+    const { answers, scales, points } = results.measures;
+    return { nodes: [], excluded: [...answers, ...scales, ...points].flatMap(({ voided }) => voided) };
+  }
+  const { nodes, excluded } = pairResults(results, conditions);
+  const choosing = pairChooser('condition', plan.conditions, conditions, (pair) =>
+    choose({ ...selection, conditions: pair }),
+  );
+  const same = conditions[0] === conditions[1];
+  return {
+    nodes: [
+      element('h2', {}, plan.conditions.length > 2 || plan.cohorts ? 'Two conditions' : 'Both conditions'),
+      ...choosing,
+      ...(same ? [element('p', { class: 'complaint' }, 'Choose two different conditions.')] : nodes),
+    ],
+    excluded: same ? [] : excluded,
+  };
+}
+
+function cohortParts(results: ShownResults, selection: Selection, choose: Choose): readonly Node[] {
+  const { cohorts, under } = selection;
+  const { plan } = results.study;
+  if (!cohorts) return [];
+  const views = cohortViews(plan).map((view) => ({
+    id: view.join(' '),
+    label: view.length === 1 ? results.labelOf(view[0] ?? '') : 'all conditions, the mean of each participant',
+  }));
+  const choosing = [
+    ...pairChooser('cohort', plan.cohorts ?? [], cohorts, (pair) => choose({ ...selection, cohorts: pair })),
+    ...(views.length === 1
+      ? []
+      : [bar(chooser('Under', views, under.join(' '), (id) => choose({ ...selection, under: id.split(' ') })))]),
+  ];
+  return [
+    element('h2', {}, 'Two cohorts'),
+    ...choosing,
+    ...(cohorts[0] === cohorts[1]
+      ? [element('p', { class: 'complaint' }, 'Choose two different cohorts.')]
+      : cohortResults(results, { cohorts, conditions: under })),
+  ];
+}
+
+const listNode = (lines: readonly string[]) => element('ul', {}, ...lines.map((line) => element('li', {}, line)));
+
+function leftOutParts({ study: { records } }: ShownResults, all: readonly Exclusion[]): readonly Node[] {
+  const excluded = exclusionList(all);
+  const assisted = records.flatMap((record) => {
+    if (record.kind !== 'trial' || record.body.outcome.assists.length === 0) return [];
+    const { place, outcome } = record.body;
+    return [`${record.participant}, ${place.task} block ${place.block}: ${outcome.assists.join(', ')}`];
+  });
+  return [
+    element('h2', {}, 'Left out'),
+    excluded.length === 0 ? element('p', {}, 'Nothing was left out of the comparisons above.') : listNode(excluded),
+    element('p', { class: 'soft' }, 'Tutorials and interrupted attempts are recorded but not evaluated.'),
+    ...(assisted.length === 0 ? [] : [element('h2', {}, 'Played with aids'), listNode(assisted)]),
+  ];
+}
+
+const exportParts = ({ study: { plan, records }, fileOf }: ShownResults): readonly Node[] => [
+  element('h2', {}, 'Tables of the export'),
+  bar(
+    ...studyTables(records, plan).map((table) =>
+      button(
+        `${table.name}.csv`,
+        () => offerDownload(`${fileOf(table.name)}.csv`, 'text/csv;charset=utf-8', tidyCsv(table)),
+        { class: 'small' },
+      ),
+    ),
+  ),
+];

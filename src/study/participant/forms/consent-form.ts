@@ -1,0 +1,76 @@
+import { button, element } from 'threepoint-ui/element';
+import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
+import { inLanguage } from '../../model/phrases/words';
+import { complaintLine, type FormOf, paragraphs } from './form-parts';
+import { languageChoice } from './language-choice';
+
+function box() {
+  const input = element('input', { type: 'checkbox' });
+  const label = element('span', {});
+  return { input, label, node: element('label', { class: 'check' }, input, label) };
+}
+
+/** Returns the form of consent in the chosen language; `onLanguage` is called with the phrases of another one. */
+export function consentForm(
+  { study, language: first, ...actions }: FormOf<'consent'>,
+  onLanguage: (phrases: Phrases) => void,
+): readonly Node[] {
+  const { consent, simulated, languages } = study;
+  let phrases = phrasesOf(study, first);
+  const complaint = complaintLine();
+  const agreed = box();
+  const motion = consent.motion === null ? null : box();
+  const title = element('h1', {});
+  const texts = element('div', { class: 'content' });
+  const kicker = element('p', { class: 'kicker' });
+  const simulation = element('p', { class: 'hint' });
+  const note = element('p', { class: 'soft' });
+  const go = button('', () => void agree(), { class: 'primary', disabled: true });
+  const decline = button('', () => actions.decline(phrases));
+  const choice = languageChoice(languages, first, (language) => {
+    phrases = phrasesOf(study, language);
+    complaint.hide();
+    onLanguage(phrases);
+    read();
+  });
+
+  function read(): void {
+    const { language, say } = phrases;
+    choice.label(say('language'));
+    kicker.textContent = say('consent.kicker', { version: consent.version });
+    simulation.textContent = say('consent.simulated');
+    agreed.label.textContent = say('consent.understood');
+    note.textContent = say('consent.nothingRecorded');
+    go.textContent = say('consent.agree');
+    decline.textContent = say('consent.decline');
+    title.textContent = inLanguage(consent.title, language);
+    texts.replaceChildren(...paragraphs(consent.paragraphs.map((one) => inLanguage(one, language))));
+    for (const node of [title, texts, ...(motion ? [motion.label] : [])]) node.lang = language;
+    if (motion && consent.motion !== null) motion.label.textContent = inLanguage(consent.motion, language);
+  }
+
+  async function agree(): Promise<void> {
+    go.disabled = true;
+    const chosen = languages.length > 1 ? phrases.language : null;
+    const refusal = await actions.agree({ motion: motion?.input.checked ?? false, language: chosen });
+    if (refusal === null) return;
+    complaint.say(refusal);
+    go.disabled = false;
+  }
+
+  agreed.input.addEventListener('change', () => {
+    go.disabled = !agreed.input.checked;
+  });
+  read();
+  return [
+    kicker,
+    ...(languages.length > 1 ? [choice.node] : []),
+    title,
+    ...(simulated ? [simulation] : []),
+    texts,
+    element('div', { class: 'checks' }, agreed.node, ...(motion ? [motion.node] : [])),
+    note,
+    complaint.node,
+    element('div', { class: 'row' }, go, decline),
+  ];
+}

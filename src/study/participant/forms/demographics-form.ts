@@ -1,0 +1,90 @@
+import { button, element } from 'threepoint-ui/element';
+import type { Phrases } from '../../model/phrases/phrases';
+import { type DemographicField, demographicFields } from '../../model/records/demographics';
+import { complaintLine, type FormOf } from './form-parts';
+
+type Given = string | number | undefined;
+
+interface FieldNode {
+  readonly node: HTMLElement;
+  value(): Given;
+}
+
+const mayStayOpen = ({ id }: DemographicField) => id === 'vrSystems';
+
+function fieldNode(field: DemographicField, { say }: Phrases): FieldNode {
+  const must = mayStayOpen(field) ? [] : [element('span', { class: 'must', title: say('question.needed') }, ' *')];
+  const label = [say(field.phrase), ...must];
+  if (field.kind === 'choice') {
+    const radios = field.options.map(({ value, phrase }) => {
+      const input = element('input', { type: 'radio', name: field.id, value });
+      return { input, node: element('label', { class: 'check' }, input, element('span', {}, say(phrase))) };
+    });
+    return {
+      node: element(
+        'fieldset',
+        { 'data-field': field.id },
+        element('legend', {}, ...label),
+        element('div', { class: 'options' }, ...radios.map(({ node }) => node)),
+      ),
+      value: () => radios.find(({ input }) => input.checked)?.input.value,
+    };
+  }
+  const input =
+    field.kind === 'age'
+      ? element('input', { type: 'number', name: field.id, min: field.min, max: field.max, inputmode: 'numeric' })
+      : element('input', { type: 'text', name: field.id, maxlength: field.maxLength, autocomplete: 'off' });
+  return {
+    node: element('label', { class: 'field', 'data-field': field.id }, element('span', {}, ...label), input),
+    value: () => {
+      if (field.kind === 'text') return input.value.trim();
+      return input.value === '' ? undefined : Number(input.value);
+    },
+  };
+}
+
+/** Returns what is wrong with an answer, or null. */
+function complaintAbout(field: DemographicField, given: Given, { say }: Phrases): string | null {
+  if (given === undefined || given === '') return mayStayOpen(field) ? null : say('about.missing');
+  if (field.kind !== 'age' || typeof given !== 'number') return null;
+  const { min: from, max: to } = field;
+  return Number.isInteger(given) && given >= from && given <= to ? null : say('about.ageRange', { from, to });
+}
+
+/** Returns the form with the questions that the paper asked its participants before they played. */
+export function demographicsForm({ phrases, done, stop }: FormOf<'demographics'>): readonly Node[] {
+  const { say } = phrases;
+  const complaint = complaintLine();
+  const fields = demographicFields.map((field) => ({ field, ...fieldNode(field, phrases) }));
+  for (const { node } of fields) {
+    node.addEventListener('input', () => {
+      node.classList.remove('missing');
+      if (!fields.some((other) => other.node.classList.contains('missing'))) complaint.hide();
+    });
+  }
+  function handIn(): void {
+    const found = fields.map(({ field, node, value }) => ({ node, wrong: complaintAbout(field, value(), phrases) }));
+    for (const { node, wrong } of found) node.classList.toggle('missing', wrong !== null);
+    const first = found.find(({ wrong }) => wrong !== null);
+    if (first) {
+      complaint.say(first.wrong ?? '');
+      first.node.scrollIntoView({ block: 'center' });
+      return;
+    }
+    const refusal = done(Object.fromEntries(fields.map(({ field, value }) => [field.id, value()])));
+    if (refusal !== null) complaint.say(refusal);
+  }
+  return [
+    element('p', { class: 'kicker' }, say('about.kicker')),
+    element('h1', {}, say('about.title')),
+    element('p', { class: 'soft' }, say('question.neededNote')),
+    ...fields.map(({ node }) => node),
+    complaint.node,
+    element(
+      'div',
+      { class: 'row' },
+      button(say('continue'), handIn, { class: 'primary' }),
+      button(say('stopStudy'), stop),
+    ),
+  ];
+}

@@ -1,0 +1,132 @@
+import { offerDownload } from 'threepoint-ui/downloads';
+import { button, element } from 'threepoint-ui/element';
+import type { Phrases } from '../../model/phrases/phrases';
+import { inLanguage } from '../../model/phrases/words';
+import { consentForm } from './consent-form';
+import { demographicsForm } from './demographics-form';
+import { complaintLine, type FormOf, paragraphs } from './form-parts';
+import type { Invited, StudyForm } from './study-form';
+
+function participantForm({
+  phrases: { say },
+  complaint: fault,
+  known,
+  go,
+  decline,
+}: FormOf<'participant'>): readonly Node[] {
+  const complaint = complaintLine();
+  if (fault !== null) complaint.say(fault);
+  const field = (name: keyof Invited, label: string, placeholder: string, maxlength: number) => {
+    const attributes = { type: 'text', name, placeholder, maxlength, autocomplete: 'off' };
+    const input = element('input', { ...attributes, value: known[name] ?? '' });
+    input.addEventListener('keydown', ({ key }) => {
+      if (key === 'Enter') submit.click();
+    });
+    return {
+      value: () => input.value.trim().toUpperCase(),
+      node: element('label', { class: 'field' }, element('span', {}, label), input),
+    };
+  };
+  const participant = field('participant', say('entrance.code'), 'P01', 4);
+  const invitation = field('invitation', say('entrance.invitation'), 'XXXX-XXXX-XXXX-XXXX', 30);
+  const submit = button(
+    say('continue'),
+    () => {
+      const answer = { participant: participant.value(), invitation: invitation.value() };
+      if (!/^P\d{2,3}$/.test(answer.participant)) complaint.say(say('entrance.wrongCode'));
+      else if (answer.invitation === '') complaint.say(say('entrance.noInvitation'));
+      else go(answer);
+    },
+    { class: 'primary' },
+  );
+  return [
+    element('p', { class: 'kicker' }, say('study')),
+    element('h1', {}, say('entrance.title')),
+    participant.node,
+    invitation.node,
+    complaint.node,
+    element('p', { class: 'soft' }, say('consent.nothingRecorded')),
+    element('div', { class: 'row' }, submit, button(say('consent.decline'), decline)),
+  ];
+}
+
+function withdrawalForm({ phrases: { say }, code, withdrawalPage, noted, stop }: FormOf<'code'>): readonly Node[] {
+  const saved = `${say('code.file', { code, address: withdrawalPage })}\n`;
+  const save = button(say('code.save'), () => offerDownload('withdrawal-code.txt', 'text/plain', saved));
+  return [
+    element('p', { class: 'kicker' }, say('code.kicker')),
+    element('h1', {}, say('code.title')),
+    element('p', {}, element('code', {}, code)),
+    element(
+      'p',
+      {},
+      `${say('code.use')} `,
+      element(
+        'a',
+        { href: withdrawalPage, target: '_blank', rel: 'noopener' },
+        withdrawalPage.replace(/^https?:\/\//, ''),
+      ),
+    ),
+    ...paragraphs([say('code.once')]),
+    element(
+      'div',
+      { class: 'row' },
+      button(say('code.noted'), noted, { class: 'primary' }),
+      save,
+      button(say('stopStudy'), stop),
+    ),
+  ];
+}
+
+function lockedOutForm({
+  phrases: { say },
+  participant,
+  unsent,
+  contact,
+  restart,
+}: FormOf<'locked-out'>): readonly Node[] {
+  return [
+    element('p', { class: 'kicker trouble' }, say('study')),
+    element('h1', {}, contact === null ? say('callExperimenter') : say('lockedOut.title')),
+    ...paragraphs([
+      say('lockedOut.place', { participant }),
+      ...(contact === null ? [] : [say('lockedOut.contact', { contact })]),
+    ]),
+    ...(unsent > 0 ? [element('p', { class: 'hint' }, say('lockedOut.unsent', { count: unsent }))] : []),
+    element('div', { class: 'row' }, button(say('lockedOut.restart'), restart)),
+  ];
+}
+
+/** Returns a final page: a heading and a reason. */
+function lastWords(kicker: string, title: string, text: string, trouble: boolean): readonly Node[] {
+  return [
+    element('p', { class: trouble ? 'kicker trouble' : 'kicker' }, kicker),
+    element('h1', {}, title),
+    ...paragraphs([text]),
+  ];
+}
+
+/** Returns the nodes of a form; `onLanguage` is called when another language is chosen on it. */
+export function formNodes(form: StudyForm, onLanguage: (phrases: Phrases) => void): readonly Node[] {
+  const { say } = form.phrases;
+  switch (form.kind) {
+    case 'participant':
+      return participantForm(form);
+    case 'consent':
+      return consentForm(form, onLanguage);
+    case 'declined':
+      return lastWords(form.title, say('declined.title'), say('declined.text'), false);
+    case 'code':
+      return withdrawalForm(form);
+    case 'demographics':
+      return demographicsForm(form);
+    case 'locked-out':
+      return lockedOutForm(form);
+    case 'fault':
+      return lastWords(say('study'), say('entrance.fault'), form.text, true);
+  }
+}
+
+/** Returns the small text at the foot of a form. */
+export const formNote = (form: StudyForm): string =>
+  form.kind === 'consent' ? `${inLanguage(form.study.title, form.phrases.language)} · ${form.participant}` : '';

@@ -1,0 +1,120 @@
+import { button, element } from 'threepoint-ui/element';
+import type { Phrases } from '../../model/phrases/phrases';
+import { dotNodes, questionNodes } from '../questions/question-card';
+import type { StudyScreen } from '../screens/study-screen';
+import { formNodes, formNote } from './form-nodes';
+import { paragraphs } from './form-parts';
+import type { StudyForm } from './study-form';
+
+/** The card of the study over the page on the desktop. */
+export interface StudyCard {
+  /** null hides it. */
+  show(screen: StudyScreen | null): void;
+  /** Shows a form instead of a screen; it is built once until something else is shown. */
+  ask(form: StudyForm): void;
+}
+
+const buttonNode = ({ id, label, look, act }: StudyScreen['buttons'][number]): HTMLButtonElement =>
+  button(label, act, {
+    'data-id': id,
+    class: look === 'primary' ? 'primary' : undefined,
+    disabled: look === 'off',
+  });
+
+const put = (node: HTMLElement, text: string | null) => {
+  node.hidden = text === null;
+  if (text !== null && node.textContent !== text) node.textContent = text;
+};
+
+/**
+ * Replaces the content of the card. `held`: the keyboard focus was in the card and moves to the new heading, which
+ * screen readers read out.
+ */
+function fill(card: HTMLElement, nodes: readonly Node[], held: boolean): void {
+  card.replaceChildren(...nodes);
+  card.scrollTop = 0;
+  const words = held ? card.querySelector<HTMLElement>('h1, legend') : null;
+  if (!words) return;
+  words.tabIndex = -1;
+  words.focus({ preventScroll: true });
+}
+
+/** `parent` is the element that the card covers. */
+export function createStudyCard(parent: HTMLElement = document.body): StudyCard {
+  const kicker = element('p', { class: 'kicker' });
+  const content = element('div', { class: 'content' });
+  const figure = element('p', { class: 'figure', role: 'timer', 'aria-live': 'off' });
+  const bar = element('progress', { max: 1, value: 0 });
+  const hint = element('p', { class: 'hint', role: 'status' });
+  const row = element('div', { class: 'row' });
+  const footnote = element('p', { class: 'footnote' });
+  const card = element('section', { class: 'study-card' });
+  const layer = element('div', { class: 'study-layer' }, card);
+  layer.hidden = true;
+  parent.append(layer);
+  const dots = element('nav', { class: 'dots' });
+  let shownKey = '';
+  let shownDots = '';
+
+  const speak = ({ say, spoken }: Phrases) => {
+    card.lang = spoken;
+    card.ariaLabel = say('study');
+    bar.ariaLabel = say('progress');
+    dots.ariaLabel = say('question.all');
+  };
+
+  return {
+    show(screen) {
+      layer.hidden = screen === null;
+      if (!screen) {
+        // Answers may be given elsewhere in the meantime, so the next screen is built again.
+        shownKey = '';
+        return;
+      }
+      const { question, text, title, buttons } = screen;
+      speak(screen.phrases);
+      // Fields show their answers themselves. Rebuilding the card at every key would lose the cursor.
+      const key = JSON.stringify([screen.id, title, text, buttons.map(({ id, label, look }) => [id, label, look])]);
+      if (key !== shownKey) {
+        shownKey = key;
+        const focused = document.activeElement?.getAttribute('data-id');
+        const held = card.contains(document.activeElement);
+        const another = card.dataset.screen !== screen.id;
+        card.dataset.screen = screen.id;
+        content.replaceChildren(
+          ...(question ? [dots, ...questionNodes(question)] : [element('h1', {}, title), ...paragraphs(text)]),
+        );
+        row.replaceChildren(...buttons.map(buttonNode));
+        const parts = [kicker, content, figure, bar, hint, row, footnote];
+        if (another) fill(card, parts, held);
+        else {
+          card.replaceChildren(...parts);
+          // A rebuilt screen keeps the keyboard focus when its card is rebuilt.
+          const again = focused && card.querySelector<HTMLElement>(`[data-id="${focused}"]`);
+          if (again) again.focus({ preventScroll: true });
+        }
+      }
+      if (question) {
+        const state = JSON.stringify([question.number, question.all]);
+        if (state !== shownDots) dots.replaceChildren(...dotNodes(question));
+        shownDots = state;
+      }
+      put(kicker, screen.kicker);
+      kicker.classList.toggle('trouble', screen.trouble);
+      put(figure, screen.figure);
+      bar.hidden = screen.part === null;
+      if (screen.part !== null) bar.value = screen.part;
+      put(hint, screen.hint);
+      put(footnote, screen.footnote);
+    },
+    ask(form) {
+      layer.hidden = false;
+      speak(form.phrases);
+      put(footnote, formNote(form));
+      if (shownKey === `form ${form.kind}`) return;
+      shownKey = `form ${form.kind}`;
+      card.dataset.screen = form.kind;
+      fill(card, [...formNodes(form, speak), footnote], card.contains(document.activeElement));
+    },
+  };
+}

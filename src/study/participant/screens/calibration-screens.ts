@@ -1,0 +1,82 @@
+import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
+import type { Phrases } from '../../model/phrases/phrases';
+import type { RemoteTerms } from '../../model/plan/remote-setup';
+import { askToStopButton, calibrateButton, enterButton, pauseButton, type ScreenParts } from './screen-parts';
+import type { StudyScreen } from './study-screen';
+import type { StudySituation } from './study-situation';
+
+/** Returns the screens before and during a measurement: putting the headset on, faults of the set-up, measuring. */
+export function calibrationScreen(
+  parts: ScreenParts,
+  { session, inSession, calibration, setupFaults }: StudySituation,
+): StudyScreen {
+  const { base, phrases } = parts;
+  const { say } = phrases;
+  const { remote } = session.plan;
+  if (remote && setupFaults.length > 0 && (!calibration || calibration.kind === 'done')) {
+    return setupScreen(parts, remote, { faults: setupFaults, inSession });
+  }
+  if (!inSession) {
+    return {
+      ...base,
+      id: 'calibration-enter',
+      title: say('headset.title'),
+      text: [say('headset.measures')],
+      buttons: [enterButton(parts), pauseButton(parts)],
+    };
+  }
+  if (calibration) return measuringScreen(parts, calibration);
+  return {
+    ...base,
+    id: 'calibration',
+    title: say('measures.title'),
+    text: [say('measures.stance'), say('measures.press')],
+    buttons: [calibrateButton(parts, 'measures.begin'), pauseButton(parts)],
+  };
+}
+
+/** Shows why a participant who takes part alone cannot begin, and the contact. */
+function setupScreen(
+  parts: ScreenParts,
+  { contact }: RemoteTerms,
+  { faults, inSession }: { readonly faults: readonly string[]; readonly inSession: boolean },
+): StudyScreen {
+  const { say } = parts.phrases;
+  return {
+    ...parts.base,
+    id: 'setup',
+    title: inSession ? say('setup.title') : say('setup.device'),
+    text: [...faults, say('setup.contact', { contact })],
+    trouble: true,
+    buttons: inSession ? [calibrateButton(parts, 'measureAgain'), pauseButton(parts)] : [askToStopButton(parts)],
+  };
+}
+
+/** Returns a step of the measurement in one word or number. */
+function headlineOf(step: Exclude<CalibrationStep, { kind: 'failed' }>, { say }: Phrases): string {
+  if (step.kind === 'countdown') return String(Math.ceil(step.secondsLeft));
+  return step.kind === 'measuring' ? say('measuring.hold') : say('measuring.done');
+}
+
+function measuringScreen(parts: ScreenParts, calibration: CalibrationStep): StudyScreen {
+  const { base, phrases } = parts;
+  const id = `calibration-${calibration.kind}`;
+  if (calibration.kind === 'failed') {
+    return {
+      ...base,
+      id,
+      title: phrases.say('measuring.failed'),
+      text: [phrases.say(`measuring.${calibration.fault}`)],
+      buttons: [calibrateButton(parts, 'measureAgain')],
+    };
+  }
+  return {
+    ...base,
+    id,
+    title: phrases.say('measuring.title'),
+    text: [phrases.say('measuring.instruction')],
+    figure: headlineOf(calibration, phrases),
+    part: calibration.kind === 'measuring' ? calibration.part : null,
+    buttons: [],
+  };
+}

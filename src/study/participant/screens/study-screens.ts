@@ -1,0 +1,216 @@
+import type { Phrases } from '../../model/phrases/phrases';
+import { inLanguage } from '../../model/phrases/words';
+import { taskTitle } from '../../model/plan/plan';
+import type { RemoteTerms } from '../../model/plan/remote-setup';
+import type { StudyStep } from '../../model/plan/schedule';
+import { clockText, type Progress } from '../../model/progress/progress';
+import { screenQuestions } from '../answering';
+import { questionPart } from '../questions/question-screen';
+import type { UploadStatus } from '../session/participant-session';
+import { noStorage } from '../session/session-store';
+import { silentStorage } from '../session/storage-timeout';
+import { calibrationScreen } from './calibration-screens';
+import { roundScreen } from './round-screens';
+import { askToStopButton, pauseButton, type ScreenParts } from './screen-parts';
+import type { StudyScreen } from './study-screen';
+import type { ScreenActions, ShownSession, StudySituation } from './study-situation';
+
+/** Why the device could not store, in the participant's language where the page knows the reason. */
+function storageReason(fault: string, say: Phrases['say']): string {
+  if (fault === noStorage) return say('kept.noStorage');
+  return fault === silentStorage ? say('kept.silentStorage') : fault;
+}
+
+/**
+ * Returns the upload status in a sentence, and whether data are at risk. `remote` is for a participant who takes part
+ * alone.
+ */
+export function uploadStatusText(
+  { unsent, unsaved, storageFault, online, refusal }: UploadStatus,
+  { say }: Phrases,
+  remote?: RemoteTerms,
+): readonly [string, boolean] {
+  if (refusal !== null && unsent > 0) {
+    const what = { count: unsent, reason: refusal };
+    return [remote ? say('kept.refusedRemote', { ...what, contact: remote.contact }) : say('kept.refused', what), true];
+  }
+  if (unsaved > 0) {
+    if (storageFault === null) return [say('kept.saving'), false];
+    const reason = storageReason(storageFault, say);
+    return [say('kept.noRoom', { count: unsaved, reason }), true];
+  }
+  if (!online) return [say('kept.offline', { count: unsent }), false];
+  return [unsent > 0 ? say('kept.sending') : say('kept.all'), false];
+}
+
+/** Returns the line above the title. Participants know rounds by number, never by condition. */
+function kickerOf({ plan, phrases }: ShownSession, step: StudyStep): string {
+  if (!('task' in step)) return inLanguage(plan.title, phrases.language);
+  const title = taskTitle(plan, step.task, phrases.language);
+  const practice = step.kind === 'tutorial' || (step.kind === 'rest' && step.id.endsWith('after-tutorial'));
+  return `${title} · ${practice ? phrases.say('practice') : phrases.say('round', { number: step.block })}`;
+}
+
+/** Returns the screen in the headset after the place was given to another device. The form on the page says more. */
+export const lockedOutScreen = ({ plan, phrases }: ShownSession): StudyScreen => ({
+  id: 'locked-out',
+  phrases,
+  kicker: inLanguage(plan.title, phrases.language),
+  title: phrases.say(plan.remote ? 'lockedOut.title' : 'callExperimenter'),
+  text: plan.remote ? [phrases.say('lockedOut.deleted'), plan.remote.contact] : [phrases.say('lockedOut.released')],
+  figure: null,
+  part: null,
+  question: null,
+  hint: null,
+  buttons: [],
+  footnote: phrases.say('lockedOut.silent'),
+  trouble: true,
+});
+
+/** Returns the screen of the present step in the participant's language, or null while the participant plays. */
+export function screenOf(situation: StudySituation, actions: ScreenActions): StudyScreen | null {
+  const { session, refusal } = situation;
+  const { step, progress, phrases } = session;
+  const { remote } = session.plan;
+  const [kept, worrying] = uploadStatusText(session.uploadStatus, phrases, remote);
+  const base = {
+    kicker: kickerOf(session, step),
+    phrases,
+    figure: null,
+    part: null,
+    question: null,
+    hint: refusal,
+    footnote: session.simulated ? `${phrases.say('simulated')} · ${kept}` : kept,
+    trouble: worrying,
+  };
+  const parts: ScreenParts = { base, phrases, actions };
+  if (step.kind !== 'end' && (progress.unwell || situation.stopping)) return stopScreen(parts, progress, remote);
+  if (progress.paused) return pausedScreen(parts);
+  switch (step.kind) {
+    case 'calibration':
+      return calibrationScreen(parts, situation);
+    case 'tutorial':
+    case 'trial':
+      return roundScreen(parts, step, situation);
+    case 'rest':
+      return restScreen(parts, step, session);
+    case 'questionnaire':
+      return questionScreen(parts, situation);
+    case 'end':
+      return endScreen(parts, situation);
+    default:
+      return null;
+  }
+}
+
+const pausedScreen = (parts: ScreenParts): StudyScreen => ({
+  ...parts.base,
+  id: 'paused',
+  title: parts.phrases.say('paused.title'),
+  text: [parts.phrases.say('paused.text')],
+  buttons: [
+    askToStopButton(parts),
+    {
+      id: 'resume',
+      label: parts.phrases.say('continue'),
+      look: 'primary',
+      act: () => parts.actions.apply({ type: 'resume' }),
+    },
+  ],
+});
+
+/** Asks whether to stop, because of answers or because the participant wants to. */
+function stopScreen(
+  { base, phrases: { say }, actions }: ScreenParts,
+  { unwell }: Progress,
+  remote: RemoteTerms | undefined,
+): StudyScreen {
+  return {
+    ...base,
+    id: unwell ? 'unwell' : 'stopping',
+    title: unwell ? say('unwell.title') : say('stopping.title'),
+    text: [
+      ...(unwell ? [say('unwell.text')] : []),
+      say('stopping.text'),
+      ...(unwell && remote ? [say('unwell.contact', { contact: remote.contact })] : []),
+    ],
+    buttons: [
+      // The way back is where the button to stop was, so that pressing twice stops nothing.
+      {
+        id: 'go-on',
+        label: unwell ? say('unwell.goOn') : say('stopping.goOn'),
+        look: unwell ? 'plain' : 'primary',
+        act: () => (unwell ? actions.apply({ type: 'go-on' }) : actions.askToStop(false)),
+      },
+      {
+        id: 'stop',
+        label: say('stop'),
+        look: unwell ? 'primary' : 'plain',
+        act: () => actions.apply({ type: 'stop', by: 'participant' }),
+      },
+    ],
+  };
+}
+
+function restScreen(
+  parts: ScreenParts,
+  { seconds }: Extract<StudyStep, { kind: 'rest' }>,
+  session: ShownSession,
+): StudyScreen {
+  const left = session.remaining() ?? 0;
+  return {
+    ...parts.base,
+    id: 'rest',
+    title: parts.phrases.say('rest.title'),
+    text: [parts.phrases.say('rest.text')],
+    figure: clockText(left),
+    part: seconds > 0 ? 1 - left / seconds : 1,
+    buttons: [pauseButton(parts)],
+  };
+}
+
+function endScreen({ base, phrases }: ScreenParts, { session, withdrawalPage }: StudySituation): StudyScreen {
+  const { plan, progress, uploadStatus } = session;
+  const { say } = phrases;
+  return {
+    ...base,
+    id: 'end',
+    kicker: inLanguage(plan.title, phrases.language),
+    title: say('end.title'),
+    text: [
+      progress.stopped ? say('end.stopped') : say('end.done'),
+      uploadStatus.unsent === 0 ? say('end.arrived') : say('end.keepOpen'),
+      say('end.withdraw', { address: withdrawalPage.replace(/^https?:\/\//, '') }),
+    ],
+    buttons: [],
+  };
+}
+
+function questionScreen(parts: ScreenParts, situation: StudySituation): StudyScreen {
+  const { base, phrases, actions } = parts;
+  const { say } = phrases;
+  const { session, question: index } = situation;
+  const questions = screenQuestions(session);
+  const at = Math.min(index, questions.length - 1);
+  const last = at === questions.length - 1;
+  const left = session.remaining();
+  const time =
+    left === null ? '' : left > 0 ? say('question.timeLeft', { time: clockText(left) }) : say('question.takeTime');
+  const { question, hint } = questionPart(questions, at, situation, actions);
+  return {
+    ...base,
+    id: `question-${question.id}`,
+    title: question.text,
+    text: [],
+    hint,
+    question,
+    buttons: [
+      { id: 'back', label: say('back'), look: at === 0 ? 'off' : 'plain', act: () => actions.goTo(at - 1) },
+      pauseButton(parts),
+      last
+        ? { id: 'submit', label: say('submit'), look: 'primary', act: actions.submit }
+        : { id: 'next', label: say('next'), look: 'primary', act: () => actions.goTo(at + 1) },
+    ],
+    footnote: time ? `${time} · ${base.footnote}` : base.footnote,
+  };
+}

@@ -1,0 +1,55 @@
+import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
+import type { ProgressEvent } from '../../model/progress/advance';
+import type { Answer } from '../../model/questionnaires/question-kind';
+import type { Question } from '../../model/questionnaires/questionnaire-schema';
+import type { ParticipantSession } from '../session/participant-session';
+import type { Prepared } from '../trial/trial-preparation';
+
+/** The parts of a session that screens show. */
+export type ShownSession = Pick<
+  ParticipantSession,
+  'plan' | 'phrases' | 'step' | 'progress' | 'simulated' | 'uploadStatus' | 'remaining'
+>;
+
+/** Everything that decides which screen a participant sees. */
+export interface StudySituation {
+  readonly session: ShownSession;
+  readonly inSession: boolean;
+  /** The index of the question on display. */
+  readonly question: number;
+  /** The typed text in the field of that question; null: nothing was typed. */
+  readonly typed: string | null;
+  /** Whether handing in failed because an answer is missing. */
+  readonly triedToSubmit: boolean;
+  /** The step of the measurement; null: nobody is being measured. */
+  readonly calibration: CalibrationStep | null;
+  /** What is wrong with device, room or height of a participant who takes part alone; empty: nothing. */
+  readonly setupFaults: readonly string[];
+  /** The address of the page where everything can be deleted with the withdrawal code. */
+  readonly withdrawalPage: string;
+  /** How far the trial of the present step is prepared; null: not at all. */
+  readonly prepared: Prepared | null;
+  /** Why the last action changed nothing; null: it did. */
+  readonly refusal: string | null;
+  readonly playing: boolean;
+  /** The participants that a started trial waits for, empty if unknown; null: none. */
+  readonly waitingFor: readonly string[] | null;
+  /** Whether the participant wants to stop and has not confirmed it yet. */
+  readonly stopping: boolean;
+  /** Whether the game is paused by another participant of the group. */
+  readonly standing: boolean;
+}
+
+export interface ScreenActions {
+  apply(event: ProgressEvent): void;
+  goTo(index: number): void;
+  choose(question: string, value: Answer): void;
+  /** Takes the text in the field of a question. */
+  type(question: Question, typed: string): void;
+  submit(): void;
+  calibrate(): void;
+  enterVr(): void;
+  prepareAgain(): void;
+  /** Asks whether to stop; false withdraws the question. */
+  askToStop(on: boolean): void;
+}

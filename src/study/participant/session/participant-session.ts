@@ -1,0 +1,252 @@
+import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../../client/study-client';
+import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
+import { languagesOf } from '../../model/plan/plan';
+import { type Schedule, scheduleFor } from '../../model/plan/schedule';
+import { advance, type ProgressEvent } from '../../model/progress/advance';
+import { begin, currentStep, type Progress, remainingSeconds, reported } from '../../model/progress/progress';
+import type { Claim, NumberedCommand, PlayedTogether, SignedSeat } from '../../model/progress/study-api';
+import { preferredHandOf } from '../../model/records/participant-profile';
+import { MotionSender } from './motion-sender';
+import { sendRecords } from './send-records';
+import { SessionStore, type Unsent } from './session-store';
+import type { KeptSession, StudyVault } from './study-vault';
+
+/** How much of the recorded data the server has. */
+export interface UploadStatus {
+  /** The number of records and recordings that the server has not acknowledged. */
+  readonly unsent: number;
+  /** The number of these that are only in the memory of the page, because the device could not store them. */
+  readonly unsaved: number;
+  /** Why the device could not store them; null: it could. */
+  readonly storageFault: string | null;
+  /** Whether the server answered the last request. */
+  readonly online: boolean;
+  /** Why the server permanently refuses data; null: it refuses none. */
+  readonly refusal: string | null;
+  /** Whether the place belongs to another device, because the experimenter released it or deleted its records. */
+  readonly lockedOut: boolean;
+}
+
+export interface ParticipantSessionOptions {
+  readonly client: ParticipantClient;
+  /** null: the browser stores nothing; records are kept in memory until they are sent. */
+  readonly vault: StudyVault | null;
+  /** Seconds since 1970. */
+  readonly now: () => number;
+  readonly onChange: () => void;
+  /** Called before a command of the experimenter is followed, so that earlier results are recorded first. */
+  readonly onCommand?: () => void;
+}
+
+/** Returns the first session of a participant on this device; another device may have begun it. */
+export const startSession = (claim: Claim, study: string, participant: string): KeptSession => ({
+  ...claim,
+  study,
+  participant,
+  progress: claim.progress ?? begin(scheduleFor(claim.plan, participant), claim.simulated),
+});
+
+/** The session of one participant on this device: its steps and the upload of its records. */
+export class ParticipantSession {
+  readonly schedule: Schedule;
+  readonly #client: ParticipantClient;
+  readonly #store: SessionStore;
+  readonly #motion: MotionSender;
+  readonly #now: () => number;
+  readonly #onChange: () => void;
+  readonly #onCommand: () => void;
+  #online = true;
+  #refusal: string | null = null;
+  #lockedOut = false;
+  /** The progress that was last reported to the server; null: none. */
+  #reported: Progress | null = null;
+  #exchanging: Promise<void> | null = null;
+  #phrases: Phrases | null = null;
+
+  constructor(kept: KeptSession, unsent: Unsent, options: ParticipantSessionOptions) {
+    const { client, vault, now, onChange, onCommand = () => undefined } = options;
+    this.schedule = scheduleFor(kept.plan, kept.participant);
+    this.#client = client;
+    this.#store = new SessionStore(kept, unsent, { vault, onChange });
+    const { study, participant, token } = kept;
+    this.#motion = new MotionSender(this.#store, {
+      send: (trial, recording) => client.sendMotion(study, participant, token, trial, recording),
+      onFault: (error) => this.#noteFault(error),
+      onChange,
+    });
+    this.#now = now;
+    this.#onChange = onChange;
+    this.#onCommand = onCommand;
+  }
+
+  get #session(): KeptSession {
+    return this.#store.session;
+  }
+
+  get plan() {
+    return this.#session.plan;
+  }
+
+  /** The phrases of the page in the participant's language. */
+  get phrases(): Phrases {
+    const language = this.progress.language ?? languagesOf(this.plan)[0];
+    if (this.#phrases?.language !== language) this.#phrases = phrasesOf(this.plan, language);
+    return this.#phrases;
+  }
+
+  get simulated() {
+    return this.#session.simulated;
+  }
+
+  get progress() {
+    return this.#session.progress;
+  }
+
+  get step() {
+    return currentStep(this.schedule, this.progress);
+  }
+
+  /** The withdrawal code; null: the participant has noted it. */
+  get withdrawalCode() {
+    return this.#session.withdrawalCode;
+  }
+
+  get preferredHand() {
+    return this.#session.preferredHand;
+  }
+
+  /** The newest measures of the body; null: not measured yet. */
+  get calibration() {
+    return this.#session.calibration;
+  }
+
+  get uploadStatus(): UploadStatus {
+    const { unsent, unsaved, fault } = this.#store;
+    return {
+      unsent,
+      unsaved,
+      storageFault: fault,
+      online: this.#online,
+      refusal: this.#refusal ?? this.#motion.refusal,
+      lockedOut: this.#lockedOut,
+    };
+  }
+
+  /** Returns the seconds left of this step, or null if it has no limit. */
+  remaining(): number | null {
+    return remainingSeconds(this.schedule, this.progress, this.#now());
+  }
+
+  /** Applies an event and stores its consequences; returns why it is refused, or null. */
+  apply(event: ProgressEvent): string | null {
+    return this.#take(event);
+  }
+
+  codeNoted(): void {
+    this.#store.change({ ...this.#session, withdrawalCode: null });
+  }
+
+  /**
+   * Resolves with the participant's seat in the room of a trial that the group plays together; rejects with the reason
+   * if there is none.
+   */
+  seat(trial: PlayedTogether): Promise<SignedSeat> {
+    const { study, participant, token } = this.#session;
+    return this.#client.seat(study, participant, token, trial);
+  }
+
+  /** Keeps the tracking frames of a trial until the server has them. */
+  keepMotion(trial: string, recording: string): void {
+    this.#store.keepMotion({ trial, recording });
+  }
+
+  /**
+   * Sends the unsent records, reports the progress and follows the experimenter's commands, then starts to upload
+   * recordings without waiting for them. Never rejects.
+   */
+  exchange(): Promise<void> {
+    this.#exchanging ??= this.#exchangeOnce().finally(() => {
+      this.#exchanging = null;
+    });
+    return this.#exchanging;
+  }
+
+  /** Resolves when no upload of a recording is under way. Failed uploads are repeated with a later exchange. */
+  motionSent(): Promise<void> {
+    return this.#motion.sent();
+  }
+
+  /** Resolves when the device has stored everything so far or has reported that it cannot. */
+  settled(): Promise<void> {
+    return this.#store.settled();
+  }
+
+  /**
+   * `command` is the number of the experimenter's command that caused the event. It counts as followed even if nothing
+   * changes.
+   */
+  #take(event: ProgressEvent, command?: number): string | null {
+    const session = this.#session;
+    const before = command === undefined ? session.progress : { ...session.progress, commandsSeen: command };
+    const { progress, records, refusal } = advance(this.schedule, before, event, this.#now());
+    if (progress === session.progress && records.length === 0) return refusal;
+    const told = records.find((record) => record.kind === 'demographics')?.body;
+    const next = {
+      ...session,
+      progress,
+      ...(told && { preferredHand: preferredHandOf(told) }),
+      ...(event.type === 'calibrated' && { calibration: event.calibration }),
+    };
+    this.#store.change(next, records);
+    return refusal;
+  }
+
+  async #exchangeOnce(): Promise<void> {
+    // The server must not be ahead of the device: after a crash the device would send other records for the same
+    // events.
+    await this.#store.save();
+    try {
+      await this.#report();
+      const { study, participant, token } = this.#session;
+      const { commandsSeen = 0 } = this.progress;
+      for (const command of await this.#client.commands(study, participant, token, commandsSeen)) this.#follow(command);
+      // The changes of a command are reported at once, because the experimenter waits for them.
+      if (this.progress !== this.#reported) await this.#report();
+      this.#online = true;
+      this.#motion.send();
+    } catch (error) {
+      this.#noteFault(error);
+    }
+    this.#onChange();
+  }
+
+  /** Sends the unsent records and then the progress, which is not reported before consent. */
+  async #report(): Promise<void> {
+    const { study, participant, token } = this.#session;
+    this.#refusal = await sendRecords(this.#store, (records) => this.#client.send(study, participant, token, records));
+    const { progress } = this;
+    if (progress.motion === null) return;
+    await this.#client.saveProgress(study, participant, token, reported(progress, this.#now()));
+    this.#reported = progress;
+  }
+
+  #noteFault(error: unknown): void {
+    if (error instanceof ServerUnreachable) this.#online = false;
+    else if (error instanceof ServerRefusal) {
+      this.#refusal = error.message;
+      this.#lockedOut = error.status === 401;
+    } else this.#store.noteFault(error);
+  }
+
+  /** Follows each command once, even across a reload or on another device. */
+  #follow({ number, command }: NumberedCommand): void {
+    if (number <= (this.progress.commandsSeen ?? 0)) return;
+    this.#onCommand();
+    const { step, running, motion } = this.progress;
+    const refusal = this.#take(command, number);
+    // A record states why a command changed nothing.
+    if (refusal === null || motion === null) return;
+    const where = `${step}${running ? ', running' : ''}`;
+    this.apply({ type: 'remark', text: `The command "${command.type}" changed nothing at ${where}: ${refusal}` });
+  }
+}

@@ -1,0 +1,38 @@
+import { ServerRefusal } from '../../client/study-client';
+import type { StudyRecord } from '../../model/records/study-record';
+import type { SessionStore } from './session-store';
+
+type Send = (records: readonly StudyRecord[]) => Promise<readonly string[]>;
+
+/**
+ * Sends the records of a session in batches; `send` resolves with the ids that the server has. Refused records are kept
+ * and do not delay the others. Resolves with the reason of a refusal, or null; rejects if there is no server, or none
+ * for this device.
+ */
+export async function sendRecords(store: SessionStore, send: Send): Promise<string | null> {
+  const refused = new Set<string>();
+  let reason: string | null = null;
+  for (let batch = store.nextBatch(refused); batch.length > 0; batch = store.nextBatch(refused)) {
+    const refusal = await sendOrRefuse(store, send, batch);
+    if (refusal === null) continue;
+    // One of them is at fault, so each is sent separately.
+    for (const record of batch) {
+      const why = batch.length === 1 ? refusal : await sendOrRefuse(store, send, [record]);
+      if (why === null) continue;
+      refused.add(record.id);
+      reason = why;
+    }
+  }
+  return reason;
+}
+
+/** Resolves with why the server takes none of these records, or with null if it has them. */
+async function sendOrRefuse(store: SessionStore, send: Send, records: readonly StudyRecord[]): Promise<string | null> {
+  try {
+    await store.acknowledge(await send(records));
+    return null;
+  } catch (error) {
+    if (!(error instanceof ServerRefusal) || error.status === 401) throw error;
+    return error.message;
+  }
+}

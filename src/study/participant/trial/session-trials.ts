@@ -1,0 +1,158 @@
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { PhrasedError } from '../../model/phrases/phrases';
+import { randomFor } from '../../model/plan/shuffle';
+import { placeOf } from '../../model/progress/progress';
+import { reasonFor } from '../reasons';
+import type { ParticipantSession } from '../session/participant-session';
+import type { StudyHost } from '../study-host';
+import { type FinishedTrial, isPlayed, lastPlayedBefore, type PlayedStep, PlayedTrial } from './study-trial';
+import type { TaskPlace, TaskRunner } from './task-runner';
+import { type Prepared, TrialPreparation } from './trial-preparation';
+
+export interface SessionTrialsOptions {
+  readonly session: ParticipantSession;
+  readonly host: StudyHost;
+  /** Returns the time in seconds since 1970. */
+  readonly now: () => number;
+  /** Called when a trial is prepared, has failed to load, or starts. */
+  readonly onChange: () => void;
+}
+
+/** Prepares, starts and ends the trials of a session, and gives the participant the body of each. */
+export class SessionTrials {
+  readonly #session: ParticipantSession;
+  readonly #host: StudyHost;
+  readonly #now: () => number;
+  readonly #onChange: () => void;
+  readonly #preparation: TrialPreparation;
+  #trial: PlayedTrial | null = null;
+  #embodied = false;
+
+  constructor({ session, host, now, onChange }: SessionTrialsOptions) {
+    this.#session = session;
+    this.#host = host;
+    this.#now = now;
+    this.#onChange = onChange;
+    this.#preparation = new TrialPreparation((step) => this.#load(step), onChange);
+  }
+
+  /** The trial that was started; null: none. */
+  get current(): PlayedTrial | null {
+    return this.#trial;
+  }
+
+  /** How far the trial of the present step is prepared; null: not at all. */
+  get prepared(): Prepared | null {
+    return this.#preparation.of(this.attempt);
+  }
+
+  /** The step, run and attempt of the session. A trial of another attempt is void. */
+  get attempt(): string {
+    const { schedule, progress, step } = this.#session;
+    const place = placeOf(schedule, progress);
+    return `${step.id}@${place?.run}.${place?.attempt}`;
+  }
+
+  /**
+   * Aborts a trial that became void, pauses one whose participant pauses, and prepares and starts that of the present
+   * step.
+   */
+  settle(): void {
+    const { step, progress } = this.#session;
+    if (this.#trial && this.#trial.key !== this.attempt) this.abort();
+    // With the headset off, a pause lasts until it is worn again.
+    this.#trial?.pause(progress.paused || !this.#host.inSession());
+    if (!isPlayed(step)) return;
+    // Every attempt loads its game, because the game of a void trial was put away.
+    if (!this.prepared) void this.#preparation.begin(this.attempt, step);
+    const ready = this.prepared?.state === 'ready';
+    if (progress.running && !progress.paused && !this.#trial && ready && this.#host.inSession()) this.#start(step);
+  }
+
+  /** Passes a frame to the trial; returns a trial that is over, once, or null. */
+  follow(time: number, frame: TrackingFrame | null): FinishedTrial | null {
+    return this.#ended(this.#trial?.follow(time, frame));
+  }
+
+  /** Ends a trial whose end is still on display; returns it, or null if there is none or it goes on. */
+  conclude(): FinishedTrial | null {
+    return this.#ended(this.#trial?.conclude());
+  }
+
+  /** Ends the trial without a result. */
+  abort(): void {
+    this.#trial?.abort();
+    this.#trial = null;
+  }
+
+  /** Discards the preparation, so that the game and the body are loaded again. */
+  prepareAgain(): void {
+    this.#preparation.forget();
+  }
+
+  /**
+   * Restores the body of the last trial after a reload, because the participant still wears it in the rest and the
+   * questions that follow. Does nothing after any other body was shown. Rejects if the body cannot be loaded.
+   */
+  async restoreBody(): Promise<void> {
+    const { step, schedule } = this.#session;
+    const played = this.#embodied || isPlayed(step) ? undefined : lastPlayedBefore(schedule, step);
+    if (played) await this.#embody(played);
+  }
+
+  #ended(finished: FinishedTrial | null | undefined): FinishedTrial | null {
+    if (finished) this.#trial = null;
+    return finished ?? null;
+  }
+
+  #start(step: PlayedStep): void {
+    const runner = this.#runnerOf(step);
+    if (!runner) return;
+    const { plan, progress } = this.#session;
+    const motion = progress.motion === true && plan.consent.motion !== null && step.kind === 'trial';
+    const options = { key: this.attempt, motion, seed: this.#seedOf(step), now: this.#now };
+    this.#trial = new PlayedTrial(step, runner, this.#host, options);
+    this.#onChange();
+  }
+
+  /** Loads the game and the body of a step; rejects with a sentence for the participant. */
+  async #load(step: PlayedStep): Promise<void> {
+    try {
+      const runner = this.#runnerOf(step);
+      if (!runner) throw new PhrasedError('round.game');
+      await Promise.all([runner.prepare(this.#placeFor(step)), this.#embody(step)]);
+    } catch (error) {
+      throw new Error(reasonFor(error, this.#session.phrases));
+    }
+  }
+
+  #embody(step: PlayedStep): Promise<void> {
+    this.#embodied = true;
+    return this.#host.embody(step.embodiment, this.#seedOf(step));
+  }
+
+  #runnerOf(step: PlayedStep): TaskRunner | null {
+    const game = this.#session.plan.tasks.find(({ id }) => id === step.task)?.game;
+    return (game && this.#host.runners[game]) ?? null;
+  }
+
+  /** Returns the place of the participant in the group, which has a separate room for every trial of every run. */
+  #placeFor(step: PlayedStep): TaskPlace {
+    const session = this.#session;
+    const run = session.progress.runs[`${step.task}/${step.block}`] ?? 1;
+    return {
+      seat: () => session.seat({ step: step.id, run }),
+      participant: session.progress.participant,
+      members: session.schedule.groups[step.task]?.members ?? [],
+      seconds: step.seconds,
+    };
+  }
+
+  /**
+   * Returns the seed of a layout, which is the same for each participant's first, second … trial under every condition.
+   */
+  #seedOf(step: PlayedStep): number {
+    const repetition = step.kind === 'trial' ? step.repetition : 0;
+    return randomFor(this.#session.plan.seed, `layout of ${step.task} ${repetition}`).seed >>> 1;
+  }
+}

@@ -1,0 +1,269 @@
+import { type ChildProcess, fork } from 'node:child_process';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { isDeepStrictEqual } from 'node:util';
+import { DatabaseSync } from '@photostructure/sqlite';
+import { rolldown } from 'rolldown';
+import { participantsOf, type StudyPlan } from 'threepoint-study/model/plan/plan';
+import { type Schedule, scheduleFor } from 'threepoint-study/model/plan/schedule';
+import type { ParticipantState } from 'threepoint-study/model/progress/study-api';
+import type { StudyRecord } from 'threepoint-study/model/records/study-record';
+import { openStudyStore } from 'threepoint-study/server/storage/store';
+import { type RandomSource, randomSource } from 'threepoint-study/simulation/random-source';
+import { sourceResolution } from '../../../../scripts/source-condition.mjs';
+import { heardFrom, isAlive, kill } from '../../../server/child-process';
+import { directoryWith } from '../../../temporary-directory';
+import { paperPlan, session } from '../../model/studies';
+
+const experimenter = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
+const root = fileURLToPath(new URL('../../../..', import.meta.url));
+
+/** What kills found; every list is empty where nothing was lost. */
+export interface KillReport {
+  kills: number;
+  /** Kills that came while a request was under way. */
+  amidRequests: number;
+  acknowledged: number;
+  /** Acknowledged records and recordings that a server no longer had, or had otherwise. */
+  readonly lost: string[];
+  /** Participants with records of a condition that is not theirs at this place, or two devices that held one place. */
+  readonly inTwoConditions: string[];
+  /** Participants with data left after an acknowledged withdrawal. */
+  readonly undeleted: string[];
+  /** Databases that are not sound. */
+  readonly unsound: string[];
+}
+
+/** The server and its thread, bundled: they start in a third of the time. */
+async function bundledServer(): Promise<string> {
+  const folder = join(root, '.cache/study-process');
+  const bundle = await rolldown({
+    input: {
+      'study-process': join(root, 'tests/study/server/faults/study-process.ts'),
+      'study-thread-worker': join(root, 'server/study-thread-work.ts'),
+    },
+    platform: 'node',
+    resolve: sourceResolution('node'),
+    external: (id) => /^[^./]/.test(id) && !id.startsWith('threepoint'),
+    logLevel: 'silent',
+  });
+  await bundle.write({ dir: folder, format: 'esm', entryFileNames: '[name].mjs' });
+  return join(folder, 'study-process.mjs');
+}
+
+/** A device that takes part: it sends each thing until it is acknowledged, as the page does. */
+class Device {
+  readonly study: string;
+  readonly participant: string;
+  readonly schedule: Schedule;
+  readonly acknowledged = new Map<string, StudyRecord>();
+  token: string | null = null;
+  code: string | null = null;
+  withdrawn: 'no' | 'asked' | 'yes' = 'no';
+  progressStep: string | null = null;
+  readonly #records: readonly StudyRecord[];
+  #sent = 0;
+
+  constructor(plan: StudyPlan, participant: string) {
+    this.study = plan.id;
+    this.participant = participant;
+    this.schedule = scheduleFor(plan, participant);
+    const one = session(this.schedule);
+    one.tell({ type: 'consent', version: plan.consent.version, motion: true });
+    one.doUntil(({ kind }) => kind === 'end');
+    this.#records = one.records;
+  }
+
+  get finished(): boolean {
+    return this.withdrawn === 'yes' || (this.#sent >= this.#records.length && this.withdrawn === 'no');
+  }
+
+  get path(): string {
+    return `/${this.study}/participants/${this.participant}`;
+  }
+
+  nextBatch(random: RandomSource): readonly StudyRecord[] {
+    return this.#records.slice(this.#sent, this.#sent + 1 + Math.floor(3 * random.uniform()));
+  }
+
+  accepted(batch: readonly StudyRecord[]): void {
+    this.#sent += batch.length;
+    for (const record of batch) this.acknowledged.set(record.id, record);
+  }
+}
+
+type Ask = (method: string, path: string, token: string | null, body?: unknown) => Promise<Response>;
+
+/** What a device does next; resolves when the server has answered, rejects when it is gone. */
+async function act(device: Device, ask: Ask, random: RandomSource): Promise<void> {
+  const { path, participant } = device;
+  if (device.withdrawn === 'asked' || (device.acknowledged.size > 8 && device.code && random.uniform() < 0.02)) {
+    device.withdrawn = 'asked';
+    const answer = await ask('POST', `/${device.study}/withdraw`, null, { code: device.code });
+    // 404: the kill came after the deletion, and before its answer.
+    if (answer.status === 200 || answer.status === 404) device.withdrawn = 'yes';
+    return;
+  }
+  if (device.token === null) {
+    const states = (await (await ask('GET', `/${device.study}/participants`, experimenter)).json()) as {
+      participants: ParticipantState[];
+    };
+    const { invitation, claimed } = states.participants.find(
+      (one) => one.participant === participant,
+    ) as ParticipantState;
+    // The answer with the token was lost: the experimenter gives the place free, as for any lost device.
+    if (claimed) await ask('POST', `${path}/release`, experimenter);
+    // Two tabs at once.
+    const claims = await Promise.all([1, 2].map(() => ask('POST', `${path}/claim`, null, { invitation })));
+    const given = claims.filter(({ status }) => status === 201);
+    if (given.length > 1) throw new Error(`${participant} was given to two devices`);
+    const [claim] = given;
+    if (!claim) return;
+    const { token, withdrawalCode } = (await claim.json()) as { token: string; withdrawalCode: string | null };
+    device.token = token;
+    device.code ??= withdrawalCode;
+    return;
+  }
+  const batch = device.nextBatch(random);
+  const answer = await ask('POST', `${path}/records`, device.token, { records: batch });
+  if (answer.status !== 200) throw new Error(`${participant}: ${answer.status} ${await answer.text()}`);
+  const { acknowledged } = (await answer.json()) as { acknowledged: string[] };
+  device.accepted(batch.filter(({ id }) => acknowledged.includes(id)));
+}
+
+/** What of a device the files of a dead server lack. */
+function check(device: Device, store: ReturnType<typeof openStudyStore>, report: KillReport): void {
+  const { study, participant, schedule } = device;
+  const stored = store.records.all(study, participant);
+  if (device.withdrawn === 'yes') {
+    if (stored.length > 0) report.undeleted.push(`${study} ${participant}: ${stored.length} records`);
+    return;
+  }
+  // A withdrawal without an answer has deleted all or nothing.
+  if (device.withdrawn === 'asked' && stored.length === 0) return;
+  if (device.token && !store.places.holds(study, participant, device.token))
+    report.lost.push(`${study} ${participant}: its place`);
+  const byId = new Map(stored.map((record) => [record.id, record]));
+  for (const [id, sent] of device.acknowledged) {
+    if (!isDeepStrictEqual(byId.get(id), sent)) report.lost.push(`${study} ${participant} ${id}`);
+  }
+  for (const record of stored) {
+    if (record.kind !== 'trial' || record.body.condition === null) continue;
+    const { place, condition } = record.body;
+    const due = schedule.steps.find(
+      (step) => step.kind === 'trial' && step.task === place.task && step.block === place.block,
+    );
+    if (due?.kind !== 'trial' || due.condition !== condition)
+      report.inTwoConditions.push(`${study} ${participant} ${record.id}`);
+  }
+}
+
+interface Server {
+  readonly child: ChildProcess;
+  readonly ask: Ask;
+}
+
+async function started(file: string, directory: string): Promise<Server> {
+  const child = fork(file, [directory, './study-thread-worker.mjs'], {
+    env: { ...process.env, EXPERIMENTER_TOKEN: experimenter },
+  });
+  const { port } = await heardFrom<{ port: number }>(child);
+  const ask: Ask = (method, path, token, body) =>
+    fetch(`http://127.0.0.1:${port}/api/studies${path}`, {
+      method,
+      headers: { 'content-type': 'application/json', ...(token && { authorization: `Bearer ${token}` }) },
+      ...(body !== undefined && { body: JSON.stringify(body) }),
+    });
+  return { child, ask };
+}
+
+/** Participants at once; studies follow each other as they finish. */
+const devicesAtOnce = 6;
+
+/**
+ * Kills a server of studies (SIGKILL) so often at a drawn moment while participants write, two experimenters begin the
+ * same study and participants withdraw; looks into its files after each. The same seed draws the same moments; what the
+ * operating system makes of them it does not.
+ */
+export async function killedStudy(
+  kills: number,
+  seed: number,
+  tell: (line: string) => void = () => undefined,
+): Promise<KillReport> {
+  const file = await bundledServer();
+  const directory = directoryWith();
+  const random = randomSource(seed, 'kills');
+  const report: KillReport = {
+    ...{ kills: 0, amidRequests: 0, acknowledged: 0 },
+    ...{ lost: [], inTwoConditions: [], undeleted: [], unsound: [] },
+  };
+  const everyone: Device[] = [];
+  let devices: Device[] = [];
+  for (let number = 0; report.kills < kills; ) {
+    const server = await started(file, directory);
+    let underWay = 0;
+    let answers = 0;
+    const counted: Ask = async (...asked) => {
+      underWay += 1;
+      try {
+        return await server.ask(...asked);
+      } finally {
+        underWay -= 1;
+        answers += 1;
+      }
+    };
+    if (devices.every(({ finished }) => finished)) {
+      number += 1;
+      const plan = paperPlan({ id: `killed-${number}` });
+      // Two experimenters at once, with the same plan: both have it.
+      const begun = await Promise.all(
+        [1, 2].map(() => server.ask('POST', '', experimenter, { plan, simulated: false })),
+      );
+      for (const { status } of begun) if (status !== 201) throw new Error(`the study was not begun: ${status}`);
+      devices = participantsOf(plan)
+        .slice(0, devicesAtOnce)
+        .map((one) => new Device(plan, one));
+      everyone.push(...devices);
+    }
+    const until = Math.floor(30 * random.uniform());
+    const delayMs = 4 * random.uniform();
+    let dying = false;
+    const faults: unknown[] = [];
+    const loops = devices.map(async (device) => {
+      while (!dying && !device.finished) {
+        try {
+          await act(device, counted, random);
+        } catch (error) {
+          // fetch says "TypeError" of a server that is gone, and of one that has just closed the connection because
+          // nothing came by it for some seconds: then it is sent again, as the page does.
+          const unanswered = error instanceof TypeError;
+          if (unanswered && !dying && isAlive(server.child)) continue;
+          if (!unanswered || !dying) faults.push(error);
+          return;
+        }
+      }
+    });
+    while (answers < until && !devices.every(({ finished }) => finished) && faults.length === 0) {
+      await new Promise((resolve) => setTimeout(resolve, 1));
+    }
+    await new Promise((resolve) => setTimeout(resolve, delayMs));
+    dying = true;
+    if (underWay > 0) report.amidRequests += 1;
+    await kill(server.child);
+    await Promise.all(loops);
+    if (faults.length > 0) throw faults[0];
+    report.kills += 1;
+    const store = openStudyStore(join(directory, 'studies.db'));
+    // Old studies now and then, those at hand every time.
+    for (const device of report.kills % 50 === 0 || report.kills === kills ? everyone : devices)
+      check(device, store, report);
+    store.close();
+    const database = new DatabaseSync(join(directory, 'studies.db'));
+    const { integrity_check: sound } = database.prepare('PRAGMA integrity_check').get() as { integrity_check: string };
+    database.close();
+    if (sound !== 'ok') report.unsound.push(`kill ${report.kills}: ${sound}`);
+    if (report.kills % 100 === 0) tell(`${report.kills} kills, ${report.amidRequests} amid requests`);
+  }
+  report.acknowledged = everyone.reduce((sum, { acknowledged }) => sum + acknowledged.size, 0);
+  return report;
+}
