@@ -59,6 +59,7 @@ const roomsRooms = {
   client: ['protocol', 'room'],
   peers: ['protocol', 'room', 'client'],
   drawing: ['protocol', 'room', 'client', 'peers'],
+  react: ['drawing'],
   voices: ['protocol', 'client'],
   server: ['protocol', 'room'],
 };

@@ -1,7 +1,9 @@
 // The entries of threepoint-rooms for pages in TypeScript: compiled against the packed packages by `npm run test:full`.
+import { createElement } from 'react';
 import type { Scene, WebGLRenderer } from 'three';
 import { type Avatar, BodyTracker, loadMannequin } from 'threepoint/three';
 import { longestPeerPacket, PoseSender, type RemotePose, RemotePoses } from 'threepoint-rooms';
+import { Others } from 'threepoint-rooms/react';
 import { type JoinedRoom, joinRoom, placementOf, RemoteBodies } from 'threepoint-rooms/three';
 
 /** A room of a server, with the wearer's body and those of the others. */
@@ -20,6 +22,10 @@ export async function inARoom(renderer: WebGLRenderer, scene: Scene): Promise<Jo
   });
   return room;
 }
+
+/** The same in react-three-fiber. */
+export const othersOf = (body: BodyTracker) =>
+  createElement(Others, { url: 'https://example.org', name: 'Ada', body, ref: (room) => console.log(room?.seat) });
 
 /** A transport of the page, with bodies in a scene. */
 export function overAChannel(channel: RTCDataChannel, body: BodyTracker, scene: Scene): (timeMs: number) => void {

@@ -117,6 +117,36 @@ const movedModules = {
   'node_modules/valibot/dist/index': 'bundled/valibot',
 };
 
+/**
+ * Writes minified bundles of the entries into min/, for pages with an import map or a content delivery network: there
+ * each module is a request. They share their chunks, and the embedded files with the modules.
+ */
+async function writeBundles() {
+  const shared = ['learned-weights.js', 'mannequin.js'].map((file) => join(out, file));
+  const build = await rolldown({
+    input: Object.fromEntries(entries.map((name) => [name, join(out, `${name}.js`)])),
+    platform: 'browser',
+    external: (id) => external(id) || shared.includes(id),
+    plugins: [
+      {
+        name: 'shared-files',
+        resolveId: {
+          filter: { id: /\/(learned-weights|mannequin)\.js$/ },
+          handler: (id, importer) => ({ id: join(dirname(importer), id), external: 'relative' }),
+        },
+      },
+    ],
+  });
+  // One chunk with three.js and one without, besides what loads on demand.
+  const groups = [
+    { name: 'drawing', test: /dist-library\/(avatar\/|api\/three)/, minShareCount: 2 },
+    { name: 'core', minShareCount: 2 },
+  ];
+  const names = { entryFileNames: '[name].js', chunkFileNames: 'chunk-[name].js' };
+  await build.write({ format: 'esm', dir: join(out, 'min'), ...names, minify: true, codeSplitting: { groups } });
+  await build.close();
+}
+
 /** The path of the built package's folder in the paths of source maps. */
 const sourcesFolder = 'src/threepoint';
 
@@ -181,16 +211,14 @@ function writeDeclarationMap(path) {
 
 /**
  * Returns a document with links that lead to files of the package. What a link names that the package lacks stays as
- * text.
+ * text. `files`: path in the package to path in the repository, of the document `to` and of all that links may name.
  */
-export function documentInPackage(text, to) {
-  const inPackage = Object.fromEntries(
-    Object.entries({ ...copied, ...documents }).map(([target, source]) => [source, target]),
-  );
+export function documentInPackage(text, to, files) {
+  const inPackage = Object.fromEntries(Object.entries(files).map(([target, source]) => [source, target]));
   return text.replace(/!?\[([^\]]*)\]\(([^)\s]+)\)/g, (link, label, target) => {
     if (/^([a-z]+:|#)/.test(target)) return link;
     const [path, anchor] = target.split('#');
-    const found = inPackage[posix.join(posix.dirname(documents[to]), path)];
+    const found = inPackage[posix.join(posix.dirname(files[to]), path)];
     if (found === undefined) return label;
     return `[${label}](${posix.relative(posix.dirname(to), found)}${anchor === undefined ? '' : `#${anchor}`})`;
   });
@@ -218,7 +246,7 @@ function writeFiles() {
   }
   for (const [to, from] of Object.entries(documents)) {
     const text = readFileSync(join(root, from), 'utf8').replace('<!-- errors -->', errorTable);
-    writeFileSync(join(out, to), documentInPackage(text, to));
+    writeFileSync(join(out, to), documentInPackage(text, to, { ...copied, ...documents }));
   }
   writeFileSync(join(out, 'package.json'), `${JSON.stringify(published(), null, 2)}\n`);
 }
@@ -255,6 +283,7 @@ async function weigh(input, plugins = [filesInModules]) {
 export async function buildLibrary() {
   rmSync(out, { recursive: true, force: true });
   await writeCode();
+  await writeBundles();
   await writeTypes();
   writeFiles();
 }

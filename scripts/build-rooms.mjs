@@ -4,14 +4,17 @@ import { copyFileSync, mkdirSync, readFileSync, renameSync, rmSync, writeFileSyn
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { rolldown } from 'rolldown';
-import { writeDeclarations } from './build-library.mjs';
+import { documentInPackage, writeDeclarations } from './build-library.mjs';
 import { main, root } from './run-command.mjs';
 import { sourceResolution } from './source-condition.mjs';
 
 const out = join(root, 'dist-rooms');
 /** The entries and their folders, by the platform that they are for. */
-const entries = { browser: { index: 'peers', three: 'drawing' }, node: { server: 'server' } };
+const entries = { browser: { index: 'peers', three: 'drawing', react: 'react' }, node: { server: 'server' } };
 const own = JSON.parse(readFileSync(join(root, 'src/rooms/package.json'), 'utf8'));
+
+/** The documents of the package: path in the package to path in the repository. */
+const documents = { 'README.md': 'src/rooms/README.md', LICENSE: 'LICENSE' };
 
 /** What the package imports at run time; the rest is bundled. */
 const bundled = ['threepoint', 'threepoint-http', 'valibot'];
@@ -70,8 +73,9 @@ export async function buildRooms() {
   mkdirSync(out);
   for (const [platform, folders] of Object.entries(entries)) await writeCode(platform, folders);
   await writeTypes();
-  copyFileSync(join(root, 'LICENSE'), join(out, 'LICENSE'));
-  copyFileSync(join(root, 'src/rooms/README.md'), join(out, 'README.md'));
+  copyFileSync(join(root, documents.LICENSE), join(out, 'LICENSE'));
+  const readme = readFileSync(join(root, documents['README.md']), 'utf8');
+  writeFileSync(join(out, 'README.md'), documentInPackage(readme, 'README.md', documents));
   writeFileSync(join(out, 'package.json'), `${JSON.stringify(published(), null, 2)}\n`);
 }
 

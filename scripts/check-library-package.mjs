@@ -1,11 +1,13 @@
-// Checks what the built package (dist-library) promises besides its types: the links of its documents, its source maps
-// and declaration maps, the paths that its licence names, and the size of a bundle that imports one name of it.
+// Checks what the built packages promise besides their types: the links of their documents and the fields of their
+// manifests. Checks dist-library's source maps and declaration maps, the paths that its licence names, and the size of a
+// bundle that imports one name of it.
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { dirname, join, relative } from 'node:path';
 import { build } from 'esbuild';
 import { main, root, SetupError } from './run-command.mjs';
 
 const folder = join(root, 'dist-library');
+const packages = [folder, join(root, 'dist-rooms')];
 
 /** The largest minified bundle [kB] of a page that imports one name, without peers and what loads on demand. */
 const largestBundles = [
@@ -18,7 +20,8 @@ const largestBundles = [
   ['loadAvatar', 'three.js', 132],
 ];
 
-const files = readdirSync(folder, { recursive: true }).map((file) => join(folder, file));
+const filesOf = (folder) => readdirSync(folder, { recursive: true }).map((file) => join(folder, file));
+const files = filesOf(folder);
 const endingWith = (ending) => files.filter((file) => file.endsWith(ending));
 const named = (file) => relative(folder, file);
 const linksOf = (text) => [...text.matchAll(/\]\(([^)\s]+)\)/g)].map(([, target]) => target);
@@ -33,15 +36,16 @@ const anchorsOf = (text) =>
       .replaceAll(' ', '-'),
   );
 
-function deadLinks() {
-  return endingWith('.md').flatMap((file) =>
+function deadLinks(folder) {
+  const documents = filesOf(folder).filter((file) => file.endsWith('.md'));
+  return documents.flatMap((file) =>
     linksOf(readFileSync(file, 'utf8')).flatMap((link) => {
       if (/^[a-z]+:/.test(link)) return [];
       const [path, anchor] = link.split('#');
       const target = path === '' ? file : join(dirname(file), path);
-      if (!existsSync(target)) return [`${named(file)} links to ${link}, which is not in the package`];
+      if (!existsSync(target)) return [`${relative(root, file)} links to ${link}, which is not in the package`];
       if (anchor === undefined || anchorsOf(readFileSync(target, 'utf8')).includes(anchor)) return [];
-      return [`${named(file)} links to ${link}, which is no heading`];
+      return [`${relative(root, file)} links to ${link}, which is no heading`];
     }),
   );
 }
@@ -79,10 +83,12 @@ function licencePaths() {
     .map((path) => `LICENSE names ${path}, which is not there`);
 }
 
-function missingFields() {
+function missingFields(folder) {
   const manifest = JSON.parse(readFileSync(join(folder, 'package.json'), 'utf8'));
   const needed = ['name', 'version', 'description', 'license', 'engines', 'sideEffects', 'exports', 'peerDependencies'];
-  return needed.filter((field) => manifest[field] === undefined).map((field) => `package.json has no ${field}`);
+  return needed
+    .filter((field) => manifest[field] === undefined)
+    .map((field) => `${relative(root, folder)}/package.json has no ${field}`);
 }
 
 /** Returns the bytes of a minified bundle of this code with its static imports. */
@@ -124,13 +130,12 @@ async function lostWorker() {
 
 await main(async () => {
   const faults = [
-    ...deadLinks(),
+    ...packages.flatMap((folder) => [...deadLinks(folder), ...missingFields(folder)]),
     ...faultyMaps(),
     ...missingMaps(),
     ...licencePaths(),
-    ...missingFields(),
     ...(await largeBundles()),
     ...(await lostWorker()),
   ];
-  if (faults.length > 0) throw new SetupError(`The package is not as it promises:\n${faults.join('\n')}`);
+  if (faults.length > 0) throw new SetupError(`A package is not as it promises:\n${faults.join('\n')}`);
 });

@@ -14,16 +14,22 @@ describe('the licence', () => {
 });
 
 describe('a document of the package', () => {
+  const files = {
+    'README.md': 'src/threepoint/README.md',
+    'models/README.md': 'src/threepoint/model-card.md',
+    LICENSE: 'LICENSE',
+  };
+
   test('leads to files of the package; what else it links to stays as text', () => {
     const text =
       'See [card](model-card.md#limits), [licence](../../LICENSE), [examples](../../examples) and ![a](x.svg).';
-    expect(documentInPackage(text, 'README.md')).toBe(
+    expect(documentInPackage(text, 'README.md', files)).toBe(
       'See [card](models/README.md#limits), [licence](LICENSE), examples and a.',
     );
   });
 
   test('keeps addresses and links within itself', () => {
     const text = '[three.js](https://threejs.org), [frames](#frames)';
-    expect(documentInPackage(text, 'README.md')).toBe(text);
+    expect(documentInPackage(text, 'README.md', files)).toBe(text);
   });
 });

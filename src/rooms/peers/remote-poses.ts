@@ -45,7 +45,14 @@ const packetsPerSecond = 90;
 /** A peer that sends nothing for this long [s] is removed. */
 const forgetAfter = 30;
 
-/** Creates the poses of the other people from their packets, whichever way those come. It needs no three.js. */
+/**
+ * Creates the poses of the other people from their packets, over any transport. It needs no three.js.
+ *
+ * @example
+ * const poses = new RemotePoses();
+ * channel.onmessage = ({ data }) => poses.receive(peer, data);
+ * for (const { name, joints } of poses.update(performance.now())) drawStickFigure(name, joints);
+ */
 export class RemotePoses {
   readonly #peers = new Map<string, Peer>();
   readonly #drawn: RemotePose[] = [];

@@ -12,10 +12,12 @@ export interface BodyOptions extends Partial<BodySolverOptions> {
   readonly networks?: (name: NetworkName) => Promise<PoseRegressor>;
 }
 
-/** Warns that another estimator draws than the one selected, for a page that handles no `fallback`. */
-export function warnOfFallback(estimator: EstimatorName, reason: string): void {
+/**
+ * Warns that another estimator draws than the one selected, for a page without a handler. `handler`: its name there.
+ */
+export function warnOfFallback(estimator: EstimatorName, reason: string, handler = 'fallback'): void {
   console.warn(
-    `threepoint: inverse kinematics draws the body instead of “${estimator}”: ${reason}. Handle “fallback” to report it yourself.`,
+    `threepoint: inverse kinematics draws the body instead of “${estimator}”: ${reason}. Handle “${handler}” to report it yourself.`,
   );
 }
 
@@ -32,7 +34,10 @@ export class Body extends BodySolver {
    * Throws a RangeError where the calibration is not human or the estimator is unknown, a TypeError where an option is.
    */
   constructor(options: BodyOptions = {}) {
-    const events = { fallback: warnOfFallback, ...options.events };
+    const events = {
+      fallback: (estimator: EstimatorName, reason: string) => warnOfFallback(estimator, reason),
+      ...options.events,
+    };
     super({ ...options, events, networks: options.networks ?? learnedAlone });
   }
 }

@@ -17,9 +17,13 @@ const exportOptions = optionNames<ExportOptions>({
 });
 
 /**
- * A file of what a method draws of a recording, with fingers: BVH, a table of joints (CSV), VRM Animation, or what a
- * writer makes; the networks as of a Body. Rejects with a sentence where the method draws no body or fails, or no
- * network comes; with the signal's reason where it is given up.
+ * Returns a file of what an estimator draws of a recording, with fingers: BVH, a table of joints (CSV), VRM Animation,
+ * or what a writer makes. Rejects with a sentence where the estimator draws no body or fails, or its network cannot be
+ * loaded; with the signal's reason where it is cancelled.
+ *
+ * @example
+ * const { parts, type, extension } = await exportMotion(recording, { to: 'bvh' });
+ * const file = new File(parts, `motion.${extension}`, { type });
  */
 export async function exportMotion(recording: Recording, options: ExportOptions): Promise<MotionFile> {
   demandOptions('exportMotion', options, exportOptions);

@@ -16,8 +16,11 @@ export interface LearnedOptions {
 }
 
 /**
- * The learned network without a runtime: 91 kB, answered within the frame. Rejects with a sentence that says what is
- * wrong with which file.
+ * Loads the learned network without a runtime: 91 kB, which answer within the frame. Rejects with a sentence that names
+ * the file and its fault.
+ *
+ * @example
+ * const body = new Body({ networks: () => loadLearned({ onProgress: (share) => bar.set(share) }) });
  */
 export async function loadLearned(options: LearnedOptions = {}): Promise<PoseRegressor> {
   demandOptions('loadLearned', options, ['modelUrl', 'onProgress']);

@@ -1,17 +1,18 @@
 // "threepoint/polyfill": the body of WebXR Body Tracking, estimated from head and hands, where a device has none.
 
 import { reasonOf } from '../core/errors/reasons';
+import type { EstimatorName } from '../core/estimation/pose-estimator';
 import { copyPose, invertTransform, makePose, type Pose, type Transform, transformPose } from '../core/math/pose';
 import { type XRBodyJoints, XRBodyPoser } from '../core/motion/xr-body';
 import { TrackedSession } from '../xr/tracked-session';
-import { Body, type BodyOptions } from './body';
+import { Body, type BodyOptions, warnOfFallback } from './body';
 import { bodyOptions } from './body-solver';
 import { demandOptions } from './demand-options';
 
 export interface BodyTrackingOptions extends Omit<BodyOptions, 'events' | 'clock'> {
   /**
    * Called with the reason when a session has no body: it has no floor, or the estimator is unavailable (inverse
-   * kinematics draws then).
+   * kinematics draws then). Default: a warning of the console.
    */
   readonly onFault?: (reason: string) => void;
 }
@@ -296,6 +297,11 @@ function patchClock(bodies: WeakMap<XRSession, SessionBody>): () => void {
   });
 }
 
+/** Warns that joints have no pose, for a page that does not handle `onFault`. */
+function warnOfMissingBody(reason: string): void {
+  console.warn(`threepoint: the session has no body: ${reason}. Handle “onFault” to report it yourself.`);
+}
+
 /** The names of the options that are passed on to the body. */
 const trackingOptions = ['onFault', ...bodyOptions.filter((name) => name !== 'events' && name !== 'clock')];
 
@@ -317,7 +323,10 @@ export function installBodyTracking({ onFault, ...options }: BodyTrackingOptions
     );
   }
   demandOptions('installBodyTracking', options, trackingOptions);
-  const body = new Body({ ...options, events: { fallback: (_, reason) => onFault?.(reason) } });
+  const fallback = (estimator: EstimatorName, reason: string): void =>
+    onFault ? onFault(reason) : warnOfFallback(estimator, reason, 'onFault');
+  const body = new Body({ ...options, events: { fallback } });
+  const reportFault = onFault ?? warnOfMissingBody;
   const jointNames = [...new XRBodyPoser(body.calibration).names];
   const bodies = new WeakMap<XRSession, SessionBody>();
   const { getPose, fillPoses } = XRFrame.prototype as XRFrame & { readonly fillPoses?: FillPoses };
@@ -337,7 +346,7 @@ export function installBodyTracking({ onFault, ...options }: BodyTrackingOptions
         replace(session, 'enabledFeatures', { value: [...new Set([...enabled, feature])] });
         emulated
           .begin()
-          .catch((error: unknown) => onFault?.(`the session has no floor-level reference space: ${reasonOf(error)}`));
+          .catch((error: unknown) => reportFault(`the session has no floor-level reference space: ${reasonOf(error)}`));
         return session;
       },
     }),

@@ -12,8 +12,9 @@ import {
 } from 'react';
 import type { Avatar } from '../avatar/avatar';
 import type { AvatarPose } from '../core/body/avatar-pose';
-import type { Calibration } from '../core/body/calibration';
+import { type Calibration, defaultCalibration } from '../core/body/calibration';
 import type { BoneMap } from '../core/humanoid/bones';
+import { warnOfFallback } from './body';
 import { type AvatarSource, BodyTracker, type BodyTrackerEvents, type BodyTrackerOptions, loadAvatar } from './three';
 
 /** The prop that receives each event of a tracker. */
@@ -75,16 +76,24 @@ interface Disposable {
   dispose(): unknown;
 }
 
+interface Loaded<Made> {
+  /** The object for rendering. */
+  readonly made: Made | null;
+  /** The object for frames and effects; null as soon as it is disposed of. */
+  readonly live: RefObject<Made | null>;
+  /** Throws an error in the next rendering: an error boundary receives it. */
+  readonly fail: (error: unknown) => void;
+}
+
 /**
- * Loads an avatar and makes an object of it, which is disposed of with the component or with another source. Returns
- * the object for rendering, and a ref for frames, which is null as soon as the object is disposed of. Throws the error
- * of loading in rendering: an error boundary receives it.
+ * Loads an avatar and makes an object of it, which is disposed of with the component or with another source. An error
+ * of loading is thrown in rendering.
  */
 function useLoaded<Made extends Disposable>(
   { avatar: source, bones }: LoadedAvatarProps,
   owner: object,
   make: (avatar: Avatar) => Made,
-): readonly [Made | null, RefObject<Made | null>] {
+): Loaded<Made> {
   const [made, setMade] = useState<Made | null>(null);
   const [fault, setFault] = useState<unknown>(null);
   const live = useRef<Made | null>(null);
@@ -121,7 +130,7 @@ function useLoaded<Made extends Disposable>(
     };
   }, [source, owner]);
   if (fault !== null) throw fault;
-  return [made, live];
+  return { made, live, fail: setFault };
 }
 
 /**
@@ -142,7 +151,11 @@ export function SelfAvatar(props: SelfAvatarProps): ReactElement | null {
   useEffect(() => {
     newest.current = props;
   });
-  const [tracker, live] = useLoaded(props, renderer, (avatar) => {
+  const {
+    made: tracker,
+    live,
+    fail,
+  } = useLoaded(props, renderer, (avatar) => {
     const created = new BodyTracker(renderer, { ...optionsOf(newest.current), avatar });
     listen(created, newest);
     return created;
@@ -151,12 +164,13 @@ export function SelfAvatar(props: SelfAvatarProps): ReactElement | null {
   // Equal measures in another object are no change.
   const measures = JSON.stringify(calibration);
   useEffect(() => {
-    if (tracker && tracker.body.wanted !== estimator) void tracker.setEstimator(estimator);
-  }, [tracker, estimator]);
+    const current = tracker && live.current;
+    if (current && current.body.wanted !== estimator) current.setEstimator(estimator).catch(fail);
+  }, [tracker, live, fail, estimator]);
   const given = useRef(measures);
   // biome-ignore lint/correctness/useExhaustiveDependencies: reason: `measures` stands for the calibration
   useEffect(() => {
-    if (tracker && given.current !== measures) tracker.calibrate(calibration);
+    if (tracker && given.current !== measures) live.current?.calibrate(calibration);
     given.current = measures;
   }, [tracker, measures]);
   useImperativeHandle(props.ref, () => tracker as BodyTracker, [tracker]);
@@ -176,13 +190,13 @@ function optionsOf(props: SelfAvatarProps): Omit<BodyTrackerOptions, 'avatar'> {
   return Object.fromEntries(Object.entries(others).filter(([name]) => !callbacks.includes(name)));
 }
 
-/** Passes the tracker's events to the newest callbacks. Without `onFallback` the tracker itself warns. */
+/** Passes the tracker's events to the newest callbacks. Without `onFallback` a warning states what failed. */
 function listen(tracker: BodyTracker, props: RefObject<SelfAvatarProps>): void {
   for (const type of Object.keys(callbackNames) as EventName[]) {
-    if (type === 'fallback' && !props.current.onFallback) continue;
     tracker.addEventListener(type, (event) => {
       const callback = props.current[callbackNames[type]] as ((event: unknown) => void) | undefined;
-      callback?.(event);
+      if (callback) callback(event);
+      else if ('reason' in event) warnOfFallback(event.estimator, event.reason, 'onFallback');
     });
   }
 }
@@ -202,14 +216,14 @@ export function RemoteAvatar(props: RemoteAvatarProps): ReactElement | null {
   useEffect(() => {
     newest.current = props;
   });
-  const [avatar, live] = useLoaded(props, RemoteAvatar, (loaded) => {
+  const { made: avatar, live } = useLoaded(props, RemoteAvatar, (loaded) => {
     loaded.object.visible = false;
     return loaded;
   });
   const measures = JSON.stringify(props.calibration);
   // biome-ignore lint/correctness/useExhaustiveDependencies: reason: `measures` stands for the calibration
   useEffect(() => {
-    if (avatar && props.calibration) avatar.setCalibration(props.calibration);
+    if (avatar) live.current?.setCalibration(props.calibration ?? defaultCalibration);
   }, [avatar, measures]);
   useImperativeHandle(props.ref, () => avatar as Avatar, [avatar]);
   useFrame(() => {
@@ -217,7 +231,7 @@ export function RemoteAvatar(props: RemoteAvatarProps): ReactElement | null {
     if (!current) return;
     const { pose } = newest.current;
     const shown = pose && 'current' in pose ? pose.current : pose;
-    current.object.visible = shown !== null;
+    current.object.visible = Boolean(shown);
     if (shown) current.setPose(shown, performance.now() / 1000);
   });
   return avatar && createElement('primitive', { object: avatar.object });

@@ -46,7 +46,12 @@ export async function loadAvatar(source: AvatarSource, options: LoadAvatarOption
   return createAvatar(await parseAvatar(bytes, name, { bones }));
 }
 
-/** Loads the mannequin that comes with this package; each call returns another one. */
+/**
+ * Loads the mannequin that comes with this package; each call returns another one.
+ *
+ * @example
+ * const tracker = new BodyTracker(renderer, { avatar: await loadMannequin() });
+ */
 export async function loadMannequin(): Promise<Avatar> {
   return createAvatar(await parseAvatar(await readOwnMannequin(), 'mannequin.vrm', {}));
 }
@@ -54,6 +59,9 @@ export async function loadMannequin(): Promise<Avatar> {
 /**
  * Returns a writer of animated GLB files for `to` of `exportMotion`. The avatar's file is kept, its bones turn as the
  * person's, and its steps fit the length of its legs. Rejects as `loadAvatar` does.
+ *
+ * @example
+ * const { parts, type } = await exportMotion(recording, { to: await avatarMotion('/avatars/me.vrm') });
  */
 export async function avatarMotion(source: AvatarSource, options: LoadAvatarOptions = {}): Promise<MotionWriter> {
   demandOptions('avatarMotion', options, ['bones']);
@@ -159,8 +167,8 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   /** Whether the avatar's head is hidden from the wearer's eyes. */
   #firstPerson = false;
   #disposed = false;
-  /** Whether the page listens to `fallback`; without a listener a failed network is a warning. */
-  #handlesFallback = false;
+  /** The page's listeners to `fallback`; without one a failed network is a warning. */
+  readonly #fallbackListeners = new Set<unknown>();
 
   /**
    * Throws a RangeError where the calibration is not human or the estimator is unknown, a TypeError where `avatar` is
@@ -189,7 +197,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
         changed: () => this.dispatchEvent({ type: 'changed' }),
         discontinuity: () => this.dispatchEvent({ type: 'discontinuity' }),
         fallback: (estimator, reason) => {
-          if (this.#handlesFallback) this.dispatchEvent({ type: 'fallback', estimator, reason });
+          if (this.#fallbackListeners.size > 0) this.dispatchEvent({ type: 'fallback', estimator, reason });
           else warnOfFallback(estimator, reason);
         },
         trackinglost: (point) => this.dispatchEvent({ type: 'trackinglost', point }),
@@ -209,8 +217,16 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     type: T,
     listener: EventListener<BodyTrackerEvents[T], T, this>,
   ): void {
-    if (type === 'fallback') this.#handlesFallback = true;
+    if (type === 'fallback') this.#fallbackListeners.add(listener);
     super.addEventListener(type, listener);
+  }
+
+  override removeEventListener<T extends keyof BodyTrackerEvents>(
+    type: T,
+    listener: EventListener<BodyTrackerEvents[T], T, this>,
+  ): void {
+    if (type === 'fallback') this.#fallbackListeners.delete(listener);
+    super.removeEventListener(type, listener);
   }
 
   /**

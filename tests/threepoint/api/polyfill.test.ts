@@ -155,3 +155,17 @@ test('an option that it does not know is refused', () => {
     '“onfault” is not an option of installBodyTracking. Use onFault, ',
   );
 });
+
+test('a page that handles no fault is warned of a session without a floor, and of a network that failed', async () => {
+  const warn = vi.spyOn(console, 'warn').mockImplementation(() => undefined);
+  uninstall();
+  uninstall = installBodyTracking({ networks: async () => Promise.reject(new Error('learned.bin: gone')) });
+  vi.spyOn(Session.prototype, 'requestReferenceSpace').mockRejectedValue(new Error('not supported'));
+  await begin();
+  await vi.waitFor(() => expect(warn).toHaveBeenCalledTimes(2));
+  const warned = warn.mock.calls.flat().sort();
+  expect(warned).toEqual([
+    expect.stringMatching(/“learned”: learned\.bin: gone\. Handle “onFault”/),
+    expect.stringMatching(/no body: .*not supported\. Handle “onFault”/),
+  ]);
+});

@@ -12,7 +12,7 @@ export const left = { position: { x: -0.3, y: 1.2, z: -0.3 }, orientation: ident
 export const right = { position: { x: 0.3, y: 1.2, z: -0.3 }, orientation: identity };
 
 /** The part of a renderer that a tracker asks, with a headset that can be put on and taken off. */
-function wornHeadset() {
+export function wornHeadset() {
   const headset = fakeHeadset();
   headset.setInputs(controller('left', left), controller('right', right));
   let worn = false;

@@ -80,6 +80,17 @@ describe('a body in a session of three.js', () => {
     expect(tracker.pose).not.toBeNull();
   });
 
+  test('warns of a network that failed once its last listener is removed', async () => {
+    const warn = vi.spyOn(console, 'warn').mockImplementation(() => undefined);
+    const networks = async () => Promise.reject(new Error('learned.bin: gone'));
+    const avatar = await loadAvatar(mannequin());
+    const tracker = new BodyTracker({ xr: {} } as WebGLRenderer, { avatar, networks });
+    const listener = () => expect.unreachable('the listener was removed');
+    tracker.addEventListener('fallback', listener);
+    tracker.removeEventListener('fallback', listener);
+    await vi.waitFor(() => expect(warn.mock.calls).toEqual([[expect.stringMatching(/learned\.bin: gone/)]]));
+  });
+
   test('reports no end of a session whose frames it never read', async () => {
     const { headset, tracker, told } = await begin({ calibration: defaultCalibration });
     headset.putOn();

@@ -46,7 +46,12 @@ export interface AvatarPose {
 const copyTracked = <T extends TrackedPose | null>(pose: T): T =>
   pose && { ...pose, position: copyVec3(pose.position), orientation: copyQuat(pose.orientation) };
 
-/** Returns a copy of the pose that can be kept: estimators and playback overwrite theirs with every frame. */
+/**
+ * Returns a copy of the pose that can be kept: estimators and playback overwrite theirs with every frame.
+ *
+ * @example
+ * if (tracker.pose) history.push(copyAvatarPose(tracker.pose));
+ */
 export const copyAvatarPose = ({ head, leftHand, rightHand, body, fingers }: AvatarPose): AvatarPose => ({
   head: copyTracked(head),
   leftHand: copyTracked(leftHand),

@@ -18,6 +18,10 @@ export const makeJointPoses = (): MutableJointPoses =>
 /**
  * Returns the position of every joint, floor frame: the skeleton's offsets turned by the pose's rotations, parents
  * first.
+ *
+ * @example
+ * const joints = forwardKinematics(skeletonFromCalibration(body.calibration), pose.body);
+ * const elbow = joints.leftLowerArm.position;
  */
 export function forwardKinematics(
   skeleton: Skeleton,

@@ -54,8 +54,11 @@ export function createWithNetwork(
 }
 
 /**
- * One estimator by name; `paper` and `learned` throw without their regressor, `device` falls back on IK without that of
- * `learned`. A name of none throws a RangeError.
+ * Creates an estimator by its name. `paper` and `learned` throw without their regressor; `device` falls back on IK
+ * without that of `learned`. Throws a RangeError where no estimator has this name.
+ *
+ * @example
+ * const estimator = createEstimator('learned', calibration, await loadLearned());
  */
 export function createEstimator(
   name: EstimatorName,

@@ -130,6 +130,10 @@ export type XRBodyJoints = ReadonlyMap<string, Pose<'floor'>>;
  * A person's body as WebXR Body Tracking has it: 83 joints, −Z along the bone. +Y is up in T-pose (the back of hands
  * and feet), out of the back of the trunk and out of the shins. All are emulated: what no estimator guesses (legs, the
  * bones of the palm) rests where it grows.
+ *
+ * @example
+ * const poser = new XRBodyPoser(body.calibration);
+ * const joints = poser.pose(pose.body, pose.fingers, secondsSinceLastFrame);
  */
 export class XRBodyPoser {
   readonly #bones: readonly MotionBone[];
@@ -162,7 +166,7 @@ export class XRBodyPoser {
     return this.#joints.map(({ name }) => name);
   }
 
-  /** Overwritten by the next frame; so long after the frame before [s]. */
+  /** Returns the joints of a pose; the next call overwrites them. `deltaSeconds`: since the last call. */
   pose(body: UpperBodyPose, fingers: Fingers = unknownFingers, deltaSeconds = 0): XRBodyJoints {
     const { hips, rotations } = this.#motion;
     const at = turnPoint(body.hipsPosition, place);
@@ -186,6 +190,11 @@ const place = vec3(0, 0, 0);
 const turned = quat(0, 0, 0, 1);
 const halfTurn = fromAxisAngle(up, Math.PI);
 
-/** One pose of a body as the joints of WebXR Body Tracking (XRBodyPoser), in objects of their own. */
+/**
+ * Returns one pose of a body as the joints of WebXR Body Tracking, in new objects. `XRBodyPoser` reuses them.
+ *
+ * @example
+ * const elbow = toXRBody(pose.body, body.calibration).get('left-arm-lower').position;
+ */
 export const toXRBody = (body: UpperBodyPose, calibration: Calibration, fingers?: Fingers): XRBodyJoints =>
   new XRBodyPoser(calibration).pose(body, fingers);

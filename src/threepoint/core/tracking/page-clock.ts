@@ -26,7 +26,13 @@ export interface PageClock {
   now(): number;
 }
 
-/** Creates a page clock. `read`: the page's running time [ms], on any mostly monotonic clock (`performance.now`). */
+/**
+ * Creates a page clock. `read`: the page's running time [ms], on any mostly monotonic clock (`performance.now`).
+ *
+ * @example
+ * const clock = createPageClock(() => performance.now());
+ * const bodies = [new Body({ clock }), new Body({ clock })];
+ */
 export function createPageClock(read: () => number): PageClock {
   /** The newest frame: its time by this clock, its time stamp, and the value of `read`. */
   let time = 0;

@@ -99,7 +99,12 @@ export function cutRecording(
   return { text: `${top(hasBody ? bodyJoints : {})}${lines.join(',\n')}${end}`, frames: lines.length };
 }
 
-/** Parses the text of a recording file. Throws a sentence that names the wrong line or frame and its fault. */
+/**
+ * Parses the text of a recording file. Throws a sentence that names the wrong line or frame and its fault.
+ *
+ * @example
+ * const recording = parseRecording(await file.text());
+ */
 export function parseRecording(text: string): Recording {
   const file = parseJson(text);
   if (!isRecord(file) || file.format !== format) throw new Error('This file is not a threepoint recording.');
