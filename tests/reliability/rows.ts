@@ -273,10 +273,15 @@ export const attackRows = {
     ],
   },
   'mutated-avatars': {
-    inject: '100,000 files of avatars with bits, lengths and values of their description changed (3,000 by day)',
+    inject:
+      '100,000 files of avatars with bits, lengths and values of their description changed (3,000 by day), and as many FBX files (10,000 by day)',
     sees: 'A sentence that names the file, from the check or from the reader, or a body of finite numbers',
-    target: '0 exceptions without a sentence, 0 numbers that are none',
-    tests: ['tests/threepoint/avatar/mutated-files.test.ts', 'tests/threepoint/avatar/inspect-avatar.test.ts'],
+    target: '0 exceptions without a sentence, 0 numbers that are none, no FBX file that takes a second',
+    tests: [
+      'tests/threepoint/avatar/mutated-files.test.ts',
+      'tests/threepoint/avatar/mutated-fbx.test.ts',
+      'tests/threepoint/avatar/inspect-avatar.test.ts',
+    ],
   },
   crowd: {
     inject:
