@@ -99,6 +99,12 @@ export function sideByNames(tree: JointTree, { chain, at }: Limb): Side | null {
   return left === right ? null : left > right ? 'left' : 'right';
 }
 
+/** How well the names of a limb fit the other kind. */
+function votesAgainst(tree: JointTree, { chain, at }: Limb, kind: LimbKind): number {
+  const parts = limbParts[kind === 'arm' ? 'leg' : 'arm'];
+  return parts.reduce((sum, part, i) => sum + tree.vote(chain[at[i]!]!, part), 0) / parts.length;
+}
+
 function pairOf(
   tree: JointTree,
   root: number,
@@ -108,6 +114,7 @@ function pairOf(
   const [one, other] = [sideByNames(tree, first), sideByNames(tree, second)];
   const named = one !== null && other !== null && one !== other;
   if (one !== null && one === other) return null;
+  if ([first, second].some((limb) => votesAgainst(tree, limb, kind) > limb.names + 0.3)) return null;
   const apart = difference(tree, first.chain.slice(0, first.at[2] + 1), second.chain.slice(0, second.at[2] + 1));
   if (apart > (named ? 0.5 : 0.2)) return null;
   const size = Math.min(limbLength(tree, first), limbLength(tree, second)) / tree.size;
