@@ -52,9 +52,10 @@ export function findLimb(tree: JointTree, first: number, kind: LimbKind): Limb |
     for (let j = k - 1; j >= 1; j--) {
       for (let i = j - 1; i >= 0; i--) {
         const [near, far] = [along[j]! - along[i]!, along[k]! - along[j]!];
-        if (!(near > 0 && far > 0)) continue;
         const names = (votes[0][i]! + votes[1][j]! + votes[2][k]!) / 3;
-        const likeness = Math.min(near, far) / Math.max(near, far);
+        // Names show a bone that a file lost: whoever reads the limb refuses it.
+        if (!(near > 0 && far > 0) && names < 0.8) continue;
+        const likeness = Math.min(near, far) / (Math.max(near, far) || 1);
         const against = skipped * (k - i - 2) + loose + helper[i]! + helper[j]! + helper[k]!;
         const shape = 1.2 * likeness + (whole * (near + far)) / total + reached - against;
         if (!best || shape + 4 * names > best.shape + 4 * best.names)
