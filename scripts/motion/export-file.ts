@@ -4,14 +4,18 @@ import { exportMotionWith, type MotionWriter } from 'threepoint/api/motion-expor
 import { type MotionFormat, motionFormats } from 'threepoint/api/motion-formats';
 import type { WorkOptions } from 'threepoint/api/run-work';
 import { avatarClip } from 'threepoint/avatar/avatar-clip';
+import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/motion-source';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import type { NetworkName } from 'threepoint/core/estimation/estimators';
 import { createPlainRegressor } from 'threepoint/core/estimation/learned-network';
 import { type EstimatorName, estimatorNames } from 'threepoint/core/estimation/pose-estimator';
 import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
-import { parseRecording } from 'threepoint/core/tracking/recording';
+import { type MocapSource, prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
+import { finishWork } from 'threepoint/core/motion/work';
+import { parseRecording, type Replayable } from 'threepoint/core/tracking/recording';
 import { startRegressor } from 'threepoint/onnx/load-regressor';
 import { parseContract } from 'threepoint/onnx/model-contract';
+import { recordingOf } from '../../src/page/mocap/simulated-recording';
 import { writeWhole } from './write-whole';
 
 /** The options of the command line, with absolute paths. */
@@ -74,8 +78,31 @@ function rateOf(rate: string | undefined): { rateHz?: number } {
   return { rateHz };
 }
 
+/** Reads motion capture as the page does: what a headset and two hands would have recorded of its longest piece. */
+async function simulatedRecording(path: string, bytes: Uint8Array): Promise<Replayable> {
+  const name = basename(path);
+  const source: MocapSource = isGltfMotion(name)
+    ? { name, ...(await readGltfMotion(new Uint8Array(bytes).buffer, name)) }
+    : { name, format: 'bvh', text: new TextDecoder().decode(bytes) };
+  const { clips } = finishWork(prepareMocap(source));
+  return recordingOf(clips.reduce((longest, clip) => (clip.frameCount > longest.frameCount ? clip : longest)));
+}
+
+const isMocap = (path: string): boolean => /\.bvh$/i.test(path) || isGltfMotion(path);
+
+/** Reads a recording of the page, or motion capture. */
+async function recordingIn(path: string): Promise<Replayable> {
+  const bytes = readGiven(path, 'motion');
+  try {
+    return isMocap(path) ? await simulatedRecording(path, bytes) : parseRecording(bytes.toString('utf8'));
+  } catch (error) {
+    const reason = reasonOf(error);
+    throw new MotionError(reason.startsWith(basename(path)) ? reason : `${basename(path)}: ${reason}`);
+  }
+}
+
 /**
- * Reads a recording and writes the exported file atomically; resolves to its path. Rejects with a message if the
+ * Reads a recording or motion capture and writes the exported file atomically; resolves to its path. Rejects with a message if the
  * recording, the avatar or an option is wrong, and with the signal's reason if it is aborted.
  */
 export async function exportFile(request: MotionRequest, work: WorkOptions = {}): Promise<string> {
@@ -83,15 +110,10 @@ export async function exportFile(request: MotionRequest, work: WorkOptions = {})
   const name: EstimatorName = checked('--estimator', estimator, estimatorNames);
   const options = { unit: checked('--unit', unit, ['m', 'cm']), ...rateOf(rate) };
   const to = await formatOf(request);
-  const text = readGiven(file, 'motion').toString('utf8');
-  let recording: ReturnType<typeof parseRecording>;
-  try {
-    recording = parseRecording(text);
-  } catch (error) {
-    throw new MotionError(`${basename(file)}: ${reasonOf(error)}`);
-  }
+  const recording = await recordingIn(file);
   const made = await exportMotionWith(recording, { ...options, ...work, to, estimator: name, networks: network });
   const out = request.out ?? join(file, '..', `${basename(file, extname(file))}.${made.extension}`);
+  if (out === file) throw new MotionError(`${out} would be overwritten; give another file by --out`);
   work.signal?.throwIfAborted();
   try {
     writeWhole(out, made.parts);

@@ -33,7 +33,7 @@ function sourceOf(path: string, map: string | null): MocapSource {
   if (!/\.vrma$/i.test(name)) return { format: 'bvh', ...textOf(path), ...mapped };
   const chunks = chunksOf(new Uint8Array(readFileSync(path)));
   if (!chunks) throw new Error(`${name}: not a VRM Animation: not a GLB file, or truncated`);
-  return { format: 'vrma', name, description: JSON.parse(chunks.json), binary: chunks.binary, ...mapped };
+  return { format: 'gltf', name, description: JSON.parse(chunks.json), binary: chunks.binary, ...mapped };
 }
 
 /** What is read of one file; a fault becomes its sentence, and the other files are read. */

@@ -258,10 +258,14 @@ export const attackRows = {
     ],
   },
   'mutated-avatars': {
-    inject: '100,000 mutated avatar files (3,000 by day)',
+    inject: '100,000 mutated avatar files and as many FBX files (3,000 and 10,000 by day)',
     sees: 'A sentence that names the file, or a finite body',
-    target: '0 other exceptions, 0 NaN',
-    tests: ['tests/threepoint/avatar/mutated-files.test.ts', 'tests/threepoint/avatar/inspect-avatar.test.ts'],
+    target: '0 other exceptions, 0 NaN, no FBX file over 1 s',
+    tests: [
+      'tests/threepoint/avatar/mutated-files.test.ts',
+      'tests/threepoint/avatar/mutated-fbx.test.ts',
+      'tests/threepoint/avatar/inspect-avatar.test.ts',
+    ],
   },
   crowd: {
     inject: 'Two hundred rooms of three play for ten minutes and leave, three times (20 rooms for 5 s by day)',

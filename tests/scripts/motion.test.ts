@@ -10,6 +10,10 @@ import { describe, expect, test } from 'vitest';
 import { exportFile } from '../../scripts/motion/export-file';
 import { writeWhole } from '../../scripts/motion/write-whole';
 import { directoryWith } from '../temporary-directory';
+import { builtFbx } from '../threepoint/avatar/built-fbx';
+import { fbxBinary, fbxText } from '../threepoint/avatar/fbx-file';
+import { partsOf } from '../threepoint/avatar/glb';
+import { mixamo } from '../threepoint/avatar/rig-namings';
 
 const recorded = (seconds: number): string =>
   writeRecording({
@@ -42,6 +46,22 @@ describe('npm run motion', () => {
     expect(await exportFile({ file, to, estimator })).toBe(join(folder, `mine.${to}`));
     expect(readdirSync(folder).sort()).toEqual(['mine.json', `mine.${to}`].sort());
     expect(readFileSync(join(folder, `mine.${to}`)).length).toBeGreaterThan(20_000);
+  });
+
+  test('writes motion capture in FBX as it would be recorded, on an avatar in FBX', async () => {
+    const every = (angle: (frame: number) => number) =>
+      Array.from({ length: 60 }, (_, frame) => [0, 0, angle(frame)] as const);
+    const nameOf = mixamo('mixamorig:');
+    const turns = { leftUpperArm: every(() => -60), rightUpperArm: every((frame) => 30 * Math.sin(frame / 9)) };
+    const folder = directoryWith({});
+    const [file, avatar] = [join(folder, 'wave.fbx'), join(folder, 'soldier.fbx')];
+    writeFileSync(file, new Uint8Array(fbxBinary(builtFbx({ nameOf, turns, bare: true }))));
+    writeFileSync(avatar, new Uint8Array(fbxText(builtFbx({ nameOf }))));
+    const made = await exportFile({ file, to: 'glb', estimator: 'ik', avatar });
+    expect(made).toBe(join(folder, 'wave.glb'));
+    const { animations } = partsOf(readFileSync(made)).json as { animations?: object[] };
+    expect(animations).toHaveLength(1);
+    await expect(exportFile({ file: made, to: 'glb', estimator: 'ik' })).rejects.toThrow('would be overwritten');
   });
 
   test('takes unit, rate and place', async () => {

@@ -1,4 +1,4 @@
-import { chunksOf } from 'threepoint/avatar/file/glb-chunks';
+import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/motion-source';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { type MocapSource, type PreparedMocap, prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
 import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
@@ -24,14 +24,8 @@ async function sourceOf({ motion, skeleton, map }: MocapFiles): Promise<MocapSou
   const name = nameOf(motion);
   const mapped = map ? { map: await named(map) } : {};
   if (skeleton) return { format: 'amc', ...(await named(motion)), skeleton: await named(skeleton), ...mapped };
-  if (!/\.vrma$/i.test(name)) return { format: 'bvh', ...(await named(motion)), ...mapped };
-  const chunks = chunksOf(new Uint8Array(await bytesOf(motion)));
-  if (!chunks) throw new Error(`${name}: not a VRM Animation: not a GLB file, or truncated`);
-  try {
-    return { format: 'vrma', name, description: JSON.parse(chunks.json), binary: chunks.binary, ...mapped };
-  } catch (error) {
-    throw new Error(`${name}: its description is not JSON: ${reasonOf(error)}`);
-  }
+  if (isGltfMotion(name)) return { name, ...(await readGltfMotion(await bytesOf(motion), name)), ...mapped };
+  return { format: 'bvh', ...(await named(motion)), ...mapped };
 }
 
 async function read(files: MocapFiles): Promise<void> {

@@ -79,6 +79,11 @@ export function rigJoints({
   ];
 }
 
+/** The bones of a right arm. */
+export const rightArm: readonly string[] = Object.keys(left)
+  .filter((bone) => /Arm|Hand|Thumb|Index|Middle|Little|Shoulder/.test(bone))
+  .map((bone) => `right${bone}`);
+
 export interface RigOptions {
   /** What the file calls a bone. */
   readonly nameOf: (bone: BoneName) => string;

@@ -69,6 +69,22 @@ test('a picture inside FBX is on the body, and others see the converted file', a
   });
 });
 
+const mapping = fbxNode('MappingInformationType', ['ByVertice']);
+const reference = fbxNode('ReferenceInformationType', ['IndexToDirect']);
+const colours = fbxNode('Colors', [Array.from({ length: 4 * 8 * 60 }, () => 0.5)]);
+test.each([
+  ['without its list is left out', [mapping]],
+  ['without the places in its list has them in order', [mapping, reference, colours]],
+])('a layer of a mesh %s', async (_, children) => {
+  const layer = fbxNode('LayerElementColor', [0], children);
+  const withLayer = (nodes: readonly FbxNode[]): readonly FbxNode[] =>
+    nodes.map(({ children, ...node }) => ({
+      ...node,
+      children: node.name === 'Geometry' ? [...children, layer] : withLayer(children),
+    }));
+  expectBody(wear(await parseChecked(await check(packed(withLayer(builtFbx({ nameOf })))), name)));
+});
+
 test('an FBX avatar takes motion as GLB', async () => {
   const writer = await avatarClip(packed(builtFbx({ nameOf })), name);
   expect(writer.extension).toBe('glb');

@@ -71,9 +71,11 @@ function spoilers(chance: () => number) {
 
 async function growth(file: ArrayBuffer, parts: SceneParts) {
   const before = process.memoryUsage().arrayBuffers;
-  const started = performance.now();
+  // The processor's time: other programs of the machine do not count.
+  const started = process.cpuUsage();
   const read = await glbOfFile(file, name, parts).catch((error: Error) => error);
-  return { read, ms: performance.now() - started, bytes: process.memoryUsage().arrayBuffers - before };
+  const { user, system } = process.cpuUsage(started);
+  return { read, ms: (user + system) / 1000, bytes: process.memoryUsage().arrayBuffers - before };
 }
 
 async function expectMoments(files: number): Promise<void> {
@@ -97,7 +99,11 @@ async function expectMoments(files: number): Promise<void> {
       counts.read += 1;
     }
   }
-  reportFigures('mutated-avatars', { 'FBX files': files, ...counts, 'longest reading of one [ms]': longest });
+  reportFigures('mutated-avatars', {
+    'FBX files': files,
+    ...counts,
+    'longest reading of one FBX file [ms of the processor]': longest,
+  });
   expect(longest, 'the longest [ms]').toBeLessThan(1000);
   expect(largest, 'memory of one, against a whole one').toBeLessThan(3 * sound);
   expect(counts.refused).toBeGreaterThan(files / 10);

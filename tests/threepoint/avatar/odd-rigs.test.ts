@@ -1,11 +1,11 @@
 import { type Bone, Box3, Matrix4, type Mesh, type Object3D, type SkinnedMesh, Vector3 } from 'three';
 import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
-import type { BoneName } from 'threepoint/avatar/humanoid/bone-names';
 import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
 import { thirdPersonOnlyLayer } from 'threepoint/avatar/rig/body-meshes';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createIk } from 'threepoint/core/estimation/estimators';
+import type { BoneName } from 'threepoint/core/humanoid/bones';
 import { distance, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { describe, expect, test } from 'vitest';

@@ -1,5 +1,4 @@
-import type { BoneMap, BoneName } from 'threepoint/core/humanoid/bones';
-import { neededBones } from 'threepoint/avatar/humanoid/humanoid';
+import { type BoneMap, type BoneName, neededBones } from 'threepoint/core/humanoid/bones';
 import { button, element } from 'threepoint-ui/element';
 import * as v from 'valibot';
 import { boneMap } from '../preferences';

@@ -3,9 +3,8 @@ import { type Group, type Object3D, type SkinnedMesh, Vector3 } from 'three';
 import { type BoneMap, type BoneName, neededBones } from '../../core/humanoid/bones';
 import type { SkeletonJoint } from '../../core/humanoid/joint-tree';
 import { humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-humanoid';
+import { distance, isFiniteVec3 } from '../../core/math/vec3';
 import { UnknownBones } from './unknown-bones';
-
-export { neededBones } from '../../core/humanoid/bones';
 
 /** The file's own name of a node: three.js rewrites names, and keeps the file's beside. */
 const nameOf = (node: Object3D): string => (typeof node.userData.name === 'string' ? node.userData.name : node.name);
@@ -78,6 +77,10 @@ function foundBones(scene: Group, name: string): ReadonlyMap<BoneName, Object3D>
     const parent = indices.get(node.parent as Object3D) ?? -1;
     return { name: nameOf(node), parent, position, ...(weights.size > 0 && { weight: weights.get(node) ?? 0 }) };
   });
+  const lost = joints.find(({ position }) => !isFiniteVec3(position));
+  if (lost) throw new Error(`${name}: the joint of ${lost.name} lies nowhere`);
+  if (joints.length > 1 && joints.every(({ position }) => distance(position, joints[0]!.position) === 0))
+    throw new Error(`${name}: its joints lie all in one place: is the scene scaled to nothing?`);
   const match = matchHumanoid(joints);
   const complaint = humanoidComplaint(match);
   const matched = Object.entries(match.map).map(([bone, { joint }]) => [bone as BoneName, nodes[joint]!] as const);

@@ -1,8 +1,8 @@
 import type { VRM } from '@pixiv/three-vrm';
 import { Matrix4, type Object3D, Quaternion, Vector3 } from 'three';
-import { type BoneName, handFingerBones } from '../../core/humanoid/bones';
+import { type BoneName, handFingerBones, neededBones } from '../../core/humanoid/bones';
 import type { Side } from '../../core/math/side';
-import { boneNode, neededBones } from './humanoid';
+import { boneNode } from './humanoid';
 
 // From here on a body at rest faces +Z, as a VRM does: its left is +X.
 const left = new Vector3(1, 0, 0);

@@ -52,9 +52,10 @@ export function findLimb(tree: JointTree, first: number, kind: LimbKind): Limb |
     for (let j = k - 1; j >= 1; j--) {
       for (let i = j - 1; i >= 0; i--) {
         const [near, far] = [along[j]! - along[i]!, along[k]! - along[j]!];
-        if (!(near > 0 && far > 0)) continue;
         const names = (votes[0][i]! + votes[1][j]! + votes[2][k]!) / 3;
-        const likeness = Math.min(near, far) / Math.max(near, far);
+        // Names show a bone that a file lost: whoever reads the limb refuses it.
+        if (!(near > 0 && far > 0) && names < 0.8) continue;
+        const likeness = Math.min(near, far) / (Math.max(near, far) || 1);
         const against = skipped * (k - i - 2) + loose + helper[i]! + helper[j]! + helper[k]!;
         const shape = 1.2 * likeness + (whole * (near + far)) / total + reached - against;
         if (!best || shape + 4 * names > best.shape + 4 * best.names)
@@ -99,6 +100,12 @@ export function sideByNames(tree: JointTree, { chain, at }: Limb): Side | null {
   return left === right ? null : left > right ? 'left' : 'right';
 }
 
+/** How well the names of a limb fit the other kind. */
+function votesAgainst(tree: JointTree, { chain, at }: Limb, kind: LimbKind): number {
+  const parts = limbParts[kind === 'arm' ? 'leg' : 'arm'];
+  return parts.reduce((sum, part, i) => sum + tree.vote(chain[at[i]!]!, part), 0) / parts.length;
+}
+
 function pairOf(
   tree: JointTree,
   root: number,
@@ -108,6 +115,7 @@ function pairOf(
   const [one, other] = [sideByNames(tree, first), sideByNames(tree, second)];
   const named = one !== null && other !== null && one !== other;
   if (one !== null && one === other) return null;
+  if ([first, second].some((limb) => votesAgainst(tree, limb, kind) > limb.names + 0.3)) return null;
   const apart = difference(tree, first.chain.slice(0, first.at[2] + 1), second.chain.slice(0, second.at[2] + 1));
   if (apart > (named ? 0.5 : 0.2)) return null;
   const size = Math.min(limbLength(tree, first), limbLength(tree, second)) / tree.size;

@@ -60,7 +60,9 @@ function byPlace(tree: JointTree, hand: number, branches: readonly Branch[]): re
   const across = [...others].sort(
     (a, b) => dot(normalise(subtract(first(b), at), zero), way) - dot(normalise(subtract(first(a), at), zero), way),
   );
-  return [thumb, ...across].map((branch, i) => [fingerNames[i]!, branch] as const);
+  // A hand with three fingers beside its thumb lacks the ring finger.
+  const names = across.length === 3 ? fingerNames.filter((finger) => finger !== 'Ring') : fingerNames;
+  return [thumb, ...across].map((branch, i) => [names[i]!, branch] as const);
 }
 
 /** Returns the bones of the fingers that leave a hand. */
@@ -71,10 +73,12 @@ export function matchFingers(tree: JointTree, hand: number): readonly FingerMatc
   let pairs: readonly (readonly [Finger, Branch])[] = named.map((branch) => [branch.named!, branch] as const);
   let [confidence, reason] = [0.95, 'its name'];
   if (pairs.length === 0 && counted.length > 0) {
-    pairs = [...counted]
-      .sort((a, b) => a.number! - b.number!)
-      .slice(0, 5)
-      .map((branch, i) => [fingerNames[i]!, branch] as const);
+    // Some programs count fingers from 0, others from 1.
+    const first = Math.min(1, ...counted.map(({ number }) => number!));
+    pairs = counted.flatMap((branch) => {
+      const finger = fingerNames[branch.number! - first];
+      return finger ? [[finger, branch] as const] : [];
+    });
     [confidence, reason] = [0.8, 'the number in its name'];
   } else if (pairs.length === 0) {
     pairs = byPlace(tree, hand, branches);

@@ -44,6 +44,9 @@ export interface HumanoidMatch {
 /** Below this confidence a skeleton is refused. */
 export const leastConfidence = 0.45;
 
+/** The confidence of a bone whose name means another part. */
+const contradicted = 0.3;
+
 /** Arms, legs if there are any, and the trunk between them. */
 interface Body {
   readonly arms: LimbPair;
@@ -70,6 +73,7 @@ class Matcher {
       if (body) this.#takeBody(body);
       else this.#takeNamesAlone();
     }
+    this.#dropContradictions();
     const missing = neededBones.filter((bone) => !this.map[bone]);
     const sure = neededBones.map((bone) => this.map[bone]?.confidence ?? 0);
     const confidence = missing.length > 0 ? 0 : sure.reduce((sum, each) => sum + each, 0) / sure.length;
@@ -87,6 +91,14 @@ class Matcher {
     for (const [bone, joint] of byName)
       this.map[bone as BoneName] = { joint, confidence: 1, reason: 'VRM’s name of the bone' };
     return true;
+  }
+
+  /** Drops bones of arms that their names contradict where names fit elsewhere: a finger is no hand. */
+  #dropContradictions(): void {
+    const sure = neededBones.filter((bone) => (this.map[bone]?.confidence ?? 0) >= 0.9);
+    if (sure.length < 5) return;
+    for (const bone of neededBones)
+      if (/Arm|Hand/.test(bone) && this.map[bone]?.confidence === contradicted) delete this.map[bone];
   }
 
   #findBody(): Body | null {
@@ -205,7 +217,8 @@ class Matcher {
     const { parts } = tree.votes[joint]!;
     const vote = tree.vote(joint, part);
     const others = Math.max(0, ...Object.entries(parts).map(([other, value]) => (other === part ? 0 : value)));
-    const confidence = vote > 0.4 ? 0.75 + 0.25 * vote : others > 0.7 ? 0.45 : 0.65;
+    const against = others >= 0.95 ? contradicted : others > 0.7 ? 0.45 : 0.65;
+    const confidence = vote > 0.4 ? 0.75 + 0.25 * vote : against;
     const reason =
       vote > 0.4 ? `${structure}; its name fits` : others > 0.7 ? `${structure}, against its name` : structure;
     this.map[bone] = { joint, confidence, reason };

@@ -31,7 +31,7 @@ export interface NameVotes {
   readonly parts: Readonly<Partial<Record<Part, number>>>;
   /** Whether the name is one of helpers, controls, ends of chains, hair and clothes, which are no bones of the body. */
   readonly auxiliary: boolean;
-  /** The numbers of the name, in their order. */
+  /** The numbers that follow the last word of the name, in their order. */
   readonly numbers: readonly number[];
 }
 
@@ -120,12 +120,13 @@ const wordsOf = (name: string): readonly string[] =>
 export function readJointName(name: string): NameVotes {
   let side: Side | null = null;
   let auxiliary = false;
-  const numbers: number[] = [];
+  let numbers: number[] = [];
   const words: string[] = [];
   for (const word of wordsOf(name.slice(-100)).flatMap((each) => (sideWords[each] ? [each] : splitSide(each)))) {
     if (sideWords[word]) side = sideWords[word];
     else if (/^\d/.test(word)) numbers.push(Number(word));
     else {
+      numbers = [];
       auxiliary ||= auxiliaryWords.has(word) || word.includes('twist');
       if (!noise.has(word)) words.push(word);
     }

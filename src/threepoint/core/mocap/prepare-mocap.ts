@@ -1,8 +1,10 @@
 import { type Calibration, calibrationComplaint } from '../body/calibration';
 import type { FileMotion } from '../motion/file-motion';
+import { isObject } from '../motion/gltf-clip';
 import { readAmc } from '../motion/read-amc';
 import { readAsf } from '../motion/read-asf';
 import { bvhFileMotion, readBvh } from '../motion/read-bvh';
+import { readGlbMotion } from '../motion/read-glb-motion';
 import { readVrma } from '../motion/read-vrma';
 import { finishWork, scaleProgress } from '../motion/work';
 import { putBackLostBones } from './cmuconvert';
@@ -37,7 +39,7 @@ export type MocapSource = {
       readonly text: string;
       readonly skeleton: Beside;
     }
-  | { readonly format: 'vrma'; readonly description: unknown; readonly binary: Uint8Array }
+  | { readonly format: 'gltf'; readonly description: unknown; readonly binary: Uint8Array }
 );
 
 /** A person's motion as a headset and two hands saw it, with the truth beside it; 60 frames a second. */
@@ -94,10 +96,18 @@ function* readFile(source: MocapSource, map: SkeletonMap | undefined): Generator
 }
 
 function* readOther(source: MocapSource): Generator<number, FileMotion> {
-  if (source.format === 'vrma') return readVrma(source.description, source.binary);
+  if (source.format === 'gltf') return readGltf(source.description, source.binary);
   if (source.format === 'amc')
     return yield* readAmc(source.text, readBeside(source.skeleton, readAsf), source.skeleton.name);
   throw new Error('no file of motion');
+}
+
+/** Reads a VRM Animation, which names its bones, or the clip of another file. */
+function readGltf(description: unknown, binary: Uint8Array): FileMotion {
+  if (!isObject(description)) throw new Error('its description is no object');
+  const { extensions } = description;
+  const isVrma = isObject(extensions) && extensions.VRMC_vrm_animation !== undefined;
+  return isVrma ? readVrma(description, binary) : readGlbMotion(description, binary);
 }
 
 const withMap = (file: FileMotion, map: SkeletonMap): MatchedMotion => ({

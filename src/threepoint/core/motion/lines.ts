@@ -53,15 +53,22 @@ export class Lines {
     return [...line.matchAll(/\S+/g)].map(({ 0: word, index }) => ({ word, column: index + 1 }));
   }
 
-  /** The number that a word is. */
-  numberOf({ word, column }: Word): number {
-    // Number takes '0x10' and 'Infinity' too; the latter is refused as not finite.
+  /** The number that a word is; NaN: it is none. */
+  parse(word: string): number {
+    // Number takes '0x10' and 'Infinity' too; the latter is no finite number.
     const value = Number(word);
     if (Number.isFinite(value)) return value;
     const decimal = /^[+-]?\d*,\d+(e[+-]?\d+)?$/i.test(word) ? Number(word.replace(',', '.')) : Number.NaN;
-    if (!Number.isFinite(decimal)) this.fail(column, `${shown(word)} is no finite number`);
+    if (!Number.isFinite(decimal)) return Number.NaN;
     this.commas = true;
     return decimal;
+  }
+
+  /** The number that a word is. */
+  numberOf({ word, column }: Word): number {
+    const value = this.parse(word);
+    if (Number.isNaN(value)) this.fail(column, `${shown(word)} is no finite number`);
+    return value;
   }
 
   /** Writes the numbers of the line from a character on, as many as `width` at most; returns how many there are. */

@@ -131,7 +131,7 @@ function readDeclaration(lines: Lines, declared: Declared): boolean {
   if (!found) return false;
   const text = found[2]!;
   const column = lines.line.lastIndexOf(text === '' ? ':' : text) + 1;
-  const value = text === '' ? Number.NaN : lines.numberOf({ word: text, column });
+  const value = text === '' ? Number.NaN : lines.parse(text);
   if (found[1]!.toLowerCase() === 'frames') {
     if (!Number.isSafeInteger(value) || value < 1) lines.fail(column, `Frames should be a count, is ${shown(text)}`);
     declared.count = value;
@@ -163,7 +163,8 @@ export function* readBvh(text: string): Generator<number, BvhMotion> {
       lines.fail(1, `Frames says ${declared.count}, but more follow`);
     const at = rows.add();
     const count = lines.numbers(0, rows.values, at, width);
-    if (count !== width) {
+    if (count > width) lines.fail(1, `a frame has ${count} numbers, the hierarchy has ${width} channels`);
+    if (count < width) {
       const { number } = lines;
       cut = () => {
         throw new Error(`line ${number}, column 1: a frame has ${count} numbers, the hierarchy has ${width} channels`);

@@ -122,8 +122,8 @@ describe('what is no humanoid is refused with what was found and what is missing
       parent: i === 0 ? -1 : Math.max(0, parentOf(i)),
       position: at(i % 7, i % 11),
     }));
-    const start = performance.now();
+    const start = process.cpuUsage();
     matchHumanoid(joints);
-    expect(performance.now() - start).toBeLessThan(1000);
+    expect(process.cpuUsage(start).user / 1e3, 'milliseconds of work').toBeLessThan(1000);
   });
 });

@@ -1,8 +1,10 @@
+import { angleBetween, conjugate, multiply, quat } from 'threepoint/core/math/quat';
 import { prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
 import { trackedWidth } from 'threepoint/core/mocap/simulate-trackers';
 import { truthJoints } from 'threepoint/core/mocap/skeleton-map';
 import { finishWork } from 'threepoint/core/motion/work';
 import { describe, expect, test } from 'vitest';
+import { goldenMocap, sourceOf } from './golden-mocap';
 import { type MadeOptions, madeBvh } from './made-bvh';
 
 const prepare = (text: string) => finishWork(prepareMocap({ format: 'bvh', name: 'wave.bvh', text }));
@@ -106,6 +108,43 @@ describe('a BVH is read alike with', () => {
     });
     expect(furthest(swapped)).toBeLessThan(1);
     expect(prepare(swapped).notes.join()).toMatch(/names of left and right are exchanged/);
+  });
+});
+
+describe('without its map, a skeleton is read as with it', () => {
+  const width = 3 * truthJoints.length;
+  test.each([
+    ['folded_1.bvh', 1],
+    ['sideways_1.bvh', 1],
+  ])('%s', (name, degrees) => {
+    const golden = goldenMocap.find(({ motion }) => motion === name)!;
+    const { 'map.json': _, ...files } = golden.files;
+    const mapped = finishWork(prepareMocap(sourceOf(golden))).clips[0]!;
+    const found = finishWork(prepareMocap(sourceOf({ ...golden, files })));
+    const clip = found.clips[0]!;
+    expect(found.notes.length).toBeGreaterThan(0);
+    // The heading of a clip without a map may differ from the map's by right angles.
+    const shape = ({ truth }: typeof clip) => {
+      const values: number[] = [];
+      for (let at = 0; at < truth.length; at += 3) {
+        const hips = at - (at % width);
+        values.push(truth[at + 1]!, Math.hypot(truth[at]! - truth[hips]!, truth[at + 2]! - truth[hips + 2]!));
+      }
+      return values;
+    };
+    const [one, other] = [shape(clip), shape(mapped)];
+    expect(one).toHaveLength(other.length);
+    for (const [i, value] of one.entries()) expect(value).toBeCloseTo(other[i]!, 3);
+    // The rotation between headset and left hand does not depend on the heading.
+    const between = ({ tracked }: typeof clip, frame: number) => {
+      const [head, hand] = [3, 10].map((k) => {
+        const [x, y, z, w] = tracked.subarray(frame * trackedWidth + k, frame * trackedWidth + k + 4);
+        return quat(x!, y!, z!, w!);
+      });
+      return multiply(conjugate(head!), hand!);
+    };
+    for (let frame = 0; frame < mapped.frameCount; frame++)
+      expect(angleBetween(between(clip, frame), between(mapped, frame))).toBeLessThan((degrees * Math.PI) / 180);
   });
 });
 

@@ -18,11 +18,6 @@ describe('a map of a skeleton', () => {
     expect(isSkeletonMap('{"joints"')).toBe(false);
   });
 
-  test('is needed for a skeleton that is not known, which a sentence says', () => {
-    const { 'map.json': _, ...files } = folded.files;
-    expect(() => finishWork(prepareMocap(sourceOf({ ...folded, files })))).toThrow(/^folded_1\.bvh: .*a map of it/);
-  });
-
   test.each<[string, () => unknown, RegExp]>([
     ['no JSON', () => withMap('{'), /map\.json: no valid JSON: /],
     ['no map', () => withMap('[]'), /map\.json: expected an object with “joints”/],

@@ -18,6 +18,16 @@ const packedAtOnce = 2 ** 14;
 const unneeded = /^(Camera|Light|NurbsCurve)$/;
 const none = 'Null';
 
+/** The list that each layer of a mesh consists of, and that of places in it; some programs write layers without one. */
+const listsOfLayer: Readonly<Record<string, { readonly values: string; readonly indices: string }>> = {
+  LayerElementNormal: { values: 'Normals', indices: 'NormalsIndex' },
+  LayerElementUV: { values: 'UV', indices: 'UVIndex' },
+  LayerElementColor: { values: 'Colors', indices: 'ColorIndex' },
+  LayerElementMaterial: { values: 'Materials', indices: 'Materials' },
+};
+const byIndex = 'IndexToDirect';
+const direct = 'Direct';
+
 /** A name that every object has already would be overwritten in all of them. */
 const demandPlainName = (name: string): void => {
   if (name in {}) throw new Error(`a node is called “${name}”`);
@@ -90,6 +100,8 @@ class BinaryWalk {
   readonly #wide: boolean;
   readonly #checks = new ArrayChecks();
   #at = headerLength;
+  /** Where the newest layer says that it has a list of places in its values. */
+  #reference: Uint8Array | null = null;
 
   constructor(bytes: Uint8Array) {
     this.#bytes = bytes;
@@ -100,7 +112,7 @@ class BinaryWalk {
   /** Returns where the last node ends. */
   walk(): number {
     let end = this.#at;
-    while (this.#at < this.#bytes.length && this.#node(this.#bytes.length, 0)) end = this.#at;
+    while (this.#at < this.#bytes.length && this.#node(this.#bytes.length, 0) !== null) end = this.#at;
     if (end === headerLength) throw new Error('holds nothing');
     return end;
   }
@@ -118,19 +130,25 @@ class BinaryWalk {
     return this.#view.getUint32(at, true) + this.#view.getUint32(at + 4, true) * 2 ** 32;
   }
 
-  /** Returns false at the record that ends a list. */
-  #node(outerEnd: number, depth: number): boolean {
+  /** Returns the name of a node; null at the record that ends a list. */
+  #node(outerEnd: number, depth: number): string | null {
     const [end, properties, _length] = [this.#offset(outerEnd), this.#offset(outerEnd), this.#offset(outerEnd)];
     const nameLength = this.#view.getUint8(this.#take(1, outerEnd));
     const nameAt = this.#take(nameLength, outerEnd);
-    if (end === 0) return false;
+    if (end === 0) return null;
     if (end < this.#at || end > outerEnd) throw new Error('is cut short or damaged');
     if (depth > deepestNesting) throw new Error(`is nested deeper than ${deepestNesting} levels`);
     const name = latin.decode(this.#bytes.subarray(nameAt, nameAt + nameLength));
     demandPlainName(name);
     for (let i = 0; i < properties; i++) this.#property(name, end);
-    while (this.#at < end) this.#node(end, depth + 1);
-    return true;
+    const lists = listsOfLayer[name];
+    if (lists) this.#reference = null;
+    const below = new Set<string | null>();
+    while (this.#at < end) below.add(this.#node(end, depth + 1));
+    // Its reader does not look for a layer of another name.
+    if (lists && !below.has(lists.values)) this.#bytes.fill(0x5f, nameAt, nameAt + nameLength);
+    else if (lists && !below.has(lists.indices)) this.#overwrite(this.#reference, direct);
+    return name;
   }
 
   #property(name: string, end: number): void {
@@ -140,15 +158,22 @@ class BinaryWalk {
     else if (type === 'R' || type === 'S') {
       const length = this.#view.getUint32(this.#take(4, end), true);
       const at = this.#take(length, end);
-      if (type === 'S') this.#replaceUnneeded(this.#bytes.subarray(at, at + length));
+      if (type === 'S') this.#readText(this.#bytes.subarray(at, at + length));
     } else if (arrayTypes[type]) this.#array(name, type, end);
     else throw new Error('is damaged: it has a property of an unknown kind');
   }
 
-  #replaceUnneeded(text: Uint8Array): void {
-    if (text.length > 10 || !unneeded.test(latin.decode(text))) return;
-    text.fill(0);
-    for (const [i, letter] of [...none].entries()) text[i] = letter.charCodeAt(0);
+  #readText(text: Uint8Array): void {
+    if (text.length > byIndex.length) return;
+    const read = latin.decode(text);
+    if (read === byIndex) this.#reference = text;
+    if (unneeded.test(read)) this.#overwrite(text, none);
+  }
+
+  #overwrite(text: Uint8Array | null, by: string): void {
+    text?.fill(0);
+    text?.set(new TextEncoder().encode(by));
+    this.#reference = null;
   }
 
   #array(name: string, type: string, end: number): void {

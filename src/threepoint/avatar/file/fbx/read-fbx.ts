@@ -36,6 +36,8 @@ export async function glbOfFbx(bytes: Uint8Array, name: string, parts: ScenePart
   try {
     return await glbOfScene(sceneOf(bytes), parts, embeddedPicture);
   } catch (error) {
-    throw new Error(`${name}: cannot be read as FBX (${reasonOf(error)})`);
+    // The loader expects every node that another one names.
+    const reason = error instanceof TypeError ? 'its parts do not fit together' : reasonOf(error);
+    throw new Error(`${name}: cannot be read as FBX (${reason})`);
   }
 }

@@ -1,0 +1,105 @@
+import { deflateSync } from 'node:zlib';
+import { Euler, Matrix4, Quaternion, Vector3 } from 'three';
+import { glbOfFile } from 'threepoint/avatar/file/glb-of-file';
+import { readGltfMotion } from 'threepoint/avatar/file/motion-source';
+import type { BoneName } from 'threepoint/core/humanoid/bones';
+import { prepareMocap, readOurMotion } from 'threepoint/core/mocap/prepare-mocap';
+import { truthJoints } from 'threepoint/core/mocap/skeleton-map';
+import { finishWork } from 'threepoint/core/motion/work';
+import { expect, test } from 'vitest';
+import { type BoneTurns, builtFbx } from './built-fbx';
+import { rigJoints } from './built-rig';
+import { fbxBinary, fbxText } from './fbx-file';
+import { changed, type GltfJson } from './glb';
+import { mixamo } from './rig-namings';
+
+const frames = 90;
+const every = (angles: (frame: number) => readonly [number, number, number]) => Array.from({ length: frames }, (_, frame) => angles(frame)); // biome-ignore format: one thought
+const turns: BoneTurns = {
+  spine: every((frame) => [8 * Math.sin(frame / 20), 0, 0]),
+  leftUpperArm: every((frame) => [0, 0, -60 + 20 * Math.sin(frame / 15)]),
+  rightUpperArm: every((frame) => [0, 0, 50 * Math.sin(frame / 12)]),
+  rightLowerArm: every((frame) => [0, 40 + 30 * Math.sin(frame / 10), 0]),
+};
+const hips = every((frame) => [0, 0.92, 0.004 * frame]);
+const options = { nameOf: mixamo('mixamorig:'), turns, hips };
+
+/** The place of a joint in a frame of the clip, floor frame [m]: the floor's person faces −Z, the file's +Z. */
+function placeOf(bone: BoneName, frame: number): Vector3 {
+  const joints = rigJoints({});
+  const worldOf = (name: BoneName): Matrix4 => {
+    const { parent, at } = joints.find((joint) => joint.bone === name)!;
+    const from = parent ? joints.find((joint) => joint.bone === parent)!.at : new Vector3();
+    const offset = name === 'hips' ? new Vector3(...hips[frame]!) : at.clone().sub(from);
+    const [x, y, z] = (turns[name]?.[frame] ?? [0, 0, 0]).map((degrees) => (degrees * Math.PI) / 180);
+    const turn = new Quaternion().setFromEuler(new Euler(x, y, z, 'ZYX'));
+    const own = new Matrix4().compose(offset, turn, new Vector3(1, 1, 1));
+    return parent ? worldOf(parent).multiply(own) : own;
+  };
+  const { x, y, z } = new Vector3().setFromMatrixPosition(worldOf(bone));
+  return new Vector3(-x, y, -z);
+}
+
+async function expectTruth(bytes: ArrayBuffer, name: string): Promise<void> {
+  const source = { name, ...(await readGltfMotion(bytes, name)) };
+  const { motion } = finishWork(readOurMotion(source));
+  expect(motion.rateHz).toBe(60);
+  for (let frame = 0; frame < frames; frame += 7) {
+    for (const bone of ['hips', 'head', 'leftHand', 'rightLowerArm', 'rightHand', 'leftFoot'] as const) {
+      const at = 3 * (2 * frame * truthJoints.length + truthJoints.indexOf(bone));
+      const read = new Vector3(...motion.positions.subarray(at, at + 3));
+      expect(read.distanceTo(placeOf(bone, frame)), `${bone} in frame ${frame} [m]`).toBeLessThan(1e-3);
+    }
+  }
+  const { clips } = finishWork(prepareMocap(source));
+  expect(clips.map(({ frameCount }) => frameCount)).toEqual([2 * (frames - 1) + 1]);
+}
+
+test.each([
+  ['text', fbxText(builtFbx(options))],
+  ['bytes', fbxBinary(builtFbx(options), deflateSync)],
+  ['bones alone', fbxBinary(builtFbx({ ...options, bare: true }))],
+])('motion in FBX as %s is read as it was written', async (_, bytes) => {
+  await expectTruth(bytes, 'wave.fbx');
+});
+
+test('so is the clip of a GLB, the longest of several', async () => {
+  const glb = await glbOfFile(fbxBinary(builtFbx(options)), 'wave.fbx', 'motion');
+  await expectTruth(glb, 'wave.glb');
+  const several = changed(
+    (json: GltfJson) => {
+      const [clip] = json.animations as { channels: object[]; samplers: object[] }[];
+      json.accessors.push({ ...json.accessors[0]!, count: 1, max: [0] });
+      const short = { input: json.accessors.length - 1, output: json.accessors.length - 1 };
+      json.animations = [
+        { name: 'none', channels: [], samplers: [short] },
+        { ...clip, name: 'wave' },
+      ];
+    },
+    new Uint8Array(),
+    new Uint8Array(glb),
+  );
+  const { notes } = finishWork(prepareMocap({ name: 'wave.glb', ...(await readGltfMotion(several, 'wave.glb')) }));
+  expect(notes).toContain('it has 2 clips; the longest, “wave”, is shown');
+});
+
+test('a skin that was bound in T-pose counts as rest where the file shows another pose', async () => {
+  const glb = await glbOfFile(fbxBinary(builtFbx(options)), 'wave.fbx', 'motion');
+  const posed = changed(
+    (json) => {
+      const arm = json.nodes.find(({ name }) => name === 'mixamorig:LeftArm') as { rotation?: number[] };
+      arm.rotation = [0, 0, -Math.SQRT1_2, Math.SQRT1_2];
+    },
+    new Uint8Array(),
+    new Uint8Array(glb),
+  );
+  await expectTruth(posed, 'wave.glb');
+});
+
+test('a file without a clip is refused in a sentence', async () => {
+  const glb = await readGltfMotion(
+    await glbOfFile(fbxBinary(builtFbx({ nameOf: options.nameOf })), 'a.fbx', 'motion'),
+    'a.glb',
+  );
+  expect(() => finishWork(prepareMocap({ name: 'a.glb', ...glb }))).toThrow('a.glb: there is no animation in it');
+});
