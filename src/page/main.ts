@@ -86,7 +86,7 @@ async function start(): Promise<void> {
 
   // The built-in avatar is shown until another one has been loaded, and stays if that fails.
   if (switches.avatar) void avatar.open(switches.avatar);
-  const enterButton = createEnterButton(pageElement('enter', HTMLDivElement), () => void headset.enter());
+  const enterButton = createEnterButton(pageElement('enter', HTMLElement), () => void headset.enter());
   run(page, context);
 
   // The network loads in parallel to the avatar, and IK draws until it is ready.
