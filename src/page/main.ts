@@ -89,7 +89,7 @@ async function start(): Promise<void> {
     const address = switches.avatar;
     void avatar.open(address).then((outcome) => (outcome === 'motion' ? page.mocap.open([address]) : undefined));
   }
-  const enterButton = createEnterButton(pageElement('enter', HTMLDivElement), () => void headset.enter());
+  const enterButton = createEnterButton(pageElement('enter', HTMLElement), () => void headset.enter());
   run(page, context);
 
   // The network loads in parallel to the avatar, and IK draws until it is ready.

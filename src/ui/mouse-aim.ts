@@ -1,10 +1,13 @@
+/** Whether fingers are the usual way to point here, as on a phone. */
+export const isTouchFirst = (): boolean => matchMedia('(pointer: coarse)').matches;
+
 /** What mouse, pen or finger want of an archer: where they point in the window, and whether they hold. */
 export interface MouseAim {
   /** From −1 to 1, right and up. */
   readonly x: number;
   readonly y: number;
   readonly pressed: boolean;
-  /** Escape, or the other button, since the press began. */
+  /** Escape, the other button or a second finger, since the press began. */
   readonly cancelled: boolean;
   setEnabled(on: boolean): void;
 }
@@ -13,7 +16,8 @@ export interface MouseAim {
 export function createMouseAim(canvas: HTMLCanvasElement): MouseAim {
   const aim = { x: 0, y: 0.1, pressed: false, cancelled: false };
   let enabled = false;
-  const move = ({ clientX, clientY }: PointerEvent) => {
+  const move = ({ clientX, clientY, isPrimary }: PointerEvent) => {
+    if (!isPrimary) return;
     const { width, height } = canvas.getBoundingClientRect();
     aim.x = (2 * clientX) / width - 1;
     aim.y = 1 - (2 * clientY) / height;
@@ -22,7 +26,7 @@ export function createMouseAim(canvas: HTMLCanvasElement): MouseAim {
   canvas.addEventListener('pointerdown', (event) => {
     if (!enabled) return;
     move(event);
-    if (event.button !== 0) {
+    if (event.button !== 0 || !event.isPrimary) {
       aim.cancelled = true;
       return;
     }
@@ -31,7 +35,8 @@ export function createMouseAim(canvas: HTMLCanvasElement): MouseAim {
     aim.cancelled = false;
   });
   for (const end of ['pointerup', 'pointercancel'] as const) {
-    canvas.addEventListener(end, ({ button }) => {
+    canvas.addEventListener(end, ({ button, isPrimary }) => {
+      if (!isPrimary) return;
       if (end === 'pointercancel') aim.cancelled = true;
       if (button <= 0) aim.pressed = false;
     });

@@ -1,5 +1,6 @@
 import { button, element } from 'threepoint-ui/element';
 import { archeryRulesText, rulesList } from 'threepoint-ui/game-rules-text';
+import { isTouchFirst } from 'threepoint-ui/mouse-aim';
 import { toggle } from 'threepoint-ui/toggle';
 import type { ActivityPanel } from '../activity/activity';
 import type { ActivityContext, StoredActivitySettings } from '../activity/activity-context';
@@ -27,6 +28,7 @@ export interface ArcheryControls {
 }
 
 const mouseHint = 'Aim with the mouse, hold its button to draw, release it to shoot. Esc puts the arrow back.';
+const touchHint = 'Touch the picture to draw, drag to aim, lift to shoot. A second finger puts the arrow back.';
 
 type PanelContext = Pick<ActivityContext, 'settings' | 'headset' | 'inputSource' | 'setSound'>;
 
@@ -60,10 +62,13 @@ export function createArcheryPanel(archery: ArcheryControls, context: PanelConte
   const arrows = element('span', { class: 'arrows' });
   const time = element('span', { class: 'time' });
   const waiting = element('p', { class: 'waiting', role: 'status' });
-  const shoot = button('Shoot with the mouse', () => archery.chooseShooter('mouse'), { class: 'primary' });
+  const touch = isTouchFirst();
+  const shoot = button(touch ? 'Shoot by touch' : 'Shoot with the mouse', () => archery.chooseShooter('mouse'), {
+    class: 'primary',
+  });
   const watch = button('Watch', () => archery.chooseShooter('actor'));
   const restart = button('New round', () => archery.restart());
-  const hint = element('p', { class: 'hint' }, mouseHint);
+  const hint = element('p', { class: 'hint' }, touch ? touchHint : mouseHint);
   const rules = createRules(archery, context);
   const node = element(
     'div',

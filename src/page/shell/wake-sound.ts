@@ -6,8 +6,9 @@ import type { ActivitySound } from '../activity/activity';
 const touches = ['pointerdown', 'pointerup', 'keydown'];
 
 /**
- * Plays or mutes the sound of an activity. Browsers let a page play sound only after a touch of its user. The system may
- * suspend it at any time: each touch and each return to the page wakes it again. Call the returned function to stop.
+ * Plays or mutes the sound of an activity. Browsers let a page play sound only after a touch of its user. The system
+ * may suspend it at any time: each touch and each return to the page wakes it again. Call the returned function to
+ * stop.
  */
 export function wakeSound(sound: ActivitySound, wanted: boolean, notices: Pick<Notices, 'show'>): () => void {
   const stopped = new AbortController();

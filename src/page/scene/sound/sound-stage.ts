@@ -11,7 +11,8 @@ export type Recipes = ReadonlyMap<string, Recipe>;
 /** Sounds from where they happen, for ears that move; floor frame. */
 export interface SoundStage {
   /**
-   * Starts the audio, unless it runs; a browser allows it only within a user's gesture. Rejects where there is no audio.
+   * Starts the audio, unless it runs; a browser allows it only within a user's gesture. Rejects where there is no
+   * audio.
    */
   unlock(): Promise<void>;
   /** Returns the running audio context without the sounds of the game, for other sounds with the same listener. */
