@@ -5,7 +5,7 @@ export interface WorkerQuestion extends AvatarQuestion {
   readonly bytes: ArrayBuffer;
 }
 
-/** What comes back for a file: its bytes and what is known of them, or the sentence that refuses it. */
+/** The answer to a file: its bytes and what is known of them, or the sentence that refuses it. */
 export type WorkerAnswer = { readonly checked: CheckedAvatar } | { readonly refused: string };
 
 self.addEventListener('message', ({ data: { bytes, ...question } }: MessageEvent<WorkerQuestion>) => {
@@ -14,3 +14,5 @@ self.addEventListener('message', ({ data: { bytes, ...question } }: MessageEvent
     (error: unknown) => self.postMessage({ refused: reasonOf(error) } satisfies WorkerAnswer),
   );
 });
+// The first message reports that the worker runs.
+self.postMessage('ready');
