@@ -9,8 +9,8 @@ import { type JoinedRoom, joinRoom, placementOf, RemoteBodies } from 'threepoint
 /** A room of a server, with the wearer's body and those of the others. */
 export async function inARoom(renderer: WebGLRenderer, scene: Scene): Promise<JoinedRoom> {
   const body = new BodyTracker(renderer, { avatar: await loadMannequin() });
-  const avatar = (reference: string | null, peer: string): Promise<Avatar> => {
-    console.log(reference, peer);
+  const avatar = (reference: string): Promise<Avatar> => {
+    console.log(reference);
     return loadMannequin();
   };
   const room = await joinRoom('https://example.org', { name: 'Ada', body, room: 'lunch', avatar });

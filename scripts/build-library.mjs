@@ -25,6 +25,8 @@ const copied = {
   'models/paper.onnx': 'public/models/paper.onnx',
   'avatars/mannequin.vrm': 'public/avatars/mannequin.vrm',
   LICENSE: 'LICENSE',
+  'bundled/gltf-validator-LICENSE.txt': 'node_modules/gltf-validator/LICENSE',
+  'bundled/gltf-validator-NOTICES.txt': 'node_modules/gltf-validator/NOTICES',
 };
 
 /** The documents of the package: path in the package to path in the repository. */
@@ -56,8 +58,8 @@ function published() {
 }
 
 /**
- * The modules of the sources that read a file of the package, the function of each that returns the bytes, and the
- * file. Some bundlers drop files that code references by URL; a page would then never leave its fallback.
+ * The modules of the sources that read a file of the package or start a worker, the function of each, and the file or
+ * the worker's module. Some bundlers drop files that code references by URL; a page would then never leave its fallback.
  */
 const readers = [
   {
@@ -74,6 +76,15 @@ const readers = [
     file: 'public/avatars/mannequin.vrm',
     code: (bytes) => `export const readOwnMannequin = async () => (await ${bytes}).buffer;`,
   },
+  {
+    module: 'own-validator',
+    worker: 'src/threepoint/avatar/file/check-worker.ts',
+    code: (bytes) => `let address;
+    export async function startValidator() {
+      address ??= URL.createObjectURL(new Blob([await ${bytes}], { type: 'text/javascript' }));
+      return new Worker(address, { type: 'module' });
+    }`,
+  },
 ];
 const embedded = (module) => `\0embedded-${module}`;
 
@@ -83,16 +94,26 @@ const filesInModules = {
   resolveId: { filter: { id: /^\0embedded-/ }, handler: (id) => id },
   load: {
     filter: { id: /^\0embedded-|\/api\/own-\w+\.ts$/ },
-    handler(id) {
-      const { module, file, code } = readers.find((reader) => id.includes(reader.module));
+    async handler(id) {
+      const { module, file, worker, code } = readers.find((reader) => id.includes(reader.module));
       if (id === embedded(module)) {
-        return `export default ${JSON.stringify(readFileSync(join(root, file)).toString('base64'))};`;
+        const bytes = worker ? await workerCode(worker) : readFileSync(join(root, file));
+        return `export default ${JSON.stringify(bytes.toString('base64'))};`;
       }
       const bytes = `import(${JSON.stringify(embedded(module))}).then(({ default: text }) => Uint8Array.from(atob(text), (character) => character.charCodeAt(0)))`;
       return { moduleType: 'js', code: code(bytes) };
     },
   },
 };
+
+/** Returns the code of a worker as one module. */
+async function workerCode(module) {
+  const build = await bundle({ worker: join(root, module) }, []);
+  const { output } = await build.generate({ format: 'esm', minify: true });
+  await build.close();
+  if (output.length !== 1) throw new SetupError(`The worker ${module} is ${output.length} files; it must be one.`);
+  return Buffer.from(output[0].code);
+}
 
 const sourceOf = (name) => join(root, `src/threepoint/api/${name}.ts`);
 
@@ -113,8 +134,12 @@ async function bundle(input, plugins) {
 const movedModules = {
   '_virtual/_embedded-own-weights': 'learned-weights',
   '_virtual/_embedded-own-mannequin': 'mannequin',
+  '_virtual/_embedded-own-validator': 'validator',
   'public/models/learned.json': 'api/learned-contract',
   'node_modules/valibot/dist/index': 'bundled/valibot',
+  'node_modules/gltf-validator/module': 'bundled/gltf-validator',
+  'node_modules/gltf-validator/gltf_validator.dart': 'bundled/gltf-validator-dart',
+  '_virtual/_rolldown/runtime': 'bundled/runtime',
 };
 
 /**

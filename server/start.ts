@@ -2,8 +2,8 @@ import { createConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { createRouter, type Route } from 'threepoint-http/router';
 import { createSitePolicy } from 'threepoint-http/site-policy';
 import { softwareIn } from 'threepoint-http/software';
-import { type Credentials, serve } from 'threepoint-http/web-server';
-import { createRelay } from 'threepoint-rooms/server/relay';
+import { type Credentials, prepareServer } from 'threepoint-http/web-server';
+import { attachRooms } from 'threepoint-rooms/server/attach-rooms';
 import type { RelayConfiguration } from 'threepoint-rooms/server/settings/relay-configuration';
 import { openStudyService } from 'threepoint-study/server/service';
 import { createPageHandler } from './page';
@@ -57,26 +57,29 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
     perAddress: relaying.connectionsPerAddress,
     behindProxy: relaying.trustProxy,
   });
-  const relay = createRelay(relaying, options.secret, connectionLimiter, shippedRoomKinds(relaying));
-  const services = [relay.service, studies.service];
-  const server = await serve(createRouter(services, page, createSitePolicy(relaying)), {
-    host,
-    port,
+  const prepared = prepareServer(createRouter([studies.service], page, createSitePolicy(relaying)), {
     ...(credentials && { credentials }),
-    upgrade: relay.upgrade,
     connectionLimiter,
-  }).catch(async (error: unknown) => {
+  });
+  const rooms = attachRooms(prepared.http, {
+    ...relaying,
+    secret: options.secret,
+    games: shippedRoomKinds(relaying),
+    operations: true,
+    connectionLimiter,
+  });
+  const server = await prepared.listen({ host, port }).catch(async (error: unknown) => {
     // Their timers would keep the process alive.
-    await relay.close();
+    await rooms.close();
     await studies.close();
     throw error;
   });
   return {
     port: server.port,
     tokenFile: studies.tokenFile,
-    routes: services.flatMap(({ routes }): readonly Route[] => routes),
+    routes: [...rooms.routes, ...studies.service.routes],
     async close() {
-      await relay.close();
+      await rooms.close();
       await server.close();
       await studies.close();
     },

@@ -1,3 +1,4 @@
+import { createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { createRemoteAvatars, type SeenPerson } from 'threepoint/avatar/remote-avatars';
 import { plainAvatar } from 'threepoint/core/body/avatar-ref';
@@ -38,7 +39,7 @@ export class Court {
     this.#view = createBallView({ quality: 'low', balls: 20, onCaption: () => undefined });
     studio.setSurroundings(this.#view.placed(floorFromArena));
     this.#others = createRemoteAvatars({
-      load: () => parseAvatar(mannequin, 'mannequin.vrm'),
+      load: async () => createAvatarBetweenFrames(await parseAvatar(mannequin, 'mannequin.vrm')),
       plain: () => false,
       mouthOf: () => 0,
       onRefused: () => undefined,

@@ -29,9 +29,13 @@ export interface WebServer {
 /** Handles an upgrade request and returns true; false where the address has no WebSocket. */
 export type UpgradeListener = (request: IncomingMessage, socket: Duplex, head: Buffer) => boolean;
 
-export interface ServeOptions {
+/** Where a server listens: on the port or the next free one. */
+export interface ListenOptions {
   readonly host: string;
   readonly port: number;
+}
+
+export interface WebServerOptions {
   readonly credentials?: Credentials;
   readonly upgrade?: UpgradeListener;
   /** Limits the connections of each address; every connection is accepted without it. */
@@ -72,28 +76,36 @@ function refusalOfParser({ code }: NodeJS.ErrnoException): HttpError {
   return new HttpError(400, 'this is not an HTTP request');
 }
 
-/** Attaches handlers for everything that reaches a server: requests, upgrades, tunnels and malformed input. */
-function answerAll(server: HttpServer, listener: RequestListener, upgrade: UpgradeListener): void {
-  const answering = new WeakMap<Duplex, ServerResponse>();
-  const refused = new WeakSet<Duplex>();
-
-  const guarded = (request: IncomingMessage, response: Parameters<RequestListener>[1]): void => {
-    answering.set(request.socket, response);
+/** Refuses requests with a wrong Host before the listener, and tolerates clients that disconnect. */
+export const guarded =
+  (listener: RequestListener): RequestListener =>
+  (request, response) => {
     // A client may disconnect before it has read its answer; that is not an error.
     request.on('error', () => undefined);
     response.on('error', () => undefined);
     const complaint = complaintAboutHost(request);
-    if (complaint !== null) {
-      sendAnswer(request, response, refusal(new HttpError(400, complaint)));
-      return;
-    }
-    listener(request, response);
+    if (complaint === null) listener(request, response);
+    else sendAnswer(request, response, refusal(new HttpError(400, complaint)));
   };
+
+/** The response that each connection waits for. */
+const answering = new WeakMap<Duplex, ServerResponse>();
+
+class FollowedResponse extends ServerResponse {
+  override assignSocket(socket: Socket): void {
+    answering.set(socket, this);
+    super.assignSocket(socket);
+  }
+}
+
+/** Attaches handlers for everything that reaches a server: requests, upgrades, tunnels and malformed input. */
+function answerAll(server: HttpServer, listener: RequestListener, upgrade: UpgradeListener): void {
+  const refused = new WeakSet<Duplex>();
 
   // reason: missing in the types, but an option of http.Server: a client that has closed its side still receives the
   // answer.
   (server as HttpServer & { httpAllowHalfOpen: boolean }).httpAllowHalfOpen = true;
-  server.on('request', guarded);
+  server.on('request', guarded(listener));
   server.on('checkExpectation', (request: IncomingMessage, response: ServerResponse) => {
     sendAnswer(request, response, refusal(new HttpError(417, 'this server supports no expectation but 100-continue')));
   });
@@ -117,11 +129,11 @@ function answerAll(server: HttpServer, listener: RequestListener, upgrade: Upgra
       return;
     }
     // A server may ignore an offer of another protocol; the request is answered as if it had none.
-    const response = new ServerResponse(request);
+    const response = new FollowedResponse(request);
     response.shouldKeepAlive = false;
     response.assignSocket(socket as Socket);
     response.once('finish', () => socket.end());
-    guarded(request, response);
+    server.emit('request', request, response);
   });
   server.on('clientError', (error: NodeJS.ErrnoException, socket: Duplex) => {
     if (refused.has(socket)) return;
@@ -164,13 +176,21 @@ const limits = {
   connectionsCheckingInterval: checkMs,
   // Answered by `complaintAboutHost` instead, with a sentence and the security headers.
   requireHostHeader: false,
+  ServerResponse: FollowedResponse,
 };
 
-/** Serves on the port or the next free one: HTTP, or with credentials HTTPS and a redirect from HTTP. */
-export async function serve(
+/** A server that does not listen yet. */
+export interface PreparedServer {
+  /** The server to which services with addresses of their own attach. */
+  readonly http: HttpServer;
+  listen(options: ListenOptions): Promise<WebServer>;
+}
+
+/** Prepares a server: HTTP, or with credentials HTTPS and a redirect from HTTP. */
+export function prepareServer(
   listener: RequestListener,
-  { host, port, credentials, upgrade = () => false, connectionLimiter, silenceMs = 30_000 }: ServeOptions,
-): Promise<WebServer> {
+  { credentials, upgrade = () => false, connectionLimiter, silenceMs = 30_000 }: WebServerOptions,
+): PreparedServer {
   const requests: HttpServer = credentials
     ? createHttpsServer({ ...credentials, ...limits, handshakeTimeout: handshakeMs })
     : createHttpServer(limits);
@@ -189,16 +209,22 @@ export async function serve(
     sockets.add(socket);
     socket.once('close', () => sockets.delete(socket));
   });
-  const actualPort = await listenOnFreePort(entrance, host, port);
+  const close = () =>
+    new Promise<void>((resolve, reject) => {
+      entrance.close((error) => (error ? reject(error) : resolve()));
+      for (const socket of sockets) socket.destroy();
+      // Stops their checks of timeouts.
+      if (credentials) requests.close();
+      redirects.close();
+    });
   return {
-    port: actualPort,
-    close: () =>
-      new Promise((resolve, reject) => {
-        entrance.close((error) => (error ? reject(error) : resolve()));
-        for (const socket of sockets) socket.destroy();
-        // Stops their checks of timeouts.
-        if (credentials) requests.close();
-        redirects.close();
-      }),
+    http: requests,
+    listen: async ({ host, port }) => ({ port: await listenOnFreePort(entrance, host, port), close }),
   };
 }
+
+/** Prepares a server and listens. */
+export const serve = (
+  listener: RequestListener,
+  { host, port, ...options }: WebServerOptions & ListenOptions,
+): Promise<WebServer> => prepareServer(listener, options).listen({ host, port });

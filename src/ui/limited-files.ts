@@ -1,24 +1,16 @@
-import { PassingFault } from 'threepoint/core/errors/passing-fault';
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import {
+  type DownloadOptions,
+  downloadLimited,
+  type FileKind,
+  nameOfAddress,
+  tooLarge,
+} from 'threepoint/avatar/file/limited-download';
 
-/** What a file is to be, with its article, and how much of it this page reads. */
-export interface FileKind {
-  readonly what: string;
-  readonly megabytes: number;
-}
+export type { FileKind } from 'threepoint/avatar/file/limited-download';
 
 /** What sentences call a file: its name, of an address the last part. */
 export const nameOf = (source: string | File): string =>
-  typeof source === 'string' ? source.split(/[?#]/)[0]?.split('/').at(-1) || source : source.name;
-
-export interface ReadOptions {
-  /** Called with the share [0, 1] that has arrived. */
-  readonly onProgress?: (share: number) => void;
-  /** Cancels a download. */
-  readonly signal?: AbortSignal;
-  /** The headers of a download. */
-  readonly headers?: Readonly<Record<string, string>>;
-}
+  typeof source === 'string' ? nameOfAddress(source) : source.name;
 
 /**
  * The bytes of a file of this device or of what an address answers. What is larger than its kind may be is refused
@@ -28,9 +20,10 @@ export interface ReadOptions {
 export async function readLimited(
   source: string | File,
   kind: FileKind,
-  options: ReadOptions = {},
+  options: DownloadOptions = {},
 ): Promise<ArrayBuffer> {
-  const bytes = typeof source === 'string' ? await download(source, kind, options) : await readFile(source, kind);
+  const bytes =
+    typeof source === 'string' ? await downloadLimited(source, kind, options) : await readFile(source, kind);
   options.onProgress?.(1);
   return bytes;
 }
@@ -38,60 +31,4 @@ export async function readLimited(
 function readFile(file: File, kind: FileKind): Promise<ArrayBuffer> {
   if (file.size > kind.megabytes * 2 ** 20) throw tooLarge(file.name, kind);
   return file.arrayBuffer();
-}
-
-const tooLarge = (name: string, { what, megabytes }: FileKind): Error =>
-  new Error(`${name}: larger than ${megabytes} MB, the limit for ${what}`);
-
-/** Browsers do not say which of the two refused: the policy of the page's own server, or the other server. */
-const otherServerHint =
-  '. Files on another server need its permission (CORS) and that of this page (THREEPOINT_FILES_FROM). Save the file and open it from this device';
-
-const isOfOtherServer = (url: string): boolean =>
-  URL.canParse(url) && new URL(url).origin !== globalThis.location?.origin;
-
-async function download(
-  url: string,
-  kind: FileKind,
-  { onProgress, signal, headers = {} }: ReadOptions,
-): Promise<ArrayBuffer> {
-  const name = nameOf(url);
-  const most = kind.megabytes * 2 ** 20;
-  const aborting = new AbortController();
-  signal?.addEventListener('abort', () => aborting.abort());
-  const response = await fetch(url, { signal: aborting.signal, headers }).catch((error: unknown) => {
-    const why = isOfOtherServer(url) ? otherServerHint : '';
-    throw new PassingFault(`${name}: could not be downloaded (${firstLine(reasonOf(error))})${why}`);
-  });
-  /** Ends the answer, so that nothing more of it comes. */
-  const refuse = (error: Error): never => {
-    aborting.abort();
-    throw error;
-  };
-  if (!response.ok || !response.body)
-    return refuse(new PassingFault(`${name}: the server answers ${response.status} ${response.statusText}`.trim()));
-  if (/^text\/html\b/i.test(response.headers.get('content-type') ?? ''))
-    return refuse(new Error(`${name}: the server sent a web page instead of ${kind.what}`));
-  const total = Number(response.headers.get('content-length')) || 0;
-  if (total > most) return refuse(tooLarge(name, kind));
-  const pieces: Uint8Array[] = [];
-  let received = 0;
-  const reader = response.body.getReader();
-  for (;;) {
-    const { done, value } = await reader.read().catch((error: unknown) => {
-      throw new PassingFault(`${name}: the connection was lost during the download (${firstLine(reasonOf(error))})`);
-    });
-    if (done) break;
-    pieces.push(value);
-    received += value.length;
-    if (received > most) return refuse(tooLarge(name, kind));
-    if (total > 0) onProgress?.(Math.min(1, received / total));
-  }
-  const whole = new Uint8Array(received);
-  let offset = 0;
-  for (const piece of pieces) {
-    whole.set(piece, offset);
-    offset += piece.length;
-  }
-  return whole.buffer;
 }

@@ -7,9 +7,9 @@ import { writeRecording } from 'threepoint/core/tracking/recording';
 import { createConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { createRouter } from 'threepoint-http/router';
 import { createSitePolicy } from 'threepoint-http/site-policy';
-import { serve } from 'threepoint-http/web-server';
+import { prepareServer } from 'threepoint-http/web-server';
 import { poseEvent } from 'threepoint-rooms/protocol/socket-parsers';
-import { createRelay } from 'threepoint-rooms/server/relay';
+import { attachRooms } from 'threepoint-rooms/server/attach-rooms';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { begin } from 'threepoint-study/model/progress/progress';
@@ -58,23 +58,24 @@ async function wholeServer() {
   };
   const configuration = relayConfigurationFrom(environment);
   const connectionLimiter = createConnectionLimiter({ perAddress: 100, behindProxy: true });
-  const relay = createRelay(configuration, testSecret, connectionLimiter, shippedRoomKinds(configuration));
   const studies = studiesInThisThread({ store, file });
-  const services = [relay.service, studies];
-  const server = await serve(createRouter(services, page, createSitePolicy(configuration)), {
-    host: '127.0.0.1',
-    port: 0,
-    upgrade: relay.upgrade,
+  const prepared = prepareServer(createRouter([studies], page, createSitePolicy(configuration)), { connectionLimiter });
+  const rooms = attachRooms(prepared.http, {
+    ...configuration,
+    secret: testSecret,
+    games: shippedRoomKinds(configuration),
+    operations: true,
     connectionLimiter,
   });
+  const server = await prepared.listen({ host: '127.0.0.1', port: 0 });
   onTestFinished(async () => {
-    await relay.close();
+    await rooms.close();
     await server.close();
     store.close();
   });
   return {
     port: server.port,
-    routes: services.flatMap(({ routes }) => [...routes]),
+    routes: [...rooms.routes, ...studies.routes],
     store,
     claims,
     records,

@@ -5,7 +5,7 @@ import {
   type LoopbackHost,
   type LoopbackOptions,
 } from 'threepoint-rooms/client/loopback-connection';
-import { ballRoomMessageFrom } from './ball-messages';
+import { ballKind, ballRoomMessageFrom } from './ball-messages';
 import { type BallGame, BallPolicy } from './ball-policy';
 import { unpackBall } from './ball-snapshot';
 import type { BallOptions } from './ball-state';
@@ -19,6 +19,7 @@ export type BallLoopbackHost = LoopbackHost<BallGame>;
 
 /** The client policy of the ball game. */
 export const ballClientPolicy: ClientPolicy<BallGame> = {
+  kind: ballKind,
   readMessage: ballRoomMessageFrom,
   unpack: unpackBall,
   follow: applyBallEvent,

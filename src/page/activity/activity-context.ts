@@ -1,10 +1,11 @@
-import type { AvatarHash, BuiltInAvatar, BuiltInBody } from 'threepoint/core/body/avatar-ref';
+import type { BuiltInBody } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { Pose } from 'threepoint/core/math/pose';
 import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
 import type { PageClock } from 'threepoint/core/tracking/page-clock';
 import type { ServerPresence } from 'threepoint-http/server-presence';
+import type { WornAvatar } from 'threepoint-rooms/client/shared-avatar';
 import type { TaskPlace } from 'threepoint-study/participant/trial/task-runner';
 import type { MouseAim } from 'threepoint-ui/mouse-aim';
 import type { Notices } from 'threepoint-ui/notices';
@@ -62,16 +63,6 @@ export interface ActivitySettingsWriter {
   keep(part: Partial<StoredActivitySettings>): void;
 }
 
-/** The avatar that the user shows to others: a built-in one, or a file. */
-export type UserAvatar =
-  | BuiltInAvatar
-  | {
-      readonly name: string;
-      readonly file: Blob;
-      /** null: unknown, because the connection is not secure. */
-      readonly hash: AvatarHash | null;
-    };
-
 /** The parts of the page that every activity can use. */
 export interface ActivityServices {
   readonly quality: Quality;
@@ -92,7 +83,7 @@ export interface ActivityServices {
   readonly headset: { readonly worn: boolean; readonly emulator: object | null };
   readonly body: { readonly calibration: Calibration };
   /** The user's avatar; `isBuiltIn`: it is a built-in one, not a file. */
-  readonly avatar: { readonly isBuiltIn: boolean; readonly worn: UserAvatar };
+  readonly avatar: { readonly isBuiltIn: boolean; readonly worn: WornAvatar };
   /** Downloads a built-in avatar. */
   fetchBuiltInAvatar(name: BuiltInBody): Promise<ArrayBuffer>;
   readonly server: Pick<ServerPresence, 'state' | 'known' | 'ask'>;

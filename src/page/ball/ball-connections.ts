@@ -23,14 +23,10 @@ export interface BallPlace {
  * same avatar there.
  */
 export async function assignedSeat(seat: () => Promise<SignedSeat>, clock: LocalClock): Promise<BallPlace> {
-  const [{ createSocketConnection }, first] = await Promise.all([
-    import('threepoint-rooms/client/socket-connection'),
-    seat(),
-  ]);
+  const [{ RoomAddress }, first] = await Promise.all([import('threepoint-rooms/client/room-address'), seat()]);
   const pass = { token: async (afresh: boolean) => (afresh ? await seat() : first).token };
-  const connect: Connect = (visitor) =>
-    createSocketConnection(ballClientPolicy, { url: pageFolder(), room: first.room, visitor, clock, pass });
-  return { connect, avatars: null, voiceTerms: null };
+  const address = new RoomAddress(ballClientPolicy, { url: pageFolder(), room: first.room, clock, pass });
+  return { connect: (visitor) => address.connect(visitor), avatars: null, voiceTerms: null };
 }
 
 /**
@@ -45,25 +41,18 @@ export async function connectionsFor(
     const { pausable: _, ...ball } = terms;
     return { connect: createBallLoopbackHost({ seed, ball }).connect, avatars: null, voiceTerms: null };
   }
-  const [{ createSocketConnection }, { createRoomPass, tabStorage }, { createAvatarExchange }] = await Promise.all([
-    import('threepoint-rooms/client/socket-connection'),
+  const [{ RoomAddress }, { tabStorage }] = await Promise.all([
+    import('threepoint-rooms/client/room-address'),
     import('threepoint-rooms/client/room-pass'),
-    import('threepoint-rooms/client/avatar-exchange'),
   ]);
-  const server = pageFolder();
-  const person = createRoomPass(server, room, 'ball', tabStorage(), terms);
-  const connect: Connect = (visitor) =>
-    createSocketConnection(ballClientPolicy, {
-      url: server,
-      room,
-      visitor,
-      clock,
-      // Each bot is a guest with its own pass. It may be the first that comes back after the room was closed.
-      pass: visitor.bot ? createRoomPass(server, room, 'ball', undefined, terms) : person,
-    });
+  const storage = tabStorage();
+  const address = new RoomAddress(ballClientPolicy, {
+    ...{ url: pageFolder(), room, clock, terms },
+    ...(storage && { storage }),
+  });
   return {
-    connect,
-    avatars: createAvatarExchange(server, room, person),
-    voiceTerms: () => fetchVoiceSettings(server, room, person),
+    connect: (visitor) => address.connect(visitor),
+    avatars: address.avatars,
+    voiceTerms: () => fetchVoiceSettings(pageFolder(), room, address.pass),
   };
 }

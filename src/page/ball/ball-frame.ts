@@ -1,10 +1,6 @@
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { type AvatarRef, plainAvatar } from 'threepoint/core/body/avatar-ref';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { type Fingers, unknownFingers } from 'threepoint/core/body/hand-shape';
+import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import {
-  composeTransforms,
-  type MutableTransform,
   makePose,
   makeTransform,
   type TrackedPose,
@@ -25,7 +21,7 @@ import { isInZone } from 'threepoint-games/ball/stations';
 import type { Launch } from 'threepoint-games/ballistics';
 import { ballInPalm } from 'threepoint-games/fist';
 import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
-import type { RemotePlayer } from 'threepoint-rooms/client/remote-players';
+import type { RemotePerson } from 'threepoint-rooms/client/room-client';
 import { seatLooks } from './court-plan';
 import { proximityFade } from './personal-space';
 
@@ -48,17 +44,8 @@ export interface PlayerFrame {
 }
 
 /** A body to draw, with its floor in the user's floor frame. */
-export interface BodyFrame {
-  readonly id: number;
-  readonly calibration: Calibration;
+export interface BodyFrame extends RemotePerson {
   readonly station: number;
-  readonly avatar: AvatarRef;
-  /** One of the avatar's palettes. */
-  readonly palette: string;
-  readonly pose: AvatarPose;
-  readonly placement: Transform<'floor', 'floor'>;
-  readonly fingers: Fingers;
-  readonly opacity: number;
 }
 
 /** The result of one frame of the match, for view, sound and haptics. */
@@ -161,7 +148,7 @@ type Mutable<T> = { -readonly [Key in keyof T]: T[Key] };
 /** What is shown of one seat, and the memory for it. */
 interface SeatView {
   readonly player: Mutable<Omit<PlayerFrame, 'palms'>> & { readonly palms: Record<Side, Vec3 | null> };
-  readonly body: Mutable<BodyFrame> & { readonly placement: MutableTransform<'floor', 'floor'> };
+  readonly body: Mutable<BodyFrame>;
   readonly head: MutableVec3;
   readonly palms: Readonly<Record<Side, MutableVec3>>;
 }
@@ -189,17 +176,8 @@ export class CourtPeople {
   private readonly right = makePose<'arena'>();
   private readonly head = vec3(0, 0, 0);
 
-  /**
-   * Updates all people. `frame`: the user's hands, null if nothing is tracked. `floorFromArena`: the arena in the
-   * user's floor frame.
-   */
-  look(
-    line: BallConnection,
-    seen: BallRoomView,
-    frame: TrackingFrame | null,
-    others: readonly RemotePlayer[],
-    floorFromArena: Transform<'floor', 'arena'>,
-  ): void {
+  /** Updates all people. `frame`: the user's hands, null if nothing is tracked. */
+  look(line: BallConnection, seen: BallRoomView, frame: TrackingFrame | null, others: readonly RemotePerson[]): void {
     const { seats, mySeat } = seen;
     const shown = seen.match;
     this.players.length = seats.length;
@@ -221,13 +199,13 @@ export class CourtPeople {
       const view = this.viewOf(seat);
       if (there) {
         const { body } = view;
-        body.calibration = row.calibration;
-        body.avatar = row.avatar;
+        body.calibration = there.calibration;
+        body.avatar = there.avatar;
         body.station = player?.station ?? seat;
         body.palette = seatLooks[body.station]?.palette ?? 'porcelain';
         body.pose = there.pose;
         body.fingers = there.fingers;
-        composeTransforms(floorFromArena, arenaFromFloor, body.placement);
+        body.placement = there.placement;
         body.opacity = there.opacity * (frame ? proximityFade(frame.head.position, there.pose, body.placement) : 1);
         this.bodies.push(body);
       }
@@ -298,8 +276,8 @@ const makeSeatView = (seat: number): SeatView => ({
   palms: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
 });
 
-function remoteOn(seat: number, others: readonly RemotePlayer[]): RemotePlayer | null {
-  for (const other of others) if (other.seat === seat) return other;
+function remoteOn(seat: number, others: readonly RemotePerson[]): RemotePerson | null {
+  for (const other of others) if (other.id === seat) return other;
   return null;
 }
 

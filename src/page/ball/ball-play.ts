@@ -3,18 +3,17 @@ import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { Fingers } from 'threepoint/core/body/hand-shape';
 import type { Buttons } from 'threepoint/core/input/button-presses';
-import { invertTransform, type Transform } from 'threepoint/core/math/pose';
-import { identity } from 'threepoint/core/math/quat';
+import type { Transform } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
-import { zero } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
+import type { BallGame } from 'threepoint-games/ball/ball-policy';
 import type { BallEvent } from 'threepoint-games/ball/ball-state';
 import type { BallGestureFrame, BallGestures } from 'threepoint-games/ball/gestures';
 import type { PlayerInput } from 'threepoint-games/ball/player-postures';
 import type { BallSteering } from 'threepoint-games/ball/steered-players';
 import type { ConnectionStatus, Visitor, VoiceChannel } from 'threepoint-rooms/client/connection';
-import { createRemotePlayers, type RemotePlayer } from 'threepoint-rooms/client/remote-players';
+import { RoomClient } from 'threepoint-rooms/client/room-client';
 import { BallBots, type CourtSight, gesturesOf, play, readyAfter } from './ball-bots';
 import { type BallFrame, type BallProbe, CourtPeople, probeOf } from './ball-frame';
 import { joined, SimulatedPlayer } from './simulated-player';
@@ -72,8 +71,6 @@ export interface BallPlayOptions {
   readonly seed: number;
 }
 
-const nowhere: Transform<'floor', 'arena'> = { position: zero, orientation: identity };
-const connecting: ConnectionStatus = { phase: 'connecting', attempt: 0, retryIn: null, reason: null };
 const emptyHands: Readonly<Record<Side, number | null>> = { left: null, right: null };
 /** The time for which a person can read a result before a simulated player asks for another round [s]. */
 const rematchAfter = 7;
@@ -83,71 +80,55 @@ const none: readonly never[] = [];
 
 class MatchPlay implements BallPlay {
   newest: BallFrame | null = null;
-  private connection: BallConnection | null = null;
-  private readonly remote = createRemotePlayers();
-  private others: readonly RemotePlayer[] = [];
+  private readonly client: RoomClient<BallGame>;
   private readonly sight: CourtSight = { pausedSeconds: 0, opening: null };
   private readonly bots: BallBots;
   private readonly simulated: SimulatedPlayer;
   private readonly people = new CourtPeople();
   private events: readonly BallEvent[] = none;
   private gestures: BallGestures | null = null;
-  private jump = false;
   private resumed = false;
   /** Since when the match has been waiting in this phase for a player to be ready [s]. */
   private waitingSince: { readonly phase: string; readonly at: number } | null = null;
-  /** The seats at the last check. */
-  private seating: BallRoomView['seats'] = none;
   private begunAt: number | null = null;
-  private placedBy: Transform<'arena', 'floor'> | null = null;
-  private placed = nowhere;
 
   constructor(private readonly options: BallPlayOptions) {
+    this.client = new RoomClient((time) => options.connect(options.visitor, time));
     this.simulated = new SimulatedPlayer(options, options.visitor.calibration, this.sight);
     this.bots = new BallBots(options, this.sight);
   }
 
   get status(): ConnectionStatus {
-    return this.connection?.status ?? connecting;
+    return this.client.status;
   }
 
   get room(): BallRoomView | null {
-    return this.connection?.room ?? null;
+    return this.client.room;
   }
 
   get voices(): VoiceChannel | null {
     return this.connection?.voices ?? null;
   }
 
+  private get connection(): BallConnection | null {
+    return this.client.connection;
+  }
+
   get floorFromArena(): Transform<'floor', 'arena'> {
-    const seat = this.room?.mySeat ?? null;
-    if (!this.connection || seat === null) return nowhere;
-    const arenaFromFloor = this.connection.arenaFromFloor(seat);
-    if (arenaFromFloor !== this.placedBy) {
-      this.placedBy = arenaFromFloor;
-      this.placed = invertTransform(arenaFromFloor);
-    }
-    return this.placed;
+    return this.client.floorFromArena;
   }
 
   begin(time: number): void {
-    this.connection ??= this.options.connect(this.options.visitor, time);
     if (this.room?.paused && this.begunAt !== null) this.sight.pausedSeconds += time - this.begunAt;
     this.begunAt = time;
-    const update = this.connection.update(time);
-    if (update.news.includes('resumed')) {
-      this.resumed = true;
-      this.remote.resume();
-    }
-    for (const pose of update.poses) this.remote.receive(pose);
+    const update = this.client.update(time);
+    if (update.news.includes('resumed')) this.resumed = true;
     if (update.events.length > 0) this.events = [...this.events, ...update.events];
     if (update.news.length > 0) this.gestures?.resume();
     this.gestures?.onEvents(update.events);
-    this.watchSeats();
-    this.bots.seat(this.connection, time);
+    if (this.connection) this.bots.seat(this.connection, time);
     this.bots.move(time);
     this.readyByItself(time);
-    this.others = this.remote.follow(time);
   }
 
   act(time: number, catchUp = true): PlayerInput | null {
@@ -171,7 +152,7 @@ class MatchPlay implements BallPlay {
     }
     const seen = line.room ?? before;
     const state = seen.match ?? before.match;
-    this.people.look(line, seen, frame, this.others, this.floorFromArena);
+    this.people.look(line, seen, frame, this.client.people);
     const { players, bodies, opening } = this.people;
     this.sight.opening = opening;
     const missed = this.simulated.takeMissed();
@@ -201,13 +182,11 @@ class MatchPlay implements BallPlay {
   }
 
   send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void {
-    if (this.room?.mySeat === null) return;
-    this.connection?.sendPose(frame.time, { jump: this.jump, pose, fingers });
-    this.jump = false;
+    this.client.sendPose(frame.time, pose, fingers);
   }
 
   discontinuity(): void {
-    this.jump = true;
+    this.client.discontinuity();
     this.gestures?.discontinuity();
   }
 
@@ -254,17 +233,6 @@ class MatchPlay implements BallPlay {
   private get othersPlay(): boolean {
     const { seats = none, mySeat = null } = this.room ?? {};
     return seats.some((row, seat) => seat !== mySeat && row !== null && !row.bot && row.presence !== 'gone');
-  }
-
-  /** Prevents a person who takes a seat from gliding there from the previous person's position. */
-  private watchSeats(): void {
-    const seats = this.room?.seats;
-    if (!seats || seats === this.seating) return;
-    for (let seat = 0; seat < seats.length; seat++) {
-      const [now, before] = [seats[seat], this.seating[seat]];
-      if (now?.name !== before?.name || now?.bot !== before?.bot) this.remote.forget(seat);
-    }
-    this.seating = seats;
   }
 
   /** Reports a simulated player as ready. */

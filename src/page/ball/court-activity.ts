@@ -9,8 +9,8 @@ import type { Side } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { BallPulse } from 'threepoint-games/ball/gestures';
 import { defaultBallOptions } from 'threepoint-games/ball/rules';
-import type { BallSteering } from 'threepoint-games/ball/steered-players';
 import { bannerText } from 'threepoint-rooms/client/banner';
+import type { RoomBodies } from 'threepoint-rooms/drawing/room-bodies';
 import type { ActivityPanel, OpenActivity, PlayerInput, PlayerProbe, Watched } from '../activity/activity';
 import type { ActivityContext } from '../activity/activity-context';
 import type { ActivityMenu } from '../activity/activity-menu';
@@ -25,11 +25,13 @@ import { type BallRound, ballRound } from './ball-round';
 import { type BallView, createBallView } from './ball-view';
 import { BlockList } from './block-list';
 import { type LobbyButton, ownName, seatOfButton } from './board-drawing';
-import { CourtAvatars } from './court-avatars';
+import { createCourtAvatars } from './court-avatars';
 import { CourtCamera } from './court-camera';
 import { graspAtCourt } from './court-grasp';
+import { CourtInput } from './court-input';
 import { seatLooks } from './court-plan';
 import { createMatchClock } from './displayed-clock';
+import { playersOf } from './player-probe';
 import { Voices } from './voices';
 import type { VoicesProbe } from './voices-state';
 
@@ -55,8 +57,9 @@ export class CourtActivity implements OpenActivity {
   readonly mirrorSide = null;
   readonly #context: ActivityContext;
   readonly #view: BallView;
-  readonly #avatars: CourtAvatars;
+  readonly #avatars: RoomBodies;
   readonly #menu: BallMenu;
+  readonly #input: CourtInput;
   readonly #clock = createMatchClock();
   /** The user joined without a name, and reads “You” instead of the one that others see. */
   readonly #unnamed: boolean;
@@ -73,6 +76,7 @@ export class CourtActivity implements OpenActivity {
   constructor(context: ActivityContext, room: BallPlace, mannequin: ArrayBuffer) {
     const { quality, place, settings, switches, body, layout, stage, onCaption } = context;
     this.#context = context;
+    this.#input = new CourtInput(context);
     this.#unnamed = place === null && settings.name === '';
     this.play = createBallPlay({
       connect: room.connect,
@@ -83,8 +87,8 @@ export class CourtActivity implements OpenActivity {
         ...(switches.spectate && { spectate: true }),
       },
       bots: () => settings.bots && place === null,
-      acting: () => this.#simulated,
-      steering: () => this.#steering(),
+      acting: () => this.#input.isSimulated,
+      steering: () => this.#input.steering(),
       seed: layout.seed,
     });
     this.#view = createBallView({ quality, balls: defaultBallOptions.balls, onCaption });
@@ -96,14 +100,14 @@ export class CourtActivity implements OpenActivity {
       openAudio: () => this.sound.open(),
       relayOnly: () => settings.voicesByRelay,
     });
-    this.#avatars = new CourtAvatars({
+    this.#avatars = createCourtAvatars({
       context,
       exchange: room.avatars,
       mannequin,
       play: this.play,
       voices: this.voices,
     });
-    this.camera = new CourtCamera({ context, play: this.play, hipsOf: (seat) => this.#avatars.hipsOf(seat) });
+    this.camera = new CourtCamera({ context, play: this.play, hipsOf: (seat) => this.#avatars.jointsOf(seat)?.hips });
     this.#menu = new BallMenu(this, context);
     stage.studio.scene.add(this.#view.own, this.#avatars.object);
     this.#place();
@@ -133,7 +137,7 @@ export class CourtActivity implements OpenActivity {
     this.play.begin(time);
     this.blocked.update(this.play.room?.seats ?? noSeats);
     this.voices.begin();
-    this.#avatars.begin();
+    this.#avatars.share();
     this.#place();
     const voided = this.play.room?.voided ?? 0;
     if (voided > this.#voided) this.#notice = { text: voidedNotice, until: time + noticeSeconds };
@@ -241,7 +245,7 @@ export class CourtActivity implements OpenActivity {
   }
 
   players(): readonly PlayerProbe[] {
-    return this.#avatars.players();
+    return playersOf(this.play, this.#avatars);
   }
 
   dispose(): void {
@@ -255,24 +259,12 @@ export class CourtActivity implements OpenActivity {
 
   /** A simulated player moves the user's body: no person can be asked. */
   get acting(): boolean {
-    return this.#simulated && this.#steering() === null;
-  }
-
-  /** No person wears the headset that moves the user's body. */
-  get #simulated(): boolean {
-    const { place, settings, headset } = this.#context;
-    return place === null && settings.actor && (!headset.worn || headset.emulator !== null);
+    return this.#input.isActor;
   }
 
   /** This page is no longer in the room. */
   get #ended(): boolean {
     return this.play.status.phase === 'ended';
-  }
-
-  #steering(): BallSteering | null {
-    const { settings, headset, stage, mouse } = this.#context;
-    if (!settings.mouse || headset.worn) return null;
-    return { ray: stage.view.rayThrough(mouse.x, mouse.y), pressed: mouse.pressed, cancelled: mouse.cancelled };
   }
 
   /** Turns the court around the user, after every change of seat. */

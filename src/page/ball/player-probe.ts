@@ -1,6 +1,6 @@
-import type { RemoteAvatars } from 'threepoint/avatar/remote-avatars';
 import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import type { Vec3 } from 'threepoint/core/math/vec3';
+import type { RoomBodies } from 'threepoint-rooms/drawing/room-bodies';
 import type { PlayerProbe } from '../activity/activity';
 import type { BallPlay } from './ball-play';
 
@@ -9,7 +9,7 @@ const triple = ({ x, y, z }: Vec3): readonly [number, number, number] => [x, y, 
 /** The other players as they are drawn now. */
 export function playersOf(
   { newest, room }: Pick<BallPlay, 'newest' | 'room'>,
-  others: Pick<RemoteAvatars, 'jointsOf' | 'drawnAs'>,
+  others: Pick<RoomBodies, 'jointsOf' | 'drawnAs'>,
 ): readonly PlayerProbe[] {
   return (newest?.bodies ?? []).flatMap(({ id, opacity }): PlayerProbe[] => {
     const player = newest?.players[id];

@@ -9,9 +9,9 @@ import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import { withNamedBones } from 'threepoint/avatar/humanoid/name-bones';
 import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
 import { type BuiltInBody, builtInAvatarOf, type SkinTone } from 'threepoint/core/body/avatar-ref';
+import type { WornAvatar } from 'threepoint-rooms/client/shared-avatar';
 import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
 import { pageFolder } from 'threepoint-ui/page-folder';
-import type { UserAvatar } from '../activity/activity-context';
 import type { KnownBones } from './known-bones';
 
 export const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megabytes };
@@ -23,7 +23,7 @@ export const fetchBuiltInAvatar = (name: BuiltInBody, onProgress?: (share: numbe
 /** An avatar, and the reference by which other players see it. */
 export interface LoadedUserAvatar {
   readonly avatar: Avatar;
-  readonly worn: UserAvatar;
+  readonly worn: WornAvatar;
 }
 
 export interface AvatarLoaderOptions {

@@ -2,14 +2,14 @@ import type { BodySolver } from 'threepoint/api/body-solver';
 import type { Avatar } from 'threepoint/avatar/avatar';
 import { labelOf } from 'threepoint/avatar/built-in-bodies';
 import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
-import { MotionWithoutBody } from 'threepoint/avatar/file/inspect-avatar';
+import { MotionWithoutBody } from 'threepoint/avatar/file/motion-without-body';
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones';
 import { type BuiltInBody, bodyOf, plainAvatar, skinToneOf } from 'threepoint/core/body/avatar-ref';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import type { WornAvatar } from 'threepoint-rooms/client/shared-avatar';
 import { nameOf } from 'threepoint-ui/limited-files';
 import type { Notices } from 'threepoint-ui/notices';
-import type { UserAvatar } from '../activity/activity-context';
 import type { Studio } from '../studio/studio';
 import { AvatarLoader, type AvatarLoaderOptions, fetchBuiltInAvatar, type LoadedUserAvatar } from './avatar-loader';
 import type { Settings } from './settings';
@@ -53,7 +53,7 @@ export class ShownAvatar {
   readonly #loader: AvatarLoader;
   #avatar: Avatar | null = null;
   #name = labelOf(plainAvatar);
-  #worn: UserAvatar = plainAvatar;
+  #worn: WornAvatar = plainAvatar;
   #seatPalette: string | null = null;
   #pending: string | null = null;
   /** The number of requests, and that of the request that is shown. */
@@ -88,7 +88,7 @@ export class ShownAvatar {
   }
 
   /** The avatar for other players: the same object for as long as it is shown. */
-  get worn(): UserAvatar {
+  get worn(): WornAvatar {
     return this.#worn;
   }
 

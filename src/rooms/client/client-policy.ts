@@ -4,6 +4,8 @@ import type { HostedGame } from '../room/match-policy';
 
 /** What a client needs of its Room's game: the counterpart of MatchPolicy. */
 export interface ClientPolicy<Game extends HostedGame> {
+  /** The name of the game, as in its MatchPolicy. */
+  readonly kind: string;
   /** Returns a message of the Room, checked field by field; null for anything else. */
   readMessage(value: unknown): RoomMessage<Game> | null;
   /** Returns the state that the Room sent as this snapshot; null where it is no state of the game. */

@@ -5,6 +5,7 @@ import type { ClientPolicy } from './client-policy';
 
 /** A room without a game, for its clients. */
 export const peopleClientPolicy: ClientPolicy<People> = {
+  kind: peopleKind,
   readMessage: roomMessageReader<People>(peopleKind, v.null(), v.never()),
   unpack: () => noMatchState,
   follow: (state) => state,

@@ -19,6 +19,8 @@ export interface SocketConnectionOptions {
   readonly clock?: LocalClock;
   /** Returns numbers in [0, 1) for the back-off. */
   readonly chance?: () => number;
+  /** Called when the connection has joined, has lost or failed an attempt, or has ended. */
+  readonly onStatus?: () => void;
 }
 
 const runningTime: LocalClock = { now: () => performance.now() / 1000, leftOut: 0 };
@@ -42,6 +44,7 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
   readonly #clock: LocalClock;
   readonly #backOff: BackOff;
   readonly #socket: Socket;
+  readonly #onStatus: () => void;
   #phase: ConnectionStatus['phase'] = 'connecting';
   #reason: ConnectionStatus['reason'] = null;
   /** Time of the next attempt by the page's clock [s]; null: one is under way, or none will be made. */
@@ -53,13 +56,14 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
 
   constructor(
     policy: ClientPolicy<Game>,
-    { url, room, visitor, pass, clock = runningTime, chance }: SocketConnectionOptions,
+    { url, room, visitor, pass, clock = runningTime, chance, onStatus = () => undefined }: SocketConnectionOptions,
   ) {
     super(policy, visitor, false);
     this.#policy = policy;
     this.#pass = pass;
     this.#clock = clock;
     this.#leftOut = clock.leftOut;
+    this.#onStatus = onStatus;
     this.#backOff = createBackOff(chance);
     const { origin, pathname } = new URL(url);
     this.#socket = io(origin, {
@@ -149,6 +153,7 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
     }
     if (message.type === 'welcome') this.#onJoined();
     this.onMessage(message, this.#clock.now());
+    if (message.type === 'welcome') this.#onStatus();
   }
 
   #onJoined(): void {
@@ -183,16 +188,19 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
     // A half-open connection could answer during the next attempt.
     this.#socket.disconnect();
     this.#wait(seconds * 1000, () => this.#attempt());
+    this.#onStatus();
   }
 
   /** Ends the connection. `afterMs`: how long the server has to close it. */
   #end(because: ConnectionStatus['reason'], afterMs = 0): void {
     this.#stopWaiting();
+    const isNew = this.#phase !== 'ended';
     this.#phase = 'ended';
     this.#reason = because;
     this.#retryAt = null;
     if (afterMs > 0) this.#wait(afterMs, () => this.#socket.disconnect());
     else this.#socket.disconnect();
+    if (isNew) this.#onStatus();
   }
 
   #wait(milliseconds: number, then: () => void): void {

@@ -1,45 +1,49 @@
 import type { Object3D } from 'three';
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { hashOf } from 'threepoint/avatar/file/file-hash';
+import { type AvatarRef, plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { type Calibration, sameMeasures } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import { type AvatarExchange, createAvatarExchange } from '../client/avatar-exchange';
-import type { Connection, ConnectionStatus, ConnectionUpdate } from '../client/connection';
+import { type Avatar, loadAvatar, loadMannequin } from 'threepoint/three';
+import type { ClientPolicy } from '../client/client-policy';
+import type { Connection, ConnectionStatus, ConnectionUpdate, Visitor } from '../client/connection';
 import { peopleClientPolicy } from '../client/people-client';
-import { createRemotePlayers, type RemotePlayer } from '../client/remote-players';
-import { createRoomPass, type Keep, tabStorage } from '../client/room-pass';
-import { createSocketConnection } from '../client/socket-connection';
+import { RoomAddress } from '../client/room-address';
+import { RoomClient } from '../client/room-client';
+import { type Keep, tabStorage } from '../client/room-pass';
+import type { WornAvatar } from '../client/shared-avatar';
 import type { SentBody } from '../peers/pose-sender';
-import { withFingers } from '../peers/posed-fingers';
 import type { SeatInfo } from '../protocol/messages';
-import { type People, peopleKind } from '../room/people-policy';
-import { type AvatarLoader, DrawnBodies, type DrawnPose } from './drawn-bodies';
+import type { HostedGame } from '../room/match-policy';
+import type { People } from '../room/people-policy';
 import { PlacedPose } from './placed-pose';
-import { loadRoomAvatar, uploadAvatar } from './room-avatars';
-import { worldTransform } from './world-transform';
+import { RoomBodies } from './room-bodies';
+import { relativeTransform } from './world-transform';
 
 /** The wearer's body: a `BodyTracker` of threepoint is one. */
 export interface RoomBody extends SentBody {
-  /** Its object lies where the floor is. Absent: at the scene's origin. */
+  /** Its object lies where the floor is. Absent: at the origin of `others.object`. */
   readonly avatar?: { readonly object: Object3D };
   addEventListener?(type: 'discontinuity', listener: () => void): void;
   removeEventListener?(type: 'discontinuity', listener: () => void): void;
 }
 
-export interface JoinRoomOptions {
+export interface JoinRoomOptions<Game extends HostedGame = People> {
   /** The name that the others see; at most 20 characters of it. */
   readonly name: string;
   /** The body to send; null: watch without a place among the sixteen. */
   readonly body: RoomBody | null;
   /** The name of the room: lower-case letters, digits and hyphens, at most 32. Default: 'lobby'. */
   readonly room?: string;
+  /** The game of the room, whose match policy the server has. Default: none, the room is just people. */
+  readonly game?: ClientPolicy<Game>;
   /** The file of the wearer's avatar, which the server passes on to the others. Default: they draw the mannequin. */
   readonly avatarFile?: Blob | null;
   /**
    * Returns the avatar to draw for another person; the reference is 'mannequin' or the hash of the file that they
-   * uploaded. Default: that file, or the mannequin.
+   * uploaded. Default: that file, checked and within the limits for strangers' files, or the mannequin.
    */
-  readonly avatar?: AvatarLoader;
+  readonly avatar?: (reference: AvatarRef) => Promise<Avatar>;
   /** Keeps the pass, with which a reload takes the same place again. Default: the storage of the tab. */
   readonly storage?: Keep | null;
 }
@@ -53,9 +57,9 @@ export interface RoomPerson {
 }
 
 /** A joined room. The connection comes back by itself until `leave`, or until the server ends it. */
-export interface JoinedRoom {
+export interface JoinedRoom<Game extends HostedGame = People> {
   readonly others: {
-    /** The object to add to the scene, with a body for each other person. */
+    /** The object to add to the scene, with a body for each other person. People are within 8.19 m of its origin. */
     readonly object: Object3D;
     /** The other people of the room. */
     readonly people: readonly RoomPerson[];
@@ -63,16 +67,23 @@ export interface JoinedRoom {
   readonly status: ConnectionStatus;
   /** The number of this page's place, 0 to 15; null: it watches. */
   readonly seat: number | null;
-  /** Sends the body's pose and draws the others at this time [ms], on the page's clock; to be called in every frame. */
-  update(timeMs: number): void;
+  /** The room itself: its state, the actions of its game, its voices. */
+  readonly client: RoomClient<Game>;
+  /**
+   * Sends the body's pose and draws the others at this time [ms], on the page's clock; to be called in every frame.
+   * Returns the events of the game since the last call.
+   */
+  update(timeMs: number): ConnectionUpdate<Game>;
   /** Gives up the place, ends the connection and removes the others. */
   leave(): void;
 }
 
 /** How often a room is tried before `joinRoom` gives up. */
 const mostAttempts = 3;
-/** How often the state of the first connection is read [ms]. */
-const pollMs = 20;
+/** The measures of a page that watches; no page draws them. */
+const standIn: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
+/** The farthest that a packet states a head [m], along x and z. */
+const farthest = 8.19;
 
 /**
  * Joins a room of a server that has `attachRooms`, and draws the others in a three.js scene. `url`: the server's
@@ -88,44 +99,53 @@ const pollMs = 20;
  *   renderer.render(scene, camera);
  * });
  */
-export async function joinRoom(
+export async function joinRoom<Game extends HostedGame = People>(
   url: string | URL,
-  { name, body, room = 'lobby', avatarFile = null, avatar, storage = tabStorage() }: JoinRoomOptions,
-): Promise<JoinedRoom> {
+  options: JoinRoomOptions<Game>,
+): Promise<JoinedRoom<Game>> {
+  const { name, body, room = 'lobby', avatarFile = null, storage = tabStorage() } = options;
+  // reason: without a game, Game is People.
+  const game = options.game ?? (peopleClientPolicy as unknown as ClientPolicy<Game>);
   const base = new URL(url, globalThis.location?.href).href.replace(/\/$/, '');
-  const pass = createRoomPass(base, room, peopleKind, storage ?? undefined);
-  // The socket repeats a failed request for ever: the first one states its reason.
-  await pass.token(false).catch((error: unknown) => {
+  const address = new RoomAddress(game, { url: base, room, ...(storage && { storage }) });
+  const visitor = { name, calibration: body?.calibration ?? standIn, spectate: body === null };
+  const worn = avatarFile ? await wornFile(avatarFile) : plainAvatar;
+  // A frame cannot report that the body for everybody is missing.
+  const ready = options.avatar ? [] : [await loadMannequin()];
+  const loadBuiltIn = async () => ready.pop() ?? loadMannequin();
+  const connection = await connected(address, visitor).catch((error: unknown) => {
     throw new Error(`The room ${JSON.stringify(room)} at ${base} cannot be joined: ${reasonOf(error)}`);
   });
-  const connection = createSocketConnection(peopleClientPolicy, {
-    url: base,
-    room,
-    pass,
-    visitor: { name, calibration: body?.calibration ?? standIn, spectate: body === null },
-  });
-  const exchange = createAvatarExchange(base, room, pass);
-  await joined(connection, `The room ${JSON.stringify(room)} at ${base}`);
-  const live = new LiveRoom(connection, body, avatar ?? ((reference) => loadRoomAvatar(exchange, reference)));
-  if (avatarFile && live.seat !== null) await live.wear(exchange, avatarFile);
-  return live;
+  return new LiveRoom(connection, address, options, { worn, loadBuiltIn });
 }
 
-/** The measures of a page that watches; no page draws them. */
-const standIn: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
+const wornFile = async (file: Blob): Promise<WornAvatar> => ({
+  name: 'your avatar',
+  file,
+  hash: await hashOf(await file.arrayBuffer()),
+});
 
-/** Resolves when the connection has joined; rejects, after ending it, when it cannot. */
-async function joined(connection: Connection<People>, what: string): Promise<void> {
-  for (;;) {
-    connection.update(performance.now() / 1000);
-    const { phase, attempt, reason } = connection.status;
-    if (phase === 'joined' && connection.room) return;
-    if (phase === 'ended' || attempt >= mostAttempts) {
+/** Resolves to a connection that has joined; rejects, after ending it, when it cannot. */
+async function connected<Game extends HostedGame>(
+  address: RoomAddress<Game>,
+  visitor: Visitor,
+): Promise<Connection<Game>> {
+  // The socket repeats a failed request for ever: the first one states its reason.
+  await address.pass.token(false);
+  return new Promise((resolve, reject) => {
+    let settled = false;
+    const connection = address.connect(visitor, () => {
+      const { phase, attempt, reason } = connection.status;
+      if (settled || (phase !== 'joined' && phase !== 'ended' && attempt < mostAttempts)) return;
+      settled = true;
+      if (phase === 'joined') {
+        resolve(connection);
+        return;
+      }
       connection.leave();
-      throw new Error(`${what} cannot be joined: ${reason === null ? 'no answer' : reasons[reason]}.`);
-    }
-    await new Promise((resolve) => setTimeout(resolve, pollMs));
-  }
+      reject(new Error(reason === null ? 'no answer' : reasons[reason]));
+    });
+  });
 }
 
 const reasons: Readonly<Record<NonNullable<ConnectionStatus['reason']>, string>> = {
@@ -141,80 +161,69 @@ const reasons: Readonly<Record<NonNullable<ConnectionStatus['reason']>, string>>
   'old-page': 'the server has another version of threepoint-rooms',
 };
 
-class LiveRoom implements JoinedRoom {
-  readonly #connection: Connection<People>;
+class LiveRoom<Game extends HostedGame> implements JoinedRoom<Game> {
+  readonly client: RoomClient<Game>;
+  readonly others: JoinedRoom['others'];
   readonly #body: RoomBody | null;
-  readonly #players = createRemotePlayers();
-  readonly #drawn: DrawnBodies;
-  readonly #poses: SeatPose[] = [];
-  readonly #shown: DrawnPose[] = [];
+  readonly #bodies: RoomBodies;
   readonly #placed = new PlacedPose();
   #calibration: Calibration | null;
-  #seats: readonly (SeatInfo | null)[] = [];
-  #people: readonly RoomPerson[] = [];
-  #jump = false;
-  readonly others: { readonly object: Object3D; readonly people: readonly RoomPerson[] };
+  #warnedOfDistance = false;
 
-  constructor(connection: Connection<People>, body: RoomBody | null, avatar: AvatarLoader) {
-    this.#connection = connection;
+  constructor(
+    connection: Connection<Game>,
+    address: RoomAddress<Game>,
+    { body, avatar: load }: JoinRoomOptions<Game>,
+    { worn, loadBuiltIn }: { readonly worn: WornAvatar; loadBuiltIn(): Promise<Avatar> },
+  ) {
+    const client = new RoomClient(connection);
+    const people = new OtherPeople();
+    this.client = client;
     this.#body = body;
     this.#calibration = body?.calibration ?? null;
-    this.#drawn = new DrawnBodies(avatar);
-    const people = () => this.#people;
+    this.#bodies = new RoomBodies({
+      exchange: address.avatars,
+      room: () => connection.room,
+      send: (avatar) => connection.wear(avatar),
+      wear: () => worn,
+      notify: (level, text) => level === 'warning' && console.warn(`threepoint-rooms: ${text}`),
+      onRefused: (text) => console.warn(`threepoint-rooms: ${text}`),
+      loadBuiltIn,
+      loadFile: (bytes) => loadAvatar(bytes, { untrusted: true }),
+      load: load && ((avatar) => loadedBy(load, avatar)),
+    });
     this.others = {
-      object: this.#drawn.object,
+      object: this.#bodies.object,
       get people() {
-        return people();
+        return people.of(client);
       },
     };
     body?.addEventListener?.('discontinuity', this.#onDiscontinuity);
     globalThis.document?.addEventListener('visibilitychange', this.#onVisibility);
-    this.#watchSeats();
   }
 
   get status(): ConnectionStatus {
-    return this.#connection.status;
+    return this.client.status;
   }
 
   get seat(): number | null {
-    return this.#connection.room?.mySeat ?? null;
+    return this.client.room?.mySeat ?? null;
   }
 
-  async wear(exchange: AvatarExchange, file: Blob): Promise<void> {
-    try {
-      this.#connection.wear(await uploadAvatar(exchange, file));
-    } catch (error) {
-      this.#connection.wear(plainAvatar);
-      console.warn(`threepoint-rooms: the others draw the mannequin: ${reasonOf(error)}`);
-    }
-  }
-
-  update(timeMs: number): void {
+  update(timeMs: number): ConnectionUpdate<Game> {
     const time = timeMs / 1000;
-    this.#receive(this.#connection.update(time));
+    const update = this.client.update(time);
+    this.#bodies.share();
     this.#send(time);
-    const players = this.#players.follow(time);
-    this.#shown.length = 0;
-    for (let i = 0; i < players.length; i++) {
-      const { seat } = players[i]!;
-      const info = this.#seats[seat];
-      if (!info) continue;
-      this.#poses[seat] ??= new SeatPose(players[i]!);
-      this.#shown.push(this.#poses[seat].of(players[i]!, info));
-    }
-    this.#drawn.draw(this.#shown, time);
+    this.#bodies.show(this.client.people, time);
+    return update;
   }
 
   leave(): void {
     this.#body?.removeEventListener?.('discontinuity', this.#onDiscontinuity);
     globalThis.document?.removeEventListener('visibilitychange', this.#onVisibility);
-    this.#connection.leave();
-    this.#drawn.dispose();
-  }
-
-  #receive({ poses }: ConnectionUpdate<People>): void {
-    this.#watchSeats();
-    for (let i = 0; i < poses.length; i++) this.#players.receive(poses[i]!);
+    this.client.connection?.leave();
+    this.#bodies.dispose();
   }
 
   #send(time: number): void {
@@ -222,58 +231,53 @@ class LiveRoom implements JoinedRoom {
     if (!body) return;
     if (!this.#calibration || !sameMeasures(body.calibration, this.#calibration)) {
       this.#calibration = body.calibration;
-      this.#connection.calibrate(body.calibration);
+      this.client.connection?.calibrate(body.calibration);
     }
     if (!body.pose) return;
-    const pose = body.avatar ? this.#placed.place(worldTransform(body.avatar.object), body.pose) : body.pose;
-    this.#connection.sendPose(time, { jump: this.#jump, pose, fingers: body.pose.fingers ?? unknownFingers });
-    this.#jump = false;
+    const { avatar } = body;
+    const othersFromFloor = avatar && relativeTransform(avatar.object, this.others.object);
+    const pose = othersFromFloor ? this.#placed.place(othersFromFloor, body.pose) : body.pose;
+    this.#warnOfDistance(Math.max(Math.abs(pose.head.position.x), Math.abs(pose.head.position.z)));
+    this.client.sendPose(time, pose, body.pose.fingers ?? unknownFingers);
   }
 
-  /** Follows the seats, so that no body glides from the place of the person who had the seat before. */
-  #watchSeats(): void {
-    const room = this.#connection.room;
-    if (!room || room.seats === this.#seats) return;
-    for (let seat = 0; seat < room.seats.length; seat++) {
-      if (room.seats[seat]?.name === this.#seats[seat]?.name) continue;
-      this.#players.forget(seat);
-      this.#drawn.remove(peerOf(seat));
-      delete this.#poses[seat];
-    }
-    this.#seats = room.seats;
-    this.#people = room.seats.flatMap((info, seat): RoomPerson[] =>
-      info && seat !== room.mySeat ? [{ seat, name: info.name, presence: info.presence }] : [],
+  #warnOfDistance(metres: number): void {
+    if (this.#warnedOfDistance || !(metres > farthest)) return;
+    this.#warnedOfDistance = true;
+    console.warn(
+      `threepoint-rooms: The body is ${metres.toFixed(1)} m from the origin of room.others.object, and the others draw ` +
+        `it at ${farthest} m. Add room.others.object to a group near the people of the room.`,
     );
   }
 
-  readonly #onDiscontinuity = (): void => {
-    this.#jump = true;
-  };
+  readonly #onDiscontinuity = (): void => this.client.discontinuity();
 
-  readonly #onVisibility = (): void => this.#connection.away(document.hidden);
+  readonly #onVisibility = (): void => this.client.connection?.away(document.hidden);
 }
 
-const peerOf = (seat: number): string => `seat ${seat}`;
+/** The list of the other people, which is the same until a seat changes. */
+class OtherPeople {
+  #seats: readonly (SeatInfo | null)[] | null = null;
+  #mySeat: number | null = null;
+  #people: readonly RoomPerson[] = [];
 
-/** What is drawn of the person on a seat; the same object in every frame. */
-class SeatPose implements DrawnPose {
-  readonly peer: string;
-  readonly placement = null;
-  readonly mouth = 0;
-  readonly pose: DrawnPose['pose'];
-  avatar: string | null = null;
-  calibration = standIn;
-  opacity = 1;
-
-  constructor(player: RemotePlayer) {
-    this.peer = peerOf(player.seat);
-    this.pose = withFingers(player);
+  of({ room }: Pick<RoomClient<HostedGame>, 'room'>): readonly RoomPerson[] {
+    if (!room || (room.seats === this.#seats && room.mySeat === this.#mySeat)) return this.#people;
+    const { seats, mySeat } = room;
+    this.#seats = seats;
+    this.#mySeat = mySeat;
+    this.#people = seats.flatMap((info, seat): RoomPerson[] =>
+      info && seat !== mySeat ? [{ seat, name: info.name, presence: info.presence }] : [],
+    );
+    return this.#people;
   }
+}
 
-  of({ opacity }: RemotePlayer, { avatar, calibration }: SeatInfo): this {
-    this.avatar = avatar;
-    this.calibration = calibration;
-    this.opacity = opacity;
-    return this;
-  }
+/** Returns the page's avatar; without it the mannequin, which a file that is refused leaves in its place. */
+async function loadedBy(load: (avatar: AvatarRef) => Promise<Avatar>, avatar: AvatarRef): Promise<Avatar> {
+  if (avatar !== plainAvatar) return load(avatar);
+  return load(avatar).catch((error: unknown) => {
+    console.warn(`threepoint-rooms: the page's own avatar is replaced by the mannequin: ${reasonOf(error)}`);
+    return loadMannequin();
+  });
 }

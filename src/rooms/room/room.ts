@@ -5,6 +5,7 @@ import type { HostedGame, MatchPolicy } from './match-policy';
 import { MemberProfiles } from './member-profiles';
 import type { ClientId, RefusalReason, RoomHost, RoomRefusal } from './room-host';
 import { RoomMatch } from './room-match';
+import { RoomMembers } from './room-members';
 import { SeatUpdates } from './seat-updates';
 import { type Member, type SeatCensus, Seats } from './seats';
 
@@ -44,7 +45,7 @@ export class Room<Game extends HostedGame> {
   readonly options: RoomOptions;
   readonly #policy: MatchPolicy<Game>;
   readonly #host: RoomHost<Game>;
-  readonly #members = new Map<ClientId, Member>();
+  readonly #members: RoomMembers;
   readonly #seats: Seats;
   readonly #seatUpdates: SeatUpdates;
   readonly #profiles: MemberProfiles;
@@ -63,6 +64,10 @@ export class Room<Game extends HostedGame> {
     this.#seatUpdates = new SeatUpdates(policy.seats, (seat) => this.#broadcastSeat(seat));
     const { assigned = false, voices = false } = options;
     this.#profiles = new MemberProfiles(this.#seats, host, { assigned, voices });
+    this.#members = new RoomMembers({
+      ...{ seats: this.#seats, host, assigned },
+      onVacated: (seat) => this.#seatUpdates.changed(seat, this.#time),
+    });
     this.#match = new RoomMatch(policy, this.#seats, host);
   }
 
@@ -72,8 +77,8 @@ export class Room<Game extends HostedGame> {
   }
 
   get census(): RoomCensus {
-    const empty = this.#members.size === 0 && this.#seats.areEmpty;
-    return { ...this.#seats.census, spectators: this.#countSpectators(), empty };
+    const empty = this.#members.count === 0 && this.#seats.areEmpty;
+    return { ...this.#seats.census, spectators: this.#members.spectators, empty };
   }
 
   /** The state of the match, as the rules have it. */
@@ -99,20 +104,12 @@ export class Room<Game extends HostedGame> {
   join(client: ClientId, identity: string, request: JoinRequest, time: number): void {
     this.#time = time;
     this.#match.begin(time);
-    if (this.#members.has(client)) {
+    if (this.#members.of(client)) {
       this.#refuse(client, 'message', 'joined-already');
       return;
     }
-    this.#replaceOlder(identity, time);
-    const member = this.#profiles.admit(identity, request);
-    this.#members.set(client, member);
-    const held = this.#seats.indexOfIdentity(identity);
-    if (held !== null && !request.spectate) this.#seats.retake(held, client, member, time);
-    else {
-      if (held !== null) this.#vacate(held);
-      const index = request.spectate ? null : this.#freeSeatFor(request.seat, request.bot);
-      if (index !== null) this.#takeSeat(index, client, member, time);
-    }
+    this.#members.replaceOlder(identity, time);
+    this.#members.add(client, this.#profiles.admit(identity, request), request, time);
     this.#welcome(client, time);
     this.#broadcastAbout();
   }
@@ -120,16 +117,7 @@ export class Room<Game extends HostedGame> {
   /** Removes a client whose connection is lost. A person's seat is held for `seatHoldSeconds`, a bot's becomes free. */
   disconnect(client: ClientId, time: number): void {
     this.#time = time;
-    const index = this.#seats.indexOf(client);
-    if (!this.#members.delete(client)) return;
-    if (index !== null) {
-      if (this.#seats.at(index)?.bot) this.#vacate(index);
-      else {
-        this.#seats.markDisconnected(index, time);
-        this.#seats.setPresence(index, time);
-      }
-    }
-    this.#broadcastAbout();
+    if (this.#members.lose(client, time)) this.#broadcastAbout();
   }
 
   /**
@@ -137,7 +125,7 @@ export class Room<Game extends HostedGame> {
    */
   onMessage(client: ClientId, message: Exclude<ClientMessage, { type: 'join' }>, time: number): 'taken' | 'bad' {
     this.#time = time;
-    const member = this.#members.get(client);
+    const member = this.#members.of(client);
     if (!member) {
       this.#refuse(client, 'message', 'not-joined');
       return 'taken';
@@ -207,8 +195,7 @@ export class Room<Game extends HostedGame> {
         this.#host.send(client, { type: 'pong', sent: message.sent, time: this.#time });
         return;
       case 'leave':
-        if (index !== null) this.#vacate(index);
-        this.#disconnect(client, 'left');
+        this.#members.leave(client);
         this.#broadcastAbout();
         return;
       case 'away':
@@ -258,52 +245,15 @@ export class Room<Game extends HostedGame> {
     this.#seats.setPresence(index, this.#time);
   }
 
-  /** Moves a client from one seat to another; null: it becomes a spectator, or is one. */
   #changeSeat(client: ClientId, member: Member, from: number | null, to: number | null): void {
     if (to === from) return;
-    const refusal = this.options.assigned ? 'assigned' : this.#seats.refusalOf(to, member, this.#time);
+    const refusal = this.#members.changeSeat(client, member, to, this.#time);
     if (refusal) {
       this.#refuse(client, 'sit', refusal);
       return;
     }
-    if (from !== null) this.#vacate(from);
-    member.voice = null;
-    if (to !== null) this.#takeSeat(to, client, member, this.#time);
     this.#host.send(client, { type: 'seated', seat: to });
     this.#broadcastAbout();
-  }
-
-  /** Ends other connections of this person; the seat is held for the newest one. */
-  #replaceOlder(identity: string, time: number): void {
-    for (const [older, { identity: owner }] of this.#members) {
-      if (owner !== identity) continue;
-      const index = this.#seats.indexOf(older);
-      if (index !== null) this.#seats.markDisconnected(index, time);
-      this.#disconnect(older, 'replaced');
-    }
-  }
-
-  #freeSeatFor(requested: number | null, bot: boolean): number | null {
-    if (!this.options.assigned) return this.#seats.freeFor(requested, bot);
-    return requested !== null && this.#seats.isFreeFor(requested, true) ? requested : null;
-  }
-
-  /** Gives a client this seat; a bot on it is disconnected. */
-  #takeSeat(index: number, client: ClientId, member: Member, time: number): void {
-    const bot = this.#seats.at(index)?.client ?? null;
-    this.#seats.vacate(index);
-    if (bot !== null) this.#disconnect(bot, 'yielded');
-    this.#seats.take(index, client, member, time);
-  }
-
-  #vacate(index: number): void {
-    this.#seats.vacate(index);
-    this.#seatUpdates.changed(index, this.#time);
-  }
-
-  #disconnect(client: ClientId, reason: 'left' | 'replaced' | 'yielded'): void {
-    this.#members.delete(client);
-    this.#host.disconnect(client, reason);
   }
 
   #welcome(client: ClientId, time: number): void {
@@ -316,7 +266,7 @@ export class Room<Game extends HostedGame> {
       kind: this.#policy.kind,
       seat: this.#seats.indexOf(client),
       seats: Array.from({ length: this.#seats.count }, (_, seat) => packSeatInfo(this.#seats.infoOf(seat))),
-      spectators: this.#countSpectators(),
+      spectators: this.#members.spectators,
       rotate: this.#match.rotate,
       matchStart: this.#match.matchStart,
       match: this.#match.snapshot(),
@@ -325,14 +275,8 @@ export class Room<Game extends HostedGame> {
     });
   }
 
-  #countSpectators(): number {
-    let spectators = 0;
-    for (const client of this.#members.keys()) if (this.#seats.indexOf(client) === null) spectators += 1;
-    return spectators;
-  }
-
   #broadcastAbout(): void {
-    this.#host.broadcast({ type: 'about', spectators: this.#countSpectators(), rotate: this.#match.rotate });
+    this.#host.broadcast({ type: 'about', spectators: this.#members.spectators, rotate: this.#match.rotate });
   }
 
   #broadcastSeat(seat: number): void {

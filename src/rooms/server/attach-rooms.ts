@@ -1,15 +1,18 @@
 import { randomBytes } from 'node:crypto';
 import type { IncomingMessage, Server, ServerResponse } from 'node:http';
 import type { Duplex } from 'node:stream';
-import { createConnectionLimiter } from 'threepoint-http/connection-limiter';
-import { createRouter, noPage } from 'threepoint-http/router';
+import { sendAnswer } from 'threepoint-http/answer';
+import { type ConnectionLimiter, createConnectionLimiter } from 'threepoint-http/connection-limiter';
+import { createRouter, noPage, type Route } from 'threepoint-http/router';
 import { createSitePolicy, type SitePolicy } from 'threepoint-http/site-policy';
+import { targetOf } from 'threepoint-http/target';
+import { guarded } from 'threepoint-http/web-server';
 import { peopleKind, peoplePolicy } from '../room/people-policy';
 import type { RoomKinds } from './hosting/room-kinds';
 import { createRelay } from './relay';
 import { type RelayConfiguration, relayConfigurationFrom } from './settings/relay-configuration';
 
-export interface AttachRoomsOptions extends Partial<Omit<RelayConfiguration, 'secret' | 'hosts' | 'host'>> {
+export interface AttachRoomsOptions extends Partial<Omit<RelayConfiguration, 'secret' | 'host'>> {
   /** Signs the passes; at least 32 characters, the same in all processes. Default: a new one in every process. */
   readonly secret?: string;
   /** The path below which the rooms are, for example '/bodies'; pages join at that address. Default: none. */
@@ -18,18 +21,51 @@ export interface AttachRoomsOptions extends Partial<Omit<RelayConfiguration, 'se
   readonly seats?: number;
   /** Games, by name; each creates the match policy of a room. Default: none, rooms are just people. */
   readonly games?: RoomKinds;
+  /** Further names of the server; requests with another Host are refused. Default: the Host is not checked. */
+  readonly hosts?: readonly string[];
+  /** Whether the rooms also answer `/healthz` and `/metrics`. Default: false. */
+  readonly operations?: boolean;
+  /** The limiter that the server asks about its connections. Default: the server limits none. */
+  readonly connectionLimiter?: ConnectionLimiter;
 }
 
 /** Rooms on a server. */
 export interface AttachedRooms {
   /** The number of rooms and of the people in them. */
   readonly census: { readonly rooms: number; readonly players: number; readonly spectators: number };
+  /** The routes of the rooms, below `path`. */
+  readonly routes: readonly Route[];
   /** Disconnects everybody and takes the rooms off the server, which stays open. */
   close(): Promise<void>;
 }
 
 /** The addresses of the rooms; the rest of the server's is its own. */
-const ours = /^\/(api\/(rooms|avatars|voices)|relay)([/?]|$)/;
+const roomAddresses = /^\/(api\/(rooms|avatars|voices)|relay)(\/|$)/;
+const operationAddresses = /^\/(healthz|metrics)$/;
+
+type Listener = (...event: unknown[]) => void;
+
+/**
+ * Replaces all listeners of an event by one, which may pass the event on to them: `passOn` returns whether there are
+ * others. Returns what undoes it.
+ */
+function intercept(
+  server: Server,
+  event: 'request' | 'upgrade',
+  listener: (passOn: (...event: unknown[]) => boolean) => Listener,
+): () => void {
+  const others = server.listeners(event) as Listener[];
+  const own = listener((...values) => {
+    for (const other of others) other.apply(server, values);
+    return server.listenerCount(event) > 1 || others.length > 0;
+  });
+  server.removeAllListeners(event);
+  server.on(event, own);
+  return () => {
+    server.off(event, own);
+    for (const other of others) server.on(event, other);
+  };
+}
 
 /**
  * Adds rooms to an HTTP server: that of node:http, the return value of Express's `listen`, or Fastify's `server`. Their
@@ -42,54 +78,54 @@ const ours = /^\/(api\/(rooms|avatars|voices)|relay)([/?]|$)/;
  * server.listen(8080);
  */
 export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}): AttachedRooms {
-  const { secret = randomBytes(32).toString('base64url'), path = '', seats, games, ...settings } = options;
+  const { secret = randomBytes(32).toString('base64url'), path = '', seats, games, operations, ...settings } = options;
   if (secret.length < 32) throw new RangeError(`A secret needs at least 32 characters; this one has ${secret.length}.`);
   if (!/^(\/[\w-]+)*$/.test(path))
     throw new RangeError(`The path must be like '/bodies', not ${JSON.stringify(path)}.`);
   const configuration: RelayConfiguration = { ...relayConfigurationFrom({}), ...settings };
   const { connectionsPerAddress: perAddress, trustProxy } = configuration;
-  const relay = createRelay(
-    configuration,
-    secret,
-    createConnectionLimiter({ perAddress, behindProxy: trustProxy }),
-    new Map([[peopleKind, () => peoplePolicy(seats)], ...(games ?? [])]),
-  );
-  const site = originsOnly(configuration);
+  const { connectionLimiter = createConnectionLimiter({ perAddress, behindProxy: trustProxy }) } = settings;
+  const kinds = new Map([[peopleKind, () => peoplePolicy(seats)], ...(games ?? [])]);
+  const relay = createRelay(configuration, secret, connectionLimiter, kinds);
+  const site = settings.hosts ? createSitePolicy(configuration) : originsOnly(configuration);
   const router = createRouter([relay.service], noPage, site);
+  const answer = guarded((request, response) => {
+    if (allowOrigin(request, response, site)) router(request, response);
+  });
 
   /** Returns whether the address is the rooms', and takes the path off it. */
   function takesUrl(request: IncomingMessage): boolean {
-    const { url = '' } = request;
-    if (!url.startsWith(path) || !ours.test(url.slice(path.length))) return false;
-    request.url = url.slice(path.length);
+    const target = targetOf(request.url);
+    if (!target?.path.startsWith(path)) return false;
+    const own = target.path.slice(path.length);
+    if (!roomAddresses.test(own) && !(operations && operationAddresses.test(own))) return false;
+    if (path !== '') request.url = target.query.size > 0 ? `${own}?${target.query}` : own;
     return true;
   }
 
-  // The server's own listener would answer 404: it receives the other requests alone.
-  const listeners = httpServer.listeners('request') as ((...request: unknown[]) => void)[];
-  const onRequest = (request: IncomingMessage, response: ServerResponse): void => {
-    if (!takesUrl(request)) for (const listener of listeners) listener.call(httpServer, request, response);
-    else if (allowOrigin(request, response, site)) router(request, response);
-  };
-  const onUpgrade = (request: IncomingMessage, socket: Duplex, head: Buffer): void => {
-    if (takesUrl(request)) {
-      socket.on('error', () => socket.destroy());
-      if (relay.upgrade(request, socket, head)) return;
-    }
-    // Nobody else would ever answer.
-    if (httpServer.listenerCount('upgrade') === 1) socket.destroy();
-  };
-  httpServer.removeAllListeners('request');
-  httpServer.on('request', onRequest);
-  httpServer.on('upgrade', onUpgrade);
+  const restore = [
+    // The server's own listener would answer 404: it receives the other requests alone.
+    intercept(httpServer, 'request', (passOn) => (request, response) => {
+      if (takesUrl(request as IncomingMessage)) answer(request as IncomingMessage, response as ServerResponse);
+      else passOn(request, response);
+    }),
+    intercept(httpServer, 'upgrade', (passOn) => (request, socket, head) => {
+      const [asked, connection] = [request as IncomingMessage, socket as Duplex];
+      if (takesUrl(asked)) {
+        connection.on('error', () => connection.destroy());
+        if (relay.upgrade(asked, connection, head as Buffer)) return;
+      }
+      // Nobody else would ever answer.
+      if (!passOn(asked, connection, head)) connection.destroy();
+    }),
+  ];
   return {
     get census() {
       return relay.census;
     },
+    routes: relay.service.routes,
     async close() {
-      httpServer.off('upgrade', onUpgrade);
-      httpServer.off('request', onRequest);
-      for (const listener of listeners) httpServer.on('request', listener);
+      for (const undo of restore) undo();
       await relay.close();
     },
   };
@@ -102,22 +138,20 @@ const originsOnly = ({ origins, trustProxy }: RelayConfiguration): SitePolicy =>
 });
 
 /**
- * Lets pages of other origins read the answers, where they may use the rooms. Answers a preflight request; returns
+ * Lets pages of other origins read the answers, where they may use the rooms. Answers their preflight requests; returns
  * whether the request itself is still to be answered.
  */
 function allowOrigin(request: IncomingMessage, response: ServerResponse, site: SitePolicy): boolean {
   const { origin } = request.headers;
-  const allowed = origin !== undefined && site.refusalOfOrigin(request) === null;
-  if (allowed) {
-    response.setHeader('access-control-allow-origin', origin);
-    response.setHeader('vary', 'origin');
-  }
-  if (request.method !== 'OPTIONS') return true;
-  if (allowed) {
-    response.setHeader('access-control-allow-methods', 'GET, POST, PUT');
-    response.setHeader('access-control-allow-headers', 'content-type, authorization');
-    response.setHeader('access-control-max-age', '600');
-  }
-  response.writeHead(204).end();
+  if (origin === undefined || site.refusalOfOrigin(request) !== null) return true;
+  response.setHeader('access-control-allow-origin', origin);
+  response.setHeader('vary', 'origin');
+  if (request.method !== 'OPTIONS' || site.refusalOfHost(request) !== null) return true;
+  const headers = {
+    'access-control-allow-methods': 'GET, POST, PUT',
+    'access-control-allow-headers': 'content-type, authorization',
+    'access-control-max-age': '600',
+  };
+  sendAnswer(request, response, { status: 204, headers });
   return false;
 }

@@ -1,7 +1,9 @@
 // "threepoint/three": the body on an avatar of three.js, driven by a WebXR session.
 import { EventDispatcher, type EventListener, Group, type Object3D, type WebGLRenderer } from 'three';
 import { type Avatar, createAvatar } from '../avatar/avatar';
+import { workerCheck } from '../avatar/file/worker-check';
 import { parseAvatar } from '../avatar/load-avatar';
+import { loadSeenAvatar } from '../avatar/load-seen-avatar';
 import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
 import { reasonOf } from '../core/errors/reasons';
@@ -16,6 +18,7 @@ import { demandOptions, warnOfDisposed } from './demand-options';
 import { loadLearned } from './load-learned';
 import type { MotionWriter } from './motion-export';
 import { readOwnMannequin } from './own-mannequin';
+import { startValidator } from './own-validator';
 
 export type { Avatar } from '../avatar/avatar';
 export type { BoneMap } from '../core/humanoid/bones';
@@ -26,6 +29,11 @@ export interface LoadAvatarOptions {
    * T-pose and faces +Z.
    */
   readonly bones?: BoneMap;
+  /**
+   * Whether the file is another person's. It is validated in a worker before anything of it is decoded, and may have a
+   * third of what the wearer's own file may: 20 MB, 100,000 triangles, 64 million pixels. Default: false.
+   */
+  readonly untrusted?: boolean;
 }
 
 /** The address of an avatar's file, the file, or its bytes. */
@@ -34,17 +42,24 @@ export type AvatarSource = string | URL | Blob | ArrayBuffer | ArrayBufferView;
 /**
  * Loads an avatar from an address, a file or its bytes: VRM 0.x or 1.0, or a humanoid GLB with a map of its bones.
  * Rejects with a sentence that names the file: not reachable, not a GLB, larger than `avatarLimits`, or without a
- * needed bone.
+ * needed bone. Pass `untrusted` for a file that another person has brought.
  *
  * @example
  * const avatar = await loadAvatar('/avatars/robot.glb', { bones: { hips: 'Hips', head: 'Head' } });
  */
 export async function loadAvatar(source: AvatarSource, options: LoadAvatarOptions = {}): Promise<Avatar> {
-  demandOptions('loadAvatar', options, ['bones']);
-  const { bones } = options;
+  demandOptions('loadAvatar', options, ['bones', 'untrusted']);
+  const { bones, untrusted = false } = options;
   const { name, bytes } = await read(source);
-  return createAvatar(await parseAvatar(bytes, name, { bones }));
+  if (!untrusted) return createAvatar(await parseAvatar(bytes, name, { bones }));
+  return loadSeenAvatar(bytes, name, { check: checkUntrusted, ...(bones && { bones }) });
 }
+
+/** Checks a file in a worker; where none starts, on the thread that calls it. */
+const checkUntrusted = workerCheck(startValidator, async (...file) => {
+  const { checkAvatar } = await import('../avatar/file/check-avatar');
+  return checkAvatar(...file);
+});
 
 /**
  * Loads the mannequin that comes with this package; each call returns another one.
@@ -63,7 +78,10 @@ export async function loadMannequin(): Promise<Avatar> {
  * @example
  * const { parts, type } = await exportMotion(recording, { to: await avatarMotion('/avatars/me.vrm') });
  */
-export async function avatarMotion(source: AvatarSource, options: LoadAvatarOptions = {}): Promise<MotionWriter> {
+export async function avatarMotion(
+  source: AvatarSource,
+  options: Pick<LoadAvatarOptions, 'bones'> = {},
+): Promise<MotionWriter> {
   demandOptions('avatarMotion', options, ['bones']);
   const { bones } = options;
   const [{ avatarClip }, { name, bytes }] = await Promise.all([import('../avatar/avatar-clip'), read(source)]);

@@ -14,9 +14,8 @@ import { PassingFault } from '../core/errors/passing-fault';
 import { type MutableTransform, makeTransform, type Transform, transformPoint } from '../core/math/pose';
 import { copyQuat } from '../core/math/quat';
 import { copyVec3, type Vec3 } from '../core/math/vec3';
-import { type Avatar, createAvatarBetweenFrames } from './avatar';
+import type { Avatar } from './avatar';
 import { createBlobShadow } from './blob-shadow';
-import type { LoadedAvatar } from './load-avatar';
 
 /** Another person to draw in this frame. */
 export interface SeenPerson {
@@ -24,8 +23,8 @@ export interface SeenPerson {
   readonly id: number;
   readonly calibration: Calibration;
   readonly avatar: AvatarRef;
-  /** The palette of a built-in body. */
-  readonly palette: string;
+  /** The palette of a built-in body; null: its own colours. */
+  readonly palette: string | null;
   /** The pose in the frame of the person's own floor. */
   readonly pose: AvatarPose;
   /** The person's floor in this room. */
@@ -40,7 +39,7 @@ export interface RemoteAvatarsOptions {
    * Loads the body of an avatar: once for a file, and for each needed copy of a built-in body. Rejects
    * where it is unavailable; after a PassingFault it is called again some seconds later.
    */
-  load(avatar: AvatarRef): Promise<LoadedAvatar>;
+  load(avatar: AvatarRef): Promise<Avatar>;
   /** Returns whether everybody is drawn as the plain body; called in every frame. */
   plain(): boolean;
   /** Returns the opening of a person's mouth: 0 shut to 1; called in every frame for each drawn person. */
@@ -49,6 +48,8 @@ export interface RemoteAvatarsOptions {
    * Called once for each avatar that cannot be shown, so that the plain one stays; not for a fault that passes soon.
    */
   onRefused(avatar: AvatarRef, reason: unknown): void;
+  /** Whether a soft shadow lies under each body. Default: true. */
+  readonly shadows?: boolean;
 }
 
 /** The bodies of other people. Copies of one body share its graphics memory. */
@@ -229,8 +230,7 @@ class OthersBodies implements RemoteAvatars {
    */
   async #load(avatar: AvatarRef): Promise<void> {
     try {
-      const loaded = await this.#options.load(avatar);
-      const made = await createAvatarBetweenFrames(loaded);
+      const made = await this.#options.load(avatar);
       if (this.#disposed) made.dispose();
       else this.#add(made, avatar);
       this.#refused.delete(avatar);
@@ -261,7 +261,8 @@ class OthersBodies implements RemoteAvatars {
     const place = new Group();
     const shadow = createBlobShadow();
     place.visible = false;
-    place.add(avatar.object, shadow);
+    place.add(avatar.object);
+    if (this.#options.shadows ?? true) place.add(shadow);
     this.object.add(place);
     const free = { id: null, fitted: null, palette: '', opacity: 1, placement: makeTransform<'floor', 'floor'>() };
     this.#bodies.push({ avatar, of, fromFile, place, shadow, drawnAt: this.#now, ...free });
@@ -290,7 +291,7 @@ function draw(body: Body, person: SeenPerson, time: number): void {
     avatar.setCalibration(calibration);
     body.fitted = calibration;
   }
-  if (!body.fromFile && body.palette !== palette) {
+  if (!body.fromFile && palette !== null && body.palette !== palette) {
     avatar.setPalette(palette);
     body.palette = palette;
   }

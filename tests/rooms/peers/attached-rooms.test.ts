@@ -1,16 +1,28 @@
 import { readFile } from 'node:fs/promises';
 import { createServer, type Server } from 'node:http';
 import type { AddressInfo } from 'node:net';
-import { Vector3 } from 'three';
+import { Group, Vector3 } from 'three';
 import { loadAvatar } from 'threepoint/api/three';
 import { distance } from 'threepoint/core/math/vec3';
 import { type JoinedRoom, type JoinRoomOptions, joinRoom } from 'threepoint-rooms/drawing/join-room';
 import { type AttachRoomsOptions, attachRooms } from 'threepoint-rooms/server/attach-rooms';
-import { expect, onTestFinished, test, vi } from 'vitest';
+import { beforeEach, expect, onTestFinished, test, vi } from 'vitest';
+import { changed } from '../../threepoint/avatar/glb';
+import { countingClientPolicy, countingKind, countingPolicy } from '../room/counting-game';
 import { until } from '../server/running-relay';
 import { solvedActor } from './solved-actor';
 
 const mannequinFile = readFile('public/avatars/mannequin.vrm');
+
+// Node's fetch reads no files: the mannequin of the package is one until the package is built.
+const fetchAddress = globalThis.fetch;
+beforeEach(() => {
+  vi.stubGlobal('fetch', async (address: string | URL, options?: RequestInit) =>
+    String(address).startsWith('file:')
+      ? new Response(new Uint8Array(await readFile(new URL(address))))
+      : fetchAddress(address, options),
+  );
+});
 
 /** A server of somebody else's with rooms on it. */
 async function served(options: AttachRoomsOptions = {}) {
@@ -91,7 +103,6 @@ test('two pages see each other on any server of node:http, whose own addresses s
     ann.frame();
     return drawn(ann.room).length === 0 && ann.room.others.people.length === 0;
   });
-  expect(ann.room.others.object.children).toHaveLength(0);
 });
 
 test('a reload keeps the place, and nobody is there twice', async () => {
@@ -111,14 +122,115 @@ test('a reload keeps the place, and nobody is there twice', async () => {
 
 test('an avatar that one page brings is drawn by the others, from the server', async () => {
   const { url } = await served();
-  const file = new Blob([new Uint8Array(await mannequinFile)]);
-  const ann = await joins(url, 'Ann', { avatarFile: file });
+  const file = changed((json) => {
+    for (const node of json.nodes) if (node.mesh !== undefined) node.name = "Ann's";
+  });
+  const ann = await joins(url, 'Ann', { avatarFile: new Blob([file]) });
   const { avatar: _, ...ben } = await joins(url, 'Ben', { avatar: undefined } as never);
-  await until('Ann is drawn', () => {
+  await until('Ann is drawn in her avatar', () => {
     ann.frame();
     ben.frame();
-    return drawn(ben.room).length === 1;
+    return drawn(ben.room).some((body) => body.getObjectByName("Ann's") !== undefined);
   });
+});
+
+/** A file that the wearer may open, and that costs the others too much. */
+const morphing = () =>
+  changed((json) => {
+    const [primitive] = json.meshes[0]?.primitives ?? [];
+    if (primitive)
+      primitive.targets = Array.from({ length: 1500 }, () => ({ POSITION: primitive.attributes.POSITION! }));
+  });
+
+/** A file whose bones are their own parents. */
+const circular = () =>
+  changed((json) => {
+    const child = json.nodes[json.nodes[0]?.children?.[0] ?? 1];
+    if (child) child.children = [0];
+  });
+
+test.each<[what: string, file: () => ArrayBuffer, sentence: RegExp]>([
+  [
+    'costs more than that of a stranger may',
+    morphing,
+    /avatar of Ann could not be shown.* morph targets; an avatar may/,
+  ],
+  ['is malformed', circular, /avatar of Ann could not be shown.*not valid glTF/],
+])(
+  'an avatar of another person that %s is refused with a sentence; the mannequin is drawn',
+  async (_, file, sentence) => {
+    const warnings = vi.spyOn(console, 'warn').mockReturnValue();
+    onTestFinished(() => warnings.mockRestore());
+    const { url } = await served();
+    const ann = await joins(url, 'Ann', { avatarFile: new Blob([file()]) });
+    const ben = await joins(url, 'Ben', { avatar: undefined } as never);
+    await until('the refusal', () => {
+      ann.frame();
+      ben.frame();
+      return warnings.mock.calls.some(([text]) => sentence.test(String(text)));
+    });
+    ann.frame();
+    ben.frame();
+    expect(drawn(ben.room)).toHaveLength(1);
+    expect(ben.room.others.object.children).toHaveLength(1);
+  },
+);
+
+test('a page of a game acts in it and gets its events, and draws the others on their floors', async () => {
+  const { url } = await served({ games: new Map([[countingKind, () => countingPolicy(2)]]) });
+  const joinGame = async (name: string) => {
+    const body = solvedActor();
+    const room = await joinRoom(url, { name, body, game: countingClientPolicy, storage: null });
+    onTestFinished(() => room.leave());
+    room.client.connection?.ready(true);
+    return { room, body };
+  };
+  const [ann, ben] = [await joinGame('Ann'), await joinGame('Ben')];
+  const events: unknown[] = [];
+  let nextCount = 0;
+  await until('a count by Ben, who sees Ann', () => {
+    const now = performance.now();
+    for (const { room, body } of [ann, ben]) {
+      body.moveTo(now);
+      events.push(...room.update(now).events);
+    }
+    if (now > nextCount) {
+      nextCount = now + 300;
+      ben.room.client.connection?.act({ type: 'count', to: 1 });
+    }
+    return events.length > 0 && ben.room.others.object.children.some(({ visible }) => visible);
+  });
+  expect(events).toContainEqual({ type: 'counted', player: 1, total: 1 });
+  expect(ben.room.client.people.map(({ id, placement }) => [id, placement.position.y])).toEqual([[0, -1]]);
+});
+
+test('far from the origin of the scene people are where the object of the others is', async () => {
+  const warnings = vi.spyOn(console, 'warn').mockReturnValue();
+  onTestFinished(() => warnings.mockRestore());
+  const { url } = await served();
+  const pier = new Group();
+  pier.position.set(400, 2, -300);
+  pier.rotation.y = 1;
+  const floor = new Group();
+  pier.add(floor);
+  const body = Object.assign(solvedActor(), { avatar: { object: floor } });
+  const { room } = await joins(url, 'Ann', { body });
+  const ben = await joins(url, 'Ben');
+  const frame = () => {
+    const now = performance.now();
+    body.moveTo(now);
+    room.update(now);
+    ben.frame();
+  };
+  frame();
+  expect(warnings.mock.calls).toEqual([[expect.stringMatching(/The body is (399|400|401)\.\d m from the origin/)]]);
+  pier.add(room.others.object);
+  await until('Ben is on the pier', () => {
+    frame();
+    return drawn(room).length === 1;
+  });
+  expect(warnings).toHaveBeenCalledOnce();
+  expect(distance(drawn(room)[0]!.getWorldPosition(new Vector3()), pier.position)).toBeLessThan(0.01);
 });
 
 test('who has no body watches', async () => {

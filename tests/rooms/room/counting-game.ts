@@ -90,6 +90,7 @@ const refused = v.strictObject({ type: v.literal('refused'), player: v.number(),
  * number.
  */
 export const countingClientPolicy: ClientPolicy<CountingGame> = {
+  kind: countingKind,
   readMessage: roomMessageReader<CountingGame>(
     countingKind,
     v.strictObject({ total: v.number() }),

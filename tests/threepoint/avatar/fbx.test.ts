@@ -2,7 +2,7 @@ import { deflateSync } from 'node:zlib';
 import { avatarClip } from 'threepoint/avatar/avatar-clip';
 import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
 import { glbOfFile } from 'threepoint/avatar/file/glb-of-file';
-import { MotionWithoutBody } from 'threepoint/avatar/file/inspect-avatar';
+import { MotionWithoutBody } from 'threepoint/avatar/file/motion-without-body';
 import { parseChecked } from 'threepoint/avatar/load-avatar';
 import { describe, expect, onTestFinished, test, vi } from 'vitest';
 import { builtFbx } from './built-fbx';

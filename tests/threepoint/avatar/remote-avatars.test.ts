@@ -1,5 +1,6 @@
 import { readFileSync } from 'node:fs';
 import { Mesh, type MeshStandardMaterial, SkinnedMesh } from 'three';
+import { createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { createRemoteAvatars, type RemoteAvatars, type SeenPerson } from 'threepoint/avatar/remote-avatars';
 import {
@@ -28,6 +29,7 @@ function bytesOf(body: BuiltInBody): ArrayBuffer {
   const file = readFileSync(new URL(`../../../public/avatars/${body}.vrm`, import.meta.url));
   return file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer;
 }
+const load = async (body: BuiltInBody) => createAvatarBetweenFrames(await parseAvatar(bytesOf(body), body));
 const estimator = createIk(defaultCalibration);
 
 const person = (id: number, more: Partial<SeenPerson> = {}): SeenPerson => ({
@@ -45,7 +47,7 @@ const person = (id: number, more: Partial<SeenPerson> = {}): SeenPerson => ({
 /** Draws these people until each of them has a body. */
 async function gathered(people: readonly SeenPerson[]): Promise<RemoteAvatars> {
   const others = createRemoteAvatars({
-    load: (avatar) => (isBuiltInAvatar(avatar) ? parseAvatar(bytesOf(bodyOf(avatar)), avatar) : Promise.reject(avatar)),
+    load: (avatar) => (isBuiltInAvatar(avatar) ? load(bodyOf(avatar)) : Promise.reject(avatar)),
     plain: () => false,
     mouthOf: () => 0,
     onRefused: (avatar, reason) => expect([avatar, reason]).toBeNull(),
@@ -141,7 +143,7 @@ describe('an avatar that could not be had', () => {
           asked += 1;
           if (fault) throw fault;
         }
-        return parseAvatar(bytesOf('mannequin'), 'avatar');
+        return load('mannequin');
       },
       plain: () => false,
       mouthOf: () => 0,

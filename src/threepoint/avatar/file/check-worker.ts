@@ -1,6 +1,6 @@
 import { reasonOf } from '../../core/errors/reasons';
 import { type AvatarQuestion, type CheckedAvatar, checkAvatar } from './check-avatar';
-import { MotionWithoutBody } from './inspect-avatar';
+import { MotionWithoutBody } from './motion-without-body';
 
 export interface WorkerQuestion extends AvatarQuestion {
   readonly bytes: ArrayBuffer;
@@ -23,3 +23,5 @@ self.addEventListener('message', ({ data: { bytes, ...question } }: MessageEvent
       ),
   );
 });
+// The first message reports that the worker runs.
+self.postMessage('ready');

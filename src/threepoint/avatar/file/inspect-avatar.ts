@@ -2,6 +2,7 @@ import * as v from 'valibot';
 import { reasonOf } from '../../core/errors/reasons';
 import { chunksOf } from './glb-chunks';
 import { imageSize, isKtx2 } from './image-size';
+import { MotionWithoutBody } from './motion-without-body';
 
 /** What a body from a file may cost: several times what avatars made for headsets have, far below what stalls one. */
 export const avatarLimits = {
@@ -32,13 +33,6 @@ export const seenAvatarLimits: AvatarLimits = {
   morphTargets: 1000,
   millionNumbers: 12,
 };
-
-/** The error of a file of motion alone, which can be opened as motion capture. */
-export class MotionWithoutBody extends Error {
-  constructor(name: string) {
-    super(`${name}: holds motion and no body; open it as motion capture`);
-  }
-}
 
 const index = v.pipe(v.number(), v.integer(), v.minValue(0));
 const list = <Item extends v.GenericSchema>(item: Item) => v.optional(v.array(item), []);

@@ -1,8 +1,24 @@
-import { type AvatarHash, type AvatarRef, mostAvatarBytes, plainAvatar } from 'threepoint/core/body/avatar-ref';
+import {
+  type AvatarHash,
+  type AvatarRef,
+  type BuiltInAvatar,
+  mostAvatarBytes,
+  plainAvatar,
+} from 'threepoint/core/body/avatar-ref';
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import type { BallRoomView } from 'threepoint-games/ball/ball-client';
-import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
-import type { UserAvatar } from '../activity/activity-context';
+import type { HostedGame } from '../room/match-policy';
+import type { AvatarExchange } from './avatar-exchange';
+import type { RoomView } from './connection';
+
+/** The avatar that a person shows to the others: a built-in one, or a file. */
+export type WornAvatar =
+  | BuiltInAvatar
+  | {
+      readonly name: string;
+      readonly file: Blob;
+      /** null: unknown, because the connection is not secure. */
+      readonly hash: AvatarHash | null;
+    };
 
 export interface SharedAvatarOptions {
   /** null: there is no server, or the room belongs to a study, where all avatars are alike. */
@@ -11,7 +27,7 @@ export interface SharedAvatarOptions {
    * Returns the avatar to show to others: the same object for as long as it is worn; null: the user does not share it.
    * Called in every frame.
    */
-  wear(): UserAvatar | null;
+  wear(): WornAvatar | null;
   /** Sends the reference of the user's avatar to the room. */
   send(avatar: AvatarRef): void;
   notify(level: 'info' | 'warning', text: string): void;
@@ -35,7 +51,7 @@ async function upload(exchange: AvatarExchange, hash: AvatarHash, file: Blob): P
 export class SharedAvatar {
   readonly #options: SharedAvatarOptions;
   /** The avatar that was sent last, and the stay in the room in which it was sent. */
-  #wear: UserAvatar | null = null;
+  #wear: WornAvatar | null = null;
   #welcomes = 0;
   #turn = 0;
 
@@ -44,7 +60,7 @@ export class SharedAvatar {
   }
 
   /** Once per frame; `room`: null before the first welcome. */
-  update(room: BallRoomView | null): void {
+  update(room: RoomView<HostedGame> | null): void {
     if (!room || room.mySeat === null) return;
     const wear = this.#options.wear();
     if (wear === this.#wear && room.welcomes === this.#welcomes) return;
@@ -57,7 +73,7 @@ export class SharedAvatar {
   }
 
   /** Never rejects. `quiet`: the user was notified before. */
-  async #share({ name, file, hash }: Exclude<UserAvatar, string>, turn: number, quiet: boolean): Promise<void> {
+  async #share({ name, file, hash }: Exclude<WornAvatar, string>, turn: number, quiet: boolean): Promise<void> {
     const { exchange, send, notify } = this.#options;
     if (!exchange) return;
     const isNewest = () => turn === this.#turn;

@@ -3,7 +3,8 @@ import { createServer, type RequestListener } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import type { AvatarHash } from 'threepoint/core/body/avatar-ref';
 import { PassingFault } from 'threepoint/core/errors/passing-fault';
-import { SeenAvatars } from 'threepoint-page/ball/seen-avatars';
+import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
+import { SeenAvatars } from 'threepoint-rooms/drawing/seen-avatars';
 import { expect, onTestFinished, test } from 'vitest';
 import { collectGarbage } from '../../collect-garbage';
 
@@ -28,27 +29,27 @@ const neverEnding: RequestListener = (_request, response) => {
 
 const unused = () => Promise.reject(new Error('not of this test'));
 
+/** The exchange of a room whose files are at these addresses. */
+const exchangeAt = (addressesOf: AvatarExchange['addressesOf']): AvatarExchange => ({
+  terms: unused,
+  isStoredElsewhere: unused,
+  store: unused,
+  addressesOf,
+});
+
 test('a file that never ends is given up with a sentence, and the next place is not asked', async () => {
   const [first, second] = [await answeredBy(neverEnding), await answeredBy(neverEnding)];
   const asked: string[] = [];
-  const seen = new SeenAvatars(
-    new ArrayBuffer(0),
-    unused,
-    {
-      terms: unused,
-      isStoredElsewhere: unused,
-      store: unused,
-      addressesOf: async () =>
-        [first, second].map((url) => ({
-          get url() {
-            asked.push(url);
-            return url;
-          },
-          headers: {},
-        })),
-    },
-    { patienceMs: 100 },
+  const exchange = exchangeAt(async () =>
+    [first, second].map((url) => ({
+      get url() {
+        asked.push(url);
+        return url;
+      },
+      headers: {},
+    })),
   );
+  const seen = new SeenAvatars({ exchange, loadBuiltIn: unused, loadFile: unused, patienceMs: 100 });
   // Node forgets a timeout that nothing refers to (nodejs/node#57736): the collector must not end the patience.
   const collecting = setInterval(collectGarbage, 20);
   onTestFinished(() => clearInterval(collecting));
@@ -56,14 +57,11 @@ test('a file that never ends is given up with a sentence, and the next place is 
   expect(asked).toEqual([first]);
 });
 
-/** Loads from the store of a room that has files at these addresses. */
-const from = (urls: readonly string[]) =>
-  new SeenAvatars(new ArrayBuffer(0), unused, {
-    terms: unused,
-    isStoredElsewhere: unused,
-    store: unused,
-    addressesOf: async () => urls.map((url) => ({ url, headers: {} })),
-  });
+/** Loads from the store of a room that has the file at this address. */
+const from = (url: string) => {
+  const exchange = exchangeAt(async () => [{ url, headers: {} }]);
+  return new SeenAvatars({ exchange, loadBuiltIn: unused, loadFile: unused });
+};
 
 test.each<[what: string, answer: RequestListener, passes: boolean]>([
   ['a file that is not there yet', (_, response) => response.writeHead(404).end(), true],
@@ -74,25 +72,14 @@ test.each<[what: string, answer: RequestListener, passes: boolean]>([
     false,
   ],
 ])('%s is said to be a fault that passes, or not', async (_, answer, passes) => {
-  const fault = await from([await answeredBy(answer)])
+  const fault = await from(await answeredBy(answer))
     .load(hash)
     .catch((error: unknown) => error);
   expect(fault).toBeInstanceOf(Error);
   expect(fault instanceof PassingFault).toBe(passes);
 });
 
-test('a body of our own that was lost on the way once is fetched again', async () => {
-  let asked = 0;
-  const seen = new SeenAvatars(
-    new ArrayBuffer(0),
-    () => {
-      asked += 1;
-      return Promise.reject(new PassingFault('the network is gone'));
-    },
-    null,
-  );
-  for (const attempt of [1, 2]) {
-    await expect(seen.load('woman-fair')).rejects.toThrow('the network is gone');
-    expect(asked).toBe(attempt);
-  }
+test('another file than the announced one is refused before it is read', async () => {
+  const seen = from(await answeredBy((_, response) => response.end('another avatar')));
+  await expect(seen.load(hash)).rejects.toThrow('the server sent a different file than the player announced');
 });

@@ -1,0 +1,166 @@
+import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import type { Fingers } from 'threepoint/core/body/hand-shape';
+import {
+  composeTransforms,
+  invertTransform,
+  type MutableTransform,
+  makeTransform,
+  type Transform,
+} from 'threepoint/core/math/pose';
+import { identity } from 'threepoint/core/math/quat';
+import { zero } from 'threepoint/core/math/vec3';
+import type { SeatInfo } from '../protocol/messages';
+import type { HostedGame } from '../room/match-policy';
+import type { Connection, ConnectionStatus, ConnectionUpdate, RoomView } from './connection';
+import { createRemotePlayers, type RemotePlayer } from './remote-players';
+
+/** Another person of the room as drawn in this frame. The same object in every frame: copy what you keep. */
+export interface RemotePerson {
+  /** The number of the person's seat. */
+  readonly id: number;
+  readonly calibration: Calibration;
+  readonly avatar: AvatarRef;
+  /** The palette of a built-in body; null: its own colours. */
+  readonly palette: string | null;
+  /** The pose in the frame of the person's own floor. */
+  readonly pose: AvatarPose;
+  readonly fingers: Fingers;
+  /** The person's floor in the floor frame of this page. */
+  readonly placement: Transform<'floor', 'floor'>;
+  /** 1: live. Less: a ghost, because no packet has arrived for a while. */
+  readonly opacity: number;
+}
+
+type Writable<T> = { -readonly [Key in keyof T]: T[Key] };
+type PersonBuffer = Writable<RemotePerson> & { readonly placement: MutableTransform<'floor', 'floor'> };
+
+const connecting: ConnectionStatus = { phase: 'connecting', attempt: 0, retryIn: null, reason: null };
+const noSeats: readonly never[] = [];
+const arenaIsFloor: Transform<'floor', 'arena'> = { position: zero, orientation: identity };
+
+/**
+ * A page's part in a room: its connection, the playback of the other people, and the sending of its own body. Times are
+ * the page's clock [s].
+ *
+ * @example
+ * const client = new RoomClient(address.connect({ name: 'Ada', calibration }));
+ * const { events } = client.update(time); // in each frame, before `people`
+ * for (const { id, pose, placement } of client.people) draw(id, pose, placement);
+ * client.sendPose(time, pose, fingers);
+ */
+export class RoomClient<Game extends HostedGame> {
+  readonly #connect: (time: number) => Connection<Game>;
+  #connection: Connection<Game> | null;
+  readonly #players = createRemotePlayers();
+  readonly #buffers: PersonBuffer[] = [];
+  readonly #people: RemotePerson[] = [];
+  /** The seats at the last update. */
+  #seats: readonly (SeatInfo | null)[] = noSeats;
+  #jump = false;
+  #placedBy: Transform<'arena', 'floor'> | null = null;
+  #floorFromArena = arenaIsFloor;
+
+  /** `connection`: a connection, or what makes it at the time of the first update. */
+  constructor(connection: Connection<Game> | ((time: number) => Connection<Game>)) {
+    this.#connect = typeof connection === 'function' ? connection : () => connection;
+    this.#connection = typeof connection === 'function' ? null : connection;
+  }
+
+  /** The connection; null before the update that makes it. */
+  get connection(): Connection<Game> | null {
+    return this.#connection;
+  }
+
+  get status(): ConnectionStatus {
+    return this.#connection?.status ?? connecting;
+  }
+
+  /** The room as this page knows it; null before the first welcome. */
+  get room(): RoomView<Game> | null {
+    return this.#connection?.room ?? null;
+  }
+
+  /** The other people to draw in this frame, without those silent for 3 s. The same list in every frame. */
+  get people(): readonly RemotePerson[] {
+    return this.#people;
+  }
+
+  /**
+   * The arena in the floor frame of this page, by its seat; a spectator's floor frame is the arena frame. Every change
+   * yields another object.
+   */
+  get floorFromArena(): Transform<'floor', 'arena'> {
+    const seat = this.room?.mySeat ?? null;
+    if (!this.#connection || seat === null) return arenaIsFloor;
+    const arenaFromFloor = this.#connection.arenaFromFloor(seat);
+    if (arenaFromFloor !== this.#placedBy) {
+      this.#placedBy = arenaFromFloor;
+      this.#floorFromArena = invertTransform(arenaFromFloor);
+    }
+    return this.#floorFromArena;
+  }
+
+  /** Receives what has arrived, and plays the others at this time; to be called first in each frame. */
+  update(time: number): ConnectionUpdate<Game> {
+    this.#connection ??= this.#connect(time);
+    const update = this.#connection.update(time);
+    if (update.news.includes('resumed')) this.#players.resume();
+    for (const pose of update.poses) this.#players.receive(pose);
+    this.#followSeats();
+    this.#place(this.#connection, this.#players.follow(time));
+    return update;
+  }
+
+  /** Sends the body of this frame, floor frame; 30 packets a second. Without a seat nothing is sent. */
+  sendPose(time: number, pose: AvatarPose, fingers: Fingers): void {
+    if (!this.#connection || this.room?.mySeat === null) return;
+    this.#connection.sendPose(time, { jump: this.#jump, pose, fingers });
+    this.#jump = false;
+  }
+
+  /** Marks the next pose as one that the others must not interpolate to: the floor frame has changed. */
+  discontinuity(): void {
+    this.#jump = true;
+  }
+
+  /** Prevents a person who takes a seat from gliding there from the previous person's position. */
+  #followSeats(): void {
+    const seats = this.room?.seats ?? noSeats;
+    if (seats === this.#seats) return;
+    for (let seat = 0; seat < seats.length; seat++) {
+      const [now, before] = [seats[seat], this.#seats[seat]];
+      if (now?.name !== before?.name || now?.bot !== before?.bot) this.#players.forget(seat);
+    }
+    this.#seats = seats;
+  }
+
+  #place(connection: Connection<Game>, players: readonly RemotePlayer[]): void {
+    this.#people.length = 0;
+    const { floorFromArena } = this;
+    const mySeat = connection.room?.mySeat;
+    for (let i = 0; i < players.length; i++) {
+      const player = players[i]!;
+      const info = this.#seats[player.seat];
+      if (!info || player.seat === mySeat) continue;
+      const person = this.#bufferFor(player, info);
+      composeTransforms(floorFromArena, connection.arenaFromFloor(player.seat), person.placement);
+      this.#people.push(person);
+    }
+  }
+
+  #bufferFor({ seat, pose, fingers, opacity }: RemotePlayer, { calibration, avatar }: SeatInfo): PersonBuffer {
+    let person = this.#buffers[seat];
+    if (!person) {
+      person = { id: seat, palette: null, calibration, avatar, pose, fingers, opacity, placement: makeTransform() };
+      this.#buffers[seat] = person;
+    }
+    person.calibration = calibration;
+    person.avatar = avatar;
+    person.pose = pose;
+    person.fingers = fingers;
+    person.opacity = opacity;
+    return person;
+  }
+}

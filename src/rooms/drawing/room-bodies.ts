@@ -1,0 +1,96 @@
+import type { Object3D } from 'three';
+import { createRemoteAvatars, type RemoteAvatars } from 'threepoint/avatar/remote-avatars';
+import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
+import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import type { Vec3 } from 'threepoint/core/math/vec3';
+import type { Avatar } from 'threepoint/three';
+import type { RoomView } from '../client/connection';
+import type { RemotePerson } from '../client/room-client';
+import { SharedAvatar, type WornAvatar } from '../client/shared-avatar';
+import type { HostedGame } from '../room/match-policy';
+import { SeenAvatars, type SeenAvatarsOptions } from './seen-avatars';
+
+export interface RoomBodiesOptions extends SeenAvatarsOptions {
+  /** Returns the room; null before the first welcome. */
+  room(): RoomView<HostedGame> | null;
+  /** Sends the reference of the own avatar to the room. */
+  send(avatar: AvatarRef): void;
+  /** Returns the own avatar: the same object for as long as it is worn; null: it is not shared. Read in every frame. */
+  wear(): WornAvatar | null;
+  /** Receives sentences about the own avatar. */
+  notify(level: 'info' | 'warning', text: string): void;
+  /** Receives a sentence about each avatar of another person that cannot be shown. */
+  onRefused(text: string): void;
+  /** Loads each avatar in another way; absent: built-in bodies, and the files of the room. */
+  readonly load?: ((avatar: AvatarRef) => Promise<Avatar>) | undefined;
+  /** Returns whether everybody is drawn as the mannequin. Default: false. */
+  plain?(): boolean;
+  /** Returns the opening of a person's mouth: 0 shut to 1. Default: shut. */
+  mouthOf?(seat: number): number;
+  /** Whether a soft shadow lies under each body. Default: false. */
+  readonly shadows?: boolean;
+}
+
+/**
+ * The bodies of the other people of a room, in the avatars that they wear, and the own avatar as the others see it. A
+ * file that is a stranger's is checked before it is drawn; a mannequin is drawn for one that is refused.
+ */
+export class RoomBodies {
+  readonly #options: RoomBodiesOptions;
+  readonly #drawn: RemoteAvatars;
+  readonly #seen: SeenAvatars;
+  readonly #shared: SharedAvatar;
+
+  constructor(options: RoomBodiesOptions) {
+    const { exchange, wear, send, notify, plain = () => false, mouthOf = () => 0, shadows = false } = options;
+    this.#options = options;
+    this.#seen = new SeenAvatars(options);
+    const load = options.load ?? ((avatar: AvatarRef) => this.#seen.load(avatar));
+    const notifyRefused = (avatar: AvatarRef, reason: unknown) => this.#notifyRefused(avatar, reason);
+    this.#drawn = createRemoteAvatars({ load, plain, mouthOf, onRefused: notifyRefused, shadows });
+    this.#shared = new SharedAvatar({ exchange, wear, send, notify });
+  }
+
+  /** The bodies, to be added to the scene where the floor of this page is. */
+  get object(): Object3D {
+    return this.#drawn.object;
+  }
+
+  /** Shares the own avatar; to be called in each frame, after the room's messages were received. */
+  share(): void {
+    this.#shared.update(this.#options.room());
+  }
+
+  /** Draws these people and nobody else, at a time [s] on the page's clock. */
+  show(people: readonly RemotePerson[], time: number): void {
+    this.#drawn.show(people, time);
+  }
+
+  /** Returns a person's drawn joints, floor frame of this page [m]; null: nobody is drawn on this seat. */
+  jointsOf(seat: number): Readonly<Record<string, Vec3>> | null {
+    return this.#drawn.jointsOf(seat);
+  }
+
+  /** Returns the avatar that a person is drawn as; null: nobody is drawn on this seat. */
+  drawnAs(seat: number): AvatarRef | null {
+    return this.#drawn.drawnAs(seat);
+  }
+
+  dispose(): void {
+    this.#seen.leave();
+    this.#drawn.dispose();
+  }
+
+  #notifyRefused(avatar: AvatarRef, reason: unknown): void {
+    const room = this.#options.room();
+    const names = (room?.seats ?? []).flatMap((seat, index) =>
+      seat?.avatar === avatar && index !== room?.mySeat ? [seat.name] : [],
+    );
+    // The player may have changed avatars in the meantime.
+    if (names.length === 0) return;
+    const why = firstLine(reasonOf(reason)).replace(/^the avatar: /, '');
+    this.#options.onRefused(
+      `The avatar of ${names.join(' and ')} could not be shown, so you see a mannequin. Reason: ${why}`,
+    );
+  }
+}

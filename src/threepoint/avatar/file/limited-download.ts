@@ -1,0 +1,81 @@
+import { PassingFault } from '../../core/errors/passing-fault';
+import { firstLine, reasonOf } from '../../core/errors/reasons';
+
+/** What a file is to be, with its article, and how much of it this page reads. */
+export interface FileKind {
+  readonly what: string;
+  readonly megabytes: number;
+}
+
+/** Returns what sentences call an address: its last part. */
+export const nameOfAddress = (url: string): string => url.split(/[?#]/)[0]?.split('/').at(-1) || url;
+
+export interface DownloadOptions {
+  /** Called with the share [0, 1] that has arrived. */
+  readonly onProgress?: (share: number) => void;
+  /** Cancels a download. */
+  readonly signal?: AbortSignal;
+  /** The headers of a download. */
+  readonly headers?: Readonly<Record<string, string>>;
+}
+
+/** Returns the error for a file that is larger than its kind may be. */
+export const tooLarge = (name: string, { what, megabytes }: FileKind): Error =>
+  new Error(`${name}: larger than ${megabytes} MB, the limit for ${what}`);
+
+/** Browsers do not say which of the two refused: the policy of the page's own server, or the other server. */
+const otherServerHint =
+  '. Files on another server need its permission (CORS) and that of this page (THREEPOINT_FILES_FROM). Save the file and open it from this device';
+
+const isOfOtherServer = (url: string): boolean =>
+  URL.canParse(url) && new URL(url).origin !== globalThis.location?.origin;
+
+/**
+ * Downloads a file. One that is larger than its kind may be is refused before it is read, or as soon as that shows.
+ * Rejects with a sentence that names the file; with a PassingFault where the network or the server is to blame.
+ */
+export async function downloadLimited(
+  url: string,
+  kind: FileKind,
+  { onProgress, signal, headers = {} }: DownloadOptions = {},
+): Promise<ArrayBuffer> {
+  const name = nameOfAddress(url);
+  const most = kind.megabytes * 2 ** 20;
+  const aborting = new AbortController();
+  signal?.addEventListener('abort', () => aborting.abort());
+  const response = await fetch(url, { signal: aborting.signal, headers }).catch((error: unknown) => {
+    const why = isOfOtherServer(url) ? otherServerHint : '';
+    throw new PassingFault(`${name}: could not be downloaded (${firstLine(reasonOf(error))})${why}`);
+  });
+  /** Ends the answer, so that nothing more of it comes. */
+  const refuse = (error: Error): never => {
+    aborting.abort();
+    throw error;
+  };
+  if (!response.ok || !response.body)
+    return refuse(new PassingFault(`${name}: the server answers ${response.status} ${response.statusText}`.trim()));
+  if (/^text\/html\b/i.test(response.headers.get('content-type') ?? ''))
+    return refuse(new Error(`${name}: the server sent a web page instead of ${kind.what}`));
+  const total = Number(response.headers.get('content-length')) || 0;
+  if (total > most) return refuse(tooLarge(name, kind));
+  const pieces: Uint8Array[] = [];
+  let received = 0;
+  const reader = response.body.getReader();
+  for (;;) {
+    const { done, value } = await reader.read().catch((error: unknown) => {
+      throw new PassingFault(`${name}: the connection was lost during the download (${firstLine(reasonOf(error))})`);
+    });
+    if (done) break;
+    pieces.push(value);
+    received += value.length;
+    if (received > most) return refuse(tooLarge(name, kind));
+    if (total > 0) onProgress?.(Math.min(1, received / total));
+  }
+  const whole = new Uint8Array(received);
+  let offset = 0;
+  for (const piece of pieces) {
+    whole.set(piece, offset);
+    offset += piece.length;
+  }
+  return whole.buffer;
+}
