@@ -90,6 +90,7 @@ function inOrder(nodes: readonly Node[]): readonly number[] {
 
 /** Numbers of an accessor; integers are shares of the largest. */
 function accessorOf(description: Json, binary: Uint8Array, index: unknown): Float32Array {
+  if (!isIndex(index)) throw new Error('animations[0]: a sampler does not name its accessors');
   const accessor = isIndex(index) ? objects(description.accessors)[index] : undefined;
   const view = isIndex(accessor?.bufferView) ? objects(description.bufferViews)[accessor.bufferView] : undefined;
   const size = { SCALAR: 1, VEC3: 3, VEC4: 4 }[String(accessor?.type)];
