@@ -1,12 +1,12 @@
 import { createAvatar } from 'threepoint/avatar/avatar';
 import { gltfFaults } from 'threepoint/avatar/file/validate-gltf';
-import type { BoneMap, BoneName } from 'threepoint/core/humanoid/bones';
 import { boneNode } from 'threepoint/avatar/humanoid/humanoid';
 import { withNamedBones } from 'threepoint/avatar/humanoid/name-bones';
 import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones';
 import { type LoadedAvatar, parseAvatar } from 'threepoint/avatar/load-avatar';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createIk } from 'threepoint/core/estimation/estimators';
+import type { BoneMap, BoneName } from 'threepoint/core/humanoid/bones';
 import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { KnownBones } from 'threepoint-page/shell/known-bones';

@@ -1,10 +1,10 @@
 import { type SkinnedMesh, Vector3 } from 'three';
 import { type Avatar, createAvatar } from 'threepoint/avatar/avatar';
-import type { BoneName } from 'threepoint/core/humanoid/bones';
 import { type LoadedAvatar, parseAvatar } from 'threepoint/avatar/load-avatar';
 import { handBoneRotation } from 'threepoint/core/body/arm-rotations';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createIk } from 'threepoint/core/estimation/estimators';
+import type { BoneName } from 'threepoint/core/humanoid/bones';
 import { rotate } from 'threepoint/core/math/quat';
 import { distance, down, vec3 } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
