@@ -39,12 +39,12 @@ function sourceOf(path: string, map: string | null): MocapSource {
 /** What is read of one file; a fault becomes its sentence, and the other files are read. */
 function read(path: string, i: number, { map, out }: Request) {
   try {
-    const { motion, notes } = finishWork(readOurMotion(sourceOf(path, map)));
+    const { motion, notes, doubts } = finishWork(readOurMotion(sourceOf(path, map)));
     const { positions, rotations, rateHz, frameCount } = motion;
     writeFileSync(join(out, `${i}.positions`), positions);
     writeFileSync(join(out, `${i}.rotations`), rotations);
     const rest = Object.fromEntries([...motion.rest].map(([joint, { x, y, z }]) => [joint, [x, y, z]]));
-    return { rateHz, frameCount, rest, notes };
+    return { rateHz, frameCount, rest, notes: [...notes, ...doubts] };
   } catch (error) {
     const reason = reasonOf(error);
     return { refused: reason.startsWith(basename(path)) ? reason : `${basename(path)}: ${reason}` };

@@ -267,6 +267,12 @@ export const attackRows = {
       'tests/threepoint/avatar/inspect-avatar.test.ts',
     ],
   },
+  'mutated-motion': {
+    inject: '100,000 BVH files and VRM Animations with lines, words, bytes and values changed (10,000 by day)',
+    sees: 'A sentence that names the file, or trackers of finite numbers, with a second of work at most',
+    target: '0 exceptions without a sentence, 0 numbers that are none, 1 s of work on one file at most',
+    tests: ['tests/threepoint/core/mocap/mutated-motion.test.ts'],
+  },
   crowd: {
     inject: 'Two hundred rooms of three play for ten minutes and leave, three times (20 rooms for 5 s by day)',
     sees: 'Ticks are on time; nothing remains afterwards',

@@ -23,7 +23,10 @@ import { type Limbs, straightRest } from './straight-rest';
 import { axisOfRoot, withTurnedRest } from './turned-rest';
 
 /** A joint above this share of the trunk is a chest, below it a spine. */
-const chestShare = 0.33;
+const chestShare = 0.42;
+
+/** A neck lies this far up from between the shoulders to the head joint. */
+const neckShare = 0.25;
 
 /** A motion with the skeleton that was found in it. */
 export interface MatchedMotion {
@@ -44,19 +47,27 @@ function jointsOf(match: HumanoidMatch, file: FileMotion) {
     const found = match.map[joint satisfies BoneName];
     if (found) joints[joint] = found.joint;
   }
+  for (const [joint, name] of Object.entries(handsOfCmuconvert(file.names)))
+    joints[joint as TruthJoint] = file.names.indexOf(name);
   const between: MappedSkeleton['between'] = {};
-  const upperChest = match.map.upperChest?.joint;
   if (joints.neck === undefined) {
-    Object.assign(between, { neck: { near: ['leftUpperArm', 'rightUpperArm'], far: ['head'], share: 0.25 } });
+    Object.assign(between, {
+      neck: {
+        near: ['leftUpperArm', 'rightUpperArm'],
+        far: ['head'],
+        share: neckShare,
+        carrier: file.parents![joints.head!]!,
+      },
+    });
     notes.push('it has no neck; one between shoulders and head is assumed');
   }
-  if (joints.chest === undefined && upperChest !== undefined) joints.chest = upperChest;
-  if (joints.chest === undefined && shareOfTrunk(file.rest, joints) > chestShare) {
+  if (joints.chest === undefined && !match.map.upperChest && shareOfTrunk(file.rest, joints) > chestShare) {
     joints.chest = joints.spine!;
     delete joints.spine;
+    notes.push('it has one joint between hips and neck; it was taken as the chest');
   }
   if (joints.chest === undefined) {
-    Object.assign(between, { chest: { near: ['spine'], far: ['neck'], share: 0.5 } });
+    Object.assign(between, { chest: { near: ['spine'], far: ['neck'], share: 0.5, carrier: joints.spine! } });
     notes.push('it has no chest; one in the middle of spine and neck is assumed');
   }
   if (joints.spine === undefined) Object.assign(between, { spine: { near: ['hips'], far: ['chest'], share: 0.5 } });
@@ -108,11 +119,10 @@ function restsAsPerson(rest: readonly Vec3[], { arms, legs }: Limbs, { turn }: B
   });
 }
 
-/** Exchanges left and right. */
-function exchanged(joints: Joints): Joints {
-  const other = (joint: string): TruthJoint =>
-    joint.replace(/^(left|right)/, (side) => (side === 'left' ? 'right' : 'left')) as TruthJoint;
-  return Object.fromEntries(Object.entries(joints).map(([joint, at]) => [other(joint), at]));
+/** Returns the match with left and right exchanged. */
+function exchanged(match: HumanoidMatch): HumanoidMatch {
+  const other = (bone: string): string => bone.replace(/^(left|right)/, (side) => (side === 'left' ? 'right' : 'left'));
+  return { ...match, map: Object.fromEntries(Object.entries(match.map).map(([bone, found]) => [other(bone), found])) };
 }
 
 /** Returns the pose of the first frame where a person stands in T-pose there; null: there is none. */
@@ -136,10 +146,40 @@ function firstFrame(file: FileMotion, joints: StandingJoints, limbs: Limbs): Joi
  * sentence with what was found and what is missing.
  */
 export function matchSkeleton(file: FileMotion): MatchedMotion {
-  const parents = file.parents!;
+  const { match, notes } = matchSides(file);
+  const found = jointsOf(match, file);
+  const { joints } = found;
+  const standing = standingJoints(joints, match);
+  const limbs = limbsOf(joints, match);
+  const upright = restAsMoved(file, standing);
+  const rested = restOf(upright.file, standing, limbs);
+  notes.push(...found.notes, ...upright.notes, ...rested.notes);
+  const { turn } = rested.axes;
+  const floor = rested.stands ? turn : usualFloor;
+  const up = otherUp(rested.file, floor, standing);
+  if (up)
+    notes.push(
+      `the person would lie in most frames; the axis that makes them stand was taken as up (${axisIn(floor, up)})`,
+    );
+  return {
+    file: rested.file,
+    notes,
+    skeleton: {
+      joints: Object.fromEntries(Object.entries(joints).map(([joint, at]) => [joint, file.names[at]!])),
+      columns: joints,
+      turning: trackedJoints.map((joint) => joints[joint]!),
+      between: found.between,
+      floor: turn,
+      motionFloor: floorOfMotion(floor, up),
+    },
+  };
+}
+
+/** Matches the joints of a file, left and right by where the toes point. Throws a sentence where they do not match. */
+function matchSides(file: FileMotion) {
   const match = matchHumanoid(
     file.rest.map((position, i) => ({
-      ...{ name: file.names[i]!, parent: parents[i]!, position },
+      ...{ name: file.names[i]!, parent: file.parents![i]!, position },
       ...(file.names[i]!.endsWith(':end') && { end: true }),
     })),
   );
@@ -148,55 +188,15 @@ export function matchSkeleton(file: FileMotion): MatchedMotion {
     throw new Error(
       `${complaint}. A map of it, a .json that is dropped too, says which joint is which: docs/accuracy.md`,
     );
-  const found = jointsOf(match, file);
-  const notes = [...match.notes, ...found.notes];
-  let { joints } = found;
-  const known = standingJoints(joints, match);
-  if (facesBack(file, known)) {
-    notes.push('the names of left and right are exchanged: the toes point back; the motion was followed');
-    joints = exchanged(joints);
-  }
-  const standingAt = standingJoints(joints, match);
-  const limbs = limbsOf(joints, match);
-  const upright = restAsMoved(file, standingAt);
-  notes.push(...upright.notes);
-  const rested = restOf(upright.file, standingAt, limbs);
-  notes.push(...rested.notes);
-  const { turn } = rested.axes;
-  const floor = rested.stands ? turn : usualFloor;
-  const up = otherUp(rested.file, floor, standingAt);
-  if (up)
-    notes.push(
-      `the person would lie in most frames; the axis that makes them stand was taken as up (${axisIn(floor, up)})`,
-    );
-  const hands = handsOfCmuconvert(file.names);
-  const names = Object.fromEntries(Object.entries(joints).map(([joint, at]) => [joint, file.names[at!]!]));
-  return {
-    file: rested.file,
-    notes,
-    skeleton: {
-      joints: { ...names, ...hands },
-      columns: Object.fromEntries(
-        truthJoints.flatMap((joint) => {
-          const hand = hands[joint as keyof typeof hands];
-          const at = hand === undefined ? joints[joint] : file.names.indexOf(hand);
-          return at === undefined ? [] : [[joint, at]];
-        }),
-      ),
-      turning: trackedJoints.map((joint) => {
-        const hand = hands[joint as keyof typeof hands];
-        return hand === undefined ? joints[joint]! : file.names.indexOf(hand);
-      }),
-      between: found.between,
-      floor: turn,
-      motionFloor: floorOfMotion(floor, up),
-    },
-  };
+  const notes = [...match.notes];
+  if (!facesBack(file, standingJoints(jointsOf(match, file).joints, match))) return { match, notes };
+  notes.push('the names of left and right are exchanged: the toes point back; the motion was followed');
+  return { match: exchanged(match), notes };
 }
 
 /**
- * Returns the motion with its rest turned to the axes in which its root moves: some programs turn the offsets alone. The
- * root then keeps the height of the hips along another axis than that along which the rest stands.
+ * Returns the motion with its rest turned to the axes in which its root moves: some programs turn the offsets alone.
+ * The root then keeps the height of the hips along another axis than that along which the rest stands.
  */
 function restAsMoved(file: FileMotion, joints: StandingJoints) {
   const axes = axesOfTrunk(file.rest, joints)?.axes;

@@ -9,6 +9,7 @@ import {
   rotationBetween,
 } from '../math/quat';
 import {
+  add,
   addScaled,
   distance,
   lerp,
@@ -23,7 +24,7 @@ import {
   zero,
 } from '../math/vec3';
 import { type FileMotion, makeJointPoses } from '../motion/file-motion';
-import { armLength, units } from './mocap-rules.json';
+import { armLength, cmu, units } from './mocap-rules.json';
 import { checkRest, type RestPose } from './rest-pose';
 import {
   type BetweenJoints,
@@ -62,6 +63,18 @@ function metresPerUnit({ scale: given }: MappedSkeleton, restOf: (joint: TruthJo
   const unit = units.find((metres) => least < arm * metres && arm * metres < most);
   if (unit === undefined) throw new Error(`an arm of ${arm.toPrecision(3)} units fits no known unit`);
   return unit;
+}
+
+const unitNames: Readonly<Record<string, string>> = {
+  ...{ 0.001: 'millimetres', 0.1: 'decimetres', 0.0254: 'inches', 0.3048: 'feet' },
+  [cmu.metresPerUnit]: 'the CMU database (5.6 cm)',
+};
+
+/** States the unit that was assumed for a file where it is neither metres nor centimetres; null: it is, or is given. */
+export function unitNote(file: FileMotion, skeleton: MappedSkeleton): string | null {
+  if (skeleton.scale) return null;
+  const name = unitNames[metresPerUnit(skeleton, (joint) => file.rest[skeleton.columns[joint]!]!)];
+  return name === undefined ? null : `its unit was taken to be that of ${name}`;
 }
 
 /** What takes the rotation of a hand since rest to that of its wrist, whose −Z points to the knuckles. */
@@ -120,6 +133,14 @@ export function* toOurJoints(file: FileMotion, rateHz: number, skeleton: MappedS
   const poses = makeJointPoses(file.names.length);
   const places = new Map(truthJoints.map((joint) => [joint, vec3(0, 0, 0)]));
   const lacking = assumed.filter((joint) => between[joint]);
+  const carriedOf = new Map(
+    lacking.flatMap((joint) => {
+      const { carrier } = between[joint]!;
+      if (carrier === undefined) return [];
+      const place = scale(rotate(restFromFloor, rest.get(joint)!), 1 / unit);
+      return [[joint, { joint: carrier, offset: subtract(place, file.rest[carrier]!) }] as const];
+    }),
+  );
   const present = truthJoints.filter((joint) => columns[joint] !== undefined);
   const turn: MutableQuat = quat(0, 0, 0, 1);
   for (let frame = 0; frame < file.frameCount; frame++) {
@@ -128,7 +149,16 @@ export function* toOurJoints(file: FileMotion, rateHz: number, skeleton: MappedS
       const place = places.get(joint)!;
       scale(rotate(motionFloor, poses.positions[columns[joint]!]!, place), unit, place);
     }
-    for (const joint of lacking) placeBetween(between[joint]!, (of) => places.get(of)!, places.get(joint)!);
+    for (const joint of lacking) {
+      const place = places.get(joint)!;
+      const carried = carriedOf.get(joint);
+      if (!carried) placeBetween(between[joint]!, (of) => places.get(of)!, place);
+      else {
+        rotate(poses.rotations[carried.joint]!, carried.offset, place);
+        add(poses.positions[carried.joint]!, place, place);
+        scale(rotate(motionFloor, place, place), unit, place);
+      }
+    }
     for (const [i, joint] of truthJoints.entries()) {
       if (columns[joint] === undefined && !between[joint as keyof typeof between]) continue;
       writeVec3(places.get(joint)!, positions, frame * positionsWidth + 3 * i);

@@ -67,6 +67,8 @@ export interface BetweenJoints {
   readonly near: readonly TruthJoint[];
   readonly far: readonly TruthJoint[];
   readonly share: number;
+  /** The index of the file's joint that carries it; absent: it follows the joints that it lies between. */
+  readonly carrier?: number;
 }
 
 /** The skeleton of a file in which every joint has its column. */
@@ -82,7 +84,7 @@ export interface MappedSkeleton {
   readonly scale?: number;
   /** The rotation from the file's axes to the floor frame, of the rest pose. */
   readonly floor: Quat;
-  /** The same rotation of the motion: it differs where a program turned the root alone. */
+  /** This rotation for the motion. It differs where a program turned the root alone. */
   readonly motionFloor: Quat;
 }
 

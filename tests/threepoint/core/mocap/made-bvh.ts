@@ -36,18 +36,22 @@ export interface MadeOptions {
   readonly numberOf?: (value: number) => string;
   /** The frame's motion is turned: a program turned the root alone. */
   readonly rootZUp?: boolean;
+  /** The place of the root in every frame [cm]. */
+  readonly rootPlace?: Bone[2];
   /** Changes offsets and axes of the rest alone. */
   readonly offsetOf?: (offset: Bone[2], name: string) => Bone[2];
   /** Lengths of the file per centimetre. */
   readonly unit?: number;
   readonly without?: readonly string[];
+  /** The number of frames at 60 Hz (60). */
+  readonly frames?: number;
 }
 
 const plainNumber = (value: number): string => value.toFixed(4);
 
 /** A BVH of one person of 1.70 m who waves for a second, in the form that the options describe. */
 export function madeBvh(options: MadeOptions = {}): string {
-  const { nameOf = (name) => name, numberOf = plainNumber, unit = 1, without = [] } = options;
+  const { nameOf = (name) => name, numberOf = plainNumber, unit = 1, without = [], frames: count = 60 } = options;
   const offsetOf = options.offsetOf ?? ((offset) => offset);
   const kept = bones.filter(([name]) => !without.includes(name));
   const row = (values: readonly number[]) => values.map(numberOf).join(' ');
@@ -72,18 +76,24 @@ export function madeBvh(options: MadeOptions = {}): string {
     ];
   };
   const hierarchy = lines(kept[0]!, 0);
-  const frames = Array.from({ length: 60 }, (_, frame) =>
+  const frames = Array.from({ length: count }, (_, frame) =>
     row(
       order.flatMap(([name, parent, offset]) => {
         const [z, x, y] = anglesAt(name, frame / 60);
         const turned = parent === null && options.rootZUp === true;
         const root = turned ? [offset[0], -offset[2], offset[1]] : offset;
-        const place = parent === null ? root : options.positionOf?.(offset, name);
+        const place = parent === null ? (options.rootPlace ?? root) : options.positionOf?.(offset, name);
         return [...lengths(place ?? []), z, turned ? x + 90 : x, y];
       }),
     ),
   );
-  return ['HIERARCHY', ...hierarchy, 'MOTION', 'Frames: 60', `Frame Time: ${numberOf(1 / 60)}`, ...frames, ''].join(
-    '\n',
-  );
+  return [
+    'HIERARCHY',
+    ...hierarchy,
+    'MOTION',
+    `Frames: ${count}`,
+    `Frame Time: ${numberOf(1 / 60)}`,
+    ...frames,
+    '',
+  ].join('\n');
 }
