@@ -1,6 +1,7 @@
 import { writeFileSync } from 'node:fs';
 import { parseArgs } from 'node:util';
 import { reasonOf } from 'threepoint/core/errors/reasons';
+import { doubtOfErrors } from 'threepoint/core/mocap/doubts';
 import { drive, type MeasuredMethod, measuredMethods } from './drive';
 import { addFigures, emptyCollection, figuresOf } from './figures';
 import { addClip, emptyMeasures, type MeasuredFrame, type Measures, merge, type Report, report } from './measures';
@@ -165,6 +166,8 @@ function printResult(
       const row = measuredMethods.map((name) => `${name} ${own[name].mpjpeCm.mean.toFixed(2)}`).join('   ');
       console.log(`  ${person}${own.seen ? ' (seen)' : ''}: MPJPE [cm]  ${row}`);
     }
+    const doubt = own && doubtOfErrors(measuredMethods.map((name) => own[name].mpjpeCm.mean));
+    if (doubt) console.log(`  ${person}: ${doubt}`);
   }
   for (const [name, { mpjpeCm, jerkRatio }] of Object.entries(result.fp32 ?? {}) as [MeasuredMethod, Report][]) {
     const int8 = (result.unseen ?? result.estimators)[name];

@@ -120,15 +120,17 @@ test('a damaged file is refused with line and column, and what is shown stays', 
   await expect(heading).toBeVisible();
 });
 
-test('a skeleton of unknown names asks for a map, which may come with the motion or after it @full', async ({
+test('a skeleton whose names contradict it asks for a map, which may come with the motion or after it @full', async ({
   page,
   complaints,
 }) => {
   complaints.allow(/could not be shown/);
   await open(page, 'emulate&quality=low&estimator=ik&actor=off');
-  const [motion, map] = filesOf(folded!).toSorted((a, b) => a.name.localeCompare(b.name));
+  const contradicted = Object.entries(folded!.files).map(([name, text]) => [name, text.replaceAll('bip_LeftHand', 'bip_LeftKnee')]);
+  const files = filesOf({ ...folded!, files: Object.fromEntries(contradicted) });
+  const [motion, map] = files.toSorted((a, b) => a.name.localeCompare(b.name));
   await choose(page, [motion!]);
-  await expect(page.getByRole('alert')).toContainText('a map of it, a .json that is dropped too');
+  await expect(page.getByRole('alert')).toContainText('A map of it, a .json that is dropped too');
   await choose(page, [map!]);
   await expect(card(page).getByRole('heading', { name: 'folded_1' })).toBeVisible();
   await card(page).getByRole('button', { name: 'Close' }).click();

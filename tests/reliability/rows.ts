@@ -283,6 +283,12 @@ export const attackRows = {
       'tests/threepoint/avatar/inspect-avatar.test.ts',
     ],
   },
+  'mutated-motion': {
+    inject: '100,000 BVH files and VRM Animations with lines, words, bytes and values changed (10,000 by day)',
+    sees: 'A sentence that names the file, or trackers of finite numbers, with a second of work at most',
+    target: '0 exceptions without a sentence, 0 numbers that are none, 1 s of work on one file at most',
+    tests: ['tests/threepoint/core/mocap/mutated-motion.test.ts'],
+  },
   crowd: {
     inject:
       'Two hundred rooms of three play the ball game for ten minutes (20 rooms for 5 s by day); then all players are gone at once, and two more such crowds come and go',

@@ -2,6 +2,7 @@ import type { WorkProgress } from 'threepoint/api/run-work';
 import { type EstimatedJoint, estimatedJoints } from 'threepoint/core/body/joints';
 import { type EstimatorName, threePointNames } from 'threepoint/core/estimation/pose-estimator';
 import { button, element } from 'threepoint-ui/element';
+import { doubtOfErrors } from 'threepoint/core/mocap/doubts';
 import { createRunningLine } from 'threepoint-ui/running-line';
 import type { ClipMean } from './clip-means';
 import { type JointErrors, meanOf } from './joint-errors';
@@ -27,6 +28,8 @@ export interface CardState {
   readonly truth: TruthPlace;
   /** Whether others can open what the file came from. */
   readonly shareable: boolean;
+  /** What cannot be right of the file, a sentence each. */
+  readonly doubts: readonly string[];
   /** The errors of the body, and of the second body if there is one. */
   readonly methods: readonly MethodErrors[];
 }
@@ -85,14 +88,15 @@ function createErrorTable(labels: Labels) {
     element('tr', {}, element('th', { scope: 'row' }, label)),
   );
   const line = createRunningLine({ class: 'hint' });
+  const doubt = element('p', { class: 'complaint', role: 'status', hidden: true });
   const cell = (errors: MethodErrors['mean'] | null, row: number): string => {
     if (!(errors instanceof Float64Array)) return none;
     return centimetres(row === 0 ? meanOf(errors) : errors[row - 1]!);
   };
   let shown = '';
   return {
-    nodes: [element('table', {}, element('thead', {}, head, under), element('tbody', {}, ...rows)), line.node],
-    show(methods: readonly MethodErrors[]) {
+    nodes: [element('table', {}, element('thead', {}, head, under), element('tbody', {}, ...rows)), doubt, line.node],
+    show(methods: readonly MethodErrors[], doubts: readonly string[]) {
       const names = methods.map(({ estimator }) => labels[estimator]);
       if (shown !== names.join()) {
         shown = names.join();
@@ -124,6 +128,12 @@ function createErrorTable(labels: Labels) {
       const progress = measured && progressOf(measured.mean);
       line.show(words.join(' · '), progress ? `, ${percent(progress)}` : '');
       line.node.hidden = words.length === 0;
+      const ofErrors = unmeasured.length > 0 ? null : doubtOfErrors(methods.map(({ mean }) => meanOf(mean as JointErrors)));
+      const sentences = [...doubts, ...(ofErrors === null ? [] : [ofErrors])].map(
+        (sentence) => `${sentence[0]!.toUpperCase()}${sentence.slice(1)}.`,
+      );
+      doubt.hidden = sentences.length === 0;
+      if (doubt.textContent !== sentences.join(' ')) doubt.textContent = sentences.join(' ');
     },
   };
 }
@@ -231,7 +241,7 @@ export function createMocapCard(labels: Labels, actions: CardActions): MocapCard
     link.title = state.shareable
       ? 'To this second and this method'
       : 'A file on this device has no address that others could open';
-    table.show(state.methods);
+    table.show(state.methods, state.doubts);
     timeline.show(state);
   };
   return {

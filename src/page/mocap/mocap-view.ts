@@ -65,6 +65,7 @@ interface Opened {
   /** The public addresses of the files; null: they are files of this device. */
   readonly addresses: readonly string[] | null;
   readonly clips: readonly MocapClip[];
+  readonly doubts: readonly string[];
   readonly index: number;
   readonly recording: Replayable;
   readonly truth: Truth;
@@ -190,6 +191,7 @@ export class MocapView {
       duration: replay.duration,
       truth: this.#truthPlace,
       shareable: opened.addresses !== null,
+      doubts: opened.doubts,
       methods: methods.map((estimator, i) => ({
         estimator,
         now: this.#drawn[i] ? this.#errors[i as 0] : null,
@@ -236,7 +238,7 @@ export class MocapView {
 
   #show(
     name: string,
-    { clips }: Pick<PreparedMocap, 'clips'>,
+    { clips, doubts }: Pick<PreparedMocap, 'clips' | 'doubts'>,
     addresses: Opened['addresses'],
     outlook: Outlook,
     asked?: number,
@@ -255,6 +257,7 @@ export class MocapView {
       name,
       addresses,
       clips,
+      doubts,
       index,
       recording,
       truth,

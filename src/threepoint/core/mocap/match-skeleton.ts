@@ -23,7 +23,10 @@ import { type Limbs, straightRest } from './straight-rest';
 import { axisOfRoot, withTurnedRest } from './turned-rest';
 
 /** A joint above this share of the trunk is a chest, below it a spine. */
-const chestShare = 0.33;
+const chestShare = 0.42;
+
+/** A neck lies this far up from between the shoulders to the head joint. */
+const neckShare = 0.25;
 
 /** A motion with the skeleton that was found in it. */
 export interface MatchedMotion {
@@ -45,18 +48,17 @@ function jointsOf(match: HumanoidMatch, file: FileMotion) {
     if (found) joints[joint] = found.joint;
   }
   const between: MappedSkeleton['between'] = {};
-  const upperChest = match.map.upperChest?.joint;
   if (joints.neck === undefined) {
-    Object.assign(between, { neck: { near: ['leftUpperArm', 'rightUpperArm'], far: ['head'], share: 0.25 } });
+    Object.assign(between, { neck: { near: ['leftUpperArm', 'rightUpperArm'], far: ['head'], share: neckShare, carrier: file.parents![joints.head!]! } });
     notes.push('it has no neck; one between shoulders and head is assumed');
   }
-  if (joints.chest === undefined && upperChest !== undefined) joints.chest = upperChest;
-  if (joints.chest === undefined && shareOfTrunk(file.rest, joints) > chestShare) {
+  if (joints.chest === undefined && !match.map.upperChest && shareOfTrunk(file.rest, joints) > chestShare) {
     joints.chest = joints.spine!;
     delete joints.spine;
+    notes.push('it has one joint between hips and neck; it was taken as the chest');
   }
   if (joints.chest === undefined) {
-    Object.assign(between, { chest: { near: ['spine'], far: ['neck'], share: 0.5 } });
+    Object.assign(between, { chest: { near: ['spine'], far: ['neck'], share: 0.5, carrier: joints.spine! } });
     notes.push('it has no chest; one in the middle of spine and neck is assumed');
   }
   if (joints.spine === undefined) Object.assign(between, { spine: { near: ['hips'], far: ['chest'], share: 0.5 } });

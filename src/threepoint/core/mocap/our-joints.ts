@@ -9,6 +9,7 @@ import {
   rotationBetween,
 } from '../math/quat';
 import {
+  add,
   addScaled,
   distance,
   lerp,
@@ -120,6 +121,14 @@ export function* toOurJoints(file: FileMotion, rateHz: number, skeleton: MappedS
   const poses = makeJointPoses(file.names.length);
   const places = new Map(truthJoints.map((joint) => [joint, vec3(0, 0, 0)]));
   const lacking = assumed.filter((joint) => between[joint]);
+  const carriedOf = new Map(
+    lacking.flatMap((joint) => {
+      const { carrier } = between[joint]!;
+      if (carrier === undefined) return [];
+      const place = scale(rotate(restFromFloor, rest.get(joint)!), 1 / unit);
+      return [[joint, { joint: carrier, offset: subtract(place, file.rest[carrier]!) }] as const];
+    }),
+  );
   const present = truthJoints.filter((joint) => columns[joint] !== undefined);
   const turn: MutableQuat = quat(0, 0, 0, 1);
   for (let frame = 0; frame < file.frameCount; frame++) {
@@ -128,7 +137,16 @@ export function* toOurJoints(file: FileMotion, rateHz: number, skeleton: MappedS
       const place = places.get(joint)!;
       scale(rotate(motionFloor, poses.positions[columns[joint]!]!, place), unit, place);
     }
-    for (const joint of lacking) placeBetween(between[joint]!, (of) => places.get(of)!, places.get(joint)!);
+    for (const joint of lacking) {
+      const place = places.get(joint)!;
+      const carried = carriedOf.get(joint);
+      if (!carried) placeBetween(between[joint]!, (of) => places.get(of)!, place);
+      else {
+        rotate(poses.rotations[carried.joint]!, carried.offset, place);
+        add(poses.positions[carried.joint]!, place, place);
+        scale(rotate(motionFloor, place, place), unit, place);
+      }
+    }
     for (const [i, joint] of truthJoints.entries()) {
       if (columns[joint] === undefined && !between[joint as keyof typeof between]) continue;
       writeVec3(places.get(joint)!, positions, frame * positionsWidth + 3 * i);

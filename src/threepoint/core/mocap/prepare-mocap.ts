@@ -60,6 +60,8 @@ export const mocapRateHz = rateHz;
 export interface PreparedMocap {
   readonly clips: readonly MocapClip[];
   readonly notes: readonly string[];
+  /** What cannot be right, a sentence each. */
+  readonly doubts: readonly string[];
 }
 
 /** Returns the fault as a sentence that begins with the name of its file. */
@@ -135,18 +137,18 @@ function personOf(name: string): string {
 }
 
 /**
- * Reads a file's motion in our joints. Yields the share [0, 1] that is done. `notes`: what was put right or assumed and
- * what cannot be right, a sentence each. Throws a sentence that begins with the file's name.
+ * Reads a file's motion in our joints. Yields the share [0, 1] that is done. `notes`: what was put right or assumed, a
+ * sentence each. Throws a sentence that begins with the file's name.
  */
 export function* readOurMotion(
   source: MocapSource,
-): Generator<number, { readonly motion: OurMotion; readonly notes: readonly string[] }> {
+): Generator<number, { readonly motion: OurMotion } & Pick<PreparedMocap, 'notes' | 'doubts'>> {
   try {
     const map = source.map && readBeside(source.map, readSkeletonMap);
     const { file, skeleton, notes } = yield* scaleProgress(readFile(source, map), 0, 0.75);
     const rate = file.rateHz ?? map?.frameRate ?? rateOf(source.name);
     const motion = yield* scaleProgress(toOurJoints(file, rate, skeleton), 0.75, 1);
-    return { motion, notes: [...file.notes, ...notes, ...doubtsOf(motion)] };
+    return { motion, notes: [...file.notes, ...notes], doubts: doubtsOf(motion) };
   } catch (error) {
     throw faultIn(source.name, error);
   }
@@ -158,15 +160,18 @@ export function* readOurMotion(
  * begins with the file's name.
  */
 export function* prepareMocap(source: MocapSource): Generator<number, PreparedMocap> {
-  const { motion, notes } = yield* scaleProgress(readOurMotion(source), 0, 0.8);
+  const read = yield* scaleProgress(readOurMotion(source), 0, 0.8);
   try {
-    return yield* scaleProgress(clipsOf(source.name, motion, notes), 0.8, 1);
+    return yield* scaleProgress(clipsOf(source.name, read), 0.8, 1);
   } catch (error) {
     throw faultIn(source.name, error);
   }
 }
 
-function* clipsOf(name: string, motion: OurMotion, notes: readonly string[]): Generator<number, PreparedMocap> {
+function* clipsOf(
+  name: string,
+  { motion, notes, doubts }: { readonly motion: OurMotion } & Omit<PreparedMocap, 'clips'>,
+): Generator<number, PreparedMocap> {
   const { cuts, pieces } = cutAtLeaps(motion);
   if (pieces.length === 0) throw new Error('nothing in it moves as a person for half a second');
   const calibration = measuresOf(motion, pieces);
@@ -183,5 +188,5 @@ function* clipsOf(name: string, motion: OurMotion, notes: readonly string[]): Ge
     clips.push({ name: clip, calibration, frameCount: even.frameCount, tracked, truth: even.positions });
   }
   const leaps = cuts.slice(0, 5).map((cut) => cut + 1).join(', '); // biome-ignore format: one thought
-  return { clips, notes: cuts.length > 0 ? [...notes, `it leaps at frame ${leaps}; cut there`] : notes };
+  return { clips, doubts, notes: cuts.length > 0 ? [...notes, `it leaps at frame ${leaps}; cut there`] : notes };
 }

@@ -67,6 +67,8 @@ export interface BetweenJoints {
   readonly near: readonly TruthJoint[];
   readonly far: readonly TruthJoint[];
   readonly share: number;
+  /** The index of the file's joint that carries it; absent: it follows the joints that it lies between. */
+  readonly carrier?: number;
 }
 
 /** The skeleton of a file in which every joint has its column. */

@@ -119,7 +119,8 @@ function inOrder(nodes: readonly Node[]): readonly number[] {
 
 /** Numbers of an accessor; integers are shares of the largest. */
 export function accessorOf(description: Json, binary: Uint8Array, index: unknown): Float32Array {
-  const accessor = isIndex(index) ? objects(description.accessors)[index] : undefined;
+  if (!isIndex(index)) throw new Error('animations[0]: a sampler does not name its accessors');
+  const accessor = objects(description.accessors)[index];
   const view = isIndex(accessor?.bufferView) ? objects(description.bufferViews)[accessor.bufferView] : undefined;
   const size = { SCALAR: 1, VEC3: 3, VEC4: 4, MAT4: 16 }[String(accessor?.type)];
   const kind = { 5126: Float32Array, 5120: Int8Array, 5121: Uint8Array, 5122: Int16Array, 5123: Uint16Array }[

@@ -1,9 +1,13 @@
+import { chunksOf } from 'threepoint/avatar/file/glb-chunks';
 import { angleBetween, conjugate, multiply, quat } from 'threepoint/core/math/quat';
+import { doubtOfErrors } from 'threepoint/core/mocap/doubts';
 import { prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
 import { trackedWidth } from 'threepoint/core/mocap/simulate-trackers';
 import { truthJoints } from 'threepoint/core/mocap/skeleton-map';
 import { finishWork } from 'threepoint/core/motion/work';
+import { writeVrma } from 'threepoint/core/motion/write-vrma';
 import { describe, expect, test } from 'vitest';
+import { actingPerson, bytesOf } from '../motion/moved-person';
 import { goldenMocap, sourceOf } from './golden-mocap';
 import { type MadeOptions, madeBvh } from './made-bvh';
 
@@ -145,6 +149,49 @@ describe('without its map, a skeleton is read as with it', () => {
     };
     for (let frame = 0; frame < mapped.frameCount; frame++)
       expect(angleBetween(between(clip, frame), between(mapped, frame))).toBeLessThan((degrees * Math.PI) / 180);
+  });
+});
+
+describe('a VRM Animation without', () => {
+  const { json, binary } = chunksOf(bytesOf(writeVrma(actingPerson(1).motion)))!;
+  const without = (bone: string | null) => {
+    const description = JSON.parse(json);
+    if (bone) delete description.extensions.VRMC_vrm_animation.humanoid.humanBones[bone];
+    return finishWork(prepareMocap({ format: 'gltf', name: 'wave.vrma', description, binary }));
+  };
+  const whole = without(null).clips[0]!;
+
+  test.each(['chest', 'neck'])('%s is read, and what is assumed is said', (bone) => {
+    const { clips, notes } = without(bone);
+    expect(notes.join()).toMatch(new RegExp(`it has no ${bone}; one .* is assumed`));
+    let off = 0;
+    for (const [i, value] of whole.truth.entries()) {
+      const joint = truthJoints[Math.floor(i / 3) % truthJoints.length]!;
+      const difference = Math.abs(value - clips[0]!.truth[i]!);
+      if (joint === bone) off = Math.max(off, difference);
+      else if (Number.isFinite(value)) expect(difference, joint).toBeLessThan(1e-3);
+    }
+    // The assumed joint lies within a hand's breadth of the one that was left out.
+    expect(off).toBeLessThan(0.1);
+  });
+});
+
+describe('what cannot be right is said', () => {
+  const doubts = (options: MadeOptions) =>
+    finishWork(prepareMocap({ format: 'bvh', name: 'wave.bvh', text: madeBvh(options) })).doubts.join();
+
+  test('of a pelvis that is not over the feet', () => {
+    expect(doubts({})).toBe('');
+    const aside = (name: string) => /UpLeg$/.test(name);
+    expect(doubts({ offsetOf: ([x, y, z], name) => (aside(name) ? [x, y, z + 60] : [x, y, z]) })).toMatch(
+      /the pelvis is 6\d cm off the middle of the feet/,
+    );
+  });
+
+  test('of methods that all err', () => {
+    expect(doubtOfErrors([13, 20])).toMatch(/the error of every method is over 12 cm/);
+    expect(doubtOfErrors([13, 9])).toBeNull();
+    expect(doubtOfErrors([])).toBeNull();
   });
 });
 

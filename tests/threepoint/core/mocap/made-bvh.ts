@@ -41,13 +41,15 @@ export interface MadeOptions {
   /** Lengths of the file per centimetre. */
   readonly unit?: number;
   readonly without?: readonly string[];
+  /** The number of frames at 60 Hz (60). */
+  readonly frames?: number;
 }
 
 const plainNumber = (value: number): string => value.toFixed(4);
 
 /** A BVH of one person of 1.70 m who waves for a second, in the form that the options describe. */
 export function madeBvh(options: MadeOptions = {}): string {
-  const { nameOf = (name) => name, numberOf = plainNumber, unit = 1, without = [] } = options;
+  const { nameOf = (name) => name, numberOf = plainNumber, unit = 1, without = [], frames: count = 60 } = options;
   const offsetOf = options.offsetOf ?? ((offset) => offset);
   const kept = bones.filter(([name]) => !without.includes(name));
   const row = (values: readonly number[]) => values.map(numberOf).join(' ');
@@ -72,7 +74,7 @@ export function madeBvh(options: MadeOptions = {}): string {
     ];
   };
   const hierarchy = lines(kept[0]!, 0);
-  const frames = Array.from({ length: 60 }, (_, frame) =>
+  const frames = Array.from({ length: count }, (_, frame) =>
     row(
       order.flatMap(([name, parent, offset]) => {
         const [z, x, y] = anglesAt(name, frame / 60);
@@ -83,7 +85,7 @@ export function madeBvh(options: MadeOptions = {}): string {
       }),
     ),
   );
-  return ['HIERARCHY', ...hierarchy, 'MOTION', 'Frames: 60', `Frame Time: ${numberOf(1 / 60)}`, ...frames, ''].join(
+  return ['HIERARCHY', ...hierarchy, 'MOTION', `Frames: ${count}`, `Frame Time: ${numberOf(1 / 60)}`, ...frames, ''].join(
     '\n',
   );
 }

@@ -1,0 +1,105 @@
+import { chunksOf } from 'threepoint/avatar/file/glb-chunks';
+import { randomNumbers } from 'threepoint/core/math/random';
+import { type MocapSource, prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
+import { finishWork } from 'threepoint/core/motion/work';
+import { writeVrma } from 'threepoint/core/motion/write-vrma';
+import { expect, test } from 'vitest';
+import { isNightly } from '../../../nightly';
+import { reportFigures } from '../../../reliability/report-figures';
+import { actingPerson, bytesOf } from '../motion/moved-person';
+import { madeBvh } from './made-bvh';
+
+const chance = randomNumbers(20261127);
+const below = (end: number): number => Math.floor(chance() * end);
+const oneOf = <T>(values: readonly T[]): T => values[below(values.length)]!;
+
+/** Reads spoiled files; each is refused in a sentence or becomes finite trackers, with a second of work at most. */
+function readAll(name: string, count: number, spoil: () => MocapSource): void {
+  const counts = { refused: 0, read: 0 };
+  let longest = 0;
+  for (let i = 0; i < count; i++) {
+    const source = spoil();
+    const start = process.cpuUsage();
+    try {
+      const { clips } = finishWork(prepareMocap(source));
+      counts.read += 1;
+      for (const { tracked } of clips) expect(tracked.every(Number.isFinite), `file ${i}`).toBe(true);
+    } catch (error) {
+      expect(error, `file ${i}`).toBeInstanceOf(Error);
+      const { message, stack } = error as Error;
+      expect(message, `file ${i}: ${stack}`).toMatch(/^wave\.(bvh|vrma): /);
+      expect(message, `file ${i}: ${stack}`).not.toMatch(/undefined|is not a function|Cannot read|Invalid|out of memory/);
+      counts.refused += 1;
+    }
+    longest = Math.max(longest, process.cpuUsage(start).user / 1e3);
+  }
+  reportFigures('mutated-motion', {
+    ...{ [`${name} files`]: count, [`${name} refused`]: counts.refused, [`${name} read`]: counts.read },
+    [`longest work on one ${name} [ms]`]: longest,
+  });
+  expect(longest).toBeLessThan(1000);
+  expect(counts.refused).toBeGreaterThan(count / 20);
+  expect(counts.read).toBeGreaterThan(count / 20);
+}
+
+/** Ten thousand files by day, ten times as many at night. */
+const times = isNightly ? 10 : 1;
+
+test('BVH files, spoiled, are refused in a sentence or read as finite numbers, each in a moment', { timeout: 3_600_000 }, () => {
+  const frames = { frames: 36 };
+  const originals = [
+    madeBvh(frames),
+    madeBvh({ ...frames, positionOf: (offset) => offset }),
+    madeBvh({ ...frames, nameOf: (name) => `mixamorig:${name}`, rootZUp: true }),
+    madeBvh({ ...frames, numberOf: (value) => value.toFixed(2).replace('.', ',') }),
+  ].map((text) => text.split('\n'));
+  const words = ['{', '}', 'JOINT', 'ROOT a', 'End Site', 'OFFSET 1e308 1 1', 'OFFSET 0 0 0', 'CHANNELS 3 Xrotation', 'MOTION', '-1', '1e9', 'NaN', '0', '', 'Frames: 3'];
+  const ways: readonly ((lines: string[]) => unknown)[] = [
+    (lines) => lines.splice(below(lines.length), 1 + below(3)),
+    (lines) => lines.splice(below(lines.length), 0, oneOf(words)),
+    (lines) => lines.splice(below(lines.length), 0, lines[below(lines.length)]!),
+    (lines) => (lines.length = 1 + below(lines.length)),
+    (lines) => {
+      // Mostly the hierarchy: its 120 lines decide how the rest is read.
+      const at = below(chance() < 0.8 ? Math.min(120, lines.length) : lines.length);
+      const parts = lines[at]!.split(' ');
+      parts[below(parts.length)] = oneOf(words);
+      lines[at] = parts.join(' ');
+    },
+    (lines) => {
+      const at = below(lines.length);
+      const line = [...lines[at]!];
+      line[below(line.length || 1)] = String.fromCharCode(32 + below(95));
+      lines[at] = line.join('');
+    },
+  ];
+  readAll('bvh', 8000 * times, () => {
+    const lines = [...oneOf(originals)];
+    for (let i = 1 + below(2); i > 0 && lines.length > 1; i--) oneOf(ways)(lines);
+    return { format: 'bvh', name: 'wave.bvh', text: lines.join('\n') };
+  });
+});
+
+test('VRM Animations, spoiled, are refused in a sentence or read as finite numbers, each in a moment', { timeout: 3_600_000 }, () => {
+  const { json, binary } = chunksOf(bytesOf(writeVrma(actingPerson(1).motion)))!;
+  const odd: readonly unknown[] = [null, true, '', [], {}, [null], -1, 0, 0.5, 1e9, 2 ** 31, 1e308, 'VEC3', 5126];
+  const containersIn = (value: unknown): (Record<string, unknown> | unknown[])[] =>
+    typeof value === 'object' && value !== null
+      ? [value as Record<string, unknown>, ...Object.values(value).flatMap(containersIn)]
+      : [];
+  readAll('vrma', 2000 * times, () => {
+    const description: unknown = JSON.parse(json);
+    const bytes = new Uint8Array(binary.slice());
+    if (chance() < 0.3) for (let i = 1 + below(8); i > 0; i--) bytes[below(bytes.length)]! ^= 1 << below(8);
+    else {
+      for (let i = 1 + below(3); i > 0; i--) {
+        const container = oneOf(containersIn(description)) as Record<string, unknown>;
+        const keys = Object.keys(container);
+        const key = keys.length > 0 ? oneOf(keys) : 'extras';
+        if (chance() < 0.4) delete container[key];
+        else container[key] = structuredClone(chance() < 0.5 ? oneOf(odd) : oneOf(containersIn(description)));
+      }
+    }
+    return { format: 'gltf', name: 'wave.vrma', description, binary: bytes };
+  });
+});
