@@ -126,7 +126,10 @@ test('a skeleton whose names contradict it asks for a map, which may come with t
 }) => {
   complaints.allow(/could not be shown/);
   await open(page, 'emulate&quality=low&estimator=ik&actor=off');
-  const contradicted = Object.entries(folded!.files).map(([name, text]) => [name, text.replaceAll('bip_LeftHand', 'bip_LeftKnee')]);
+  const contradicted = Object.entries(folded!.files).map(([name, text]) => [
+    name,
+    text.replaceAll('bip_LeftHand', 'bip_LeftKnee'),
+  ]);
   const files = filesOf({ ...folded!, files: Object.fromEntries(contradicted) });
   const [motion, map] = files.toSorted((a, b) => a.name.localeCompare(b.name));
   await choose(page, [motion!]);

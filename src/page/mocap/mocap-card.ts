@@ -1,8 +1,8 @@
 import type { WorkProgress } from 'threepoint/api/run-work';
 import { type EstimatedJoint, estimatedJoints } from 'threepoint/core/body/joints';
 import { type EstimatorName, threePointNames } from 'threepoint/core/estimation/pose-estimator';
-import { button, element } from 'threepoint-ui/element';
 import { doubtOfErrors } from 'threepoint/core/mocap/doubts';
+import { button, element } from 'threepoint-ui/element';
 import { createRunningLine } from 'threepoint-ui/running-line';
 import type { ClipMean } from './clip-means';
 import { type JointErrors, meanOf } from './joint-errors';
@@ -128,7 +128,8 @@ function createErrorTable(labels: Labels) {
       const progress = measured && progressOf(measured.mean);
       line.show(words.join(' · '), progress ? `, ${percent(progress)}` : '');
       line.node.hidden = words.length === 0;
-      const ofErrors = unmeasured.length > 0 ? null : doubtOfErrors(methods.map(({ mean }) => meanOf(mean as JointErrors)));
+      const ofErrors =
+        unmeasured.length > 0 ? null : doubtOfErrors(methods.map(({ mean }) => meanOf(mean as JointErrors)));
       const sentences = [...doubts, ...(ofErrors === null ? [] : [ofErrors])].map(
         (sentence) => `${sentence[0]!.toUpperCase()}${sentence.slice(1)}.`,
       );

@@ -10,7 +10,7 @@ type SideBone = 'Shoulder' | 'UpperArm' | 'LowerArm' | 'Hand' | 'UpperLeg' | 'Lo
 export const fingerNames = ['Thumb', 'Index', 'Middle', 'Ring', 'Little'] as const;
 type Finger = (typeof fingerNames)[number];
 
-/** VRM's name of a bone. The declarations of @pixiv/three-vrm cannot be read where modules are resolved as Node does. */
+/** VRM's name of a bone. The declarations of @pixiv/three-vrm do not resolve under Node's rules for modules. */
 export type BoneName =
   | (typeof centreBones)[number]
   | `${Side}${

@@ -11,8 +11,8 @@ const lost = (offset: Vec3, beside: Vec3): boolean => length(offset) < 0.01 * le
 const eachAxis = ([x, y, z]: readonly number[], v: Vec3): Vec3 => vec3(x! * v.x, y! * v.y, z! * v.z);
 
 /**
- * Gives a skeleton of cmuconvert the bones that it lost of the CMU database: the thorax, and the wrist of either arm. In
- * such a skeleton neck and shoulders lie on Spine1 and the finger base on the hand; their rotations are there, their
+ * Gives a skeleton of cmuconvert the bones that it lost of the CMU database: the thorax, and the wrist of either arm.
+ * In such a skeleton neck and shoulders lie on Spine1 and the finger base on the hand; their rotations are there, their
  * lengths are not. The thorax follows from the two bones below it by least squares on the skeletons of 26 people: with
  * each person left out its end is 0.4 cm off on average, 1.1 cm at most. In every skeleton of the database the wrist
  * bone is half as long as the radius and lies along it at rest. Other skeletons stay as they are. `notes`: what was

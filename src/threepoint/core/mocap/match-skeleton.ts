@@ -49,7 +49,14 @@ function jointsOf(match: HumanoidMatch, file: FileMotion) {
   }
   const between: MappedSkeleton['between'] = {};
   if (joints.neck === undefined) {
-    Object.assign(between, { neck: { near: ['leftUpperArm', 'rightUpperArm'], far: ['head'], share: neckShare, carrier: file.parents![joints.head!]! } });
+    Object.assign(between, {
+      neck: {
+        near: ['leftUpperArm', 'rightUpperArm'],
+        far: ['head'],
+        share: neckShare,
+        carrier: file.parents![joints.head!]!,
+      },
+    });
     notes.push('it has no neck; one between shoulders and head is assumed');
   }
   if (joints.chest === undefined && !match.map.upperChest && shareOfTrunk(file.rest, joints) > chestShare) {
@@ -197,8 +204,8 @@ export function matchSkeleton(file: FileMotion): MatchedMotion {
 }
 
 /**
- * Returns the motion with its rest turned to the axes in which its root moves: some programs turn the offsets alone. The
- * root then keeps the height of the hips along another axis than that along which the rest stands.
+ * Returns the motion with its rest turned to the axes in which its root moves: some programs turn the offsets alone.
+ * The root then keeps the height of the hips along another axis than that along which the rest stands.
  */
 function restAsMoved(file: FileMotion, joints: StandingJoints) {
   const axes = axesOfTrunk(file.rest, joints)?.axes;

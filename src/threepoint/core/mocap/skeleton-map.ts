@@ -84,7 +84,7 @@ export interface MappedSkeleton {
   readonly scale?: number;
   /** The rotation from the file's axes to the floor frame, of the rest pose. */
   readonly floor: Quat;
-  /** The same rotation of the motion: it differs where a program turned the root alone. */
+  /** This rotation for the motion. It differs where a program turned the root alone. */
   readonly motionFloor: Quat;
 }
 

@@ -2,7 +2,7 @@ import type { BoneName } from 'threepoint/core/humanoid/bones';
 import type { SkeletonJoint } from 'threepoint/core/humanoid/joint-tree';
 import { lerp, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 
-/** Where the joints of a person of 1.72 m are in T-pose, facing +Z [cm]; the left side. */
+/** The joints of a person of 1.72 m in T-pose, facing +Z [cm]; the left side. */
 const places: Readonly<Record<string, readonly [number, number, number]>> = {
   ...{ root: [0, 0, 0], hips: [0, 95, 0], base: [0, 100, 0], top: [0, 142, -2] },
   ...{ neck: [0, 148, -2], head: [0, 158, 0], crown: [0, 178, 1], jaw: [0, 160, 5], eye: [3, 165, 8] },

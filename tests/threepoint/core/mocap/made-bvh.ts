@@ -85,7 +85,13 @@ export function madeBvh(options: MadeOptions = {}): string {
       }),
     ),
   );
-  return ['HIERARCHY', ...hierarchy, 'MOTION', `Frames: ${count}`, `Frame Time: ${numberOf(1 / 60)}`, ...frames, ''].join(
-    '\n',
-  );
+  return [
+    'HIERARCHY',
+    ...hierarchy,
+    'MOTION',
+    `Frames: ${count}`,
+    `Frame Time: ${numberOf(1 / 60)}`,
+    ...frames,
+    '',
+  ].join('\n');
 }

@@ -28,7 +28,9 @@ function readAll(name: string, count: number, spoil: () => MocapSource): void {
       expect(error, `file ${i}`).toBeInstanceOf(Error);
       const { message, stack } = error as Error;
       expect(message, `file ${i}: ${stack}`).toMatch(/^wave\.(bvh|vrma): /);
-      expect(message, `file ${i}: ${stack}`).not.toMatch(/undefined|is not a function|Cannot read|Invalid|out of memory/);
+      expect(message, `file ${i}: ${stack}`).not.toMatch(
+        /undefined|is not a function|Cannot read|Invalid|out of memory/,
+      );
       counts.refused += 1;
     }
     longest = Math.max(longest, process.cpuUsage(start).user / 1e3);
@@ -45,7 +47,9 @@ function readAll(name: string, count: number, spoil: () => MocapSource): void {
 /** Ten thousand files by day, ten times as many at night. */
 const times = isNightly ? 10 : 1;
 
-test('BVH files, spoiled, are refused in a sentence or read as finite numbers, each in a moment', { timeout: 3_600_000 }, () => {
+test('BVH files, spoiled, are refused in a sentence or read as finite numbers, each in a moment', {
+  timeout: 3_600_000,
+}, () => {
   const frames = { frames: 36 };
   const originals = [
     madeBvh(frames),
@@ -53,7 +57,23 @@ test('BVH files, spoiled, are refused in a sentence or read as finite numbers, e
     madeBvh({ ...frames, nameOf: (name) => `mixamorig:${name}`, rootZUp: true }),
     madeBvh({ ...frames, numberOf: (value) => value.toFixed(2).replace('.', ',') }),
   ].map((text) => text.split('\n'));
-  const words = ['{', '}', 'JOINT', 'ROOT a', 'End Site', 'OFFSET 1e308 1 1', 'OFFSET 0 0 0', 'CHANNELS 3 Xrotation', 'MOTION', '-1', '1e9', 'NaN', '0', '', 'Frames: 3'];
+  const words = [
+    '{',
+    '}',
+    'JOINT',
+    'ROOT a',
+    'End Site',
+    'OFFSET 1e308 1 1',
+    'OFFSET 0 0 0',
+    'CHANNELS 3 Xrotation',
+    'MOTION',
+    '-1',
+    '1e9',
+    'NaN',
+    '0',
+    '',
+    'Frames: 3',
+  ];
   const ways: readonly ((lines: string[]) => unknown)[] = [
     (lines) => lines.splice(below(lines.length), 1 + below(3)),
     (lines) => lines.splice(below(lines.length), 0, oneOf(words)),
@@ -80,7 +100,9 @@ test('BVH files, spoiled, are refused in a sentence or read as finite numbers, e
   });
 });
 
-test('VRM Animations, spoiled, are refused in a sentence or read as finite numbers, each in a moment', { timeout: 3_600_000 }, () => {
+test('VRM Animations, spoiled, are refused in a sentence or read as finite numbers, each in a moment', {
+  timeout: 3_600_000,
+}, () => {
   const { json, binary } = chunksOf(bytesOf(writeVrma(actingPerson(1).motion)))!;
   const odd: readonly unknown[] = [null, true, '', [], {}, [null], -1, 0, 0.5, 1e9, 2 ** 31, 1e308, 'VEC3', 5126];
   const containersIn = (value: unknown): (Record<string, unknown> | unknown[])[] =>
