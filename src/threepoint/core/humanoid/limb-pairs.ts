@@ -30,11 +30,14 @@ const mostBranches = 60;
 /** The three joints of a chain that are most like a limb of this kind; null: the chain is too short. */
 export function findLimb(tree: JointTree, first: number, kind: LimbKind): Limb | null {
   const chainOfAll = tree.mainChain(first, longestChain);
-  const fan = chainOfAll.findIndex((joint, i) => i >= 2 && tree.fansOut(joint));
+  const inside = kind === 'arm' ? 'lowerArm' : 'lowerLeg';
+  const fan = chainOfAll.findIndex((joint, i) => i >= 2 && tree.vote(joint, inside) < 0.5 && tree.fansOut(joint));
   const chain = fan < 0 ? chainOfAll : chainOfAll.slice(0, fan + 1);
   const along = [0];
   for (const joint of chain.slice(1)) along.push(along.at(-1)! + tree.segments[joint]!);
   const total = along.at(-1)!;
+  const short = kind === 'leg' && chain.length === 2 ? legWithoutFoot(tree, chain) : null;
+  if (short) return short;
   if (chain.length < 3 || !(total > 0)) return null;
   const votes = limbParts[kind].map((part) => chain.map((joint) => tree.vote(joint, part))) as [
     number[],
@@ -64,6 +67,12 @@ export function findLimb(tree: JointTree, first: number, kind: LimbKind): Limb |
     }
   }
   return best;
+}
+
+/** A thigh and a shin by their names, whose foot hangs elsewhere: it follows a control. null: names do not show them. */
+function legWithoutFoot(tree: JointTree, chain: readonly number[]): Limb | null {
+  const named = tree.vote(chain[0]!, 'upperLeg') > 0.7 && tree.vote(chain[1]!, 'lowerLeg') > 0.5;
+  return named ? { chain, at: [0, 1, 1], shape: 0.8, names: 0.6 } : null;
 }
 
 /** Two limbs that mirror each other and leave one joint. */
@@ -119,7 +128,7 @@ function pairOf(
   const apart = difference(tree, first.chain.slice(0, first.at[2] + 1), second.chain.slice(0, second.at[2] + 1));
   if (apart > (named ? 0.5 : 0.2)) return null;
   const size = Math.min(limbLength(tree, first), limbLength(tree, second)) / tree.size;
-  if (size < shortestLimb) return null;
+  if (size < (Math.min(first.names, second.names) > 0.5 ? 0.3 : 1) * shortestLimb) return null;
   const score =
     3 * Math.min(first.names, second.names) +
     Math.min(first.shape, second.shape) +
@@ -137,7 +146,7 @@ export function findPairs(tree: JointTree, kind: LimbKind): readonly LimbPair[] 
     const branches = tree.children[root]!.filter(
       (child) =>
         tree.segments[child]! + tree.heights[child]! >= shortestLimb * tree.size &&
-        tree.children[child]!.some((next) => tree.children[next]!.length > 0),
+        tree.children[child]!.some((next) => kind === 'leg' || tree.children[next]!.length > 0),
     );
     if (branches.length < 2) continue;
     const limbs = branches.slice(0, mostBranches).flatMap((child) => findLimb(tree, child, kind) ?? []);

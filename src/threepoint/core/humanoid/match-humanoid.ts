@@ -47,6 +47,16 @@ export const leastConfidence = 0.45;
 /** The confidence of a bone whose name means another part. */
 const contradicted = 0.3;
 
+const limbWords = [
+  'upperArm',
+  'lowerArm',
+  'hand',
+  'upperLeg',
+  'lowerLeg',
+  'foot',
+  'toes',
+] as const satisfies readonly Part[];
+
 /** Arms, legs if there are any, and the trunk between them. */
 interface Body {
   readonly arms: LimbPair;
@@ -70,7 +80,7 @@ class Matcher {
   match(): HumanoidMatch {
     if (!this.#takeVrmNames()) {
       const body = this.#findBody();
-      if (body) this.#takeBody(body);
+      if (body && !this.#onFourLegs(body)) this.#takeBody(body);
       else this.#takeNamesAlone();
     }
     this.#dropContradictions();
@@ -93,12 +103,12 @@ class Matcher {
     return true;
   }
 
-  /** Drops bones of arms that their names contradict where names fit elsewhere: a finger is no hand. */
+  /** Drops bones of arms and a head that their names contradict: a finger is no hand, and a foot no head. */
   #dropContradictions(): void {
-    const sure = neededBones.filter((bone) => (this.map[bone]?.confidence ?? 0) >= 0.9);
-    if (sure.length < 5) return;
     for (const bone of neededBones)
       if (/Arm|Hand/.test(bone) && this.map[bone]?.confidence === contradicted) delete this.map[bone];
+    const head = this.map.head?.joint;
+    if (head !== undefined && limbWords.some((part) => this.tree.vote(head, part) > 0.7)) delete this.map.head;
   }
 
   #findBody(): Body | null {
@@ -171,6 +181,19 @@ class Matcher {
       normalise(subtract(tree.position(chain[at[2]]!), tree.position(chain[at[0]]!)), zero),
     );
     return ways.reduce((sum, way) => sum - dot(way, normalise(trunk, zero)) / 2, 0);
+  }
+
+  /** Whether a skeleton stands on four legs: arms point as legs do, across the trunk. */
+  #onFourLegs({ arms, legs, trunk }: Body): boolean {
+    if (!legs) return false;
+    const { tree } = this;
+    const way = ({ chain, at }: Limb): Vec3 =>
+      normalise(subtract(tree.position(chain[at[2]]!), tree.position(chain[at[0]]!)), zero);
+    const along = normalise(subtract(tree.position(arms.root), tree.position(trunk[0]!)), zero);
+    return [0, 1].every((i) => {
+      const [arm, leg] = [way(arms.limbs[i]!), way(legs.limbs[i]!)];
+      return dot(arm, leg) > 0.7 && Math.abs(dot(leg, along)) < 0.6;
+    });
   }
 
   /** The chain from the arms' joint to the head, without what belongs to limbs and trunk. */
@@ -359,6 +382,7 @@ class Matcher {
     this.#take(`${side}LowerLeg`, knee, 'lowerLeg', 'between hip and foot');
     // Feet of some rigs follow a control and are no children of the shin.
     const loose = tree.vote(foot, 'foot') > 0.4 ? -1 : this.#named(side, 'foot');
+    if (foot === knee && loose < 0) return;
     this.#take(
       `${side}Foot`,
       loose >= 0 ? loose : foot,
@@ -398,7 +422,7 @@ class Matcher {
   #takeNamesAlone(): void {
     const guess = (bone: BoneName, side: Side | null, part: Part) => {
       const joint = this.#named(side, part);
-      if (joint >= 0) this.map[bone] = { joint, confidence: 0.3, reason: 'its name alone' };
+      if (joint >= 0) this.map[bone] = { joint, confidence: 0.35, reason: 'its name alone' };
     };
     for (const part of ['hips', 'spine', 'neck', 'head'] as const) guess(part, null, part);
     for (const side of ['left', 'right'] as const) {

@@ -432,4 +432,20 @@ export const rigs: readonly Rig[] = [
     ],
     limbs('torso', 'hips', ['', 'upperarm.$', 'lowerarm.$', 'hand.$'], ['upperleg.$', 'lowerleg.$', 'foot.$', '']),
   ),
+  rig(
+    'feet that follow a control',
+    letters,
+    [
+      'Bone//root',
+      'Hips/Bone/hips/hips',
+      'Torso/Hips/base~top~0.6/spine',
+      'Neck/Torso/neck/neck',
+      'Head/Neck/head/head',
+      'LegPole/Bone/root',
+    ],
+    [
+      ...limbs('Torso', 'Hips', ['Shoulder$', 'UpperArm$', 'LowerArm$', 'Palm$'], ['UpperLeg$', 'LowerLeg$']),
+      'Foot$/Bone/ankle/foot',
+    ],
+  ),
 ];
