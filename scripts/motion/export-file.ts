@@ -102,8 +102,8 @@ async function recordingIn(path: string): Promise<Replayable> {
 }
 
 /**
- * Reads a recording or motion capture and writes the exported file atomically; resolves to its path. Rejects with a message if the
- * recording, the avatar or an option is wrong, and with the signal's reason if it is aborted.
+ * Reads a recording or motion capture and writes the exported file atomically; resolves to its path. Rejects with a
+ * message if the recording, the avatar or an option is wrong, and with the signal's reason if it is aborted.
  */
 export async function exportFile(request: MotionRequest, work: WorkOptions = {}): Promise<string> {
   const { file, unit = 'm', rate, estimator = 'learned' } = request;

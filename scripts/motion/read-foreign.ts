@@ -2,7 +2,7 @@
 // `map` (a skeleton map or null) and the folder `out`, to which `index.json` and the numbers of every file are written.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join } from 'node:path';
-import { chunksOf } from 'threepoint/avatar/file/glb-chunks';
+import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/motion-source';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { type MocapSource, readOurMotion } from 'threepoint/core/mocap/prepare-mocap';
 import { finishWork } from 'threepoint/core/motion/work';
@@ -26,20 +26,18 @@ function restFileOf(map: string): string | null {
   }
 }
 
-function sourceOf(path: string, map: string | null): MocapSource {
+async function sourceOf(path: string, map: string | null): Promise<MocapSource> {
   const name = basename(path);
   const rest = map === null ? null : restFileOf(map);
   const mapped = { ...(map !== null && { map: textOf(map) }), ...(rest !== null && { rest: textOf(rest) }) };
-  if (!/\.vrma$/i.test(name)) return { format: 'bvh', ...textOf(path), ...mapped };
-  const chunks = chunksOf(new Uint8Array(readFileSync(path)));
-  if (!chunks) throw new Error(`${name}: not a VRM Animation: not a GLB file, or truncated`);
-  return { format: 'gltf', name, description: JSON.parse(chunks.json), binary: chunks.binary, ...mapped };
+  if (!isGltfMotion(name)) return { format: 'bvh', ...textOf(path), ...mapped };
+  return { name, ...(await readGltfMotion(new Uint8Array(readFileSync(path)).buffer, name)), ...mapped };
 }
 
 /** What is read of one file; a fault becomes its sentence, and the other files are read. */
-function read(path: string, i: number, { map, out }: Request) {
+async function read(path: string, i: number, { map, out }: Request) {
   try {
-    const { motion, notes, doubts } = finishWork(readOurMotion(sourceOf(path, map)));
+    const { motion, notes, doubts } = finishWork(readOurMotion(await sourceOf(path, map)));
     const { positions, rotations, rateHz, frameCount } = motion;
     writeFileSync(join(out, `${i}.positions`), positions);
     writeFileSync(join(out, `${i}.rotations`), rotations);
@@ -52,5 +50,5 @@ function read(path: string, i: number, { map, out }: Request) {
 }
 
 const request = JSON.parse(readFileSync(0, 'utf8')) as Request;
-const found = request.files.map((path, i) => read(path, i, request));
+const found = await Promise.all(request.files.map((path, i) => read(path, i, request)));
 writeFileSync(join(request.out, 'index.json'), JSON.stringify(found));

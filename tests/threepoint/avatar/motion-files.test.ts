@@ -10,7 +10,7 @@ import { expect, test } from 'vitest';
 import { type BoneTurns, builtFbx } from './built-fbx';
 import { rigJoints } from './built-rig';
 import { fbxBinary, fbxText } from './fbx-file';
-import { changed, type GltfJson } from './glb';
+import { changed, type GltfJson, partsOf } from './glb';
 import { mixamo } from './rig-namings';
 
 const frames = 90;
@@ -66,6 +66,9 @@ test.each([
 test('so is the clip of a GLB, the longest of several', async () => {
   const glb = await glbOfFile(fbxBinary(builtFbx(options)), 'wave.fbx', 'motion');
   await expectTruth(glb, 'wave.glb');
+  const { json, binary } = partsOf(new Uint8Array(glb));
+  json.buffers[0]!.uri = `data:application/octet-stream;base64,${Buffer.from(binary).toString('base64')}`;
+  await expectTruth(new TextEncoder().encode(JSON.stringify(json)).buffer, 'wave.gltf');
   const several = changed(
     (json: GltfJson) => {
       const [clip] = json.animations as { channels: object[]; samplers: object[] }[];
@@ -94,6 +97,11 @@ test('a skin that was bound in T-pose counts as rest where the file shows anothe
     new Uint8Array(glb),
   );
   await expectTruth(posed, 'wave.glb');
+});
+
+test('numbers in another file are refused in a sentence', async () => {
+  const text = new TextEncoder().encode(JSON.stringify({ buffers: [{ uri: 'wave.bin', byteLength: 4 }] }));
+  await expect(readGltfMotion(text.buffer, 'wave.gltf')).rejects.toThrow('wave.gltf: its numbers are in other files');
 });
 
 test('a file without a clip is refused in a sentence', async () => {

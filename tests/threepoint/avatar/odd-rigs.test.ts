@@ -61,9 +61,10 @@ describe('a body whose bones hang otherwise', () => {
     expectBody(worn);
   });
 
-  test('with legs and arms beside the hips it is too', async () => {
+  test('with limbs and head beside the hips it is too, by a map of its bones', async () => {
     const parents = { leftUpperLeg: null, rightUpperLeg: null, leftUpperArm: null, rightUpperArm: null, head: null };
-    const worn = await opened({ nameOf, parents });
+    const bones = Object.fromEntries(rigJoints({}).map(({ bone }) => [bone, nameOf(bone)]));
+    const worn = wear(await parseAvatar(builtRig({ nameOf, parents }), 'person.glb', { bones }));
     walkAway(worn);
     for (const joint of ['leftUpperLeg', 'rightFoot', 'head', 'leftHand'] as const) {
       expect(distance(middle(skinAt(worn, joint)), worn.avatar.jointPositions()[joint]!), joint).toBeLessThan(1e-3);
@@ -202,7 +203,7 @@ const clavicles = ['leftShoulder', 'rightShoulder'];
 /** A joint on each side of the body: x is to the left. */
 const onBoth = (called: string, parent: string, [x, y, z]: readonly [number, number, number]) =>
   (['left', 'right'] as const).map((side) => ({
-    called: `${called}_${side[0]}`,
+    called: `${called}${called.endsWith('.') ? '' : '_'}${side[0]}`,
     parent: (parent.startsWith('$') ? parent.replace('$', side) : parent) as BoneName,
     at: [side === 'left' ? x : -x, y, z] as const,
   }));
@@ -216,6 +217,13 @@ const chain = (called: string, parent: BoneName, at: readonly (readonly [number,
 /** Three heads high: short legs and arms. */
 const chibi: RigOptions['place'] = (_, at) => {
   at.set(0.6 * at.x, at.y < 0.92 ? 0.4 * at.y : 0.368 + 0.75 * (at.y - 0.92), 0.6 * at.z);
+};
+
+/** The names of KayKit's characters, whose hand is a bone beyond the wrist. */
+const kayKit: RigOptions['nameOf'] = (bone) => {
+  const [, side = '', part = bone] = /^(left|right)(.*)$/.exec(bone) ?? [];
+  const name = part === 'Hand' ? 'wrist' : part.toLowerCase();
+  return side ? `${name}.${side[0]}` : name;
 };
 
 const oddBones: readonly (readonly [string, Partial<RigOptions>])[] = [
@@ -264,6 +272,14 @@ const oddBones: readonly (readonly [string, Partial<RigOptions>])[] = [
         ...chain('Skirt', 'hips', [[0, 0.85, 0.14], [0, 0.7, 0.18], [0, 0.55, 0.2]]), // biome-ignore format: a row
         ...chain('Cape', 'upperChest', [[0, 1.28, -0.12], [0, 1, -0.18], [0, 0.7, -0.22], [0, 0.4, -0.25]]), // biome-ignore format: a row
       ],
+    },
+  ],
+  [
+    'named as KayKit’s characters, with a wrist and a hand, without neck and clavicles',
+    {
+      nameOf: kayKit,
+      without: ['neck', 'upperChest', ...clavicles, ...fingers],
+      more: [...onBoth('hand.', '$Hand', [0.65, 1.3, -0.02]), ...onBoth('handslot.', '$Hand', [0.7, 1.28, -0.02])],
     },
   ],
   [

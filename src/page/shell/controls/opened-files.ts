@@ -1,6 +1,6 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
-import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import { isSkeletonMap } from 'threepoint/core/mocap/is-skeleton-map';
 import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
 import type { Notices } from 'threepoint-ui/notices';
@@ -23,7 +23,7 @@ export interface OpenedFilesOptions {
 const isJson = ({ name }: File): boolean => /\.json$/i.test(name);
 /** A map of a skeleton is a page of text [bytes]. */
 const largestMap = 2 ** 18;
-const isMocap = ({ name }: File): boolean => /\.(bvh|asf|amc|vrma)$/i.test(name);
+const isMocap = ({ name }: File): boolean => /\.(bvh|asf|amc|vrma|gltf)$/i.test(name);
 /** Files with a body, its motion or both: bodies, unless they were chosen as motion. */
 const mayBeMocap = ({ name }: File): boolean => /\.(fbx|glb)$/i.test(name);
 

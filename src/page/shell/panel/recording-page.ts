@@ -29,7 +29,7 @@ function createRecorderSection(actions: RecordingActions) {
   const open = fileButton('Open recording', '.json,application/json', (files) => actions.openFiles(files));
   const openMocap = fileButton(
     'Open motion capture',
-    '.bvh,.asf,.amc,.vrma,.fbx,.glb,.json',
+    '.bvh,.asf,.amc,.vrma,.fbx,.glb,.gltf,.json',
     (files) => actions.openMotion(files),
     {
       multiple: true,

@@ -127,16 +127,16 @@ export function accessorOf(description: Json, binary: Uint8Array, index: unknown
     Number(accessor?.componentType)
   ];
   if (!accessor || !view || !size || !kind || !isIndex(accessor.count) || view.byteStride !== undefined)
-    throw new Error(`accessors[${String(index)}] is none of a clip's numbers`);
+    throw new Error(`accessors[${index}] is none of a clip's numbers`);
   const begin = Number(view.byteOffset ?? 0) + Number(accessor.byteOffset ?? 0);
   const bytes = accessor.count * size * kind.BYTES_PER_ELEMENT;
   if (!(isIndex(begin) && begin + bytes <= binary.length))
-    throw new Error(`accessors[${String(index)}] reaches beyond the end of the file`);
+    throw new Error(`accessors[${index}] reaches beyond the end of the file`);
   const raw = new kind(binary.slice(begin, begin + bytes).buffer);
   const largest = { 5120: 127, 5121: 255, 5122: 32767, 5123: 65535 }[Number(accessor.componentType)];
   const values = largest ? Float32Array.from(raw, (value) => Math.max(-1, value / largest)) : Float32Array.from(raw);
   const wrong = values.findIndex((value) => !Number.isFinite(value));
-  if (wrong >= 0) throw new Error(`accessors[${String(index)}]: its number ${wrong + 1} is not finite`);
+  if (wrong >= 0) throw new Error(`accessors[${index}]: its number ${wrong + 1} is not finite`);
   return values;
 }
 

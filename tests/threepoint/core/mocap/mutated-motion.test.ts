@@ -122,6 +122,6 @@ test('VRM Animations, spoiled, are refused in a sentence or read as finite numbe
         else container[key] = structuredClone(chance() < 0.5 ? oneOf(odd) : oneOf(containersIn(description)));
       }
     }
-    return { format: 'vrma', name: 'wave.vrma', description, binary: bytes };
+    return { format: 'gltf', name: 'wave.vrma', description, binary: bytes };
   });
 });

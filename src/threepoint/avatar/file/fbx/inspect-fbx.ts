@@ -100,7 +100,7 @@ class BinaryWalk {
   readonly #wide: boolean;
   readonly #checks = new ArrayChecks();
   #at = headerLength;
-  /** Where the newest layer says that it has a list of places in its values. */
+  /** The text of the newest layer that says that its values have a list of indices. */
   #reference: Uint8Array | null = null;
 
   constructor(bytes: Uint8Array) {
