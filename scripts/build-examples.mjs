@@ -1,8 +1,10 @@
 // Builds each of examples/ as its reader would: in an empty folder, with the packed packages instead of the sources.
-import { cpSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+// With --out DIR, those that need no server of their own are built for a host of files, each in a folder of DIR.
+import { cpSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
+import { parseArgs } from 'node:util';
 import { buildLibrary } from './build-library.mjs';
 import { buildRooms } from './build-rooms.mjs';
 import { main, root, runQuietly, SetupError } from './run-command.mjs';
@@ -67,14 +69,40 @@ export async function buildExample(name, folder) {
   writeFileSync(join(own, 'package.json'), JSON.stringify(manifest));
   await done('npm', ['install', ...quiet], own);
   if (manifest.scripts?.build) {
-    await done(process.execPath, ['node_modules/vite/bin/vite.js', 'build', '--logLevel', 'error'], own);
+    // The page runs from any folder.
+    const vite = ['node_modules/vite/bin/vite.js', 'build', '--base', './', '--logLevel', 'error'];
+    await done(process.execPath, vite, own);
   }
   return own;
 }
 
+/** Whether an example is pages alone, which a bundler builds. */
+function isStatic(name) {
+  const { scripts = {} } = manifestOf(name);
+  return scripts.build !== undefined && scripts.start === undefined;
+}
+
+/** Builds the examples for a host of files into a folder, with a page that lists them. */
+async function buildStatic(out) {
+  const folder = await pack(Object.keys(packages));
+  const names = allNames.filter(isStatic);
+  for (const name of names)
+    cpSync(join(await buildExample(name, folder), 'dist'), join(out, name), { recursive: true });
+  const links = names.map((name) => `<li><a href="./${name}/">${name}</a></li>`).join('');
+  const title = 'threepoint: examples';
+  writeFileSync(
+    join(out, 'index.html'),
+    `<!doctype html><html lang="en"><meta charset="utf-8"><title>${title}</title><h1>${title}</h1><ul>${links}</ul></html>\n`,
+  );
+  rmSync(folder, { recursive: true });
+}
+
 if (import.meta.url === pathToFileURL(process.argv[1]).href) {
   await main(async () => {
+    const { out } = parseArgs({ options: { out: { type: 'string' } } }).values;
+    if (out !== undefined) return buildStatic(resolve(root, out));
     const folder = await pack(Object.keys(packages));
     for (const name of allNames) console.log(await buildExample(name, folder));
+    return 0;
   });
 }

@@ -42,10 +42,10 @@ function watchSignals() {
 }
 
 /**
- * Runs a program in the repository's root with its standard input closed. Resolves to its exit code, its output (with
- * `capture`) and whether it ran past `limitSeconds`. Rejects only if the program does not exist.
+ * Runs a program in the repository's root with its standard input closed, until `signal` aborts. Resolves to its exit
+ * code, its output (with `capture`) and whether it ran past `limitSeconds`. Rejects only if the program does not exist.
  */
-export function run(command, args, { env = {}, cwd = root, capture = false, limitSeconds = 3600 } = {}) {
+export function run(command, args, { env = {}, cwd = root, capture = false, limitSeconds = 3600, signal } = {}) {
   return new Promise((resolve, reject) => {
     const child = spawn(command, args, {
       cwd,
@@ -68,8 +68,11 @@ export function run(command, args, { env = {}, cwd = root, capture = false, limi
       killGroup(child, 'SIGTERM');
       setTimeout(() => killGroup(child, 'SIGKILL'), 5000).unref();
     }, limitSeconds * 1000);
+    const end = () => killGroup(child, 'SIGTERM');
+    signal?.addEventListener('abort', end);
     const settle = (action) => {
       clearTimeout(timer);
+      signal?.removeEventListener('abort', end);
       running.delete(child);
       watchSignals();
       action();

@@ -71,6 +71,8 @@ async function serve() {
       headers: {
         'x-forwarded-for': from,
         'user-agent': `a browser at ${from}`,
+        // The search for traces blocks this process: meanwhile the server would close an idle connection.
+        connection: 'close',
         ...(token !== null && { authorization: `Bearer ${token}` }),
         ...(body !== undefined && { 'content-type': 'application/json' }),
       },

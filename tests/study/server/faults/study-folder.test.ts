@@ -75,24 +75,27 @@ describe('the folder of the studies', () => {
     reportFigures('study-folder', { 'files open to others after the start': 0 });
   });
 
-  test.skipIf(!movesOpenFiles)('that is deleted or replaced while the server runs is answered with 507 and a line of the log, until it is back', async () => {
-    const directory = join(directoryWith(), 'studies');
-    const { add, lines } = await started(directory);
-    expect((await add('before')).status).toBe(201);
-    renameSync(directory, `${directory}-moved`);
-    const deleted = [await add('gone-1'), await add('gone-2')];
-    const sentence =
-      'the folder of the studies was deleted or replaced while the server ran, and nothing is stored. Put it back, or restart the server';
-    expect(deleted).toEqual([1, 2].map(() => ({ status: 507, error: sentence })));
-    expect(lines).toEqual([`study: ${sentence} (${directory}/studies.db was deleted)`]);
-    mkdirSync(directory);
-    openStudyStore(join(directory, 'studies.db')).close();
-    expect(await add('gone-3')).toEqual({ status: 507, error: sentence });
-    rmSync(directory, { recursive: true });
-    renameSync(`${directory}-moved`, directory);
-    expect((await add('after')).status).toBe(201);
-    reportFigures('study-folder', { 'writes acknowledged into a file that was deleted or replaced': '0 of 3' });
-  });
+  test.skipIf(!movesOpenFiles)(
+    'that is deleted or replaced while the server runs is answered with 507 and a line of the log, until it is back',
+    async () => {
+      const directory = join(directoryWith(), 'studies');
+      const { add, lines } = await started(directory);
+      expect((await add('before')).status).toBe(201);
+      renameSync(directory, `${directory}-moved`);
+      const deleted = [await add('gone-1'), await add('gone-2')];
+      const sentence =
+        'the folder of the studies was deleted or replaced while the server ran, and nothing is stored. Put it back, or restart the server';
+      expect(deleted).toEqual([1, 2].map(() => ({ status: 507, error: sentence })));
+      expect(lines).toEqual([`study: ${sentence} (${directory}/studies.db was deleted)`]);
+      mkdirSync(directory);
+      openStudyStore(join(directory, 'studies.db')).close();
+      expect(await add('gone-3')).toEqual({ status: 507, error: sentence });
+      rmSync(directory, { recursive: true });
+      renameSync(`${directory}-moved`, directory);
+      expect((await add('after')).status).toBe(201);
+      reportFigures('study-folder', { 'writes acknowledged into a file that was deleted or replaced': '0 of 3' });
+    },
+  );
 
   test.skipIf(!movesOpenFiles)('whose log alone is deleted is answered with 507 too', async () => {
     const directory = directoryWith();
