@@ -116,7 +116,7 @@ def loss(evaluation: Json) -> str:
         lines: list[tuple[str, Callable[[Json], str]]] = [
             ("all joints", lambda f: ratio(f["during"]["allCm"], f["during"]["allSeenCm"])),
             ("its elbow", lambda f: ratio(f["during"]["elbowCm"], f["during"]["elbowSeenCm"])),
-            ("longest excess of a step", lambda f: f"{max(f[when]['excessCm'] for when in ('atLoss', 'atReturn')):.1f}"),
+            ("longest excess of a step", lambda f: f"{max(f['atLoss']['excessCm'], f['atReturn']['excessCm']):.1f}"),
         ]
         for number, (label, cell) in enumerate(lines):
             count = by_method["ik"]["losses"]

@@ -69,9 +69,9 @@ class _FittingInput:
 
 @dataclass(frozen=True)
 class _Unleaned:
-    """What leans start from, frame and unit as above: the thorax's side and up directions [N, 3], unit, at right angles,
-    the neck's base to the head joint [N, 3], and what chest joint and hips follow of the neck's way onto its bone's
-    length from the head [N, 3].
+    """What leans start from, frame and unit as above: the thorax's side and up directions [N, 3], unit, at right
+    angles, the neck's base to the head joint [N, 3], and what chest joint and hips follow of the neck's way onto its
+    bone's length from the head [N, 3].
     """
 
     line: Tensor
@@ -171,8 +171,8 @@ class DifferentiableKinematics:
         offsets [N, 2, 3].
 
         A lean turns the thorax about its length, then its length and the neck, by less than a right angle each; what it
-        asks back along them is left to the clavicles. extremity: of each side, how far on the way from anatomical limits to extreme ones [N, 2,
-        1].
+        asks back along them is left to the clavicles. extremity: of each side, how far on the way from anatomical limits
+        to extreme ones [N, 2, 1].
         """
         estimated, head_joint = given.estimated, given.head_joint
         targets, mean = estimated[:, 2:4] + leans, leans.mean(1)
