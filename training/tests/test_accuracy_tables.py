@@ -153,6 +153,17 @@ def test_laboratories_that_were_not_measured_leave_their_table_as_it_was(tmp_pat
     assert capsys.readouterr().out == ""
 
 
+def test_eight_bits_are_compared_where_both_were_measured():
+    without = evaluation()
+    del without["fp32"]
+    assert verdict(accuracy_tables.aims(evaluation(), CONTRACTS), "int8 against fp32: MPJPE") == [
+        "≤ +0.05 cm",
+        "+0.000 cm",
+        "met",
+    ]
+    assert "fp32" not in accuracy_tables.aims(without, CONTRACTS)
+
+
 def test_losses_end_with_those_of_hand_tracking():
     lines = accuracy_tables.loss(evaluation()).splitlines()
     assert [line.split(" | ")[0] for line in lines if "losses" in line] == [
@@ -163,24 +174,26 @@ def test_losses_end_with_those_of_hand_tracking():
     ]
 
 
-def test_the_stronger_noise_has_a_row():
-    measured, white = accuracy_tables.noise(evaluation()).splitlines()[2:]
+def test_noises_and_rates_have_rows():
+    measured, white, *rates = accuracy_tables.signals(evaluation()).splitlines()[2:]
     assert measured.endswith("| 4.00 / 1.05 / 0.20 / 0.10 |")
-    assert white.startswith("| white: 0.3 mm and 0.1° |")
+    assert white.startswith("| 60 Hz, white noise of 0.3 mm and 0.1° |")
     assert white.endswith("| 4.50 / 1.05 / 0.70 / 0.60 |")
+    assert [row.split(" | ")[0] for row in rates] == ["| 72 Hz", "| 90 Hz", "| 120 Hz"]
+
+
+def test_a_fault_has_the_figure_of_its_worst_direction():
+    measured = evaluation()
+    measured["robustness"]["estimators"]["learned"]["offsets"][3]["mpjpeCm"] = 4.9
+    text = accuracy_tables.faults(measured)
+    assert verdict(text, "headset ±1 cm") == ["+0.10", "+0.10", "+0.10"]
+    assert verdict(text, "headset ±3 cm") == ["+0.30", "+0.30", "+0.90"]
+    assert verdict(text, "arm span ±5 %") == ["−0.04", "−0.04", "−0.04"]
 
 
 def test_only_people_held_out_have_a_row():
     (row,) = accuracy_tables.people(evaluation()).splitlines()[2:]
     assert row.startswith("| 005 |")
-
-
-def test_without_fp32_its_table_stays_as_it_was():
-    without = evaluation()
-    del without["fp32"]
-    page = "<!-- precision -->\nas before\n<!-- /precision -->\n"
-    assert accuracy_tables.renew(page, {"precision": accuracy_tables.precision(without)}) == page
-    assert "as before" not in accuracy_tables.renew(page, {"precision": accuracy_tables.precision(evaluation())})
 
 
 def test_a_page_renewed_twice_is_the_page_renewed_once():

@@ -42,14 +42,10 @@ def sections(
         "aims": tables.aims(evaluation, contracts),
         "summary": tables.summary(evaluation),
         "people": tables.people(evaluation),
-        "joints": tables.joints(evaluation),
         "disturbed": f"Clips, a seeded choice of the people held out, {disturbed}",
         "loss": tables.loss(evaluation),
-        "noise": tables.noise(evaluation),
-        "offsets": tables.offsets(evaluation),
-        "measures": tables.measures(evaluation),
-        "rates": tables.rates(evaluation),
-        "precision": tables.precision(evaluation),
+        "faults": tables.faults(evaluation),
+        "signals": tables.signals(evaluation),
         "laboratories": tables.laboratories(*measured) if measured else None,
     }
 

@@ -60,11 +60,6 @@ def summary(evaluation: Json) -> str:
             ),
             row("elbow swivel error", lambda f: f"{f['swivelDeg']:.1f}°"),
             row("jerk relative to the true motion", lambda f: f"{f['jerkRatio']:.2f}"),
-            row("bone-length variation [mm]", lambda f: f"{f['boneVariationMm']:.3f}"),
-            row(
-                "wrist from its tracker: mean / largest [mm]",
-                lambda f: f"{f['handErrorMm']:.3f} / {f['handErrorMaxMm']:.1f}",
-            ),
         ],
     )
 
@@ -79,18 +74,6 @@ def people(evaluation: Json) -> str:
     return table(["MPJPE [cm]", *METHODS.values(), "learned / IK"], map(row, people_held_out(evaluation)))
 
 
-def joints(evaluation: Json) -> str:
-    figures = held_out(evaluation)
-    cell = "{median:.1f} / {p95:.1f}"
-    return table(
-        ["median / p95 [cm]", *METHODS.values()],
-        [
-            [label, *(cell.format(**figures[method]["joints"][joint]) for method in METHODS)]
-            for joint, label in JOINTS.items()
-        ],
-    )
-
-
 def _losses(evaluation: Json) -> list[tuple[str, dict[str, Json]]]:
     """Returns a label and each method's figures for every length of loss; hand tracking's lengths come last."""
     estimators = evaluation["robustness"]["estimators"]
@@ -102,16 +85,25 @@ def _losses(evaluation: Json) -> list[tuple[str, dict[str, Json]]]:
     return [*fixed, (f"as in hand tracking, {tracked['ik']['milliseconds']} ms on average", tracked)]
 
 
-def noise(evaluation: Json) -> str:
-    """Returns the table of error, jerk and trembling under the simulated noise and under white noise."""
-    names = ("as measured: headset 0.05 mm and 0.03°, hands 0.15 mm and 0.05°", "white: 0.3 mm and 0.1°")
+def signals(evaluation: Json) -> str:
+    """Returns the table of error, jerk and trembling by the trackers' noise and rate."""
+    estimators = evaluation["robustness"]["estimators"]
+    noises = ("60 Hz, noise as measured", "60 Hz, white noise of 0.3 mm and 0.1°")
 
-    def cell(method: str, number: int) -> str:
-        figures = evaluation["robustness"]["estimators"][method]["noises"][number]
-        tremble = f"{figures['elbowTrembleMm']:.2f} / {figures['hipsTrembleMm']:.2f}"
-        return f"{figures['mpjpeCm']:.2f} / {figures['jerkRatio']:.2f} / {tremble}"
+    def cell(figures: Json) -> str:
+        return f"{figures['mpjpeCm']:.2f} / {figures['jerkRatio']:.2f}"
 
-    rows = [[name, *(cell(method, number) for method in METHODS)] for number, name in enumerate(names)]
+    def noisy(figures: Json) -> str:
+        return f"{cell(figures)} / {figures['elbowTrembleMm']:.2f} / {figures['hipsTrembleMm']:.2f}"
+
+    rows = [
+        [name, *(noisy(estimators[method]["noises"][number]) for method in METHODS)]
+        for number, name in enumerate(noises)
+    ]
+    rows += [
+        [f"{entry['hz']} Hz", *(cell(estimators[method]["rates"][number]) for method in METHODS)]
+        for number, entry in enumerate(estimators["ik"]["rates"])
+    ]
     return table(["MPJPE [cm] / jerk / trembling of elbow / hips [mm]", *METHODS.values()], rows)
 
 
@@ -124,15 +116,7 @@ def loss(evaluation: Json) -> str:
         lines: list[tuple[str, Callable[[Json], str]]] = [
             ("all joints", lambda f: ratio(f["during"]["allCm"], f["during"]["allSeenCm"])),
             ("its elbow", lambda f: ratio(f["during"]["elbowCm"], f["during"]["elbowSeenCm"])),
-            ("its elbow, 0.5 s after", lambda f: ratio(f["after"]["elbowCm"], f["after"]["elbowSeenCm"])),
-            (
-                "longest step at the loss",
-                lambda f: f"{f['atLoss']['stepCm']:.1f} ({signed(f['atLoss']['excessCm'], 1)})",
-            ),
-            (
-                "longest step at the return",
-                lambda f: f"{f['atReturn']['stepCm']:.1f} ({signed(f['atReturn']['excessCm'], 1)})",
-            ),
+            ("longest excess of a step", lambda f: f"{max(f['atLoss']['excessCm'], f['atReturn']['excessCm']):.1f}"),
         ]
         for number, (label, cell) in enumerate(lines):
             count = by_method["ik"]["losses"]
@@ -141,60 +125,26 @@ def loss(evaluation: Json) -> str:
     return re.sub(r"(?m)^\| --- \| ---:", "| --- | ---", table(["hand lost for", "cm", *METHODS.values()], rows))
 
 
-def offsets(evaluation: Json) -> str:
+def faults(evaluation: Json) -> str:
+    """Returns the table of errors added by a misplaced tracker or a wrong calibration: the worst direction of each."""
     estimators = evaluation["robustness"]["estimators"]
-    rows = []
-    for tracker in ("headset", "grips"):
-        for size in (1, 3):
-            for label, of in (("mean", lambda v: sum(v) / len(v)), ("worst", max)):
-                cells = []
-                for method in METHODS:
-                    values = [
-                        o["mpjpeCm"]
-                        for o in estimators[method]["offsets"]
-                        if o["tracker"] == tracker and abs(o["offsetCm"]) == size
-                    ]
-                    cells.append(signed(of(values) - estimators[method]["mpjpeCm"]))
-                rows.append([f"{tracker} ±{size} cm, {label}", *cells])
-    return table(["added to the MPJPE [cm]", *METHODS.values()], rows)
-
-
-def measures(evaluation: Json) -> str:
-    """Returns the table of errors added by a wrong eye height or arm span."""
-    estimators = evaluation["robustness"]["estimators"]
-    rows = []
-    for key, label in (("heights", "eye height"), ("spans", "arm span")):
-        for i, entry in enumerate(estimators["ik"][key]):
-            cells = [signed(estimators[m][key][i]["mpjpeCm"] - estimators[m]["mpjpeCm"]) for m in METHODS]
-            rows.append([f"{label} {signed(entry['percent'], 0)} %", *cells])
-    return table(["added to the MPJPE [cm]", *METHODS.values()], rows)
-
-
-def rates(evaluation: Json) -> str:
-    estimators = evaluation["robustness"]["estimators"]
-    rows = [["60 Hz", *(f"{estimators[m]['mpjpeCm']:.2f} / {estimators[m]['jerkRatio']:.2f}" for m in METHODS)]]
-    for i, entry in enumerate(estimators["ik"]["rates"]):
-        of = [estimators[m]["rates"][i] for m in METHODS]
-        rows.append([f"{entry['hz']} Hz", *(f"{f['mpjpeCm']:.2f} / {f['jerkRatio']:.2f}" for f in of)])
-    return table(["MPJPE [cm] / jerk relative to the truth", *METHODS.values()], rows)
-
-
-def precision(evaluation: Json) -> str | None:
-    """Returns the table of 8-bit against 32-bit weights, or None if the latter were not measured."""
-    if "fp32" not in evaluation:
-        return None
-    int8 = held_out(evaluation)
-    rows = [
-        [
-            METHODS[method],
-            f"{int8[method]['mpjpeCm']['mean']:.3f}",
-            f"{fp32['mpjpeCm']['mean']:.3f}",
-            f"{int8[method]['jerkRatio']:.3f}",
-            f"{fp32['jerkRatio']:.3f}",
-        ]
-        for method, fp32 in evaluation["fp32"].items()
+    kinds: list[tuple[str, str, Callable[[Json], bool]]] = [
+        (f"{tracker} ±{size} cm", "offsets", lambda o, t=tracker, s=size: o["tracker"] == t and abs(o["offsetCm"]) == s)
+        for tracker in ("headset", "grips")
+        for size in (1, 3)
     ]
-    return table(["", "MPJPE int8 [cm]", "MPJPE fp32 [cm]", "jerk int8", "jerk fp32"], rows)
+    kinds += [
+        (f"{label} ±{size} %", key, lambda o, s=size: abs(o["percent"]) == s)
+        for key, label, sizes in (("heights", "eye height", (2, 5)), ("spans", "arm span", (5,)))
+        for size in sizes
+    ]
+
+    def cell(method: str, key: str, chosen: Callable[[Json], bool]) -> str:
+        worst = max(entry["mpjpeCm"] for entry in estimators[method][key] if chosen(entry))
+        return signed(worst - estimators[method]["mpjpeCm"])
+
+    rows = [[label, *(cell(method, key, chosen) for method in METHODS)] for label, key, chosen in kinds]
+    return table(["added to the MPJPE [cm], worst direction", *METHODS.values()], rows)
 
 
 def laboratories(home: ByHands, elsewhere: ByHands) -> str:

@@ -69,9 +69,9 @@ class _FittingInput:
 
 @dataclass(frozen=True)
 class _Unleaned:
-    """What leans start from, frame and unit as above: the shoulder line and the thorax's up direction [N, 3], unit, the
-    neck's base to the head joint [N, 3], and what chest joint and hips follow of the neck's way onto its bone's length
-    from the head [N, 3].
+    """What leans start from, frame and unit as above: the thorax's side and up directions [N, 3], unit, at right
+    angles, the neck's base to the head joint [N, 3], and what chest joint and hips follow of the neck's way onto its
+    bone's length from the head [N, 3].
     """
 
     line: Tensor
@@ -153,9 +153,8 @@ class DifferentiableKinematics:
         """The neck below the head and the thorax below it as they are estimated, before any lean."""
         estimated, head_joint = given.estimated, given.head_joint
         middle = estimated[:, 2:4].mean(1)
-        line = _unit(estimated[:, 3] - estimated[:, 2])
         up = _unit(middle - estimated[:, 4])
-        chest = self._aligned(self.thorax, up, line)
+        chest = self._aligned(self.thorax, up, _unit(estimated[:, 3] - estimated[:, 2]))
         implied_neck = middle - chest @ self.shoulders_from_neck
         neck_bone = self.rest["head"]
         anatomical = _limit("neckBend", torch.zeros_like(up[:, :1]))
@@ -163,7 +162,7 @@ class DifferentiableKinematics:
         # Chest joint and hips follow a share of what the neck is moved by.
         shift = head_joint - neck_to_head - implied_neck
         moved = shift * TORSO["neckShiftShare"] * (neck_bone.norm() / _length(shift)).clamp_max(1.0)
-        return _Unleaned(line, up, neck_to_head, moved)
+        return _Unleaned(chest @ self.x, up, neck_to_head, moved)
 
     def _place_trunk(
         self, given: _FittingInput, upright: _Unleaned, leans: Tensor, extremity: Tensor
@@ -171,18 +170,20 @@ class DifferentiableKinematics:
         """Chest joint, hips and shoulders on their bones below the head, for estimated shoulders that lean by these
         offsets [N, 2, 3].
 
-        A lean turns neck, thorax and shoulder line by less than a right angle each; what it asks back along them is
-        left to the clavicles. extremity: of each side, how far on the way from anatomical limits to extreme ones [N, 2,
-        1].
+        A lean turns the thorax about its length, then its length and the neck, by less than a right angle each; what it
+        asks back along them is left to the clavicles. extremity: of each side, how far on the way from anatomical limits
+        to extreme ones [N, 2, 1].
         """
         estimated, head_joint = given.estimated, given.head_joint
         targets, mean = estimated[:, 2:4] + leans, leans.mean(1)
-        line = _leaned(upright.line, self.shoulder_width, leans[:, 1] - leans[:, 0])
-        rough = self._aligned(self.thorax, _leaned(upright.up, self.thorax.norm(), mean), line)
+        turned = _leaned(upright.line, self.shoulder_width, _across(leans[:, 1] - leans[:, 0], upright.up))
+        leaned_up = _leaned(upright.up, self.thorax.norm(), mean)
+        rough = self._aligned(self.thorax, leaned_up, _carried(turned, upright.up, leaned_up))
         neck_bone = self.rest["head"]
         neck_to_head = _leaned(_unit(upright.neck_to_head), neck_bone.norm(), -mean)
         neck = head_joint - _swung(rough @ neck_bone, neck_to_head, _limit("neckBend", extremity.amax(dim=1)))
         up = _unit(neck - estimated[:, 4] - upright.moved)
+        line = _carried(turned, upright.up, up)
         chest = neck - up * self.thorax.norm()
         hips = chest + _unit(estimated[:, 5] + upright.moved - chest) * self.lower_back_length
         pelvis_line = _unit(torch.lerp(line, given.heading_right, TORSO["pelvisToHead"]))

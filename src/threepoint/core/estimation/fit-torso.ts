@@ -27,6 +27,7 @@ import {
   lerp,
   type MutableVec3,
   normalise,
+  reject,
   right,
   scale,
   setVec3,
@@ -162,6 +163,8 @@ interface PlacedThorax {
 interface UnleanedThorax {
   /** From the chest joint to the neck, unit. */
   readonly up: MutableVec3;
+  /** From the left to the right side of the thorax, at right angles to `up`, unit. */
+  readonly line: MutableVec3;
   /** From the neck to the head joint [m]. */
   readonly neckToHead: MutableVec3;
   /** What chest joint and hips follow of the neck's way onto its bone's length from the head [m]. */
@@ -169,12 +172,19 @@ interface UnleanedThorax {
 }
 
 const thorax: PlacedThorax = { up: vec3(0, 0, 0), line: vec3(0, 0, 0) };
-const unleaned: UnleanedThorax = { up: vec3(0, 0, 0), neckToHead: vec3(0, 0, 0), moved: vec3(0, 0, 0) };
+const unleaned: UnleanedThorax = {
+  up: vec3(0, 0, 0),
+  line: vec3(0, 0, 0),
+  neckToHead: vec3(0, 0, 0),
+  moved: vec3(0, 0, 0),
+};
 /** The targets of the shoulders, floor frame. */
 const shoulderTargets: Readonly<Record<Side, MutableVec3>> = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
 const headingRight = vec3(0, 0, 0);
 const lineBefore = vec3(0, 0, 0);
 const meanLean = vec3(0, 0, 0);
+/** The thorax's line turned about its length by a lean, before the length leans; unit. */
+const turnedLine = vec3(0, 0, 0);
 const shoulderMiddle = vec3(0, 0, 0);
 /** The neck's base that the wanted shoulders hang from, before it is brought onto the neck's length from the head. */
 const impliedNeck = vec3(0, 0, 0);
@@ -259,11 +269,12 @@ const limitOf = (joint: 'clavicleSwing' | 'neckBend', extremity: number): number
 function placeUprightNeck(
   shoulderLine: Vec3,
   { joints, frame, bones }: TorsoInput,
-  { up: thoraxUp, neckToHead, moved }: UnleanedThorax,
+  { up: thoraxUp, line, neckToHead, moved }: UnleanedThorax,
 ): void {
   lerp(joints.leftUpperArm, joints.rightUpperArm, 0.5, shoulderMiddle);
   normalise(subtract(shoulderMiddle, joints.chest, thoraxUp), up, thoraxUp);
   const chest = alignDirections(bones.thorax, thoraxUp, shoulderLine, rotation);
+  rotate(chest, right, line);
   subtract(shoulderMiddle, rotate(chest, bones.shouldersFromNeck, a), impliedNeck);
   rotate(chest, bones.neck.main, neckAtRest);
   limitAngle(
@@ -281,8 +292,8 @@ function placeUprightNeck(
 
 /**
  * Neck, chest joint, the upper chest's rotation and the shoulders, for estimated shoulders that lean by these offsets
- * [m]. A lean turns neck, thorax and shoulder line by less than a right angle each, so that none of them flips; what it
- * asks back along them is left to the clavicles.
+ * [m]. A lean turns the thorax about its length, then its length and the neck, by less than a right angle each, so that
+ * none of them flips; what it asks back along them is left to the clavicles.
  */
 function placeThorax(
   state: FitTorsoState,
@@ -291,16 +302,17 @@ function placeThorax(
   rightLean: Vec3,
   { up: thoraxUp, line }: PlacedThorax,
 ): void {
-  const { pose, shoulderLine, lean } = state;
+  const { pose, lean } = state;
   const neckBend = limitOf('neckBend', Math.max(lean.left.extremity, lean.right.extremity));
   const { upperChest } = pose.rotations;
   add(joints.leftUpperArm, leftLean, shoulderTargets.left);
   add(joints.rightUpperArm, rightLean, shoulderTargets.right);
   lerp(leftLean, rightLean, 0.5, meanLean);
-  leanDirection(shoulderLine, bones.shoulderWidth, subtract(rightLean, leftLean, line), line);
+  reject(subtract(rightLean, leftLean, turnedLine), unleaned.up, turnedLine);
+  leanDirection(unleaned.line, bones.shoulderWidth, turnedLine, turnedLine);
   leanDirection(unleaned.up, bones.thoraxLength, meanLean, thoraxUp);
 
-  const roughChest = alignDirections(bones.thorax, thoraxUp, line, rotation);
+  const roughChest = turnThorax(bones, thoraxUp, line, rotation);
   rotate(roughChest, bones.neck.main, neckAtRest);
   normalise(unleaned.neckToHead, up, a);
   leanDirection(a, bones.neckLength, scale(meanLean, -1, meanLean), b);
@@ -308,9 +320,18 @@ function placeThorax(
   subtract(frame.headJoint, rotate(swing, neckAtRest, a), pose.neck);
   normalise(subtract(pose.neck, add(joints.chest, unleaned.moved, a), thoraxUp), unleaned.up, thoraxUp);
   addScaled(pose.neck, thoraxUp, -bones.thoraxLength, pose.chest);
-  alignDirections(bones.thorax, thoraxUp, line, upperChest);
+  turnThorax(bones, thoraxUp, line, upperChest);
   placeShoulder('left', pose, bones, shoulderTargets.left, limitOf('clavicleSwing', lean.left.extremity));
   placeShoulder('right', pose, bones, shoulderTargets.right, limitOf('clavicleSwing', lean.right.extremity));
+}
+
+/**
+ * The rotation of a thorax of this length (unit): by the smallest rotation from the estimated length, which carries the
+ * turned line along. Line and length stay at right angles, whatever leans ask of both.
+ */
+function turnThorax(bones: TorsoBones, thoraxUp: Vec3, line: MutableVec3, target: MutableQuat): MutableQuat {
+  rotate(rotationBetween(unleaned.up, thoraxUp, swing), turnedLine, line);
+  return alignDirections(bones.thorax, thoraxUp, line, target);
 }
 
 /**

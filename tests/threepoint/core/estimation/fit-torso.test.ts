@@ -4,8 +4,8 @@ import { estimatedJoints } from 'threepoint/core/body/joints';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { armBones } from 'threepoint/core/estimation/fit-arms';
-import { fromAxisAngle } from 'threepoint/core/math/quat';
-import { add, addScaled, copyVec3, distance, normalise, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
+import { add, addScaled, copyVec3, distance, lerp, normalise, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
 import { evenly, seed } from '../arbitraries';
 import { completedFrame, fitted, poseOf } from './drawn';
@@ -142,6 +142,44 @@ describe('an arm that is stretched out', () => {
         }
       }),
       { seed, numRuns: 30 },
+    );
+  });
+
+  test('leans a trunk of raised shoulders after its hand without a leap', () => {
+    const aside = fc
+      .record({ x: evenly(0, 1), y: evenly(-1, 1), z: evenly(-1, 1) })
+      .map((way) => normalise(way, ahead));
+    const posture = fc.record({ raised: evenly(0.3, 0.9), turned: evenly(-0.5, 0.5), from: aside, to: aside });
+    const middle = lerp(joints.leftUpperArm, joints.rightUpperArm, 0.5);
+    const half = distance(joints.leftUpperArm, joints.rightUpperArm) / 2;
+    fc.assert(
+      fc.property(posture, ({ raised, turned, from, to }) => {
+        const line = rotate(fromAxisAngle(up, turned), vec3(Math.cos(raised), Math.sin(raised), 0));
+        const estimated = {
+          ...joints,
+          leftUpperArm: addScaled(middle, line, -half),
+          rightUpperArm: addScaled(middle, line, half),
+        };
+        const fitBody = fitted(calibration);
+        let before: Record<'left' | 'right', Vec3> | null = null;
+        for (let i = 0; i < 60; i++) {
+          const away = normalise(lerp(from, to, i / 600), ahead);
+          const position = addScaled(estimated.rightUpperArm, away, 0.5 + 0.004 * i);
+          const tracked = completedFrame({ ...twoHands, rightHand: { ...twoHands.rightHand, position } }, calibration);
+          const drawn = fitBody(tracked, estimated, i ? 1 / 60 : 0);
+          const now = {
+            left: copyVec3(drawn.leftUpperArm.position),
+            right: copyVec3(drawn.rightUpperArm.position),
+          };
+          if (before) {
+            expect(distance(now.left, before.left)).toBeLessThan(0.05);
+            expect(distance(now.right, before.right)).toBeLessThan(0.05);
+          }
+          before = now;
+        }
+      }),
+      // Shrinking a failure of a hundred trunks takes minutes.
+      { seed, numRuns: 150, endOnFailure: true },
     );
   });
 
