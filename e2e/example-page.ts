@@ -40,6 +40,20 @@ export function faultsOf(page: Page): readonly string[] {
   return faults;
 }
 
+/** Warnings about what is not the library's: drawing in software, a class that react-three-fiber uses, a page's icon. */
+const foreign = /GL Driver Message|GPU stall|THREE\.Clock|favicon\.ico/;
+
+/** Returns the list to which the page's errors and all warnings of its console are added. */
+export function complaintsOf(page: Page): readonly string[] {
+  const complaints: string[] = [];
+  page.on('pageerror', ({ message }) => complaints.push(message));
+  page.on('console', (message) => {
+    const text = `${message.text()} (${message.location().url})`;
+    if (['warning', 'error'].includes(message.type()) && !foreign.test(text)) complaints.push(text);
+  });
+  return complaints;
+}
+
 /** Gives the page an emulated headset, from its next document on. */
 export async function emulateHeadset(page: Page): Promise<void> {
   await page.addInitScript({ path: iwer });

@@ -53,8 +53,8 @@ export async function pack(names) {
 }
 
 /**
- * Installs and builds one example in the folder of the tarballs. Resolves to its folder, with the page in dist/, or in
- * the folder itself where the example needs no build.
+ * Installs and builds one example in the folder of the tarballs, with each of its scripts for a build. Resolves to its
+ * folder, which is the page where the example needs no build.
  */
 export async function buildExample(name, folder) {
   const own = join(folder, `example-${name}`);
@@ -66,8 +66,8 @@ export async function buildExample(name, folder) {
   }
   writeFileSync(join(own, 'package.json'), JSON.stringify(manifest));
   await done('npm', ['install', ...quiet], own);
-  if (manifest.scripts?.build) {
-    await done(process.execPath, ['node_modules/vite/bin/vite.js', 'build', '--logLevel', 'error'], own);
+  for (const script of Object.keys(manifest.scripts ?? {}).filter((script) => script.startsWith('build'))) {
+    await done('npm', ['run', script], own);
   }
   return own;
 }
