@@ -40,8 +40,8 @@ export function faultsOf(page: Page): readonly string[] {
   return faults;
 }
 
-/** Warnings about what is not the library's: drawing in software, a class that react-three-fiber uses, a page's icon. */
-const foreign = /GL Driver Message|GPU stall|THREE\.Clock|favicon\.ico/;
+/** Warnings that are not about the library: of software rendering, of react-three-fiber, of Babylon.js, of icons. */
+const foreign = /GL Driver Message|GPU stall|THREE\.Clock|matching motion controller|favicon\.ico/;
 
 /** Returns the list to which the page's errors and all warnings of its console are added. */
 export function complaintsOf(page: Page): readonly string[] {

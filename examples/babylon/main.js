@@ -19,9 +19,12 @@ new HemisphericLight('light', Vector3.Up(), scene);
 CreateGround('floor', { width: 10, height: 10 }, scene);
 
 const { baseExperience } = await WebXRDefaultExperience.CreateAsync(scene, {
+  disableHandTracking: true,
+  disableNearInteraction: true,
   disablePointerSelection: true,
   disableTeleportation: true,
-  inputOptions: { doNotLoadControllerMeshes: true },
+  // Babylon's models of controllers come from its own server.
+  inputOptions: { disableOnlineControllerRepository: true, doNotLoadControllerMeshes: true },
 });
 const tracking = baseExperience.featuresManager.enableFeature(WebXRBodyTracking.Name, 'latest');
 tracking.onBodyTrackingStartedObservable.add(({ jointTransforms }) => {
