@@ -40,8 +40,11 @@ export function faultsOf(page: Page): readonly string[] {
   return faults;
 }
 
-/** Warnings that are not about the library: of software rendering, of react-three-fiber, of Babylon.js, of icons. */
-const foreign = /GL Driver Message|GPU stall|THREE\.Clock|matching motion controller|favicon\.ico/;
+/**
+ * Warnings that are not about the library: of software rendering, of a class that react-three-fiber uses, of models of
+ * controllers that Babylon.js and @react-three/xr fetch, of icons.
+ */
+const foreign = /GL Driver Message|GPU stall|THREE\.Clock|matching motion controller|input-profiles|loadProfile|favicon\.ico/;
 
 /** Returns the list to which the page's errors and all warnings of its console are added. */
 export function complaintsOf(page: Page): readonly string[] {

@@ -1,6 +1,6 @@
 // Checks what the built packages promise besides their types: the links of their documents and the fields of their
-// manifests. Checks dist-library's source maps and declaration maps, the paths that its licence names, and the size of a
-// bundle that imports one name of it.
+// manifests. Checks dist-library's source maps and declaration maps, the paths that its licence names, and the size of
+// a bundle that imports one name of it.
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { dirname, join, relative } from 'node:path';
 import { build } from 'esbuild';
@@ -67,11 +67,14 @@ const hasCode = (file) =>
     .replace(/^(import|export) .*$/gm, '')
     .trim() !== '';
 
-/** Returns a message for each declaration and each file of code without a map; embedded files need none. */
+/** Whether a file of code needs no map: embedded files and minified bundles, whose modules are in the package too. */
+const needsNoMap = (name) => ['learned-weights.js', 'mannequin.js'].includes(name) || name.startsWith('min/');
+
+/** Returns a message for each declaration and each file of code that lacks its map. */
 function missingMaps() {
   const code = [...endingWith('.js').filter(hasCode), ...endingWith('.d.ts')];
   return code
-    .filter((file) => !existsSync(`${file}.map`) && !['learned-weights.js', 'mannequin.js'].includes(named(file)))
+    .filter((file) => !existsSync(`${file}.map`) && !needsNoMap(named(file)))
     .map((file) => `${named(file)} has no map`);
 }
 
