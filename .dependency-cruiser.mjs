@@ -244,10 +244,10 @@ export default {
     {
       name: 'shipped-packages-are-no-tools',
       comment:
-        'A package that runs in the page or in the server is installed by npm ci --omit=dev, and audited. Type packages are exempt, and so are the ' +
-        'loaders by which threads run from source: the built server has none (scripts/build-server.mjs).',
+        'A package that runs in the page or in the server is installed by npm ci --omit=dev, and audited. Type packages are exempt, peers of ' +
+        'the published packages, and the loaders by which threads run from source: the built server has none (scripts/build-server.mjs).',
       severity: 'error',
-      from: { path: '^(src|server)/', pathNot: '-worker\\.mjs$|^src/threepoint/|^src/study/cli/' },
+      from: { path: '^(src|server)/', pathNot: '-worker\\.mjs$|^src/(threepoint|rooms/react|study/cli)/' },
       to: { dependencyTypes: ['npm-dev'], dependencyTypesNot: ['type-only'], pathNot: packagePath('@types/[^/]+') },
     },
     {
