@@ -44,7 +44,8 @@ export function faultsOf(page: Page): readonly string[] {
  * Warnings that are not about the library: of software rendering, of the emulator, of a class that react-three-fiber
  * uses, of models of controllers that Babylon.js and @react-three/xr fetch, of icons.
  */
-const foreign = /GL Driver Message|GPU stall|THREE\.Clock|matching motion controller|input-profiles|loadProfile|offerSession|favicon\.ico/;
+const foreign =
+  /GL Driver Message|GPU stall|THREE\.Clock|matching motion controller|input-profiles|loadProfile|offerSession|favicon\.ico/;
 
 /** Returns the list to which the page's errors and all warnings of its console are added. */
 export function complaintsOf(page: Page): readonly string[] {

@@ -4,7 +4,7 @@ import { pathToFileURL } from 'node:url';
 import { expect, type Page, test } from '@playwright/test';
 import { buildExample, exampleNames, pack } from '../../scripts/build-examples.mjs';
 import { type EmulatedHeadset, emulatedHeadset } from '../emulated-headset';
-import { type Drawn, emulateHeadset, enterExample, complaintsOf, ownJoint } from '../example-page';
+import { complaintsOf, type Drawn, emulateHeadset, enterExample, ownJoint } from '../example-page';
 import { freePort } from '../free-port';
 import { wristByGrip, wristName } from '../hands-on-controllers';
 import { distance } from '../page-fixture';
@@ -92,7 +92,7 @@ const babylonSpan = (page: Page, from: string, to: string): Promise<number> =>
 
 let folder = '';
 test.beforeAll(async () => {
-  test.setTimeout(120_000);
+  test.setTimeout(180_000);
   folder = await pack(['threepoint']);
 });
 test.afterAll(() => {
