@@ -40,6 +40,24 @@ export function faultsOf(page: Page): readonly string[] {
   return faults;
 }
 
+/**
+ * Warnings that are not about the library: of software rendering, of the emulator, of a class that react-three-fiber
+ * uses, of models of controllers that Babylon.js and @react-three/xr fetch, of icons.
+ */
+const foreign =
+  /GL Driver Message|GPU stall|THREE\.Clock|matching motion controller|input-profiles|loadProfile|offerSession|favicon\.ico/;
+
+/** Returns the list to which the page's errors and all warnings of its console are added. */
+export function complaintsOf(page: Page): readonly string[] {
+  const complaints: string[] = [];
+  page.on('pageerror', ({ message }) => complaints.push(message));
+  page.on('console', (message) => {
+    const text = `${message.text()} (${message.location().url})`;
+    if (['warning', 'error'].includes(message.type()) && !foreign.test(text)) complaints.push(text);
+  });
+  return complaints;
+}
+
 /** Gives the page an emulated headset, from its next document on. */
 export async function emulateHeadset(page: Page): Promise<void> {
   await page.addInitScript({ path: iwer });

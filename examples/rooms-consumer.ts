@@ -23,7 +23,7 @@ export async function inARoom(renderer: WebGLRenderer, scene: Scene): Promise<Jo
   return room;
 }
 
-/** The same in react-three-fiber. */
+/** Draws the others in react-three-fiber. */
 export const othersOf = (body: BodyTracker) =>
   createElement(Others, { url: 'https://example.org', name: 'Ada', body, ref: (room) => console.log(room?.seat) });
 

@@ -55,8 +55,8 @@ export async function pack(names) {
 }
 
 /**
- * Installs and builds one example in the folder of the tarballs. Resolves to its folder, with the page in dist/, or in
- * the folder itself where the example needs no build.
+ * Installs and builds one example in the folder of the tarballs, with each of its scripts for a build. Resolves to its
+ * folder, which is the page where the example needs no build.
  */
 export async function buildExample(name, folder) {
   const own = join(folder, `example-${name}`);
@@ -68,10 +68,12 @@ export async function buildExample(name, folder) {
   }
   writeFileSync(join(own, 'package.json'), JSON.stringify(manifest));
   await done('npm', ['install', ...quiet], own);
-  if (manifest.scripts?.build) {
+  for (const [script, command] of Object.entries(manifest.scripts ?? {}).filter(([script]) =>
+    script.startsWith('build'),
+  )) {
     // The page runs from any folder.
-    const vite = ['node_modules/vite/bin/vite.js', 'build', '--base', './', '--logLevel', 'error'];
-    await done(process.execPath, vite, own);
+    const options = command === 'vite build' ? ['--', '--base', './', '--logLevel', 'error'] : [];
+    await done('npm', ['run', script, ...options], own);
   }
   return own;
 }

@@ -2,7 +2,7 @@
 // models for the runtime with their model card, the mannequin, and the sources that editors open. Prints the size of
 // each entry and fails if a document states another size. `npm pack ./dist-library` makes the tarball.
 import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { dirname, join, posix, relative } from 'node:path';
+import { basename, dirname, join, posix, relative } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { brotliCompressSync } from 'node:zlib';
 import { rolldown } from 'rolldown';
@@ -143,33 +143,27 @@ const movedModules = {
 };
 
 /**
- * Writes minified bundles of the entries into min/, for pages with an import map or a content delivery network: there
- * each module is a request. They share their chunks, and the embedded files with the modules.
+ * Writes each entry as one minified file into min/, for pages with an import map or a content delivery network: there
+ * each module is a request. Files that load on demand stay those of the modules.
  */
 async function writeBundles() {
-  const shared = ['learned-weights.js', 'mannequin.js'].map((file) => join(out, file));
-  const build = await rolldown({
-    input: Object.fromEntries(entries.map((name) => [name, join(out, `${name}.js`)])),
-    platform: 'browser',
-    external: (id) => external(id) || shared.includes(id),
-    plugins: [
-      {
-        name: 'shared-files',
-        resolveId: {
-          filter: { id: /\/(learned-weights|mannequin)\.js$/ },
-          handler: (id, importer) => ({ id: join(dirname(importer), id), external: 'relative' }),
-        },
-      },
-    ],
-  });
-  // One chunk with three.js and one without, besides what loads on demand.
-  const groups = [
-    { name: 'drawing', test: /dist-library\/(avatar\/|api\/three)/, minShareCount: 2 },
-    { name: 'core', minShareCount: 2 },
-  ];
-  const names = { entryFileNames: '[name].js', chunkFileNames: 'chunk-[name].js' };
-  await build.write({ format: 'esm', dir: join(out, 'min'), ...names, minify: true, codeSplitting: { groups } });
-  await build.close();
+  const embedded = {
+    name: 'embedded-files',
+    resolveId: {
+      filter: { id: /\/(learned-weights|mannequin)\.js$/ },
+      handler: (id) => ({ id: `../${basename(id)}`, external: 'absolute' }),
+    },
+  };
+  for (const name of entries) {
+    const build = await rolldown({
+      input: join(out, `${name}.js`),
+      platform: 'browser',
+      external,
+      plugins: [embedded],
+    });
+    await build.write({ format: 'esm', file: join(out, 'min', `${name}.js`), minify: true, codeSplitting: false });
+    await build.close();
+  }
 }
 
 /** The path of the built package's folder in the paths of source maps. */

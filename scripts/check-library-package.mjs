@@ -1,6 +1,6 @@
 // Checks what the built packages promise besides their types: the links of their documents and the fields of their
-// manifests. Checks dist-library's source maps and declaration maps, the paths that its licence names, and the size of a
-// bundle that imports one name of it.
+// manifests. Checks dist-library's source maps and declaration maps, the paths that its licence names, and the size of
+// a bundle that imports one name of it.
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { dirname, join, relative } from 'node:path';
 import { build } from 'esbuild';
@@ -67,14 +67,16 @@ const hasCode = (file) =>
     .replace(/^(import|export) .*$/gm, '')
     .trim() !== '';
 
-/** The embedded files, and the bundler's own functions. */
-const withoutMap = ['learned-weights.js', 'mannequin.js', 'validator.js', 'bundled/runtime.js'];
+/** Whether a file needs no map: embedded files, the bundler's own functions, and bundles of modules of the package. */
+const needsNoMap = (name) =>
+  ['learned-weights.js', 'mannequin.js', 'validator.js', 'bundled/runtime.js'].includes(name) ||
+  name.startsWith('min/');
 
-/** Returns a message for each declaration and each file of code without a map. */
+/** Returns a message for each declaration and each file of code that lacks its map. */
 function missingMaps() {
   const code = [...endingWith('.js').filter(hasCode), ...endingWith('.d.ts')];
   return code
-    .filter((file) => !existsSync(`${file}.map`) && !withoutMap.includes(named(file)))
+    .filter((file) => !existsSync(`${file}.map`) && !needsNoMap(named(file)))
     .map((file) => `${named(file)} has no map`);
 }
 

@@ -1,6 +1,6 @@
 // Uses the packed packages as their users do. Compiles the consumers in examples/ against them, with the module
 // resolution of bundlers and of Node, strictly and with declarations checked; runs the programs of Node there.
-import { copyFileSync, mkdirSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { build } from 'esbuild';
 import { rolldown } from 'rolldown';
@@ -90,6 +90,23 @@ async function bundleWeights() {
   }
 }
 
+/**
+ * Checks that a server which renders pages can import every entry for them: none may touch `window` before it is used.
+ */
+async function importWithoutBrowser() {
+  const entries = Object.keys(packages).flatMap((name) => {
+    const { exports } = JSON.parse(readFileSync(join(folder, 'node_modules', name, 'package.json'), 'utf8'));
+    const code = Object.entries(exports).filter(([, target]) => target.default && !target.default.includes('*'));
+    return code.map(([entry]) => join(name, entry));
+  });
+  // A worker's code answers messages from its first line on.
+  const imports = entries.filter((entry) => entry !== 'threepoint/onnx-worker').map((entry) => `import '${entry}';`);
+  const program = join(folder, 'without-browser.mjs');
+  writeFileSync(program, imports.join('\n'));
+  const { code, output } = await run(process.execPath, [program], { capture: true, limitSeconds: 60 });
+  if (code !== 0) throw new SetupError(`An entry cannot be imported without a browser:\n${output}`);
+}
+
 await main(async () => {
   rmSync(folder, { recursive: true, force: true });
   for (const name of Object.keys(packages)) await unpack(name);
@@ -97,4 +114,5 @@ await main(async () => {
   for (const [consumer, types] of Object.entries(consumers)) await compileConsumer(consumer, types);
   for (const program of ['in-node.mjs', 'rooms-in-node.mjs']) await runProgram(program);
   await bundleWeights();
+  await importWithoutBrowser();
 });

@@ -87,6 +87,18 @@ export const bodyOptions = optionNames<BodySolverOptions>({
   events: true,
 });
 
+const eventNames = optionNames<BodyEvents>({
+  calibrated: true,
+  heightmismatch: true,
+  fallback: true,
+  changed: true,
+  discontinuity: true,
+  trackinglost: true,
+  trackingfound: true,
+  sessionstart: true,
+  sessionend: true,
+});
+
 /** Returns a copy that the page cannot change. Throws a RangeError where the measures are not human. */
 function copyChecked(calibration: Calibration): Calibration {
   demandPerson(calibration);
@@ -138,6 +150,7 @@ export class BodySolver {
    */
   constructor(options: BodySolverOptions) {
     demandOptions('Body', options, bodyOptions);
+    demandOptions('the events of Body', options.events ?? {}, eventNames);
     const { estimator = 'learned', calibration = 'auto', networks, profiler = null } = options;
     this.#events = options.events ?? {};
     this.#clock = options.clock ?? createPageClock(() => performance.now());

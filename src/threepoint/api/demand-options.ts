@@ -1,8 +1,11 @@
 /**
- * Throws a TypeError where options have a name that is not known: a misspelt one would have no effect. `of`: the
- * function or class with these options.
+ * Throws a TypeError where options are missing or have a name that is not known: a misspelt one would have no effect.
+ * `of`: the function or class with these options.
  */
-export function demandOptions(of: string, options: object, known: readonly string[]): void {
+export function demandOptions(of: string, options: object | null | undefined, known: readonly string[]): void {
+  if (typeof options !== 'object' || options === null) {
+    throw new TypeError(`${of} needs an object of options. Use ${known.join(', ')}.`);
+  }
   const unknown = Object.keys(options).find((name) => !known.includes(name));
   if (unknown === undefined) return;
   throw new TypeError(`“${unknown}” is not an option of ${of}. Use ${known.join(', ')}.`);

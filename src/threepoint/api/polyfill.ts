@@ -6,7 +6,7 @@ import { copyPose, invertTransform, makePose, type Pose, type Transform, transfo
 import { type XRBodyJoints, XRBodyPoser } from '../core/motion/xr-body';
 import { TrackedSession } from '../xr/tracked-session';
 import { Body, type BodyOptions, warnOfFallback } from './body';
-import { bodyOptions } from './body-solver';
+import { bodyOptions as solverOptions } from './body-solver';
 import { demandOptions } from './demand-options';
 
 export interface BodyTrackingOptions extends Omit<BodyOptions, 'events' | 'clock'> {
@@ -303,7 +303,7 @@ function warnOfMissingBody(reason: string): void {
 }
 
 /** The names of the options that are passed on to the body. */
-const trackingOptions = ['onFault', ...bodyOptions.filter((name) => name !== 'events' && name !== 'clock')];
+const trackingOptions = ['onFault', ...solverOptions.filter((name) => name !== 'events' && name !== 'clock')];
 
 /**
  * Adds `frame.body` to every session that requests the feature “body-tracking”: the device's own body, else one that is
@@ -315,7 +315,7 @@ const trackingOptions = ['onFault', ...bodyOptions.filter((name) => name !== 'ev
  * @example
  * const uninstall = installBodyTracking({ onFault: console.warn });
  */
-export function installBodyTracking({ onFault, ...options }: BodyTrackingOptions = {}): () => void {
+export function installBodyTracking(options: BodyTrackingOptions = {}): () => void {
   const xr = globalThis.navigator?.xr;
   if (!xr) {
     throw new Error(
@@ -323,9 +323,10 @@ export function installBodyTracking({ onFault, ...options }: BodyTrackingOptions
     );
   }
   demandOptions('installBodyTracking', options, trackingOptions);
+  const { onFault, ...bodyOptions } = options;
   const fallback = (estimator: EstimatorName, reason: string): void =>
     onFault ? onFault(reason) : warnOfFallback(estimator, reason, 'onFault');
-  const body = new Body({ ...options, events: { fallback } });
+  const body = new Body({ ...bodyOptions, events: { fallback } });
   const reportFault = onFault ?? warnOfMissingBody;
   const jointNames = [...new XRBodyPoser(body.calibration).names];
   const bodies = new WeakMap<XRSession, SessionBody>();

@@ -13,7 +13,7 @@ import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { DeviceBodyReader } from '../xr/device-body-reader';
 import { TrackedSession } from '../xr/tracked-session';
 import { Body, type BodyOptions, warnOfFallback } from './body';
-import { bodyOptions, type CalibrationSource, type TrackedPoint } from './body-solver';
+import { type CalibrationSource, bodyOptions as solverOptions, type TrackedPoint } from './body-solver';
 import { demandOptions, warnOfDisposed } from './demand-options';
 import { loadLearned } from './load-learned';
 import type { MotionWriter } from './motion-export';
@@ -97,6 +97,11 @@ async function read(source: AvatarSource): Promise<{ name: string; bytes: ArrayB
   if (source instanceof Blob) {
     return { name: source instanceof File ? source.name : 'the avatar', bytes: await source.arrayBuffer() };
   }
+  if (typeof source !== 'string' && !(source instanceof URL)) {
+    throw new TypeError(
+      "The avatar's source is missing. Pass its address, file or bytes: loadAvatar('/avatars/me.vrm').",
+    );
+  }
   const address = String(source);
   const name = address.split(/[?#]/)[0]?.split('/').at(-1) || address;
   const response = await fetch(address).catch((error: unknown) => {
@@ -133,10 +138,15 @@ export interface BodyTrackerEvents {
   readonly sessionend: object;
 }
 
-const trackerOptions = ['avatar', 'deviceBody', 'modelUrl', ...bodyOptions.filter((name) => name !== 'events')];
+const trackerOptions = ['avatar', 'deviceBody', 'modelUrl', ...solverOptions.filter((name) => name !== 'events')];
 
 /** The avatars that trackers draw, or have disposed of. */
 const ownedAvatars = new WeakMap<Avatar, 'drawn' | 'disposed'>();
+
+function demandRenderer(renderer: WebGLRenderer | undefined): void {
+  if (renderer) return;
+  throw new TypeError('renderer is missing. Pass the one that draws: new BodyTracker(renderer, { avatar }).');
+}
 
 /** Throws a sentence where `avatar` is no avatar, or is one of another tracker. */
 function demandAvatar(avatar: unknown): asserts avatar is Avatar {
@@ -192,10 +202,12 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
    * Throws a RangeError where the calibration is not human or the estimator is unknown, a TypeError where `avatar` is
    * none or an option is unknown, an Error where another tracker has the avatar.
    */
-  constructor(renderer: WebGLRenderer, { avatar, modelUrl, deviceBody = false, ...options }: BodyTrackerOptions) {
+  constructor(renderer: WebGLRenderer, options: BodyTrackerOptions) {
     super();
-    demandAvatar(avatar);
     demandOptions('BodyTracker', options, trackerOptions);
+    const { avatar, modelUrl, deviceBody = false, ...bodyOptions } = options;
+    demandRenderer(renderer);
+    demandAvatar(avatar);
     this.avatar = avatar;
     this.#deviceBody = deviceBody;
     this.#renderer = renderer;
@@ -205,7 +217,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
         : { networks: (name: string) => (name === 'learned' ? loadLearned({ modelUrl }) : Promise.reject(noWeights)) };
     this.body = new Body({
       ...networks,
-      ...options,
+      ...bodyOptions,
       events: {
         calibrated: (calibration, source) => {
           avatar.setCalibration(calibration);

@@ -257,6 +257,10 @@ describe('a body', () => {
     expect(() => new Body({ calibraton: calibration } as BodyOptions)).toThrow(
       '“calibraton” is not an option of Body. Use estimator, calibration, autoGrow, networks, clock, profiler, events.',
     );
+    const events = { fallbak: () => undefined } as BodyOptions['events'];
+    expect(() => new Body({ events: events! })).toThrow(
+      /^“fallbak” is not an option of the events of Body\. Use calib/,
+    );
   });
 
   test('that is disposed of has no pose, and warns once of a page that goes on using it', async () => {

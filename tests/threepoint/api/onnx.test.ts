@@ -64,6 +64,7 @@ test('another contract’s weights are taken from beside it', async () => {
 test('options that it does not know, and an address in place of a function, are refused in a sentence', () => {
   // reason: what a page without types may pass
   const create = (options: object) => () => onnxNetworks(options as Parameters<typeof onnxNetworks>[0]);
+  expect(() => onnxNetworks(undefined as never)).toThrow('onnxNetworks needs an object of options. Use modelUrl, ');
   expect(create({ modelURL: () => '/models/learned.json' })).toThrow('“modelURL” is not an option of onnxNetworks');
   expect(create({ modelUrl: '/models/' })).toThrow(
     "modelUrl is not a function. Pass one that returns a contract's address",

@@ -261,4 +261,19 @@ describe('a tracker that is given the wrong things', () => {
       '“bone” is not an option of loadAvatar',
     );
   });
+
+  test.each([
+    [
+      'no options',
+      () => new BodyTracker({} as WebGLRenderer, undefined as never),
+      /^BodyTracker needs .* Use avatar, /,
+    ],
+    ['no renderer', () => new BodyTracker(undefined as never, {} as never), /^renderer is missing\. Pass the one/],
+  ])('refuses %s', (_, call, sentence) => {
+    expect(call).toThrow(sentence);
+  });
+
+  test('loads nothing without a source', async () => {
+    await expect(loadAvatar(undefined as never)).rejects.toThrow(/^The avatar's source is missing\. Pass its address/);
+  });
 });

@@ -1,0 +1,5 @@
+import { Scene } from './scene';
+
+export default function Page() {
+  return <Scene />;
+}

@@ -1,0 +1,2 @@
+/** Writes plain files into out/. A page that a server renders needs no configuration. */
+export default { output: 'export' };
