@@ -3,7 +3,7 @@ import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
 import { type CalibrationGuide, createCalibrationGuide } from 'threepoint-ui/calibration-guide';
 import { remoteFaults } from './remote-faults';
 import type { ParticipantSession } from './session/participant-session';
-import type { StudyHost } from './study-host';
+import type { StudyHost } from './trial/study-host';
 
 /**
  * Measures the body of a participant in the headset, and checks device, room and height of one who takes part alone.

@@ -1,6 +1,6 @@
 import { setupFaults } from '../model/plan/remote-setup';
 import type { ParticipantSession } from './session/participant-session';
-import type { StudyHost } from './study-host';
+import type { StudyHost } from './trial/study-host';
 
 /**
  * Returns what prevents a participant who takes part alone from beginning on this device; `eyeHeight` [m], null: not

@@ -3,16 +3,16 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { ProgressEvent } from '../model/progress/advance';
 import { Answering } from './answering';
 import { BodyMeasurement } from './body-measurement';
+import { ExchangeTimer } from './exchange-timer';
 import type { StudyForm } from './forms/study-form';
+import type { ScreenActions } from './questions/study-situation';
 import { RaisedHands } from './raised-hands';
 import { reasonFor, refusalFor } from './reasons';
 import { lockedOutScreen, screenOf } from './screens/study-screens';
-import type { ScreenActions } from './screens/study-situation';
-import { ExchangeTimer } from './session/exchange-timer';
 import type { ParticipantSession } from './session/participant-session';
-import type { StudyHost } from './study-host';
 import type { StudyPage } from './study-page';
 import { SessionTrials } from './trial/session-trials';
+import type { StudyHost } from './trial/study-host';
 import type { FinishedTrial } from './trial/study-trial';
 
 /** The interval at which the screen follows the clock [ms]. */

@@ -1,5 +1,5 @@
 import type { Invited, StudyForm } from './forms/study-form';
-import type { StudyScreen } from './screens/study-screen';
+import type { StudyScreen } from './questions/study-screen';
 
 /** The display on which a participant reads and answers. */
 export interface StudyDisplay {

@@ -9,9 +9,9 @@ import { createParticipantClient } from '../client/study-client';
 import { invitationIn, studyLink, withdrawalLink } from '../client/study-link';
 import { createStudyCard, type StudyCard } from './forms/study-card';
 import { VrStudyPanel } from './sheet/vr-study-panel';
-import type { StudyHost } from './study-host';
 import type { After, StudyAddressBar, StudyDisplay } from './study-page';
 import { type AskedStudy, StudyVisit, type VisitState } from './study-visit';
+import type { StudyHost } from './trial/study-host';
 
 /** The study on the page, for its frame loop. */
 export interface StudyRun {

@@ -2,9 +2,9 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { ParticipantClient } from '../client/study-client';
 import { RunningStudy } from './running-study';
 import { StudyEntrance } from './study-entrance';
-import type { StudyHost } from './study-host';
 import { forgetSession, openSession } from './study-opening';
 import type { StudyPage } from './study-page';
+import type { StudyHost } from './trial/study-host';
 
 /** The study in the address; `participant` null: the address names none. */
 export interface AskedStudy {

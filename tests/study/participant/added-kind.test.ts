@@ -15,7 +15,7 @@ import { questionPart } from 'threepoint-study/participant/questions/question-sc
 import { questionTargets } from 'threepoint-study/participant/questions/question-sheet';
 import type { QuestionView } from 'threepoint-study/participant/questions/question-view';
 import { questionView, registerQuestionView } from 'threepoint-study/participant/questions/question-views';
-import type { ShownSession } from 'threepoint-study/participant/screens/study-situation';
+import type { ShownSession } from 'threepoint-study/participant/questions/study-situation';
 import { nullAnswerModel } from 'threepoint-study/simulation/answer-model';
 import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
 import { simulateStudy } from 'threepoint-study/simulation/simulate-study';

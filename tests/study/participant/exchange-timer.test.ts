@@ -1,4 +1,4 @@
-import { ExchangeTimer } from 'threepoint-study/participant/session/exchange-timer';
+import { ExchangeTimer } from 'threepoint-study/participant/exchange-timer';
 import { expect, test } from 'vitest';
 
 /** Exchanges with a server that answers or not; each time set by the timer is run by the test. */

@@ -6,8 +6,8 @@ import type { Question } from 'threepoint-study/model/questionnaires/questionnai
 import { type Answers, shippedQuestionnaires, typedAnswer } from 'threepoint-study/model/questionnaires/questionnaires';
 import { questionPart } from 'threepoint-study/participant/questions/question-screen';
 import { questionTargets } from 'threepoint-study/participant/questions/question-sheet';
+import { height, width } from 'threepoint-study/participant/questions/sheet-target';
 import type { ParticipantSession } from 'threepoint-study/participant/session/participant-session';
-import { height, width } from 'threepoint-study/participant/sheet/sheet-target';
 import { describe, expect, test } from 'vitest';
 import { expectApart } from '../../page/shell/menu-parts';
 import { examplePlan } from '../model/studies';

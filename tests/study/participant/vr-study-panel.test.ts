@@ -1,5 +1,5 @@
 import { Phrases } from 'threepoint-study/model/phrases/phrases';
-import type { StudyScreen } from 'threepoint-study/participant/screens/study-screen';
+import type { StudyScreen } from 'threepoint-study/participant/questions/study-screen';
 import { VrStudyPanel } from 'threepoint-study/participant/sheet/vr-study-panel';
 import { expect, test } from 'vitest';
 import { drawNowhere } from '../../page/shell/drawing-in-node';

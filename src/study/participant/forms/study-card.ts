@@ -1,7 +1,7 @@
 import { button, element } from 'threepoint-ui/element';
 import type { Phrases } from '../../model/phrases/phrases';
 import { dotNodes, questionNodes } from '../questions/question-card';
-import type { StudyScreen } from '../screens/study-screen';
+import type { StudyScreen } from '../questions/study-screen';
 import { formNodes, formNote } from './form-nodes';
 import { paragraphs } from './form-parts';
 import type { StudyForm } from './study-form';

@@ -1,6 +1,6 @@
 import { element } from 'threepoint-ui/element';
-import type { StudyScreen } from '../screens/study-screen';
-import { height, type Target, width } from '../sheet/sheet-target';
+import { height, type Target, width } from '../questions/sheet-target';
+import type { StudyScreen } from '../questions/study-screen';
 import { paintSheet, targetsOf } from '../sheet/study-sheet';
 
 /** The sheet of the headset on a flat page, drawn by the same code and pressed with the mouse. */

@@ -7,10 +7,10 @@ import { advance, type ProgressEvent } from '../../model/progress/advance';
 import { begin, currentStep, type Progress } from '../../model/progress/progress';
 import { Answering } from '../answering';
 import type { StudyForm } from '../forms/study-form';
+import type { StudyScreen } from '../questions/study-screen';
+import type { ScreenActions, ShownSession, StudySituation } from '../questions/study-situation';
 import { refusalFor } from '../reasons';
-import type { StudyScreen } from '../screens/study-screen';
 import { screenOf } from '../screens/study-screens';
-import type { ScreenActions, ShownSession, StudySituation } from '../screens/study-situation';
 import type { UploadStatus } from '../session/participant-session';
 import { type PreviewStop, previewStops } from './preview-stops';
 

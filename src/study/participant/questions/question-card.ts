@@ -1,6 +1,6 @@
 import { button, element } from 'threepoint-ui/element';
-import type { ScreenQuestion } from '../screens/study-screen';
 import { questionView } from './question-views';
+import type { ScreenQuestion } from './study-screen';
 
 const phraseOfState = {
   answered: 'question.answered',

@@ -1,9 +1,9 @@
 import { inLanguage } from '../../model/phrases/words';
 import type { Question } from '../../model/questionnaires/questionnaire-schema';
 import { typedAnswer, unanswered } from '../../model/questionnaires/questionnaires';
-import type { ScreenQuestion } from '../screens/study-screen';
-import type { ScreenActions, StudySituation } from '../screens/study-situation';
 import { questionView } from './question-views';
+import type { ScreenQuestion } from './study-screen';
+import type { ScreenActions, StudySituation } from './study-situation';
 
 type Asking = Pick<StudySituation, 'session' | 'typed' | 'triedToSubmit' | 'refusal'>;
 type Asked = Pick<ScreenActions, 'choose' | 'goTo' | 'type'>;

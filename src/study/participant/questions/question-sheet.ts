@@ -1,7 +1,7 @@
 import { vrColors, vrFont, wrap } from 'threepoint-ui/vr-panel';
-import type { ScreenQuestion } from '../screens/study-screen';
-import { inner, margin, type Target, width } from '../sheet/sheet-target';
 import { questionView } from './question-views';
+import { inner, margin, type Target, width } from './sheet-target';
+import type { ScreenQuestion } from './study-screen';
 
 /** The most questions for which each has a dot; otherwise their number is in the corner. */
 const mostDots = 10;

@@ -1,6 +1,6 @@
 import type { Phrases } from '../../model/phrases/phrases';
 import type { Answer, AnswerForm } from '../../model/questionnaires/question-kind';
-import type { Target } from '../sheet/sheet-target';
+import type { Target } from './sheet-target';
 
 /** The fields of questions by kind. The view of each kind adds its own field to this interface. */
 // biome-ignore lint/suspicious/noEmptyInterface: views merge their fields into it

@@ -1,4 +1,4 @@
-import { inner, margin, type Target, width } from '../sheet/sheet-target';
+import { inner, margin, type Target, width } from './sheet-target';
 
 /** Letters and words on the keys of the sheet. */
 export interface KeyLabels {

@@ -6,14 +6,14 @@ import type { StudyStep } from '../../model/plan/schedule';
 import { clockText, type Progress } from '../../model/progress/progress';
 import { screenQuestions } from '../answering';
 import { questionPart } from '../questions/question-screen';
+import type { StudyScreen } from '../questions/study-screen';
+import type { ScreenActions, ShownSession, StudySituation } from '../questions/study-situation';
 import type { UploadStatus } from '../session/participant-session';
 import { noStorage } from '../session/session-store';
 import { silentStorage } from '../session/storage-timeout';
 import { calibrationScreen } from './calibration-screens';
 import { roundScreen } from './round-screens';
 import { askToStopButton, pauseButton, type ScreenParts } from './screen-parts';
-import type { StudyScreen } from './study-screen';
-import type { ScreenActions, ShownSession, StudySituation } from './study-situation';
 
 /** Why the device could not store, in the participant's language where the page knows the reason. */
 function storageReason(fault: string, say: Phrases['say']): string {

@@ -1,7 +1,7 @@
 import { fillRounded, vrColors, vrFont, wrap } from 'threepoint-ui/vr-panel';
 import { paintQuestion, questionTargets } from '../questions/question-sheet';
-import type { ScreenButton, StudyScreen } from '../screens/study-screen';
-import { height, inner, margin, type Target, width } from './sheet-target';
+import { height, inner, margin, type Target, width } from '../questions/sheet-target';
+import type { ScreenButton, StudyScreen } from '../questions/study-screen';
 
 /** Returns everything of a screen that can be pressed, laid out. */
 export const targetsOf = ({ question, buttons }: StudyScreen): readonly Target[] => [

@@ -3,8 +3,8 @@ import { wrapAngle } from 'threepoint/core/math/angle';
 import { createVrPanel } from 'threepoint-ui/vr-panel';
 import type { Pointer } from 'threepoint-ui/vr-pointers';
 import { createPanelTouch } from 'threepoint-ui/vr-touch';
-import type { StudyScreen } from '../screens/study-screen';
-import { height, pixelsPerMetre, type Target, width } from './sheet-target';
+import { height, pixelsPerMetre, type Target, width } from '../questions/sheet-target';
+import type { StudyScreen } from '../questions/study-screen';
 import { paintSheet, targetsOf } from './study-sheet';
 
 /** A head in the floor frame [m]. */

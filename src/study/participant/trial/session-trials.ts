@@ -4,7 +4,7 @@ import { randomFor } from '../../model/plan/shuffle';
 import { placeOf } from '../../model/progress/progress';
 import { reasonFor } from '../reasons';
 import type { ParticipantSession } from '../session/participant-session';
-import type { StudyHost } from '../study-host';
+import type { StudyHost } from './study-host';
 import { type FinishedTrial, isPlayed, lastPlayedBefore, type PlayedStep, PlayedTrial } from './study-trial';
 import type { TaskPlace, TaskRunner } from './task-runner';
 import { type Prepared, TrialPreparation } from './trial-preparation';

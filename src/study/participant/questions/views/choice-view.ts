@@ -1,8 +1,8 @@
 import { element } from 'threepoint-ui/element';
 import { inLanguage } from '../../../model/phrases/words';
 import type { ChoiceForm } from '../../../model/questionnaires/kinds/choice';
-import { inner, margin } from '../../sheet/sheet-target';
 import type { QuestionView } from '../question-view';
+import { inner, margin } from '../sheet-target';
 import { radios, type ScreenPoint } from './card-parts';
 
 /** A list of options. */

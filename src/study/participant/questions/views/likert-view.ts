@@ -1,8 +1,8 @@
 import { element } from 'threepoint-ui/element';
 import { inLanguage } from '../../../model/phrases/words';
 import { type LikertForm, likertPoints } from '../../../model/questionnaires/kinds/likert';
-import { inner, margin } from '../../sheet/sheet-target';
 import type { QuestionView } from '../question-view';
+import { inner, margin } from '../sheet-target';
 import { endNodes, mostNumbered, radios, type ScreenEnds, type ScreenPoint } from './card-parts';
 import { paintEnds } from './sheet-parts';
 

@@ -1,5 +1,5 @@
 import { vrColors, vrFont } from 'threepoint-ui/vr-panel';
-import { inner, margin, width } from '../../sheet/sheet-target';
+import { inner, margin, width } from '../sheet-target';
 import type { ScreenEnds } from './card-parts';
 
 /** Draws the texts below the ends of a scale at this height [pixels]. */

@@ -2,8 +2,8 @@ import { element } from 'threepoint-ui/element';
 import { fillRounded, vrColors } from 'threepoint-ui/vr-panel';
 import { inLanguage } from '../../../model/phrases/words';
 import { type SliderForm, sliderValues } from '../../../model/questionnaires/kinds/slider';
-import { inner, margin, type Target, width } from '../../sheet/sheet-target';
 import type { QuestionView } from '../question-view';
+import { inner, margin, type Target, width } from '../sheet-target';
 import { endNodes, type ScreenEnds } from './card-parts';
 import { paintEnds } from './sheet-parts';
 

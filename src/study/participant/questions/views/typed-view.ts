@@ -4,9 +4,9 @@ import type { Phrases } from '../../../model/phrases/phrases';
 import { inLanguage } from '../../../model/phrases/words';
 import type { NumberForm } from '../../../model/questionnaires/kinds/number';
 import type { TextForm } from '../../../model/questionnaires/kinds/text';
-import { inner, margin } from '../../sheet/sheet-target';
 import type { FieldContext, QuestionView, SheetView } from '../question-view';
 import { type KeyLabels, keyTargets } from '../sheet-keys';
+import { inner, margin } from '../sheet-target';
 
 /** A field in which the participant types. */
 export interface TypedField<Kind extends 'number' | 'text' = 'number' | 'text'> {

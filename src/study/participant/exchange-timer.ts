@@ -1,5 +1,5 @@
-import type { After } from '../study-page';
-import type { ParticipantSession } from './participant-session';
+import type { ParticipantSession } from './session/participant-session';
+import type { After } from './study-page';
 
 /** The usual and the longest interval between two exchanges with the server [ms]. */
 const exchangeEveryMs = 2000;

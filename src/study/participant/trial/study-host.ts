@@ -1,9 +1,9 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { Side } from 'threepoint/core/math/side';
-import type { Embodiment } from '../model/plan/embodiment';
-import type { DeviceFault } from '../model/plan/remote-setup';
-import type { TrialHost } from './trial/study-trial';
-import type { TaskRunner } from './trial/task-runner';
+import type { Embodiment } from '../../model/plan/embodiment';
+import type { DeviceFault } from '../../model/plan/remote-setup';
+import type { TrialHost } from './study-trial';
+import type { TaskRunner } from './task-runner';
 
 /** The interface of the page that the study needs. */
 export interface StudyHost extends TrialHost {

@@ -1,5 +1,5 @@
 import type { Phrases } from '../../model/phrases/phrases';
-import type { ScreenField } from '../questions/question-view';
+import type { ScreenField } from './question-view';
 
 /** A button of a screen. */
 export interface ScreenButton {
