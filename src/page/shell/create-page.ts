@@ -131,7 +131,7 @@ type Play = ReturnType<typeof createPlay>;
 /** Creates the controls, motion capture and the steps of a frame. */
 function createInterface({ context, notices }: PageOptions, base: Base, play: Play) {
   const { switches, settings, writer, store, changes } = context;
-  const { timing, stage, recorder, avatar, headset, prepare } = base;
+  const { timing, stage, recorder, avatar, headset, prepare, quality } = base;
   const { body, networks } = base.pageBody;
   const { study, server, activities, userCalibration, source, impaired } = play;
   const { scene } = stage.studio;
@@ -184,6 +184,7 @@ function createInterface({ context, notices }: PageOptions, base: Base, play: Pl
     controls,
     study,
     stage,
+    timing,
     mocap,
   });
   return { mocap, controls, frame };

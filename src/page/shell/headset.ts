@@ -1,5 +1,6 @@
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { DeviceBodyReader } from 'threepoint/xr/device-body-reader';
+import { FrameRateControl } from 'threepoint/xr/frame-rate';
 import { giveFramesToEvents } from 'threepoint/xr/frameless-events';
 import { buzz, type Pulse } from 'threepoint/xr/haptics';
 import { describeXrSupport, type PlayRoom, requestVrSession, roomOf, type XrFault } from 'threepoint/xr/session';
@@ -52,6 +53,8 @@ interface Session {
   readonly room: PlayRoom | null;
   readonly tracking: TrackedSession;
 }
+  /** The device draws at another rate from now on. */
+  rateChanged(): void;
 
 async function end(xr: XRSession): Promise<void> {
   // reason: only a session that has ended already, or is about to, refuses to end
@@ -63,6 +66,7 @@ export class Headset {
   readonly #options: HeadsetOptions;
   #listener: HeadsetListener | null = null;
   #emulator: Emulator | null = null;
+  readonly rates: FrameRateControl;
   #entering = false;
   /** null: it is not on its way. */
   #installing: Promise<void> | null = null;
@@ -139,6 +143,16 @@ export class Headset {
   }
 
   /** The emulator where there is no headset, loaded when it is first needed; null and a notice where it fails. */
+  /** The rates that the headset offers [Hz], ascending; empty: it offers no choice, or none is worn. */
+  get ratesHz(): readonly number[] {
+    return this.#session?.rates.rates ?? [];
+  }
+
+  /** Counts a frame at this time [s] whose work took this long [s]; lets the headset draw at the rate that is held. */
+  observeFrame(time: number, workSeconds: number): void {
+    this.#session?.rates.observe(time, workSeconds);
+  }
+
   async ensureEmulator(): Promise<Emulator | null> {
     if (this.#real || this.#emulator) return this.#emulator;
     this.#installing ??= this.#install();
@@ -244,8 +258,14 @@ export class Headset {
       },
     });
     tracking.start();
-    this.#session = { xr, room, tracking };
-    xr.addEventListener('visibilitychange', () => this.#listener?.visibilityChanged());
+    // The emulator's rates are names alone: it draws when its window does.
+    const rates = new FrameRateControl(this.#emulator ? {} : xr);
+    this.#session = { xr, room, tracking, rates };
+    xr.addEventListener('visibilitychange', () => {
+      rates.restart();
+      this.#listener?.visibilityChanged();
+    });
+    xr.addEventListener('frameratechange', () => this.#listener?.rateChanged());
     if (!settings.actor) this.#emulator?.release();
   }
 

@@ -13,6 +13,7 @@ import type { Activities } from './activities';
 import type { Controls } from './controls/controls';
 import type { DeviceDifference } from './device-difference';
 import type { FrameParts } from './frame-loop';
+import type { FrameTiming } from './frame-timing';
 import type { Headset } from './headset';
 import type { PageMocap } from './page-mocap';
 import type { PageStudy } from './page-study';
@@ -25,6 +26,7 @@ export interface PageFrameOptions {
   readonly settings: Pick<Settings, 'mirror'>;
   readonly notices: Pick<Notices, 'show'>;
   readonly source: TrackingSource;
+  readonly timing: Pick<FrameTiming, 'lastMs'>;
   /** Between what is tracked and the body, where a study wants the body worse than it could be. */
   readonly impaired: Pick<TrackingDegradation, 'apply' | 'reset'>;
   readonly body: Pick<BodySolver, 'update' | 'warmUp' | 'pose' | 'estimator' | 'discontinuity' | 'calibration'>;
@@ -72,7 +74,10 @@ export class PageFrame implements FrameParts<XRFrame> {
   }
 
   track(time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
-    return this.#options.source.read(time, deviceFrame);
+    const { source, study, headset, timing } = this.#options;
+    // A study measures all of its rounds at one rate.
+    if (deviceFrame && !study.run) headset.observeFrame(time, timing.lastMs / 1000);
+    return source.read(time, deviceFrame);
   }
 
   observe(frame: TrackingFrame): void {

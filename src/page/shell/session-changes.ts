@@ -60,6 +60,13 @@ export class SessionChanges implements HeadsetListener {
 
   emulatorChanged(): void {
     this.#options.controls.show();
+  rateChanged(): void {
+    const { timing, headset, controls } = this.#options;
+    timing.setRate(headset.pictureRateHz);
+    timing.reset();
+    controls.show();
+  }
+
   }
 
   /** The window of the page goes behind others, or comes back. */

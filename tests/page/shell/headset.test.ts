@@ -76,6 +76,7 @@ async function page(draw: () => Promise<void> = () => Promise.resolve()) {
   await headset.prepare();
   return { headset, session, happened, told };
 }
+    rateChanged: () => undefined,
 
 const soon = (): Promise<void> => new Promise((resolve) => setTimeout(resolve));
 

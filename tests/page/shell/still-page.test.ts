@@ -74,6 +74,7 @@ async function openPage(estimator: EstimatorName, calibration: Calibration, netw
     settings: { mirror: false },
     notices: { show: (_: unknown, fault: unknown) => faults.push(fault) },
     source,
+    timing: { lastMs: 0 },
     impaired,
     body,
     recorder,
