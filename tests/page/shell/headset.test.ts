@@ -5,6 +5,11 @@ import { afterEach, describe, expect, test, vi } from 'vitest';
 let installed = 0;
 vi.mock('iwer', () => ({
   metaQuest3: {},
+  XRReferenceSpace: class {
+    getOffsetReferenceSpace(): void {
+      throw new Error('no session of this test moves its floor');
+    }
+  },
   XRDevice: class {
     readonly position = { set: () => undefined };
     readonly controllers = {};
