@@ -76,12 +76,12 @@ async function page(draw: () => Promise<void> = () => Promise.resolve()) {
     refused: () => void happened.push('refused'),
     discontinuity: () => undefined,
     visibilityChanged: () => undefined,
+    rateChanged: () => undefined,
     emulatorChanged: () => undefined,
   });
   await headset.prepare();
   return { headset, session, happened, told };
 }
-    rateChanged: () => undefined,
 
 const soon = (): Promise<void> => new Promise((resolve) => setTimeout(resolve));
 

@@ -43,6 +43,8 @@ function drawn(change: Partial<ShownInvitation>) {
     calibration: null,
     overlay: false,
     deviceBody: false,
+    nextPassthrough: null,
+    beside: null,
     builtInBody: 'mannequin',
     skinTone: undefined,
     places: [],

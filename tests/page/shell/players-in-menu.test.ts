@@ -45,6 +45,8 @@ const listing = (others: readonly OtherPlayer[], { actions } = recorded()): VrMe
   calibration: null,
   overlay: false,
   deviceBody: false,
+  nextPassthrough: null,
+  beside: null,
   builtInBody: 'mannequin',
   skinTone: undefined,
   places: [],

@@ -35,6 +35,7 @@ function player(recorder = new Recorder()) {
     },
     controls: { show: nothing, setWorn: nothing, layOut: nothing },
     study: { run: null },
+    passthrough: { sessionChanged: async () => undefined },
   });
   changes.followWindow();
   return {
