@@ -14,7 +14,7 @@ async function enterRoom(page: Page, room: EmulatedRoom, query = '') {
   await installRoom(page, room);
   await page.getByRole('button', { name: 'Enter AR' }).click();
   await page.waitForFunction(() => Boolean(window.emulatedDevice?.activeSession));
-  await expect.poll(async () => (await probe(page)).passthrough).not.toBeNull();
+  await expect.poll(async () => (await probe(page)).passthrough, { timeout: 90_000 }).not.toBeNull();
   return headset;
 }
 
@@ -68,6 +68,15 @@ test('the avatar stands beside its user by a button of the menu, whole, and goes
   await headset.place({ head: lookingAtMenu });
   await pressInMenu(page, 'Back into your body');
   await waitForCanvasText(page, 'Stand beside yourself');
+});
+
+test('a picture of the shadow on the real floor, in high quality @nightly', async ({ page }) => {
+  test.setTimeout(240_000);
+  const headset = await enterRoom(page, { ...livingRoom, floorHeight: 0 }, '&quality=high');
+  await expect.poll(async () => (await passthrough(page))?.anchored, { timeout: 120_000 }).toBe(true);
+  await headset.place({ head: { position: [0, 1.6, 0], orientation: [-0.4, 0, 0, 0.9165] } });
+  await frames(page, 6);
+  await keepPicture(page, 'passthrough-shadow');
 });
 
 test('archery stands in a hall at its true distances; a living room gets a sentence and the usual world @full', async ({

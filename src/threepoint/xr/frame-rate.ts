@@ -5,10 +5,8 @@ const windowSeconds = 10;
 const lateAfterIntervals = 1.5;
 /** A higher rate is tried only if the work of a frame leaves this share of its interval to compositor and graphics. */
 const workShare = 0.6;
-/** Frames right after a change of the rate or a pause do not count [s]. */
+/** Frames right after the start or a change of the rate do not count [s]. */
 const settleSeconds = 1;
-/** Time without a frame after which the page was paused [s]. */
-const pauseSeconds = 0.5;
 /** A rate that was not held is tried again after this time [s], which doubles with each failure up to the second. */
 const shortestRetry = 60;
 const longestRetry = 960;
@@ -66,11 +64,12 @@ export class FrameRateControl {
     if (rate === null || this.rates.length === 0) return;
     const interval = time - this.#last;
     this.#last = time;
-    if (!(interval < pauseSeconds)) {
+    if (Number.isNaN(interval)) {
       this.#begin(time);
       return;
     }
     if (time < this.#windowStart) return;
+    // A pause, however long, is one late frame.
     if (interval > lateAfterIntervals / rate) this.#late += 1;
     const next = this.rates.find((higher) => higher > rate);
     if (next !== undefined && workSeconds > workShare / next) this.#heavy += 1;
