@@ -331,7 +331,15 @@ describe('the buttons of the menu', () => {
     press('passthrough', mirror);
     press('studio', atCourt());
     const bodies = ['wear mannequin', 'in fair', 'in fair', 'plain others false'];
-    expect(done).toEqual(['overlay false', 'go to ball', 'ready false', ...bodies, 'next in the room true', 'beside false', 'go to studio']);
+    expect(done).toEqual([
+      'overlay false',
+      'go to ball',
+      'ready false',
+      ...bodies,
+      'next in the room true',
+      'beside false',
+      'go to studio',
+    ]);
   });
 
   test('an unavailable estimator is shown and cannot be pressed', () => {
