@@ -12,6 +12,46 @@ test('the button enters VR, and leaving brings the page back', async ({ page }) 
   await expect(page.getByRole('button', { name: 'Enter VR' })).toBeEnabled();
 });
 
+test('recentring moves the floor under the head, and the body goes on', async ({ page }) => {
+  const headset = await openWithHeadset(page, 'estimator=ik');
+  await enterVr(page);
+  await headset.place({ head: { position: [0.6, 1.6, 0.4] } });
+  await expect.poll(async () => (await probe(page)).tracking?.head[0]).toBeCloseTo(0.6, 2);
+  await page.getByRole('button', { name: 'Recentre' }).click();
+  await expect.poll(async () => Math.hypot(...((await probe(page)).tracking?.head ?? [9]))).toBeCloseTo(1.6, 2);
+  await headset.place({ head: { position: [0.7, 1.6, 0.4] } });
+  await expect.poll(async () => (await joint(page, 'head'))[0]).toBeCloseTo(0.1, 1);
+});
+
+test('the emulator is entered and left ten times: the picture, the button and the memory are as before @full', async ({
+  page,
+}) => {
+  test.setTimeout(180_000);
+  const headset = await openWithHeadset(page, 'estimator=ik');
+  /** What a visit leaves: the picture's size and place, and what the graphics device holds. */
+  const left = async () => {
+    await expect(page.getByRole('button', { name: 'Enter VR' })).toBeEnabled();
+    const { count } = (await probe(page)).frame;
+    await expect.poll(async () => (await probe(page)).frame.count).toBeGreaterThan(count + 2);
+    const { geometries, textures, programs } = (await probe(page)).drawing;
+    const picture = await page.evaluate(() => {
+      const canvas = document.querySelector<HTMLCanvasElement>('main > #stage');
+      const { style, width, height } = canvas ?? {};
+      return { width, height, style: style?.cssText, mains: document.querySelectorAll('main').length };
+    });
+    return { geometries, textures, programs, picture };
+  };
+  const visit = async () => {
+    await enterVr(page, { stepMs: null });
+    await expect.poll(async () => (await probe(page)).activity).toBe('vr');
+    await headset.endSession();
+    await expect.poll(async () => (await probe(page)).activity).toBe('desktop');
+    return left();
+  };
+  const first = await visit();
+  for (let times = 1; times < 10; times++) expect(await visit()).toEqual(first);
+});
+
 for (const estimator of ['ik', 'learned', 'paper'] as const) {
   const night = estimator === 'learned' ? '' : ' @nightly';
   test(`${estimator}: the body goes where the head goes${night}`, async ({ page }) => {

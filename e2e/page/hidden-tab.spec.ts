@@ -42,7 +42,7 @@ async function play(page: Page, origin: string, room: string, name: string): Pro
  */
 for (const [seconds, suite] of [
   [12, '@realtime'],
-  [60, '@nightly'],
+  [90, '@nightly'],
   [330, '@nightly'],
 ] as const) {
   test(`a tab in a match is hidden for ${seconds} s: its seat, clock and bots are kept ${suite}`, async ({

@@ -11,10 +11,11 @@ import { reportFaults, showStartFailure } from './shell/page-faults';
 import { PageLoading } from './shell/page-loading';
 
 /** What entering would mean: a real headset, or why not and the emulated one. */
-async function offerSessions(headset: Headset, button: EnterButton): Promise<void> {
-  const { real, sentence } = await headset.prepare();
+async function offerSessions(headset: Headset, button: EnterButton, study: boolean): Promise<void> {
+  const { real, sentence, passthrough } = await headset.prepare();
   button.show({
     label: real ? 'Enter VR' : 'Enter VR (emulated)',
+    passthroughLabel: passthrough && !study ? 'Enter AR' : null,
     sentence: sentence && `${sentence} An emulated headset takes its place.`,
     enabled: true,
   });
@@ -89,11 +90,15 @@ async function start(): Promise<void> {
     const address = switches.avatar;
     void avatar.open(address).then((outcome) => (outcome === 'motion' ? page.mocap.open([address]) : undefined));
   }
-  const enterButton = createEnterButton(pageElement('enter', HTMLElement), () => void headset.enter());
+  const enter = (passthrough: boolean) => {
+    if (passthrough !== context.settings.passthrough) context.writer.keep({ passthrough });
+    void headset.enter(passthrough);
+  };
+  const enterButton = createEnterButton(pageElement('enter', HTMLElement), enter);
   run(page, context);
 
   // The network loads in parallel to the avatar, and IK draws until it is ready.
-  const sessionsOffered = offerSessions(headset, enterButton);
+  const sessionsOffered = offerSessions(headset, enterButton, switches.study !== null);
   const chosen = body.setEstimator(switches.estimator ?? store.preferences.estimator ?? 'learned');
   void chosen.then(() => loading.report('the network', 1));
   await showFirstBody(page, loading);

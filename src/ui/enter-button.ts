@@ -3,6 +3,8 @@ import { button, element } from './element';
 /** What entering would mean now. sentence: shown below the button; null: nothing to say. */
 export interface EnterState {
   readonly label: string;
+  /** The label of the second button, which enters a session that shows the room around the user; null: none. */
+  readonly passthroughLabel: string | null;
   readonly sentence: string | null;
   readonly enabled: boolean;
 }
@@ -11,15 +13,18 @@ export interface EnterButton {
   show(state: EnterState): void;
 }
 
-/** The one big button of the page. */
-export function createEnterButton(region: HTMLElement, onClick: () => void): EnterButton {
-  const node = button('Enter VR', onClick, { class: 'enter', disabled: true });
+/** The big button of the page, and beside it the one for passthrough. */
+export function createEnterButton(region: HTMLElement, onEnter: (passthrough: boolean) => void): EnterButton {
+  const node = button('Enter VR', () => onEnter(false), { class: 'enter', disabled: true });
+  const passthrough = button('', () => onEnter(true), { class: 'enter-ar', hidden: true });
   const sentence = element('p', { class: 'sentence', role: 'status' });
-  region.append(node, sentence);
+  region.append(element('div', {}, node, passthrough), sentence);
   return {
     show(state) {
       node.textContent = state.label;
       node.disabled = !state.enabled;
+      passthrough.textContent = state.passthroughLabel;
+      passthrough.hidden = state.passthroughLabel === null;
       sentence.textContent = state.sentence ?? '';
       sentence.hidden = state.sentence === null;
     },

@@ -382,7 +382,7 @@ export const attackRows = {
     tests: ['tests/rooms/server/server-clock.test.ts'],
   },
   'hidden-tab': {
-    inject: 'A player’s tab is hidden for 12 s, 1 min and 5½ min',
+    inject: 'A player’s tab is hidden for 12 s, 1½ min and 5½ min',
     sees: 'Others see “away”; its bots hand over their seats; the return is immediate',
     target: '0 seats lost, 0 errors, heap +4 MB at most',
     tests: ['e2e/page/hidden-tab.spec.ts'],

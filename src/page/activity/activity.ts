@@ -108,6 +108,13 @@ export interface OpenActivity {
   dispose(): void;
 }
 
+/** The free floor about the user's place that looks along −Z [m]. */
+export interface FloorNeeds {
+  readonly halfWidth: number;
+  readonly ahead: number;
+  readonly behind: number;
+}
+
 /** What a study can do with an activity that it runs as a task. */
 export interface StudyHost<Opened> {
   readonly settings: ActivitySettings;
@@ -148,6 +155,8 @@ export interface Activity<Opened extends OpenActivity = OpenActivity> {
   readonly title: string;
   /** The place with its article, which starts the sentence of a notice if it cannot be opened. */
   readonly place: string;
+  /** The free floor that the activity needs in the user's own room; absent: it is never shown there. */
+  readonly floor?: FloorNeeds;
   /** Loads and enters the activity. Rejects with a reason. */
   load(context: ActivityContext): Promise<Opened>;
   /** Makes the task that studies run; absent: no study can use this activity. */

@@ -5,6 +5,7 @@ export const archery = {
   name: 'archery',
   title: 'Archery',
   place: 'The archery range',
+  floor: { halfWidth: 2.5, ahead: 11, behind: 0.5 },
   async load(context) {
     const { createArcheryActivity } = await import('./archery-activity');
     return createArcheryActivity(context);

@@ -5,6 +5,7 @@ export const ball = {
   name: 'ball',
   title: 'Ball game',
   place: 'The ball court',
+  floor: { halfWidth: 1.75, ahead: 5.6, behind: 0.5 },
   async load(context) {
     const { openCourt } = await import('./open-court');
     return openCourt(context);

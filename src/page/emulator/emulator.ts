@@ -30,7 +30,8 @@ const rest = { head: vec3(0, 1.59, 0), left: vec3(-0.22, 1.1, -0.32), right: vec
  * real headsets never pay for it.
  */
 export async function installEmulator(): Promise<Emulator> {
-  const { XRDevice: Device, metaQuest3 } = await import('iwer');
+  const { XRDevice: Device, XRReferenceSpace: ReferenceSpace, metaQuest3 } = await import('iwer');
+  mendOffsetSpaces(ReferenceSpace.prototype);
   const device = new Device(metaQuest3, { stereoEnabled: false });
   device.installRuntime({ forceInstall: true });
   markAsTracked(device);
@@ -121,6 +122,19 @@ function place(target: { readonly position: Setter3; readonly quaternion: Setter
   const { position: p, orientation: o } = pose;
   target.position.set(p.x, p.y, p.z);
   target.quaternion.set(o.x, o.y, o.z, o.w);
+}
+
+/** What iwer has of a reference space. */
+interface OffsetSpaces {
+  getOffsetReferenceSpace(origin: unknown): unknown;
+}
+
+/** Gives iwer the matrix of an offset, which it takes the transform itself for: every pose in such a space is NaN. */
+function mendOffsetSpaces(spaces: OffsetSpaces): void {
+  const { getOffsetReferenceSpace } = spaces;
+  spaces.getOffsetReferenceSpace = function (this: OffsetSpaces, origin) {
+    return getOffsetReferenceSpace.call(this, (origin as XRRigidTransform).matrix);
+  };
 }
 
 /**

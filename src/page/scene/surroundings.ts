@@ -10,6 +10,16 @@ export interface DistantLight {
   readonly from: Triple;
 }
 
+/** The light of a real room, as a device estimates it. */
+export interface EstimatedLight {
+  /** The direction from which most of the light comes, floor frame; unit. */
+  readonly from: Triple;
+  /** The linear colour of that light times its strength; white of strength 1 is usual room light. */
+  readonly key: Triple;
+  /** The linear colour of the light from all sides times its strength. */
+  readonly fill: Triple;
+}
+
 /** How people and things are lit. The number of lights never changes, or every material would be compiled again. */
 export interface Lighting {
   /** The one light that throws shadows. */

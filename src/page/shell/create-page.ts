@@ -26,6 +26,7 @@ import { PageFrame } from './page-frame';
 import type { PageLoading } from './page-loading';
 import { PageMocap } from './page-mocap';
 import { PageStudy } from './page-study';
+import { PassthroughHost } from './passthrough-host';
 import { exposeProbe, readProbe } from './probe';
 import { SessionChanges } from './session-changes';
 import { pressSheetsByMouse } from './sheet-pointing';
@@ -131,7 +132,7 @@ type Play = ReturnType<typeof createPlay>;
 /** Creates the controls, motion capture and the steps of a frame. */
 function createInterface({ context, notices }: PageOptions, base: Base, play: Play) {
   const { switches, settings, writer, store, changes } = context;
-  const { timing, stage, recorder, avatar, headset, prepare } = base;
+  const { timing, stage, recorder, avatar, headset, prepare, quality } = base;
   const { body, networks } = base.pageBody;
   const { study, server, activities, userCalibration, source, impaired } = play;
   const { scene } = stage.studio;
@@ -170,9 +171,20 @@ function createInterface({ context, notices }: PageOptions, base: Base, play: Pl
     study,
     server,
   });
+  const passthrough = new PassthroughHost({
+    quality,
+    headset,
+    stage,
+    activities,
+    store,
+    notices,
+    isCovered: () => controls.isPointedAt,
+  });
   const frame = new PageFrame({
     settings,
+    passthrough,
     notices,
+    timing,
     source,
     impaired,
     body,
@@ -186,7 +198,7 @@ function createInterface({ context, notices }: PageOptions, base: Base, play: Pl
     stage,
     mocap,
   });
-  return { mocap, controls, frame };
+  return { mocap, controls, frame, passthrough };
 }
 
 /** Creates all parts of the page and connects them. Nothing runs yet. */
@@ -195,13 +207,14 @@ export function createPage(options: PageOptions) {
   const { settings, changes } = context;
   const base = createBase(options);
   const play = createPlay(options, base);
-  const { mocap, controls, frame } = createInterface(options, base, play);
+  const { mocap, controls, frame, passthrough } = createInterface(options, base, play);
   const { canvas, timing, stage, recorder, avatar, avatarShown, headset } = base;
   const { body } = base.pageBody;
   const { study, impaired, activities, userCalibration, source } = play;
   const { view } = stage;
 
-  const sessions = new SessionChanges({ headset, recorder, timing, view, body, activities, controls, study });
+  const changed = { headset, recorder, timing, view, body, activities, controls, study, passthrough };
+  const sessions = new SessionChanges(changed);
   headset.listen(sessions);
   sessions.followWindow();
   changes.listen(() => controls.show());
@@ -221,7 +234,7 @@ export function createPage(options: PageOptions) {
   handleLostGraphics({ canvas, notices, headset, studio: stage.studio, timing });
   const kept = new OfflineCopy();
   const probed = { loading, kept, settings, notices, timing, frame, source, body, avatar, headset, recorder };
-  exposeProbe(() => readProbe({ ...probed, activities, study, stage }));
+  exposeProbe(() => readProbe({ ...probed, activities, study, stage, passthrough }));
   return {
     activities,
     avatar,

@@ -50,6 +50,8 @@ export interface FrameTiming {
   /** Counts the time since the last mark of this frame towards this stage; a stage may be marked several times. */
   mark(stage: StageName): void;
   end(): void;
+  /** The work of the newest complete frame [ms]. */
+  readonly lastMs: number;
   /** After the frame: what is marked from now on is work that it left for later. It counts with the next frame. */
   resume(): void;
   /** The rate at which the device wants frames [Hz]. */
@@ -79,6 +81,7 @@ export function createFrameTiming(now: () => number): FrameTiming {
   let started = 0;
   let marked = 0;
   let late = false;
+  let lastMs = 0;
   let inFrame = false;
   let afterwards = 0;
   let listener: FrameListener | null = null;
@@ -103,6 +106,7 @@ export function createFrameTiming(now: () => number): FrameTiming {
       const whole = now() - started + afterwards;
       for (let i = 0; i < stageNames.length; i++) push(rings[stageNames[i]!], spent[stageNames[i]!]);
       push(total, whole);
+      lastMs = whole;
       if (listener) {
         Object.assign(told, spent);
         told.frame = whole;
@@ -111,6 +115,9 @@ export function createFrameTiming(now: () => number): FrameTiming {
       inFrame = false;
       afterwards = 0;
       for (let i = 0; i < stageNames.length; i++) spent[stageNames[i]!] = 0;
+    },
+    get lastMs() {
+      return lastMs;
     },
     resume() {
       marked = now();

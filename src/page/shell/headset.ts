@@ -1,8 +1,17 @@
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { DeviceBodyReader } from 'threepoint/xr/device-body-reader';
+import { FrameRateControl } from 'threepoint/xr/frame-rate';
 import { giveFramesToEvents } from 'threepoint/xr/frameless-events';
 import { buzz, type Pulse } from 'threepoint/xr/haptics';
-import { describeXrSupport, type PlayRoom, requestVrSession, roomOf, type XrFault } from 'threepoint/xr/session';
+import {
+  describeXrSupport,
+  isPassthroughOffered,
+  type PlayRoom,
+  requestPassthroughSession,
+  requestVrSession,
+  roomOf,
+  type XrFault,
+} from 'threepoint/xr/session';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import type { Notices } from 'threepoint-ui/notices';
 import { type Emulator, installEmulator } from '../emulator/emulator';
@@ -22,6 +31,8 @@ const snapAngle = Math.PI / 6;
 export interface Readiness {
   readonly real: boolean;
   readonly sentence: string | null;
+  /** A session may show the room around the user. */
+  readonly passthrough: boolean;
 }
 
 export interface HeadsetOptions {
@@ -42,15 +53,20 @@ export interface HeadsetListener {
   discontinuity(): void;
   /** The session went behind a menu of the device, or came back. */
   visibilityChanged(): void;
+  /** The device draws at another rate from now on. */
+  rateChanged(): void;
   /** The emulator is there now, or could not be loaded. */
   emulatorChanged(): void;
 }
 
 interface Session {
   readonly xr: XRSession;
+  /** The session shows the room around the user. */
+  readonly passthrough: boolean;
   /** What the device's boundary leaves [m]; null: the device does not report it. */
   readonly room: PlayRoom | null;
   readonly tracking: TrackedSession;
+  readonly rates: FrameRateControl;
 }
 
 async function end(xr: XRSession): Promise<void> {
@@ -71,6 +87,7 @@ export class Headset {
   #fault: XrFault | null = null;
   /** There is a device: the emulator is not needed. */
   #real = false;
+  #passthroughOffered = false;
 
   constructor(options: HeadsetOptions) {
     this.#options = options;
@@ -106,6 +123,16 @@ export class Headset {
     return this.#session?.tracking.inputs.input ?? null;
   }
 
+  /** The session that shows the room around the user; null: the worn headset shows another world, or none is worn. */
+  get passthrough(): XRSession | null {
+    return this.#session?.passthrough ? this.#session.xr : null;
+  }
+
+  /** A session may show the room around the user. */
+  get passthroughOffered(): boolean {
+    return this.#passthroughOffered;
+  }
+
   /** The tracking of the session; null: no headset is worn. */
   get tracking(): TrackedSession | null {
     return this.#session?.tracking ?? null;
@@ -114,6 +141,16 @@ export class Headset {
   /** The frame rate of the device [Hz]; null: it reports none, or there is no device. */
   get rateHz(): number | null {
     return this.#session?.xr.frameRate ?? (this.#emulator ? windowRateHz : null);
+  }
+
+  /** The rates that the headset offers [Hz], ascending; empty: it offers no choice, or none is worn. */
+  get ratesHz(): readonly number[] {
+    return this.#session?.rates.rates ?? [];
+  }
+
+  /** Counts a frame at this time [s] whose work took this long [s]; lets the headset draw at the rate that is held. */
+  observeFrame(time: number, workSeconds: number): void {
+    this.#session?.rates.observe(time, workSeconds);
   }
 
   /** What frame times are measured against [Hz]. */
@@ -135,7 +172,14 @@ export class Headset {
     this.#real = support.kind === 'device' && !switches.emulate;
     this.#fault = support.kind === 'device' || switches.emulate ? null : support.fault;
     if (switches.emulate || !settings.actor) await this.ensureEmulator();
-    return { real: this.#real, sentence: this.#fault ? support.sentence : null };
+    // An emulator that takes the place of a missing headset has no camera: only who asks for it gets this from it.
+    if (switches.emulate) this.#passthroughOffered = await isPassthroughOffered();
+    else this.#passthroughOffered = support.kind === 'device' && support.passthrough;
+    return {
+      real: this.#real,
+      sentence: this.#fault ? support.sentence : null,
+      passthrough: this.#passthroughOffered,
+    };
   }
 
   /** The emulator where there is no headset, loaded when it is first needed; null and a notice where it fails. */
@@ -156,24 +200,29 @@ export class Headset {
     this.#listener?.emulatorChanged();
   }
 
-  /** Never rejects: what goes wrong becomes a notice. Nothing happens in a session or on the way into one. */
-  async enter(): Promise<void> {
+  /**
+   * Enters a session; `passthrough`: one that shows the room around the user. Never rejects: what goes wrong becomes a
+   * notice. Nothing happens in a session or on the way into one.
+   */
+  async enter(passthrough = false): Promise<void> {
     if (this.#entering || this.#session) return;
     this.#entering = true;
-    await this.#enter();
+    await this.#enter(passthrough);
     this.#entering = false;
   }
 
-  async #enter(): Promise<void> {
+  async #enter(passthrough: boolean): Promise<void> {
     try {
       if (!this.#real) {
         const emulator = await this.ensureEmulator();
         if (!emulator) return;
         await emulator.setPanelVisible(this.#options.settings.emulatorPanel);
       }
-      await this.#begin();
+      await this.#begin(passthrough);
     } catch (error) {
-      this.#say(`VR could not be entered: ${firstLine(reasonOf(error))}. The desktop view goes on.`);
+      this.#say(
+        `${passthrough ? 'Passthrough' : 'VR'} could not be entered: ${firstLine(reasonOf(error))}. The desktop view goes on.`,
+      );
       this.#listener?.refused();
       return;
     }
@@ -204,14 +253,15 @@ export class Headset {
     if (this.#session) buzz(this.#session.xr, pulses);
   }
 
-  async #begin(): Promise<void> {
-    const xr = await requestVrSession(this.#options.settings.deviceBody);
+  async #begin(passthrough: boolean): Promise<void> {
+    const { deviceBody } = this.#options.settings;
+    const xr = await (passthrough ? requestPassthroughSession(deviceBody) : requestVrSession(deviceBody));
     const over = new Promise<never>((_, reject) => {
       xr.addEventListener('end', () => reject(new Error('the session ended before it had begun')));
     });
     try {
       const room = await Promise.race([this.#drawIn(xr), over]);
-      this.#follow(xr, room);
+      this.#follow(xr, room, passthrough);
     } catch (error) {
       // Else the headset waits for pictures that never come, and no other session can begin.
       await end(xr);
@@ -231,7 +281,7 @@ export class Headset {
   }
 
   /** Tracks the session until it ends. */
-  #follow(xr: XRSession, room: PlayRoom | null): void {
+  #follow(xr: XRSession, room: PlayRoom | null, passthrough: boolean): void {
     const { renderer, settings } = this.#options;
     const tracking = new TrackedSession({
       session: xr,
@@ -244,8 +294,14 @@ export class Headset {
       },
     });
     tracking.start();
-    this.#session = { xr, room, tracking };
-    xr.addEventListener('visibilitychange', () => this.#listener?.visibilityChanged());
+    // The emulator's rates are names alone: it draws when its window does.
+    const rates = new FrameRateControl(this.#emulator ? {} : xr);
+    this.#session = { xr, passthrough, room, tracking, rates };
+    xr.addEventListener('visibilitychange', () => {
+      rates.restart();
+      this.#listener?.visibilityChanged();
+    });
+    xr.addEventListener('frameratechange', () => this.#listener?.rateChanged());
     if (!settings.actor) this.#emulator?.release();
   }
 

@@ -13,17 +13,20 @@ import type { Activities } from './activities';
 import type { Controls } from './controls/controls';
 import type { DeviceDifference } from './device-difference';
 import type { FrameParts } from './frame-loop';
+import type { FrameTiming } from './frame-timing';
 import type { Headset } from './headset';
 import type { PageMocap } from './page-mocap';
 import type { PageStudy } from './page-study';
+import type { PassthroughHost } from './passthrough-host';
 import type { Settings } from './settings';
 import type { ShownAvatar } from './shown-avatar';
 import type { Shot, Stage } from './stage';
 import type { TrackingSource } from './tracking-source';
 
 export interface PageFrameOptions {
-  readonly settings: Pick<Settings, 'mirror'>;
+  readonly settings: Pick<Settings, 'mirror' | 'beside'>;
   readonly notices: Pick<Notices, 'show'>;
+  readonly timing: Pick<FrameTiming, 'lastMs'>;
   readonly source: TrackingSource;
   /** Between what is tracked and the body, where a study wants the body worse than it could be. */
   readonly impaired: Pick<TrackingDegradation, 'apply' | 'reset'>;
@@ -37,7 +40,11 @@ export interface PageFrameOptions {
   readonly study: Pick<PageStudy, 'run'>;
   readonly stage: Pick<Stage, 'look' | 'draw' | 'vignette'>;
   readonly mocap: Pick<PageMocap, 'frame' | 'aside'>;
+  readonly passthrough: Pick<PassthroughHost, 'update'>;
 }
+
+/** How far to the right of its user the avatar stands that is seen from beside [m]. */
+const besideDistance = 1.2;
 
 /** One frame of this page, part by part. */
 export class PageFrame implements FrameParts<XRFrame> {
@@ -72,7 +79,12 @@ export class PageFrame implements FrameParts<XRFrame> {
   }
 
   track(time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
-    return this.#options.source.read(time, deviceFrame);
+    const { source, study, headset, timing, passthrough } = this.#options;
+    // A study measures all of its rounds at one rate.
+    if (deviceFrame && !study.run) headset.observeFrame(time, timing.lastMs / 1000);
+    const frame = source.read(time, deviceFrame);
+    passthrough.update(deviceFrame, time);
+    return frame;
   }
 
   observe(frame: TrackingFrame): void {
@@ -157,13 +169,16 @@ export class PageFrame implements FrameParts<XRFrame> {
   #turn(time: number): void {
     const { headset, stage, activities } = this.#options;
     if (headset.takePress()) activities.current?.toggleMuted?.();
-    if (headset.turnByStick()) stage.vignette.close(time);
+    // A room that is seen cannot be turned.
+    if (!headset.passthrough && headset.turnByStick()) stage.vignette.close(time);
   }
 
   #shot(time: number, frame: TrackingFrame | null): Shot {
-    const { avatar, headset, activities, mocap } = this.#options;
+    const { avatar, headset, activities, mocap, settings } = this.#options;
+    const besideUser = settings.beside && headset.passthrough !== null && activities.current === null;
     return {
       time,
+      beside: besideUser ? besideDistance : 0,
       aside: mocap.aside,
       frame,
       avatar: avatar.current,

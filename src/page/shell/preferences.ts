@@ -49,6 +49,9 @@ const schema = v.object({
   shareAvatar: v.optional(v.boolean()),
   plainOthers: v.optional(v.boolean()),
   voicesByRelay: v.optional(v.boolean()),
+  passthrough: v.optional(v.boolean()),
+  /** The handle of the persistent anchor that the mirror stands at in passthrough. */
+  mirrorAnchor: v.optional(v.pipe(v.string(), v.maxLength(200))),
 });
 
 /** What the page remembers from one visit to the next, on this device only. */

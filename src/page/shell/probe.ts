@@ -16,6 +16,7 @@ import type { FrameSummary, FrameTiming } from './frame-timing';
 import type { Headset } from './headset';
 import type { PageLoading } from './page-loading';
 import type { PageStudy } from './page-study';
+import type { PassthroughHost } from './passthrough-host';
 import type { Settings } from './settings';
 import type { ShownAvatar } from './shown-avatar';
 import type { Stage } from './stage';
@@ -52,6 +53,12 @@ export interface Probe {
   } | null;
   readonly calibration: Calibration & { readonly source: string };
   readonly session: { readonly state: 'none' | 'visible' | 'visible-blurred' | 'hidden'; readonly emulated: boolean };
+  /** The user's own room; null: no session shows it. */
+  readonly passthrough: {
+    readonly showsRoom: boolean;
+    readonly mirror: { readonly x: number; readonly y: number; readonly z: number; readonly turned: number };
+    readonly anchored: boolean;
+  } | null;
   readonly view: string;
   readonly recorder: { readonly mode: string; readonly frames: number; readonly seconds: number };
   readonly notices: readonly { readonly level: string; readonly text: string }[];
@@ -90,6 +97,7 @@ export interface ProbeParts {
   readonly activities: Pick<Activities, 'current'>;
   readonly study: Pick<PageStudy, 'run'>;
   readonly stage: Pick<Stage, 'renderer' | 'view' | 'vignette'>;
+  readonly passthrough: Pick<PassthroughHost, 'room'>;
 }
 
 const triple = ({ x, y, z }: Vec3): Triple => [x, y, z];
@@ -126,6 +134,9 @@ function drawingOf({ renderer, vignette }: ProbeParts['stage']): Probe['drawing'
   };
 }
 
+const passthroughOf = ({ room }: ProbeParts['passthrough']): Probe['passthrough'] =>
+  room && { showsRoom: room.showsRoom, mirror: { ...room.mirror.place }, anchored: room.mirror.anchored };
+
 /** What the page is doing now. */
 export function readProbe(parts: ProbeParts): Probe {
   const { loading, kept, settings, notices, timing, frame, source, body, headset, recorder, study, stage } = parts;
@@ -140,6 +151,7 @@ export function readProbe(parts: ProbeParts): Probe {
     tracking: trackingOf(source.newest),
     calibration: { ...body.calibration, source: settings.calibrationSource },
     session: { state: headset.visibility, emulated: headset.emulator !== null },
+    passthrough: passthroughOf(parts.passthrough),
     view: stage.view.view,
     recorder: { mode: recorder.mode, frames: recorder.frameCount, seconds: recorder.seconds },
     notices: notices.current(),

@@ -6,6 +6,7 @@ import type { Controls } from './controls/controls';
 import type { FrameTiming } from './frame-timing';
 import type { Headset, HeadsetListener } from './headset';
 import type { PageStudy } from './page-study';
+import type { PassthroughHost } from './passthrough-host';
 
 export interface SessionChangesOptions {
   readonly headset: Pick<Headset, 'pictureRateHz' | 'visibility'>;
@@ -16,6 +17,7 @@ export interface SessionChangesOptions {
   readonly activities: Pick<Activities, 'current' | 'sessionChanged'>;
   readonly controls: Pick<Controls, 'show' | 'setWorn' | 'layOut'>;
   readonly study: Pick<PageStudy, 'run'>;
+  readonly passthrough: Pick<PassthroughHost, 'sessionChanged'>;
 }
 
 /** What the page does when a headset is put on, taken off, or changes under way. */
@@ -59,6 +61,13 @@ export class SessionChanges implements HeadsetListener {
     this.#sightChanged();
   }
 
+  rateChanged(): void {
+    const { timing, headset, controls } = this.#options;
+    timing.setRate(headset.pictureRateHz);
+    timing.reset();
+    controls.show();
+  }
+
   emulatorChanged(): void {
     this.#options.controls.show();
   }
@@ -80,7 +89,8 @@ export class SessionChanges implements HeadsetListener {
   }
 
   #changed(): void {
-    const { timing, headset, body, activities, controls, study } = this.#options;
+    const { timing, headset, body, activities, controls, study, passthrough } = this.#options;
+    void passthrough.sessionChanged();
     timing.setRate(headset.pictureRateHz);
     this.#sightChanged();
     body.discontinuity();

@@ -27,6 +27,10 @@ export interface Settings extends ActivitySettings {
    * crashed when it was asked.
    */
   readonly deviceBody: boolean;
+  /** The next session shows the room around the user, if the headset can. */
+  readonly passthrough: boolean;
+  /** In passthrough the avatar stands beside its user. */
+  readonly beside: boolean;
   /** The source of the user's measurements, in words. */
   readonly calibrationSource: string;
 }
@@ -52,6 +56,8 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
     mouse: false,
     emulatorPanel: true,
     deviceBody: false,
+    passthrough: preferences.passthrough ?? false,
+    beside: false,
     bowSide: preferences.bowSide ?? 'left',
     oneHanded: preferences.oneHanded ?? false,
     everyHitCounts: preferences.everyHitCounts ?? false,
@@ -79,6 +85,7 @@ export type LastingSettings = Partial<
       | 'palette'
       | 'builtInBody'
       | 'skinTone'
+      | 'passthrough'
     >
 >;
 

@@ -30,6 +30,8 @@ export interface Shot {
   /** null: not loaded yet. */
   readonly avatar: Avatar | null;
   readonly inSession: boolean;
+  /** How far to the right of its user the body of a session is drawn [m]; 0: where the user is. */
+  readonly beside: number;
   /** The distance of the middle of what is looked at to the right of the body [m]. */
   readonly aside: number;
   /** The person that a camera without a body of its own looks at; null: there is a body. */
@@ -50,6 +52,8 @@ export interface Stage {
   caption(text: string): void;
   /** Places the mirror at this side of the user; null: ahead of the user. */
   placeMirror(side: Side | null): void;
+  /** Stands the mirror on the floor at this height, its middle at (x, z) [m]; turned by 0 it faces +Z [rad]. */
+  standMirror(x: number, floor: number, z: number, turned: number): void;
   setSkeletonVisible(visible: boolean): void;
   /** Fits picture and camera to the window; insets: what the controls cover [CSS pixels]. */
   layOut(insets: Insets): void;
@@ -72,6 +76,7 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
   const headsetCamera = createHeadsetCamera();
   const captions = createVrCaptions();
   studio.scene.add(mirror.object, skeleton.object, vignette.object, captions.object);
+  const mirrorHeight = mirror.object.position.y;
   let lastTime = 0;
 
   return {
@@ -85,6 +90,11 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
       const sign = side === 'right' ? 1 : -1;
       if (side) mirror.place(sign * x, z, sign * turned);
       else mirror.place(0, -mirrorDistance, 0);
+      mirror.object.position.y = mirrorHeight;
+    },
+    standMirror(x, floor, z, turned) {
+      mirror.place(x, z, turned);
+      mirror.object.position.y = mirrorHeight + floor;
     },
     setSkeletonVisible: (visible) => skeleton.setVisible(visible),
     layOut(insets) {
@@ -92,13 +102,13 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
       view.resize();
       fitToWindow(renderer, quality);
     },
-    look({ time, frame, avatar, inSession, aside, watched }) {
+    look({ time, frame, avatar, inSession, aside, watched, beside }) {
       const elapsed = Math.min(longestStep, Math.max(0, time - lastTime));
       lastTime = time;
       const hips = avatar?.jointPositions().hips;
       view.setHeight(avatar?.height ?? 0);
       if (watched) studio.follow(watched.pelvis.x, outOfSight);
-      else if (hips) studio.follow(hips.x, hips.z);
+      else if (hips) studio.follow(hips.x + beside, hips.z);
       if (inSession) return;
       if (watched) view.update(watched.pelvis, watched.eyes, elapsed);
       else if (frame) {
@@ -107,13 +117,15 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
         view.update(aside === 0 ? pelvis : { ...pelvis, x: pelvis.x + aside }, frame.head, elapsed);
       }
     },
-    draw({ time, frame, avatar, inSession, watched, mirror: wanted }) {
+    draw({ time, frame, avatar, inSession, watched, beside, mirror: wanted }) {
       const inside = inSession || view.view === 'first-person';
       if (avatar) {
         skeleton.show(avatar.jointPositions());
+        skeleton.object.position.x = beside;
+        avatar.object.position.x = beside;
         avatar.object.visible = watched === null;
         avatar.setOpacity(headLoss.follow(time, frame !== null));
-        avatar.setFirstPerson(inside);
+        avatar.setFirstPerson(inside && beside === 0);
       }
       const eyes = inSession && frame ? frame.head : null;
       vignette.show(time, eyes);

@@ -11,7 +11,7 @@ import {
 } from 'three';
 import { createBlobShadow } from 'threepoint/avatar/blob-shadow';
 import type { Quality } from '../scene/renderer';
-import type { DistantLight, Lighting } from '../scene/surroundings';
+import type { DistantLight, EstimatedLight, Lighting } from '../scene/surroundings';
 
 /** How high above the floor the light that throws shadows aims [m]. */
 const aimHeight = 0.9;
@@ -23,6 +23,8 @@ function setLight(light: DirectionalLight, { color, intensity, from }: DistantLi
   light.intensity = intensity;
   light.position.set(...from);
 }
+
+const scaled = ([x, y, z]: DistantLight['from'], by: number): DistantLight['from'] => [x * by, y * by, z * by];
 
 /** The lights, the fog and the shadows of a scene. The objects stay the same; each place sets them again. */
 export class Lights {
@@ -39,6 +41,7 @@ export class Lights {
   /** The position of the body, floor frame [m]. */
   readonly #stand = { x: 0, z: 0 };
   #lighting: Lighting | null = null;
+  #estimate: EstimatedLight | null = null;
   /** What surfaces reflect; null: nothing yet, or never in low quality. */
   #reflections: WebGLRenderTarget | null = null;
 
@@ -65,6 +68,7 @@ export class Lights {
   /** Lights another place; the same one again after the graphics device was lost. */
   set(lighting: Lighting): void {
     this.#lighting = lighting;
+    this.#estimate = null;
     setLight(this.#key, lighting.key);
     setLight(this.#rim, lighting.rim);
     setLight(this.#front, lighting.front);
@@ -81,8 +85,24 @@ export class Lights {
     this.#setReflections(lighting);
   }
 
+  /** Lights people and things as a device estimates the light of its room; null: as the place is lit. */
+  setEstimate(light: EstimatedLight | null): void {
+    const lighting = this.#lighting;
+    if (!lighting) return;
+    this.#estimate = light;
+    setLight(this.#key, lighting.key);
+    this.#fill.color.set(lighting.fill.sky);
+    this.#fill.intensity = lighting.fill.intensity;
+    if (light) {
+      this.#key.color.setRGB(...light.key);
+      this.#fill.color.setRGB(...light.fill);
+      this.#fill.intensity = 1;
+    }
+    this.#aimKey(lighting);
+  }
+
   #aimKey({ key, shadow }: Lighting): void {
-    const { from } = key;
+    const from = this.#estimate ? scaled(this.#estimate.from, Math.hypot(...key.from)) : key.from;
     const { x, z } = shadow.centre ?? this.#stand;
     this.#key.target.position.set(x, aimHeight, z);
     this.#key.position.set(x + from[0], from[1], z + from[2]);

@@ -6,6 +6,7 @@ import {
   Mesh,
   MeshBasicMaterial,
   MeshLambertMaterial,
+  type Object3D,
   PlaneGeometry,
   RingGeometry,
   Scene,
@@ -14,7 +15,7 @@ import {
   type WebGLRenderer,
 } from 'three';
 import type { Quality } from '../scene/renderer';
-import type { Lighting, Surroundings } from '../scene/surroundings';
+import type { EstimatedLight, Lighting, Surroundings } from '../scene/surroundings';
 import { Lights } from './lights';
 
 const horizon = new Color('#3a475d');
@@ -31,6 +32,12 @@ const levelSquare = (size: number) => new PlaneGeometry(size, size).rotateX(-Mat
 /** Everything around the people: a floor, a sky, light. The floor is y = 0 of the floor frame. */
 export interface Studio {
   readonly scene: Scene;
+  /** The studio itself, which other surroundings take the place of. */
+  readonly home: Object3D;
+  /** What is around the user now. */
+  readonly surroundings: Surroundings;
+  /** Lights people and things as a device estimates the light of its room; null: as the surroundings are lit. */
+  setEstimatedLight(light: EstimatedLight | null): void;
   /** Moves shadow and light to the person at (x, z) [m], floor frame. */
   follow(x: number, z: number): void;
   /** Shows or hides the mark on the floor of the studio where to stand. */
@@ -171,6 +178,11 @@ export function createStudio(renderer: WebGLRenderer, quality: Quality): Studio 
   let place = studioPlace;
   return {
     scene,
+    home: studio,
+    get surroundings() {
+      return place;
+    },
+    setEstimatedLight: (light) => lights.setEstimate(light),
     follow: (x, z) => lights.follow(x, z),
     setMarkVisible(visible) {
       mark.visible = visible;

@@ -6,9 +6,12 @@ export type XrFault =
   | { readonly kind: 'insecure' | 'no-webxr' | 'no-headset' }
   | { readonly kind: 'refused'; readonly reason: string };
 
-/** The result of asking the browser for VR; `sentence` is the reason for the user. */
+/**
+ * The result of asking the browser for VR; `sentence` is the reason for the user. `passthrough`: the headset also shows
+ * the room around its user.
+ */
 export type XrSupport =
-  | { readonly kind: 'device'; readonly sentence: null }
+  | { readonly kind: 'device'; readonly sentence: null; readonly passthrough: boolean }
   | { readonly kind: 'none'; readonly sentence: string; readonly fault: XrFault };
 
 /** Asks the browser for VR; never rejects. */
@@ -22,9 +25,12 @@ export async function describeXrSupport(): Promise<XrSupport> {
   }
   if (!navigator.xr) return no({ kind: 'no-webxr' }, 'This browser has no WebXR.');
   try {
-    const supported = await navigator.xr.isSessionSupported('immersive-vr');
+    const [supported, passthrough] = await Promise.all([
+      navigator.xr.isSessionSupported('immersive-vr'),
+      isPassthroughOffered(),
+    ]);
     return supported
-      ? { kind: 'device', sentence: null }
+      ? { kind: 'device', sentence: null, passthrough }
       : no({ kind: 'no-headset' }, 'No headset is connected to this browser.');
   } catch (error) {
     const reason = reasonOf(error);
@@ -32,16 +38,32 @@ export async function describeXrSupport(): Promise<XrSupport> {
   }
 }
 
+/** Returns whether the browser offers sessions that show the room around the user; never rejects. */
+export async function isPassthroughOffered(): Promise<boolean> {
+  // reason: a browser that may not be asked offers none
+  return (await navigator.xr?.isSessionSupported('immersive-ar').catch(() => false)) ?? false;
+}
+
+/** The session features of passthrough: each is optional, and the page works without it. */
+const roomFeatures = ['hit-test', 'anchors', 'plane-detection', 'light-estimation'] as const;
+
 /**
  * Requests an immersive session with a floor, with hands where the device tracks them, and with the device's body where
  * `deviceBody` is set and it has one. Rejects with a sentence. Needs a click.
  */
-export async function requestVrSession(deviceBody = false): Promise<XRSession> {
+export const requestVrSession = (deviceBody = false): Promise<XRSession> =>
+  requestSession('immersive-vr', deviceBody ? [bodyFeature] : []);
+
+/** Requests a session like `requestVrSession` that shows the room around the user in place of a background. */
+export const requestPassthroughSession = (deviceBody = false): Promise<XRSession> =>
+  requestSession('immersive-ar', [...roomFeatures, ...(deviceBody ? [bodyFeature] : [])]);
+
+async function requestSession(mode: XRSessionMode, features: readonly string[]): Promise<XRSession> {
   if (!navigator.xr) throw new Error('this browser has no WebXR');
   try {
-    return await navigator.xr.requestSession('immersive-vr', {
+    return await navigator.xr.requestSession(mode, {
       requiredFeatures: ['local-floor'],
-      optionalFeatures: ['hand-tracking', 'bounded-floor', 'layers', ...(deviceBody ? [bodyFeature] : [])],
+      optionalFeatures: ['hand-tracking', 'bounded-floor', 'layers', ...features],
     });
   } catch (error) {
     const name = error instanceof DOMException ? error.name : '';

@@ -73,6 +73,11 @@ export class TrackedSession {
     return this.#floorPose;
   }
 
+  /** The space of the tracking frames; null before the session started. */
+  get floorSpace(): XRReferenceSpace | null {
+    return this.#floor;
+  }
+
   /** Starts tracking in the renderer's space, unless it has started. Returns false while the renderer has none. */
   start(): boolean {
     if (this.#own) return true;

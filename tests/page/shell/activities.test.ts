@@ -257,6 +257,7 @@ describe('a player who takes the headset off', () => {
       controls: { show: nothing, setWorn: nothing, layOut: nothing },
       activities,
       study,
+      passthrough: { sessionChanged: async () => undefined },
     });
     return {
       ...opened,
@@ -441,6 +442,7 @@ describe('a third activity', () => {
         body: { estimator: 'ik', unavailable: {} },
         measuring: { step: null },
         notices: { current: () => [] },
+        headset: { passthrough: null, passthroughOffered: false },
       });
     const labels = () => menuButtons(state(), actions).map(({ label }) => label);
     expect(labels()).toContain('Darts');

@@ -54,6 +54,7 @@ function headset() {
     pointers,
     notices: { show: () => undefined, current: () => [] },
     body: { estimator: 'ik', unavailable: {} },
+    headset: { passthrough: null, passthroughOffered: false },
     activities: {
       all: registered,
       current: {
@@ -229,6 +230,8 @@ describe('the buttons of the menu', () => {
     cancelCalibration: () => undefined,
     recentre: () => undefined,
     setOverlay: (on) => void done.push(`overlay ${on}`),
+    setPassthrough: (on) => void done.push(`next in the room ${on}`),
+    setBeside: (on) => void done.push(`beside ${on}`),
     goTo: (place) => void done.push(`go to ${place}`),
     chooseBuiltInBody: (name) => void done.push(`wear ${name}`),
     chooseSkinTone: (tone) => void done.push(`in ${tone}`),
@@ -307,9 +310,20 @@ describe('the buttons of the menu', () => {
     press('skin', { ...mirror, builtInBody: 'child' });
     press('skin', { ...mirror, builtInBody: 'child', skinTone: 'dark' });
     press('others', atCourt({ plainOthers: true }));
+    press('passthrough', { ...mirror, nextPassthrough: false });
+    press('beside', { ...mirror, beside: true });
+    press('passthrough', mirror);
     press('studio', atCourt());
     const bodies = ['wear mannequin', 'in fair', 'in fair', 'plain others false'];
-    expect(done).toEqual(['overlay false', 'go to ball', 'ready false', ...bodies, 'go to studio']);
+    expect(done).toEqual([
+      'overlay false',
+      'go to ball',
+      'ready false',
+      ...bodies,
+      'next in the room true',
+      'beside false',
+      'go to studio',
+    ]);
   });
 
   test('an unavailable estimator is shown and cannot be pressed', () => {

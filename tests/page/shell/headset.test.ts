@@ -5,6 +5,11 @@ import { afterEach, describe, expect, test, vi } from 'vitest';
 let installed = 0;
 vi.mock('iwer', () => ({
   metaQuest3: {},
+  XRReferenceSpace: class {
+    getOffsetReferenceSpace(): void {
+      throw new Error('no session of this test moves its floor');
+    }
+  },
   XRDevice: class {
     readonly position = { set: () => undefined };
     readonly controllers = {};
@@ -71,6 +76,7 @@ async function page(draw: () => Promise<void> = () => Promise.resolve()) {
     refused: () => void happened.push('refused'),
     discontinuity: () => undefined,
     visibilityChanged: () => undefined,
+    rateChanged: () => undefined,
     emulatorChanged: () => undefined,
   });
   await headset.prepare();

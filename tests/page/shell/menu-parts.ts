@@ -8,6 +8,8 @@ export const studioMenu: VrMenuState = {
   calibration: null,
   overlay: false,
   deviceBody: false,
+  nextPassthrough: null,
+  beside: null,
   builtInBody: 'mannequin',
   skinTone: undefined,
   places: [],

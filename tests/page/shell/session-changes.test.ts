@@ -39,6 +39,7 @@ function player(recorder = new Recorder()) {
     },
     controls: { show: nothing, setWorn: nothing, layOut: nothing },
     study: { run: null },
+    passthrough: { sessionChanged: async () => undefined },
   });
   changes.followWindow();
   return {

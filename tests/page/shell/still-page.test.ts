@@ -41,6 +41,7 @@ async function openPage(estimator: EstimatorName, calibration: Calibration, netw
   const impaired = new TrackingDegradation();
   let reported: TrackingFrame | null = null;
   const headset = {
+    observeFrame: () => undefined,
     worn: true,
     emulator: null,
     visibility: 'visible',
@@ -73,6 +74,7 @@ async function openPage(estimator: EstimatorName, calibration: Calibration, netw
   const parts = {
     settings: { mirror: false },
     notices: { show: (_: unknown, fault: unknown) => faults.push(fault) },
+    timing: { lastMs: 0 },
     source,
     impaired,
     body,
@@ -85,6 +87,7 @@ async function openPage(estimator: EstimatorName, calibration: Calibration, netw
     study: { run: null },
     stage: { look: () => undefined, draw: () => undefined },
     mocap: { frame: () => undefined, aside: 0 },
+    passthrough: { update: () => undefined },
   };
   const loop = createFrameLoop(
     new PageFrame(parts as unknown as PageFrameOptions),

@@ -27,7 +27,7 @@ describe('why there is no VR', () => {
 
   test('with a headset there is nothing to say', async () => {
     browser({ xr: { isSessionSupported: () => Promise.resolve(true) } });
-    expect(await describeXrSupport()).toEqual({ kind: 'device', sentence: null });
+    expect(await describeXrSupport()).toEqual({ kind: 'device', sentence: null, passthrough: true });
     reportFigures('no-headset', { sentences: 'no HTTPS, no WebXR, no headset, policy, refused, no floor' });
   });
 

@@ -63,6 +63,7 @@ export class Controls {
     document.body.classList.toggle('larger-text', settings.largerText);
     document.body.classList.toggle('in-session', headset.worn);
     document.body.classList.toggle('in-activity', activities.current !== null);
+    document.body.classList.toggle('prefers-ar', settings.passthrough);
     this.#overlay.setVisible(settings.overlay);
     stage.setSkeletonVisible(settings.debugSkeleton);
     avatar.current?.setUpperBodyOnly(settings.upperBodyOnly);
@@ -100,6 +101,11 @@ export class Controls {
   /** Every tracked frame: its person may be measured. */
   observe(frame: TrackingFrame): void {
     this.#measuring.observe(frame);
+  }
+
+  /** A hand points at the menu in the headset. */
+  get isPointedAt(): boolean {
+    return this.#inHeadset.isPointedAt;
   }
 
   /** Rays and finger tips in the headset. */

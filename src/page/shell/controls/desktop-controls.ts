@@ -96,6 +96,8 @@ export class DesktopControls {
       eyeHeightCm: centimetres(eyeHeight),
       emulated: headset.emulator !== null,
       inSession: headset.worn,
+      rateHz: headset.worn ? headset.rateHz : null,
+      ratesHz: headset.ratesHz,
       bodyComplaint: headset.bodyComplaint,
       recorder,
       exporting: motionExport.state,

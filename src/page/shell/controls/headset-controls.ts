@@ -2,6 +2,7 @@ import type { BodySolver } from 'threepoint/api/body-solver';
 import type { FrameReport } from 'threepoint-ui/overlay';
 import type { VrPointers } from 'threepoint-ui/vr-pointers';
 import type { Activities } from '../activities';
+import type { Headset } from '../headset';
 import type { PanelActions } from '../panel/panel';
 import type { VrMenuActions } from '../vr-menu/menu-buttons';
 import { menuStateOf } from '../vr-menu/menu-state';
@@ -16,6 +17,7 @@ export interface HeadsetControlsOptions extends Pick<ControlledParts, 'settings'
   readonly pointers: VrPointers;
   readonly body: Pick<BodySolver, 'estimator' | 'unavailable'>;
   readonly activities: Pick<Activities, 'all' | 'current' | 'goTo'>;
+  readonly headset: Pick<Headset, 'passthrough' | 'passthroughOffered'>;
   readonly measuring: Pick<Measuring, 'step' | 'begin' | 'cancel'>;
   readonly actions: Pick<
     PanelActions,
@@ -45,6 +47,10 @@ export class HeadsetControls {
     this.#worn = worn;
     this.#options.pointers.objects.visible = worn;
     this.#showMenu();
+  }
+
+  get isPointedAt(): boolean {
+    return this.#menu.isPointedAt;
   }
 
   #showMenu(): void {
@@ -89,6 +95,8 @@ export class HeadsetControls {
       cancelCalibration: () => measuring.cancel(),
       recentre: () => actions.recentre(),
       setOverlay: (on) => writer.change({ vrOverlay: on }),
+      setPassthrough: (passthrough) => writer.keep({ passthrough }),
+      setBeside: (beside) => writer.change({ beside }),
       goTo: (place) => void activities.goTo(place),
       chooseBuiltInBody: (name) => actions.chooseBuiltInBody(name),
       chooseSkinTone: (tone) => actions.chooseSkinTone(tone),

@@ -73,6 +73,10 @@ export interface PanelState {
   /** null: nothing is being made. */
   readonly exporting: ExportState | null;
   readonly inSession: boolean;
+  /** The frame rate of the worn headset [Hz]; null: it does not report it, or none is worn. */
+  readonly rateHz: number | null;
+  /** The rates that it offers [Hz]. */
+  readonly ratesHz: readonly number[];
   /** Whether the next session uses the headset's body tracking. */
   readonly deviceBody: boolean;
   /** Why the worn headset tracks no body; null: it does, or no headset is worn. */

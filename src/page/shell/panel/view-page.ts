@@ -37,6 +37,13 @@ const keysSection = (on: HTMLElement): HTMLElement =>
     ),
   );
 
+/** Returns what is known of the headset's frame rate, as a line. */
+function rateText(rateHz: number, ratesHz: readonly number[]): string {
+  const now = `Frame rate: ${Math.round(rateHz)} Hz`;
+  if (ratesHz.length === 0) return `${now}.`;
+  return `${now}, the highest that the page holds of ${ratesHz.map((rate) => Math.round(rate)).join(', ')} Hz.`;
+}
+
 /** The camera, and what it shows in addition to the body. */
 export function createViewPage(actions: ViewActions): PanelPage {
   const views = viewNames.map((view) => ({
@@ -48,12 +55,14 @@ export function createViewPage(actions: ViewActions): PanelPage {
   const overlay = toggle('Frame times', (on) => actions.setOverlay(on));
   const largerText = toggle('Larger text', (on) => actions.setLargerText(on));
   const singleKeys = toggle('Single keys', (on) => actions.setSingleKeys(on));
+  const rate = element('p', { class: 'hint' });
   const camera = element(
     'section',
     {},
     element('h2', {}, 'Camera'),
     element('div', { class: 'segments', role: 'group', 'aria-label': 'Camera' }, ...views.map(({ node }) => node)),
     ...[mirror, skeleton, overlay, largerText].map(({ node }) => node),
+    rate,
   );
   return {
     name: 'View',
@@ -65,6 +74,8 @@ export function createViewPage(actions: ViewActions): PanelPage {
       overlay.input.checked = state.overlay;
       largerText.input.checked = state.largerText;
       singleKeys.input.checked = state.singleKeys;
+      rate.hidden = state.rateHz === null;
+      rate.textContent = state.rateHz === null ? '' : rateText(state.rateHz, state.ratesHz);
     },
   };
 }

@@ -29,6 +29,10 @@ export interface VrMenuState {
   readonly overlay: boolean;
   /** The headset's body tracking is used. */
   readonly deviceBody: boolean;
+  /** The next session shows the room around the user; null: the headset cannot. */
+  readonly nextPassthrough: boolean | null;
+  /** The avatar stands beside its user; null: the room is not seen. */
+  readonly beside: boolean | null;
   /** The built-in avatar that is worn, or would be instead of another one. */
   readonly builtInBody: BuiltInBody;
   /** The skin tone of a human avatar; undefined: the avatar's own. */
@@ -47,6 +51,8 @@ export interface VrMenuActions {
   cancelCalibration(): void;
   recentre(): void;
   setOverlay(on: boolean): void;
+  setPassthrough(on: boolean): void;
+  setBeside(on: boolean): void;
   goTo(place: string): void;
   chooseBuiltInBody(name: BuiltInBody): void;
   chooseSkinTone(tone: SkinTone): void;
@@ -86,9 +92,17 @@ const after = <T>(all: readonly [T, ...T[]], chosen: T | undefined): T =>
 
 /** The buttons that change with the place where the user is. */
 function placeEntries(state: VrMenuState, actions: VrMenuActions): readonly MenuEntry[] {
-  const { places, activity, builtInBody, skinTone } = state;
+  const { places, activity, builtInBody, skinTone, beside, nextPassthrough } = state;
   if (activity) return [{ id: home, label: 'To the mirror', act: () => actions.goTo(home) }, ...activity.entries];
   const entries = places.map(({ name, title }) => ({ id: name, label: title, act: () => actions.goTo(name) }));
+  if (beside !== null) {
+    const label = beside ? 'Back into your body' : 'Stand beside yourself';
+    entries.push({ id: 'beside', label, act: () => actions.setBeside(!beside) });
+  }
+  if (nextPassthrough !== null) {
+    const label = nextPassthrough ? 'Next session: AR' : 'Next session: VR';
+    entries.push({ id: 'passthrough', label, act: () => actions.setPassthrough(!nextPassthrough) });
+  }
   const body = `Body: ${labelOf(builtInBody)}`;
   entries.push({ id: 'body', label: body, act: () => actions.chooseBuiltInBody(after(builtInBodies, builtInBody)) });
   if (builtInBody === plainAvatar) return entries;

@@ -3,6 +3,7 @@ import type { Notices } from 'threepoint-ui/notices';
 import type { ActivityMenu } from '../../activity/activity-menu';
 import type { Activities } from '../activities';
 import type { Measuring } from '../controls/measuring';
+import type { Headset } from '../headset';
 import type { Settings } from '../settings';
 import type { VrMenuState } from './menu-buttons';
 
@@ -13,13 +14,14 @@ export interface MenuParts {
   readonly activities: Pick<Activities, 'all' | 'current'>;
   readonly measuring: Pick<Measuring, 'step'>;
   readonly notices: Pick<Notices, 'current'>;
+  readonly headset: Pick<Headset, 'passthrough' | 'passthroughOffered'>;
 }
 
 /** The menu of an activity that has none. */
 const noMenu: ActivityMenu = { entries: [], sheet: null, notice: null, hint: null };
 
 /** Returns the current state of the menu in the headset. */
-export function menuStateOf({ body, settings, activities, measuring, notices }: MenuParts): VrMenuState {
+export function menuStateOf({ body, settings, activities, measuring, notices, headset }: MenuParts): VrMenuState {
   const activity = activities.current && (activities.current.menu?.() ?? noMenu);
   return {
     estimator: body.estimator,
@@ -27,6 +29,8 @@ export function menuStateOf({ body, settings, activities, measuring, notices }: 
     calibration: measuring.step,
     overlay: settings.vrOverlay,
     deviceBody: settings.deviceBody,
+    nextPassthrough: headset.passthroughOffered ? settings.passthrough : null,
+    beside: headset.passthrough ? settings.beside : null,
     builtInBody: settings.builtInBody,
     skinTone: settings.skinTone,
     places: activities.all.map(({ name, title }) => ({ name, title })),

@@ -36,6 +36,11 @@ export class VrMenu {
     this.object.visible = false;
   }
 
+  /** A hand points at one of the buttons. */
+  get isPointedAt(): boolean {
+    return this.object.visible && this.#hovered !== null;
+  }
+
   setVisible(visible: boolean): void {
     this.object.visible = visible;
   }

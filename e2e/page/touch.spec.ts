@@ -1,0 +1,130 @@
+import { devices, type Page } from '@playwright/test';
+import type { ArcheryProbe } from 'threepoint-page/archery/archery-play';
+import { driveTime, endDrivenTime } from '../driven-time';
+import { collectErrors, expect, keepPicture, probe, freshTest as test } from '../page-fixture';
+
+/** The round of archery; null before its first frame. */
+async function archery(page: Page): Promise<ArcheryProbe | null> {
+  const { game } = await probe(page);
+  return game?.name === 'archery' ? game : null;
+}
+
+/** Whether the boxes of two parts of the page lie over each other. */
+async function overlap(page: Page, one: string, other: string): Promise<boolean> {
+  const [a, b] = await Promise.all([page.locator(one).boundingBox(), page.locator(other).boundingBox()]);
+  if (!a || !b) throw new Error(`${one} or ${other} is not shown`);
+  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+/** Opens the page on a phone with this width and height [CSS pixels]. */
+async function openOnPhone(page: Page, query = ''): Promise<void> {
+  await page.goto(`/?quality=low&estimator=ik${query}`);
+  await page.waitForFunction(() => window.threepoint?.probe().ready === true, undefined, { timeout: 60_000 });
+}
+
+const { defaultBrowserType: _, ...pixel } = devices['Pixel 7'];
+
+test.describe('on a phone', () => {
+  test('the whole page is driven by touch: controls, archery, the ball game and back @full', async ({
+    browser,
+    origin,
+  }) => {
+    test.setTimeout(240_000);
+    const context = await browser.newContext({ ...pixel, baseURL: origin, serviceWorkers: 'block' });
+    const page = await context.newPage();
+    const { errors } = collectErrors(page, origin);
+    const button = (name: string | RegExp) => page.getByRole('button', { name });
+    const touchScreen = await context.newCDPSession(page);
+    /** A finger on the picture at these points of the window in turn. */
+    const drag = async (...points: readonly (readonly [x: number, y: number])[]) => {
+      for (const [index, [x, y]] of points.entries()) {
+        const type = index === 0 ? 'touchStart' : 'touchMove';
+        await touchScreen.send('Input.dispatchTouchEvent', { type, touchPoints: [{ x, y }] });
+      }
+    };
+    const lift = () => touchScreen.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
+    try {
+      await openOnPhone(page, '&seed=7');
+
+      await button('Controls').tap();
+      for (const name of ['Avatar', 'Recording', 'View', 'Body']) {
+        await page.getByRole('tab', { name }).tap();
+        await expect(page.getByRole('tab', { name })).toHaveAttribute('aria-selected', 'true');
+      }
+      await page.getByRole('tab', { name: 'View' }).tap();
+      await button('Front').tap();
+      await expect.poll(async () => (await probe(page)).view).toBe('front');
+      await button('Third person').tap();
+      await expect.poll(async () => (await probe(page)).view).toBe('third-person');
+      await page.getByText('Mirror', { exact: true }).last().tap();
+      await keepPicture(page, 'touch-controls');
+      await button('Controls').tap();
+      await button('Recentre').tap();
+
+      await button('Archery').tap();
+      await expect(button('Archery')).toHaveAttribute('aria-pressed', 'true', { timeout: 60_000 });
+      expect(await overlap(page, '#masthead h1', '.panel-bar')).toBe(false);
+      await button('Shoot by touch').tap();
+      await keepPicture(page, 'touch-archery');
+      await expect.poll(async () => (await archery(page))?.arrowsLeft).toBe(5);
+      await driveTime(page);
+      await drag([200, 520], [205, 480]);
+      await expect.poll(async () => (await archery(page))?.draw).toBeGreaterThan(0.3);
+      await lift();
+      await expect.poll(async () => (await archery(page))?.arrowsLeft).toBe(4);
+      await endDrivenTime(page);
+
+      await button('Ball game').tap();
+      await expect(button('Ball game')).toHaveAttribute('aria-pressed', 'true', { timeout: 60_000 });
+      await keepPicture(page, 'touch-ball');
+      await button('Mirror').tap();
+      await expect(button('Mirror')).toHaveAttribute('aria-pressed', 'true', { timeout: 60_000 });
+
+      await button('Enter VR (emulated)').tap();
+      await expect.poll(async () => (await probe(page)).activity, { timeout: 30_000 }).toBe('vr');
+      await button('Exit VR').tap();
+      await expect.poll(async () => (await probe(page)).activity).toBe('desktop');
+      expect(errors).toEqual([]);
+    } finally {
+      await context.close();
+    }
+  });
+});
+
+for (const [width, height] of [
+  [390, 844],
+  [720, 800],
+  [760, 600],
+] as const)
+  test(`at ${width} × ${height} no part of a game lies over another @full`, async ({ page }) => {
+    await page.setViewportSize({ width, height });
+    for (const play of ['archery', 'ball'] as const) {
+      await openOnPhone(page, `&play=${play}&panel=off&actor=off&emulate`);
+      await keepPicture(page, `narrow-${play}-${width}`);
+      expect(await overlap(page, '#masthead h1', '.panel-bar'), play).toBe(false);
+      expect(await overlap(page, '#masthead h1', '#play'), play).toBe(false);
+      expect(await overlap(page, '#play .round:not([hidden])', 'button.enter'), play).toBe(false);
+    }
+  });
+
+for (const [name, address] of [
+  ['the page', '/?quality=low&estimator=ik'],
+  ['the preview of a study', '/preview.html'],
+] as const)
+  test(`everything that is seen or pressed on ${name} lies in a landmark, and there is one main part @full`, async ({
+    page,
+  }) => {
+    await page.goto(address);
+    await expect(page.getByRole('main')).toHaveCount(1);
+    await expect(page.getByRole('button').first()).toBeVisible({ timeout: 60_000 });
+    const outside = await page.evaluate(() => {
+      const landmarks =
+        'main, nav, body > header, aside, section[aria-label], [role=status], [role=alert], dialog, noscript, script, style';
+      return [...document.body.querySelectorAll<HTMLElement>('*')]
+        .filter((node) => node.checkVisibility() && !node.closest(landmarks))
+        .filter((node) => node.matches('canvas, button, input, select, a, img') || node.textContent?.trim())
+        .filter((node) => !node.querySelector(landmarks))
+        .map((node) => node.outerHTML.slice(0, 80));
+    });
+    expect(outside).toEqual([]);
+  });

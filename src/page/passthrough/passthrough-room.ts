@@ -1,0 +1,142 @@
+import { Fog, Mesh, type Object3D, PlaneGeometry, ShadowMaterial } from 'three';
+import { thirdPersonOnlyLayer } from 'threepoint/avatar/rig/body-meshes';
+import type { PlayRoom } from 'threepoint/xr/session';
+import type { Notices } from 'threepoint-ui/notices';
+import type { Activity, FloorNeeds } from '../activity/activity';
+import type { Quality } from '../scene/renderer';
+import type { Surroundings } from '../scene/surroundings';
+import type { Studio } from '../studio/studio';
+import { detectedFloors, holds } from './floor-space';
+import { type KeptAnchor, MirrorStand } from './mirror-stand';
+import { RoomLight } from './room-light';
+
+export interface PassthroughOptions {
+  readonly session: XRSession;
+  /** The space within the boundary of the headset; null: the device does not report it. */
+  readonly room: PlayRoom | null;
+  readonly quality: Quality;
+  readonly studio: Studio;
+  readonly notices: Pick<Notices, 'show'>;
+  readonly kept: KeptAnchor;
+  floorSpace(): XRReferenceSpace | null;
+  /** The current activity; null: the user is at the mirror. */
+  activity(): Pick<Activity, 'place' | 'floor'> | null;
+  standMirror(x: number, floor: number, z: number, turned: number): void;
+  /** A sheet lies under the hands' rays. */
+  isCovered(): boolean;
+}
+
+/** The objects of a place that stand for the world around it, and give way to the user's own room. */
+const scenery = ['sky', 'ground', 'landscape', 'backstop', 'tufts'];
+/** A haze that begins nowhere in a room [m]. */
+const hazeBeyond = 1e5;
+const shadowSize = 12;
+const shadowDarkness = 0.4;
+
+/** Receives the shadow of the avatar on the real floor. */
+function createShadowPlane(): Mesh {
+  const material = new ShadowMaterial({ opacity: shadowDarkness, fog: false });
+  const plane = new Mesh(new PlaneGeometry(shadowSize, shadowSize).rotateX(-Math.PI / 2), material);
+  plane.name = 'shadow plane';
+  plane.receiveShadow = true;
+  plane.position.y = 0.003;
+  return plane;
+}
+
+/** Returns what an activity needs, in a sentence. */
+function tooSmall({ place }: Pick<Activity, 'place'>, { halfWidth, ahead, behind }: FloorNeeds): string {
+  const size = `${2 * halfWidth} × ${ahead + behind} m`;
+  return `${place} needs ${size} of free floor in front of you. Your room is smaller, so the usual world is shown.`;
+}
+
+/**
+ * The user's own room in place of the studio, for one session: the mirror stands in it, its light falls on the avatar,
+ * and an activity is placed in it at true distances where the floor is large enough.
+ */
+export class PassthroughRoom {
+  readonly mirror: MirrorStand;
+  readonly #options: PassthroughOptions;
+  readonly #light = new RoomLight();
+  readonly #shadowPlane: Mesh | null;
+  /** The layers of the studio's objects before the session. */
+  readonly #layers = new Map<Object3D, number>();
+  readonly #hidden = new Set<Object3D>();
+  #arranged: Surroundings | null = null;
+  #showsRoom = true;
+
+  constructor(options: PassthroughOptions) {
+    const { session, studio, quality, kept, floorSpace, isCovered } = options;
+    this.#options = options;
+    this.mirror = new MirrorStand({ session, kept, floorSpace, isCovered });
+    void this.#light.start(session);
+    // The mirror shows the studio behind the avatar: it cannot show the room.
+    studio.home.traverse((node) => {
+      this.#layers.set(node, node.layers.mask);
+      node.layers.set(thirdPersonOnlyLayer);
+    });
+    this.#shadowPlane = quality === 'high' ? createShadowPlane() : null;
+    if (this.#shadowPlane) studio.scene.add(this.#shadowPlane);
+  }
+
+  /** The user sees the own room, not the world of an activity. */
+  get showsRoom(): boolean {
+    return this.#showsRoom;
+  }
+
+  /** Updates the room for the picture of this frame. `time`: [s]. */
+  update(frame: XRFrame, time: number): void {
+    const { floorSpace, studio, standMirror, activity } = this.#options;
+    const floor = floorSpace();
+    if (!floor) return;
+    if (studio.surroundings !== this.#arranged) this.#arrange(frame, floor);
+    this.mirror.update(frame, time);
+    if (activity() === null) {
+      const { x, y, z, turned } = this.mirror.place;
+      standMirror(x, y, z, turned);
+      if (this.#shadowPlane) this.#shadowPlane.position.y = y + 0.003;
+    }
+    const light = this.#showsRoom ? this.#light.read(frame, floor) : null;
+    if (light) studio.setEstimatedLight(light);
+  }
+
+  dispose(): void {
+    const { studio } = this.#options;
+    this.mirror.dispose();
+    for (const [node, mask] of this.#layers) node.layers.mask = mask;
+    for (const node of this.#hidden) node.visible = true;
+    this.#shadowPlane?.removeFromParent();
+    this.#shadowPlane?.geometry.dispose();
+    studio.restore();
+  }
+
+  /** Shows the room around the studio's mirror, or an activity in it if the floor is large enough. */
+  #arrange(frame: XRFrame, floor: XRReferenceSpace): void {
+    const { studio, activity, notices } = this.#options;
+    this.#arranged = studio.surroundings;
+    for (const node of this.#hidden) node.visible = true;
+    this.#hidden.clear();
+    const current = activity();
+    const needs = current?.floor;
+    this.#showsRoom = current === null || (needs !== undefined && this.#hasFloor(needs, frame, floor));
+    if (current && needs && !this.#showsRoom) notices.show('info', tooSmall(current, needs));
+    if (!this.#showsRoom) return;
+    if (current) this.#hideScenery(studio.surroundings.object);
+    const { fog } = studio.scene;
+    if (fog instanceof Fog) Object.assign(fog, { near: hazeBeyond, far: 2 * hazeBeyond });
+  }
+
+  #hideScenery(place: Object3D): void {
+    for (const child of place.children) {
+      if (!scenery.includes(child.name) || !child.visible) continue;
+      child.visible = false;
+      this.#hidden.add(child);
+    }
+  }
+
+  #hasFloor(needs: FloorNeeds, frame: XRFrame, floor: XRReferenceSpace): boolean {
+    const floors = detectedFloors(frame, floor);
+    if (floors.length > 0) return floors.some((polygon) => holds(polygon, needs));
+    const { room } = this.#options;
+    return room !== null && room.width >= 2 * needs.halfWidth && room.depth >= needs.ahead + needs.behind;
+  }
+}

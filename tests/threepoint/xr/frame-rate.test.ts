@@ -1,0 +1,138 @@
+import { FrameRateControl } from 'threepoint/xr/frame-rate';
+import { describe, expect, test } from 'vitest';
+
+/**
+ * A headset and a page in it, in simulated time. `fastest`: the rate [Hz] up to which the page draws every frame in
+ * time; above it every tenth frame is late.
+ */
+class Wearing {
+  readonly supportedFrameRates = Float32Array.of(120, 72, 90, 80);
+  frameRate: number;
+  fastest = 120;
+  refuses: number | null = null;
+  time = 0;
+  readonly asked: number[] = [];
+  readonly control: FrameRateControl;
+
+  constructor(startRate: number) {
+    this.frameRate = startRate;
+    this.control = new FrameRateControl(this);
+  }
+
+  async updateTargetFrameRate(rate: number): Promise<void> {
+    this.asked.push(rate);
+    if (rate === this.refuses) throw new DOMException('not now', 'InvalidStateError');
+    this.frameRate = rate;
+  }
+
+  /** Draws for this long [s]; the work of each frame takes this long [s]. Returns the share of late frames. */
+  async draw(seconds: number, workSeconds = 0.003): Promise<number> {
+    const end = this.time + seconds;
+    let late = 0;
+    let frames = 0;
+    while (this.time < end) {
+      frames += 1;
+      const missed = this.frameRate > this.fastest && frames % 10 === 0;
+      if (missed) late += 1;
+      this.time += (missed ? 2 : 1) / this.frameRate;
+      this.control.observe(this.time, workSeconds);
+      await Promise.resolve();
+      await Promise.resolve();
+    }
+    return late / frames;
+  }
+}
+
+describe('the frame rate of a headset', () => {
+  test.each([72, 80, 90, 120])(
+    'ends at %i Hz where that is the highest that the page holds, from any start',
+    async (fastest) => {
+      for (const start of [72, 90, 120]) {
+        const worn = new Wearing(start);
+        worn.fastest = fastest;
+        await worn.draw(45);
+        expect(worn.frameRate).toBe(fastest);
+        // Held: fewer than 1 % late frames over ten seconds.
+        expect(await worn.draw(10)).toBeLessThan(0.01);
+      }
+    },
+  );
+
+  test('is lowered within two seconds where a tenth of the frames are late', async () => {
+    const worn = new Wearing(120);
+    worn.fastest = 90;
+    await worn.draw(3);
+    expect(worn.frameRate).toBe(90);
+  });
+
+  test('is lowered where each frame takes a second', async () => {
+    const worn = new Wearing(90);
+    for (let i = 0; i < 40; i++) {
+      worn.time += 1;
+      worn.control.observe(worn.time, 0.9);
+      await Promise.resolve();
+      await Promise.resolve();
+    }
+    expect(worn.frameRate).toBeLessThan(90);
+  });
+
+  test('stays where one frame in two hundred is late', async () => {
+    const worn = new Wearing(90);
+    worn.refuses = 120;
+    for (let i = 0; i < 30; i++) {
+      await worn.draw(199 / 90);
+      worn.time += 0.03;
+    }
+    expect(worn.frameRate).toBe(90);
+    expect(worn.asked).not.toContain(80);
+  });
+
+  test('is tried again after a failure, later each time: at most five times in half an hour', async () => {
+    const worn = new Wearing(90);
+    worn.fastest = 90;
+    await worn.draw(1800);
+    const attempts = worn.asked.filter((rate) => rate === 120).length;
+    expect(attempts).toBeGreaterThanOrEqual(2);
+    expect(attempts).toBeLessThanOrEqual(6);
+    worn.fastest = 120;
+    await worn.draw(1000);
+    expect(worn.frameRate).toBe(120);
+  });
+
+  test('is not raised where the work of a frame would leave no time at the next rate', async () => {
+    const worn = new Wearing(72);
+    await worn.draw(60, 0.009);
+    expect(worn.frameRate).toBe(72);
+    await worn.draw(60, 0.003);
+    expect(worn.frameRate).toBe(120);
+  });
+
+  test('is not lowered for a pause of seconds now and then', async () => {
+    const worn = new Wearing(90);
+    worn.refuses = 120;
+    for (let i = 0; i < 40; i++) {
+      await worn.draw(2);
+      // The system menu is opened: no frames.
+      worn.time += 5;
+    }
+    expect(worn.frameRate).toBe(90);
+    expect(worn.asked).not.toContain(80);
+  });
+
+  test('is asked for once at a time, and a refused rate leaves it where it is', async () => {
+    const worn = new Wearing(90);
+    worn.refuses = 120;
+    await worn.draw(60);
+    expect(worn.frameRate).toBe(90);
+    expect(worn.control.rate).toBe(90);
+  });
+
+  test('is left alone on a device without a choice', async () => {
+    for (const session of [{}, { frameRate: 72 }, { frameRate: 72, supportedFrameRates: null }]) {
+      const control = new FrameRateControl(session);
+      expect(control.rates).toEqual([]);
+      for (let i = 0; i < 2000; i++) control.observe(i / 20, 0.04);
+      expect(control.rate).toBe('frameRate' in session ? 72 : null);
+    }
+  });
+});
