@@ -29,7 +29,7 @@ export interface WebServer {
 /** Handles an upgrade request and returns true; false where the address has no WebSocket. */
 export type UpgradeListener = (request: IncomingMessage, socket: Duplex, head: Buffer) => boolean;
 
-/** Where a server listens: on the port or the next free one. */
+/** The address on which a server listens; the port is the next free one where it is taken. */
 export interface ListenOptions {
   readonly host: string;
   readonly port: number;
