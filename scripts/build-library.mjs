@@ -59,7 +59,7 @@ function published() {
 
 /**
  * The modules of the sources that read a file of the package or start a worker, the function of each, and the file or
- * the worker's module. Some bundlers drop files that code references by URL; a page would then never leave its fallback.
+ * the worker's module. Some bundlers drop files that code references by URL; a page would then stay with its fallback.
  */
 const readers = [
   {

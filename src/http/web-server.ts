@@ -29,7 +29,7 @@ export interface WebServer {
 /** Handles an upgrade request and returns true; false where the address has no WebSocket. */
 export type UpgradeListener = (request: IncomingMessage, socket: Duplex, head: Buffer) => boolean;
 
-/** Where a server listens: on the port or the next free one. */
+/** The address on which a server listens; the port is the next free one where it is taken. */
 export interface ListenOptions {
   readonly host: string;
   readonly port: number;
@@ -88,6 +88,13 @@ export const guarded =
     else sendAnswer(request, response, refusal(new HttpError(400, complaint)));
   };
 
+/** Answers an upgrade request with a wrong Host; returns whether it did. */
+export function refusesUpgrade(request: IncomingMessage, socket: Duplex): boolean {
+  const complaint = complaintAboutHost(request);
+  if (complaint !== null) sendRawAnswer(socket, refusal(new HttpError(400, complaint)));
+  return complaint !== null;
+}
+
 /** The response that each connection waits for. */
 const answering = new WeakMap<Duplex, ServerResponse>();
 
@@ -118,12 +125,7 @@ function answerAll(server: HttpServer, listener: RequestListener, upgrade: Upgra
   });
   server.on('upgrade', (request: IncomingMessage, socket: Duplex, head: Buffer) => {
     socket.on('error', () => socket.destroy());
-    const complaint = complaintAboutHost(request);
-    if (complaint !== null) {
-      sendRawAnswer(socket, refusal(new HttpError(400, complaint)));
-      return;
-    }
-    if (upgrade(request, socket, head)) return;
+    if (refusesUpgrade(request, socket) || upgrade(request, socket, head)) return;
     if (head.length > 0) {
       sendRawAnswer(socket, refusal(new HttpError(400, 'this address supports no upgrade')));
       return;

@@ -6,7 +6,7 @@ import { type ConnectionLimiter, createConnectionLimiter } from 'threepoint-http
 import { createRouter, noPage, type Route } from 'threepoint-http/router';
 import { createSitePolicy, type SitePolicy } from 'threepoint-http/site-policy';
 import { targetOf } from 'threepoint-http/target';
-import { guarded } from 'threepoint-http/web-server';
+import { guarded, refusesUpgrade } from 'threepoint-http/web-server';
 import { peopleKind, peoplePolicy } from '../room/people-policy';
 import type { RoomKinds } from './hosting/room-kinds';
 import { createRelay } from './relay';
@@ -111,9 +111,11 @@ export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}
     }),
     intercept(httpServer, 'upgrade', (passOn) => (request, socket, head) => {
       const [asked, connection] = [request as IncomingMessage, socket as Duplex];
+      const { url } = asked;
       if (takesUrl(asked)) {
         connection.on('error', () => connection.destroy());
-        if (relay.upgrade(asked, connection, head as Buffer)) return;
+        if (refusesUpgrade(asked, connection) || relay.upgrade(asked, connection, head as Buffer)) return;
+        asked.url = url;
       }
       // Nobody else would ever answer.
       if (!passOn(asked, connection, head)) connection.destroy();

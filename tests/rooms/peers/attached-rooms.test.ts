@@ -1,6 +1,7 @@
+import { once } from 'node:events';
 import { readFile } from 'node:fs/promises';
 import { createServer, type Server } from 'node:http';
-import type { AddressInfo } from 'node:net';
+import { type AddressInfo, connect } from 'node:net';
 import { Group, Vector3 } from 'three';
 import { loadAvatar } from 'threepoint/api/three';
 import { distance } from 'threepoint/core/math/vec3';
@@ -74,7 +75,8 @@ test('two pages see each other on any server of node:http, whose own addresses s
   await until('each draws the other', () => {
     ann.frame();
     ben.frame();
-    return drawn(ann.room).length === 1 && drawn(ben.room).length === 1;
+    const seen = drawn(ann.room).length === 1 && drawn(ben.room).length === 1;
+    return seen && ann.room.others.people[0]?.presence === 'here';
   });
   expect(ann.room.others.people).toEqual([{ seat: 1, name: 'Ben', presence: 'here' }]);
   expect([ann.room.seat, ben.room.seat]).toEqual([0, 1]);
@@ -266,6 +268,18 @@ test('below a path, and for pages of other origins that are named', async () => 
   const room = await joinRoom(`${url}/bodies`, { name: 'Ann', body: solvedActor(), storage: null });
   expect(room.seat).toBe(0);
   room.leave();
+});
+
+test('requests with two names of the server reach no room, as requests and as WebSockets', async () => {
+  const { server } = await served();
+  const { port } = server.address() as AddressInfo;
+  for (const upgrade of ['', 'Connection: Upgrade\r\nUpgrade: websocket\r\n']) {
+    const socket = connect(port, '127.0.0.1');
+    socket.end(`GET /relay/?EIO=4 HTTP/1.1\r\nHost: localhost\r\nHost: elsewhere.example\r\n${upgrade}\r\n`);
+    const [answer] = (await once(socket, 'data')) as [Buffer];
+    expect(answer.toString()).toMatch(/^HTTP\/1.1 400 /);
+    socket.destroy();
+  }
 });
 
 test('a room that cannot be joined is refused with a sentence', async () => {
