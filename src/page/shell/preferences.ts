@@ -1,7 +1,7 @@
-import { type BoneName, boneNames } from 'threepoint/core/humanoid/bones';
 import { avatarHash, builtInBodies, skinTones } from 'threepoint/core/body/avatar-ref';
 import { calibrationComplaint } from 'threepoint/core/body/calibration';
 import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
+import { type BoneName, boneNames } from 'threepoint/core/humanoid/bones';
 import { handTiltsSchema } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
 

@@ -1,6 +1,6 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
-import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import { isSkeletonMap } from 'threepoint/core/mocap/is-skeleton-map';
 import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
 import type { Notices } from 'threepoint-ui/notices';

@@ -1,6 +1,6 @@
-import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import type { BuiltInBody, SkinTone } from 'threepoint/core/body/avatar-ref';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
+import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import type { ViewName } from '../../scene/desktop-view';
 import type { WaitingForBones } from '../shown-avatar';
 
