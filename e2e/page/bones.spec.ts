@@ -12,7 +12,7 @@ const robot = Buffer.from(
     const { humanBones } = json.extensions.VRMC_vrm?.humanoid ?? { humanBones: {} };
     for (const bone of Object.keys(humanBones)) bones[bone] = bone === 'leftHand' ? 'part left knee' : `part ${bone}`;
     for (const [index, node] of json.nodes.entries()) node.name = `part ${index}`;
-    for (const [bone, { node }] of Object.entries(humanBones)) json.nodes[node]!.name = bones[bone];
+    for (const [bone, { node }] of Object.entries(humanBones)) json.nodes[node]!.name = bones[bone]!;
     for (const extension of ['extensions', 'extensionsUsed']) delete json[extension];
   }),
 );

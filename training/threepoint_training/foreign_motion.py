@@ -50,11 +50,15 @@ def read_foreign(paths: Sequence[Path], skeleton_map: Path | None) -> dict[Path,
             "out": out,
         }
         command = [node, "-C", "source", "--import", "tsx", _READER]
-        done = subprocess.run(command, input=json.dumps(request), text=True, capture_output=True, cwd=_ROOT, check=False)
+        done = subprocess.run(
+            command, input=json.dumps(request), text=True, capture_output=True, cwd=_ROOT, check=False
+        )
         if done.returncode != 0:
             raise MocapError(f"the reader of motion files failed: {done.stderr.strip() or done.returncode}")
         index = json.loads(Path(out, "index.json").read_text())
-        return {path: _read(Path(out), number, found) for number, (path, found) in enumerate(zip(paths, index, strict=True))}
+        return {
+            path: _read(Path(out), number, found) for number, (path, found) in enumerate(zip(paths, index, strict=True))
+        }
 
 
 def _read(out: Path, number: int, found: dict[str, object]) -> ForeignMotion | MocapError:

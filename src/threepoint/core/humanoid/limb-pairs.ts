@@ -69,7 +69,7 @@ export function findLimb(tree: JointTree, first: number, kind: LimbKind): Limb |
   return best;
 }
 
-/** A thigh and a shin by their names, whose foot hangs elsewhere: it follows a control. null: names do not show them. */
+/** A thigh and a shin by their names. Their foot hangs elsewhere, from a control. null: names do not show them. */
 function legWithoutFoot(tree: JointTree, chain: readonly number[]): Limb | null {
   const named = tree.vote(chain[0]!, 'upperLeg') > 0.7 && tree.vote(chain[1]!, 'lowerLeg') > 0.5;
   return named ? { chain, at: [0, 1, 1], shape: 0.8, names: 0.6 } : null;

@@ -13,8 +13,9 @@ import {
   zero,
 } from '../math/vec3';
 import { type BoneName, boneNames, neededBones } from './bones';
+import { type Body, findBody, legsBelow } from './find-body';
 import { JointTree, type SkeletonJoint } from './joint-tree';
-import { findPairs, type Limb, type LimbPair, limbLength, sideByNames } from './limb-pairs';
+import { type Limb, type LimbPair, limbLength, sideByNames } from './limb-pairs';
 import { matchFingers } from './match-fingers';
 import type { Part } from './name-votes';
 
@@ -57,17 +58,6 @@ const limbWords = [
   'toes',
 ] as const satisfies readonly Part[];
 
-/** Arms, legs if there are any, and the trunk between them. */
-interface Body {
-  readonly arms: LimbPair;
-  readonly legs: LimbPair | null;
-  /** Hips first, the joint that the arms leave last. */
-  readonly trunk: readonly number[];
-  /** From below the arms' joint to the head and beyond. */
-  readonly above: readonly number[];
-  readonly score: number;
-}
-
 class Matcher {
   readonly tree: JointTree;
   readonly map: Partial<Record<BoneName, BoneMatch>> = {};
@@ -79,8 +69,8 @@ class Matcher {
 
   match(): HumanoidMatch {
     if (!this.#takeVrmNames()) {
-      const body = this.#findBody();
-      if (body && !this.#onFourLegs(body)) this.#takeBody(body);
+      const body = findBody(this.tree);
+      if (body) this.#takeBody(body);
       else this.#takeNamesAlone();
     }
     this.#dropContradictions();
@@ -109,121 +99,6 @@ class Matcher {
       if (/Arm|Hand/.test(bone) && this.map[bone]?.confidence === contradicted) delete this.map[bone];
     const head = this.map.head?.joint;
     if (head !== undefined && limbWords.some((part) => this.tree.vote(head, part) > 0.7)) delete this.map.head;
-  }
-
-  #findBody(): Body | null {
-    const [arms, legs] = [findPairs(this.tree, 'arm'), findPairs(this.tree, 'leg')];
-    let best: Body | null = null;
-    for (const arm of arms) {
-      for (const leg of [...legs, null]) {
-        const body = this.#bodyOf(arm, leg);
-        if (body && (!best || body.score > best.score)) best = body;
-      }
-    }
-    return best;
-  }
-
-  #bodyOf(arms: LimbPair, legs: LimbPair | null): Body | null {
-    const { tree } = this;
-    const armAncestors = tree.ancestors(arms.root);
-    const within = (pair: LimbPair, joint: number): boolean => {
-      const ancestors = new Set(tree.ancestors(joint));
-      return pair.limbs.some(({ chain }) => ancestors.has(chain[0]!));
-    };
-    if (legs && (within(arms, legs.root) || within(legs, arms.root))) return null;
-    if (
-      legs &&
-      legs.root === arms.root &&
-      legs.limbs.some((leg) => arms.limbs.some((arm) => arm.chain[0] === leg.chain[0]))
-    )
-      return null;
-    const trunk = this.#trunk(armAncestors, legs);
-    const limbs = new Set([arms, legs].flatMap((pair) => pair?.limbs.map(({ chain }) => chain[0]!) ?? []));
-    const above = this.#above(arms.root, new Set([...limbs, ...trunk]), trunk);
-    let score = arms.score + (legs ? legs.score : 0.5);
-    if (above.length > 0) score += 1 + Math.max(...above.map((joint) => tree.vote(joint, 'head')));
-    if (trunk.length < 2) score -= 1;
-    score += Math.max(0, ...trunk.map((joint) => tree.vote(joint, 'spine'))) + tree.vote(trunk[0]!, 'hips');
-    if (legs) {
-      if (armAncestors.includes(legs.root) && legs.root !== arms.root) score += 0.6;
-      const share = limbLength(tree, legs.limbs[0]) / limbLength(tree, arms.limbs[0]);
-      if (share > 0.6 && share < 2.5) score += 0.4;
-      score += 0.5 * this.#legsBelow(legs, arms);
-    }
-    return { arms, legs, trunk, above, score };
-  }
-
-  /** From the hips to the joint that the arms leave. */
-  #trunk(armAncestors: readonly number[], legs: LimbPair | null): readonly number[] {
-    const { tree } = this;
-    const down = [...armAncestors].reverse();
-    const legAncestors = legs ? tree.ancestors(legs.root) : [];
-    if (!legs) {
-      const named = down.findIndex((joint) => tree.vote(joint, 'hips') > 0.5);
-      const first = down.findIndex((joint, i) => i > 0 && tree.segments[joint]! > 0.02 * tree.size) - 1;
-      return down.slice(named >= 0 ? named : Math.max(0, first));
-    }
-    const shared = legAncestors.find((joint) => armAncestors.includes(joint));
-    if (shared === undefined) return [legs.root, ...down];
-    const from = down.indexOf(shared);
-    // Hips that hang under the spine leave the shared joint to the spine.
-    if (shared === armAncestors[0] && legs.root !== shared) return [legs.root, shared];
-    const candidates = legAncestors.slice(0, legAncestors.indexOf(shared) + 1);
-    const hips = candidates.reduce((a, b) => (tree.vote(b, 'hips') >= tree.vote(a, 'hips') ? b : a));
-    return hips === shared || tree.vote(shared, 'spine') < 0.5 ? down.slice(from) : [hips, ...down.slice(from)];
-  }
-
-  /** How far the legs at rest point away from the trunk: 1 opposite, −1 along it. */
-  #legsBelow(legs: LimbPair, arms: LimbPair): number {
-    const { tree } = this;
-    const trunk = subtract(tree.position(arms.root), tree.position(legs.root));
-    const ways = legs.limbs.map(({ chain, at }) =>
-      normalise(subtract(tree.position(chain[at[2]]!), tree.position(chain[at[0]]!)), zero),
-    );
-    return ways.reduce((sum, way) => sum - dot(way, normalise(trunk, zero)) / 2, 0);
-  }
-
-  /** Whether a skeleton stands on four legs: arms point as legs do, across the trunk. */
-  #onFourLegs({ arms, legs, trunk }: Body): boolean {
-    if (!legs) return false;
-    const { tree } = this;
-    const way = ({ chain, at }: Limb): Vec3 =>
-      normalise(subtract(tree.position(chain[at[2]]!), tree.position(chain[at[0]]!)), zero);
-    const along = normalise(subtract(tree.position(arms.root), tree.position(trunk[0]!)), zero);
-    return [0, 1].every((i) => {
-      const [arm, leg] = [way(arms.limbs[i]!), way(legs.limbs[i]!)];
-      return dot(arm, leg) > 0.7 && Math.abs(dot(leg, along)) < 0.6;
-    });
-  }
-
-  /** The chain from the arms' joint to the head, without what belongs to limbs and trunk. */
-  #above(root: number, taken: ReadonlySet<number>, trunk: readonly number[]): readonly number[] {
-    const { tree } = this;
-    const trunkWay = normalise(subtract(tree.position(root), tree.position(trunk[0]!)), zero);
-    const branches = tree.children[root]!.filter((child) => !taken.has(child));
-    let best: readonly number[] = [];
-    let most = 0;
-    for (const child of branches) {
-      const chain = this.#headChain(child);
-      const named = Math.max(...chain.map((joint) => Math.max(tree.vote(joint, 'head'), tree.vote(joint, 'neck'))));
-      const way = normalise(subtract(tree.position(chain.at(-1)!), tree.position(root)), zero);
-      const own = (tree.segments[child]! + tree.heights[child]!) / tree.size;
-      const score = 3 * named + dot(way, trunkWay) + Math.min(own, 0.3) + (chain.length > 1 ? 0.3 : 0) + 0.5;
-      if (score > most && !(tree.auxiliary[child] && named === 0)) [best, most] = [chain, score];
-    }
-    return best;
-  }
-
-  /** From a joint to the named head, else along the main chain. */
-  #headChain(child: number): readonly number[] {
-    const { tree } = this;
-    const below = tree.below(child);
-    const head = below.reduce((a, b) => (tree.vote(b, 'head') > tree.vote(a, 'head') ? b : a), child);
-    if (tree.vote(head, 'head') > 0.5) {
-      const ancestors = tree.ancestors(head);
-      return ancestors.slice(0, ancestors.indexOf(child) + 1).reverse();
-    }
-    return tree.mainChain(child, 12);
   }
 
   #takeBody(body: Body): void {
@@ -338,7 +213,7 @@ class Matcher {
   #leftOf(trunk: readonly number[], arms: LimbPair, legs: LimbPair | null) {
     const { tree } = this;
     const up = subtract(tree.position(arms.root), tree.position(trunk[0]!));
-    if (!(length(up) > 0) || (legs && this.#legsBelow(legs, arms) < 0.5)) return null;
+    if (!(length(up) > 0) || (legs && legsBelow(tree, legs, arms) < 0.5)) return null;
     const upward = normalise(up, zero);
     const front = { x: 0, y: 0, z: 0 };
     let [reach, known] = [0, 0];

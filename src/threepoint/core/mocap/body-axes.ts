@@ -98,8 +98,10 @@ const median = (values: readonly number[]): number =>
 
 /** What a clip shows of its vertical, in floor axes of its rest pose. */
 interface Stance {
-  /** The share of frames in which the trunk stands along an axis. */
+  /** The share of frames in which the trunk stands along an axis, feet below the hips. */
   readonly shares: Readonly<Record<FileAxis, number>>;
+  /** The share of frames in which trunk and legs stand upright. */
+  readonly upright: number;
   /** The median of the lowest joint along an axis, as a share of the trunk's length. */
   readonly lowest: Readonly<Record<FileAxis, number>>;
 }
@@ -111,7 +113,7 @@ function stanceOf(file: FileMotion, floor: Quat, joints: StandingJoints): Stance
   const bodies = [joints.hips, joints.neck, ...joints.upperArms, ...joints.upperLegs, ...joints.feet].filter(
     (i) => i >= 0,
   );
-  let count = 0;
+  let [count, upright] = [0, 0];
   for (const frame of sampledFrames(file.frameCount)) {
     file.pose(frame, poses);
     count += 1;
@@ -120,6 +122,7 @@ function stanceOf(file: FileMotion, floor: Quat, joints: StandingJoints): Stance
     const size = length(trunk);
     const way = normalise(trunk, zero);
     const legs = joints.feet.filter((i) => i >= 0).map((foot) => normalise(subtract(at(foot), at(joints.hips)), zero));
+    if (way.y > standing && legs.every((leg) => leg.y < -0.5)) upright += 1;
     for (const axis of axisNames) {
       const above = directions[axis];
       if (dot(way, above) > standing && legs.every((leg) => dot(leg, above) < 0)) shares[axis] += 1;
@@ -128,7 +131,7 @@ function stanceOf(file: FileMotion, floor: Quat, joints: StandingJoints): Stance
   }
   for (const axis of axisNames) shares[axis] /= count;
   const lowest = Object.fromEntries(axisNames.map((axis) => [axis, median(lows[axis])])) as Record<FileAxis, number>;
-  return { shares, lowest };
+  return { shares, lowest, upright: upright / count };
 }
 
 /**
@@ -137,9 +140,10 @@ function stanceOf(file: FileMotion, floor: Quat, joints: StandingJoints): Stance
  * one, lies.
  */
 export function otherUp(file: FileMotion, floor: Quat, joints: StandingJoints): FileAxis | null {
-  const { shares, lowest } = stanceOf(file, floor, joints);
+  const { shares, lowest, upright } = stanceOf(file, floor, joints);
   const best = axisNames.reduce((a, b) => (shares[b] > shares[a] ? b : a));
-  if (best === '+y' || shares[best] <= 0.5 || shares['+y'] >= 0.5) return null;
+  // Who stands at times is a person who lies down.
+  if (best === '+y' || shares[best] <= 0.5 || upright > 0.05) return null;
   const liesOnFloor = Math.abs(lowest['+y']) < 0.4;
   const standsOnOther = Math.abs(lowest[best]) < 0.5;
   return liesOnFloor && !standsOnOther ? null : best;

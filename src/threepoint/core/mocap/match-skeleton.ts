@@ -47,6 +47,8 @@ function jointsOf(match: HumanoidMatch, file: FileMotion) {
     const found = match.map[joint satisfies BoneName];
     if (found) joints[joint] = found.joint;
   }
+  for (const [joint, name] of Object.entries(handsOfCmuconvert(file.names)))
+    joints[joint as TruthJoint] = file.names.indexOf(name);
   const between: MappedSkeleton['between'] = {};
   if (joints.neck === undefined) {
     Object.assign(between, {
@@ -117,11 +119,10 @@ function restsAsPerson(rest: readonly Vec3[], { arms, legs }: Limbs, { turn }: B
   });
 }
 
-/** Exchanges left and right. */
-function exchanged(joints: Joints): Joints {
-  const other = (joint: string): TruthJoint =>
-    joint.replace(/^(left|right)/, (side) => (side === 'left' ? 'right' : 'left')) as TruthJoint;
-  return Object.fromEntries(Object.entries(joints).map(([joint, at]) => [other(joint), at]));
+/** Returns the match with left and right exchanged. */
+function exchanged(match: HumanoidMatch): HumanoidMatch {
+  const other = (bone: string): string => bone.replace(/^(left|right)/, (side) => (side === 'left' ? 'right' : 'left'));
+  return { ...match, map: Object.fromEntries(Object.entries(match.map).map(([bone, found]) => [other(bone), found])) };
 }
 
 /** Returns the pose of the first frame where a person stands in T-pose there; null: there is none. */
@@ -145,10 +146,40 @@ function firstFrame(file: FileMotion, joints: StandingJoints, limbs: Limbs): Joi
  * sentence with what was found and what is missing.
  */
 export function matchSkeleton(file: FileMotion): MatchedMotion {
-  const parents = file.parents!;
+  const { match, notes } = matchSides(file);
+  const found = jointsOf(match, file);
+  const { joints } = found;
+  const standing = standingJoints(joints, match);
+  const limbs = limbsOf(joints, match);
+  const upright = restAsMoved(file, standing);
+  const rested = restOf(upright.file, standing, limbs);
+  notes.push(...found.notes, ...upright.notes, ...rested.notes);
+  const { turn } = rested.axes;
+  const floor = rested.stands ? turn : usualFloor;
+  const up = otherUp(rested.file, floor, standing);
+  if (up)
+    notes.push(
+      `the person would lie in most frames; the axis that makes them stand was taken as up (${axisIn(floor, up)})`,
+    );
+  return {
+    file: rested.file,
+    notes,
+    skeleton: {
+      joints: Object.fromEntries(Object.entries(joints).map(([joint, at]) => [joint, file.names[at]!])),
+      columns: joints,
+      turning: trackedJoints.map((joint) => joints[joint]!),
+      between: found.between,
+      floor: turn,
+      motionFloor: floorOfMotion(floor, up),
+    },
+  };
+}
+
+/** Matches the joints of a file, left and right by where the toes point. Throws a sentence where they do not match. */
+function matchSides(file: FileMotion) {
   const match = matchHumanoid(
     file.rest.map((position, i) => ({
-      ...{ name: file.names[i]!, parent: parents[i]!, position },
+      ...{ name: file.names[i]!, parent: file.parents![i]!, position },
       ...(file.names[i]!.endsWith(':end') && { end: true }),
     })),
   );
@@ -157,50 +188,10 @@ export function matchSkeleton(file: FileMotion): MatchedMotion {
     throw new Error(
       `${complaint}. A map of it, a .json that is dropped too, says which joint is which: docs/accuracy.md`,
     );
-  const found = jointsOf(match, file);
-  const notes = [...match.notes, ...found.notes];
-  let { joints } = found;
-  const known = standingJoints(joints, match);
-  if (facesBack(file, known)) {
-    notes.push('the names of left and right are exchanged: the toes point back; the motion was followed');
-    joints = exchanged(joints);
-  }
-  const standingAt = standingJoints(joints, match);
-  const limbs = limbsOf(joints, match);
-  const upright = restAsMoved(file, standingAt);
-  notes.push(...upright.notes);
-  const rested = restOf(upright.file, standingAt, limbs);
-  notes.push(...rested.notes);
-  const { turn } = rested.axes;
-  const floor = rested.stands ? turn : usualFloor;
-  const up = otherUp(rested.file, floor, standingAt);
-  if (up)
-    notes.push(
-      `the person would lie in most frames; the axis that makes them stand was taken as up (${axisIn(floor, up)})`,
-    );
-  const hands = handsOfCmuconvert(file.names);
-  const names = Object.fromEntries(Object.entries(joints).map(([joint, at]) => [joint, file.names[at!]!]));
-  return {
-    file: rested.file,
-    notes,
-    skeleton: {
-      joints: { ...names, ...hands },
-      columns: Object.fromEntries(
-        truthJoints.flatMap((joint) => {
-          const hand = hands[joint as keyof typeof hands];
-          const at = hand === undefined ? joints[joint] : file.names.indexOf(hand);
-          return at === undefined ? [] : [[joint, at]];
-        }),
-      ),
-      turning: trackedJoints.map((joint) => {
-        const hand = hands[joint as keyof typeof hands];
-        return hand === undefined ? joints[joint]! : file.names.indexOf(hand);
-      }),
-      between: found.between,
-      floor: turn,
-      motionFloor: floorOfMotion(floor, up),
-    },
-  };
+  const notes = [...match.notes];
+  if (!facesBack(file, standingJoints(jointsOf(match, file).joints, match))) return { match, notes };
+  notes.push('the names of left and right are exchanged: the toes point back; the motion was followed');
+  return { match: exchanged(match), notes };
 }
 
 /**

@@ -24,7 +24,7 @@ import {
   zero,
 } from '../math/vec3';
 import { type FileMotion, makeJointPoses } from '../motion/file-motion';
-import { armLength, units } from './mocap-rules.json';
+import { armLength, cmu, units } from './mocap-rules.json';
 import { checkRest, type RestPose } from './rest-pose';
 import {
   type BetweenJoints,
@@ -63,6 +63,18 @@ function metresPerUnit({ scale: given }: MappedSkeleton, restOf: (joint: TruthJo
   const unit = units.find((metres) => least < arm * metres && arm * metres < most);
   if (unit === undefined) throw new Error(`an arm of ${arm.toPrecision(3)} units fits no known unit`);
   return unit;
+}
+
+const unitNames: Readonly<Record<string, string>> = {
+  ...{ 0.001: 'millimetres', 0.1: 'decimetres', 0.0254: 'inches', 0.3048: 'feet' },
+  [cmu.metresPerUnit]: 'the CMU database (5.6 cm)',
+};
+
+/** States the unit that was assumed for a file where it is neither metres nor centimetres; null: it is, or is given. */
+export function unitNote(file: FileMotion, skeleton: MappedSkeleton): string | null {
+  if (skeleton.scale) return null;
+  const name = unitNames[metresPerUnit(skeleton, (joint) => file.rest[skeleton.columns[joint]!]!)];
+  return name === undefined ? null : `its unit was taken to be that of ${name}`;
 }
 
 /** What takes the rotation of a hand since rest to that of its wrist, whose −Z points to the knuckles. */

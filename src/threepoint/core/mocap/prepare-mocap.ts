@@ -13,7 +13,7 @@ import { cutAtLeaps, evenClip } from './even-clip';
 import { floorFromFile, fromMappedRest } from './mapped-motion';
 import { type MatchedMotion, matchSkeleton } from './match-skeleton';
 import { cmu, rateHz } from './mocap-rules.json';
-import { type OurMotion, toOurJoints } from './our-joints';
+import { type OurMotion, toOurJoints, unitNote } from './our-joints';
 import { floorHeight, measuresOf, neutralHead } from './person';
 import { readSkeletonMap } from './read-skeleton-map';
 import { simulateTrackers } from './simulate-trackers';
@@ -52,6 +52,10 @@ export interface MocapClip {
   /** x, y, z of `truthJoints` for each frame, floor frame [m]; NaN: the file has no such joint. */
   readonly truth: Float32Array<ArrayBuffer>;
 }
+
+/** Frames per second of the files that are read: fewer are pictures of poses. */
+const lowestRateHz = 5;
+const highestRateHz = 5000;
 
 /** Frames per second of every clip. */
 export const mocapRateHz = rateHz;
@@ -147,8 +151,13 @@ export function* readOurMotion(
     const map = source.map && readBeside(source.map, readSkeletonMap);
     const { file, skeleton, notes } = yield* scaleProgress(readFile(source, map), 0, 0.75);
     const rate = file.rateHz ?? map?.frameRate ?? rateOf(source.name);
+    if (!(rate >= lowestRateHz && rate <= highestRateHz))
+      throw new Error(
+        `it has ${Number(rate.toPrecision(3))} frames a second; motion of ${lowestRateHz} to ${highestRateHz} is read`,
+      );
     const motion = yield* scaleProgress(toOurJoints(file, rate, skeleton), 0.75, 1);
-    return { motion, notes: [...file.notes, ...notes], doubts: doubtsOf(motion) };
+    const unit = unitNote(file, skeleton);
+    return { motion, notes: [...file.notes, ...notes, ...(unit === null ? [] : [unit])], doubts: doubtsOf(motion) };
   } catch (error) {
     throw faultIn(source.name, error);
   }

@@ -79,6 +79,11 @@ describe('a BVH is read alike with', () => {
     expect(furthest(madeBvh(options))).toBeLessThan(1);
   });
 
+  test('a unit that is neither metres nor centimetres, which is said', () => {
+    expect(prepare(madeBvh({ unit: 0.1 })).notes.join()).toMatch(/its unit was taken to be that of decimetres/);
+    expect(prepare(madeBvh({ unit: 0.01 })).notes).toEqual([]);
+  });
+
   test.each<[string, string, RegExp | null]>([
     ['a byte order mark', `\ufeff${plain}`, null],
     ['a brace on the joint’s line', plain.replaceAll(/\n\s*\{/g, ' {'), null],
@@ -186,6 +191,12 @@ describe('what cannot be right is said', () => {
     expect(doubts({ offsetOf: ([x, y, z], name) => (aside(name) ? [x, y, z + 60] : [x, y, z]) })).toMatch(
       /the pelvis is 6\d cm off the middle of the feet/,
     );
+  });
+
+  test('of a person who lies on the floor, and stays there', () => {
+    const lying: MadeOptions = { rootZUp: true, rootPlace: [0, 12, 0] };
+    expect(doubts(lying)).toMatch(/the trunk lies in most frames/);
+    expect(prepare(madeBvh(lying)).notes).toEqual([]);
   });
 
   test('of methods that all err', () => {

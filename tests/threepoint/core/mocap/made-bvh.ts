@@ -36,6 +36,8 @@ export interface MadeOptions {
   readonly numberOf?: (value: number) => string;
   /** The frame's motion is turned: a program turned the root alone. */
   readonly rootZUp?: boolean;
+  /** The place of the root in every frame [cm]. */
+  readonly rootPlace?: Bone[2];
   /** Changes offsets and axes of the rest alone. */
   readonly offsetOf?: (offset: Bone[2], name: string) => Bone[2];
   /** Lengths of the file per centimetre. */
@@ -80,7 +82,7 @@ export function madeBvh(options: MadeOptions = {}): string {
         const [z, x, y] = anglesAt(name, frame / 60);
         const turned = parent === null && options.rootZUp === true;
         const root = turned ? [offset[0], -offset[2], offset[1]] : offset;
-        const place = parent === null ? root : options.positionOf?.(offset, name);
+        const place = parent === null ? (options.rootPlace ?? root) : options.positionOf?.(offset, name);
         return [...lengths(place ?? []), z, turned ? x + 90 : x, y];
       }),
     ),
