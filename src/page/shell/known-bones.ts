@@ -5,7 +5,7 @@ import { boneMap, type PreferenceStore } from './preferences';
 /** The number of files whose maps are stored, the newest ones. */
 const mostFiles = 20;
 
-/** The maps of bones that were given for files of unknown naming, by the files' SHA-256; on this device only. */
+/** The bone maps of files that could not be matched, by the files' SHA-256; on this device only. */
 export class KnownBones {
   readonly #store: Pick<PreferenceStore, 'preferences' | 'remember'>;
 

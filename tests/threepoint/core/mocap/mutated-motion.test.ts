@@ -9,12 +9,14 @@ import { reportFigures } from '../../../reliability/report-figures';
 import { actingPerson, bytesOf } from '../motion/moved-person';
 import { madeBvh } from './made-bvh';
 
-const chance = randomNumbers(20261127);
+let chance = randomNumbers(0);
 const below = (end: number): number => Math.floor(chance() * end);
 const oneOf = <T>(values: readonly T[]): T => values[below(values.length)]!;
 
 /** Reads spoiled files; each is refused in a sentence or becomes finite trackers, with a second of work at most. */
 function readAll(name: string, count: number, spoil: () => MocapSource): void {
+  // Every format has its own numbers, so that one can be run without the other.
+  chance = randomNumbers(20261127);
   const counts = { refused: 0, read: 0 };
   let longest = 0;
   for (let i = 0; i < count; i++) {
@@ -103,7 +105,16 @@ test('BVH files, spoiled, are refused in a sentence or read as finite numbers, e
 test('VRM Animations, spoiled, are refused in a sentence or read as finite numbers, each in a moment', {
   timeout: 3_600_000,
 }, () => {
-  const { json, binary } = chunksOf(bytesOf(writeVrma(actingPerson(1).motion)))!;
+  const { motion } = actingPerson(1);
+  const frames = 44;
+  const short = {
+    ...motion,
+    times: motion.times.slice(0, frames),
+    hips: motion.hips.slice(0, 3 * frames),
+    rotations: motion.rotations.slice(0, 4 * motion.measured * frames),
+    seen: motion.seen.slice(0, frames),
+  };
+  const { json, binary } = chunksOf(bytesOf(writeVrma(short)))!;
   const odd: readonly unknown[] = [null, true, '', [], {}, [null], -1, 0, 0.5, 1e9, 2 ** 31, 1e308, 'VEC3', 5126];
   const containersIn = (value: unknown): (Record<string, unknown> | unknown[])[] =>
     typeof value === 'object' && value !== null
