@@ -40,7 +40,7 @@ export interface LoadAvatarOptions {
 export type AvatarSource = string | URL | Blob | ArrayBuffer | ArrayBufferView;
 
 /**
- * Loads an avatar from an address, a file or its bytes: VRM 0.x or 1.0, or a humanoid GLB with a map of its bones.
+ * Loads an avatar from an address, a file or its bytes: VRM 0.x or 1.0, or a humanoid GLB or FBX.
  * Rejects with a sentence that names the file: not reachable, not a GLB, larger than `avatarLimits`, or without a
  * needed bone. Pass `untrusted` for a file that another person has brought.
  *

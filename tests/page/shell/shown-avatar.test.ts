@@ -6,7 +6,7 @@ import { palettes, skinColors } from 'threepoint/avatar/palettes';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { ShownAvatar } from 'threepoint-page/shell/shown-avatar';
 import { afterEach, describe, expect, test, vi } from 'vitest';
-import { builtRig } from '../../threepoint/avatar/built-rig';
+import { builtRig, rigJoints } from '../../threepoint/avatar/built-rig';
 
 const file = readFileSync(new URL('../../../public/avatars/woman.vrm', import.meta.url));
 const bytes = () =>
@@ -60,7 +60,11 @@ function checkFilesHere(...held: readonly string[]) {
   return (name: string) => waiting.get(name)?.();
 }
 
-const unknownNames = (name: string) => new File([builtRig({ nameOf: (bone) => [...bone].reverse().join('') })], name);
+/** Bones of unknown names that all hang from the armature: neither names nor structure show a humanoid. */
+const unknownNames = (name: string) => {
+  const parents = Object.fromEntries(rigJoints({}).map(({ bone }) => [bone, null]));
+  return new File([builtRig({ nameOf: (bone) => [...bone].reverse().join(''), parents })], name);
+};
 
 function wardrobe(prepare: (object: Object3D) => Promise<void> = () => Promise.resolve()) {
   const told: string[] = [];

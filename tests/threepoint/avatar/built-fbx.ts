@@ -116,13 +116,13 @@ export function builtFbx(options: BuiltFbxOptions): readonly FbxNode[] {
     }
     for (const [from, to] of [[geometry, body], [surface, body], [skin, geometry]] as const) connect(from, to); // biome-ignore format: pairs
     for (const [index, { bone, at }] of joints.entries()) {
-      const link = new Matrix4().setPosition(at.clone().multiplyScalar(unit)).elements;
+      const link = Array.from(new Matrix4().setPosition(at.clone().multiplyScalar(unit)).elements);
       const own = Array.from({ length: 8 }, (_, corner) => index * 8 + corner);
       const cluster = object('Deformer', 'SubDeformer::', 'Cluster', [
         node('Indexes', [Int32Array.from(own)]),
         node('Weights', [own.map(() => 1)]),
-        node('Transform', [[...new Matrix4().elements]]),
-        node('TransformLink', [[...link]]),
+        node('Transform', [Array.from(new Matrix4().elements)]),
+        node('TransformLink', [link]),
       ]);
       connect(cluster, skin);
       connect(bones.get(bone)!, cluster);

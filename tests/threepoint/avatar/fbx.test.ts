@@ -38,6 +38,10 @@ describe.each(forms)('FBX as %s', (_, write) => {
     await expect(check(write(builtFbx({ nameOf, bare: true, turns: wave })))).rejects.toThrow(MotionWithoutBody);
   });
 
+  test('of bones alone is refused', async () => {
+    await expect(check(write(builtFbx({ nameOf, bare: true })))).rejects.toThrow('nothing that could be seen');
+  });
+
   test('keeps its motion as one clip', async () => {
     const glb = await glbOfFile(write(builtFbx({ nameOf, turns: wave })), name, 'motion');
     const { json } = partsOf(new Uint8Array(glb));

@@ -145,7 +145,10 @@ export function inspectAvatar(
     throw new Error(`${name}: not a VRM or GLB file (${v.getDotPath(issue) ?? 'the whole'}: ${issue.message})`);
   }
   const { extensionsRequired, extensionsUsed, nodes, meshes, accessors, skins, images, bufferViews } = parsed.output;
-  if (meshes.length === 0 && parsed.output.animations.length > 0) throw new MotionWithoutBody(name);
+  if (meshes.length === 0) {
+    if (parsed.output.animations.length > 0) throw new MotionWithoutBody(name);
+    throw new Error(`${name}: holds nothing that could be seen: it has no meshes`);
+  }
   const foreign = extensionsRequired.find((extension) => !readable.test(extension) && !unpacked.includes(extension));
   if (foreign === 'KHR_texture_basisu') throw new Error(`${name}: ${ktx2Advice}`);
   if (foreign !== undefined)
