@@ -200,7 +200,9 @@ test('a page of a game acts in it and gets its events, and draws the others on t
       nextCount = now + 300;
       ben.room.client.connection?.act({ type: 'count', to: 1 });
     }
-    return events.length > 0 && ben.room.others.object.children.some(({ visible }) => visible);
+    // A count before the round runs is refused.
+    const counted = events.some((event) => (event as { type: string }).type === 'counted');
+    return counted && ben.room.others.object.children.some(({ visible }) => visible);
   });
   expect(events).toContainEqual({ type: 'counted', player: 1, total: 1 });
   expect(ben.room.client.people.map(({ id, placement }) => [id, placement.position.y])).toEqual([[0, -1]]);
