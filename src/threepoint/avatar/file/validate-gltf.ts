@@ -3,8 +3,7 @@ import { validateBytes } from 'gltf-validator';
 /**
  * The faults that are accepted: at most a surface looks different, and known exporters of avatars make them. These are
  * bounds that are rounded otherwise, normals and weights that are slightly off their length, and a stride where none is
- * needed, which three.js reads correctly. Empty lists say nothing. Extensions that the validator does not know, such as
- * VRM's, are accepted too.
+ * needed, which three.js reads correctly. Extensions that the validator does not know, such as VRM's, are accepted too.
  */
 const pardoned = [
   'ACCESSOR_MIN_MISMATCH',
@@ -15,10 +14,11 @@ const pardoned = [
   'SKIN_IBM_ACCESSOR_WITH_BYTESTRIDE',
   'ANIMATION_SAMPLER_ACCESSOR_WITH_BYTESTRIDE',
   'UNSUPPORTED_EXTENSION',
-  'EMPTY_ENTITY',
 ];
 /** Bodies are moved by poses: animations are not read. */
 const unread = /^\/animations(\/|$)/;
+/** A node without children may say so by an empty list. */
+const mayBeEmpty = /^\/nodes\/\d+\/children$/;
 const information = 2;
 
 /** What the Khronos validator finds wrong with a GLB file, a sentence each, at most twenty; nothing: it is valid. */
@@ -30,7 +30,8 @@ export async function gltfFaults(bytes: Uint8Array): Promise<readonly string[]> 
     maxIssues: 2000,
   });
   return issues.messages
-    .filter(({ severity, pointer }) => severity === 0 && !unread.test(pointer ?? ''))
+    .filter(({ severity, pointer = '' }) => severity === 0 && !unread.test(pointer))
+    .filter(({ code, pointer = '' }) => code !== 'EMPTY_ENTITY' || !mayBeEmpty.test(pointer))
     .slice(0, 20)
     .map(({ message, pointer }) => (pointer ? `${pointer}: ${message}` : message));
 }
