@@ -44,16 +44,22 @@ test('a body of ours keeps the colours of its seat when another takes its place,
 function checkFilesHere(...held: readonly string[]) {
   const waiting = new Map<string, () => void>();
   class Here extends EventTarget {
+    onmessage: ((event: MessageEvent<WorkerAnswer | 'ready'>) => void) | null = null;
+
+    constructor() {
+      super();
+      setImmediate(() => this.#post('ready'));
+    }
     postMessage({ bytes, ...question }: WorkerQuestion): void {
-      const check = () => checkAvatar(bytes, question).then((checked) => this.#answer({ checked }));
+      const check = () => checkAvatar(bytes, question).then((checked) => this.#post({ checked }));
       if (held.includes(question.name)) waiting.set(question.name, check);
       else void check();
     }
     terminate(): void {
       // It ends with its only question.
     }
-    #answer(data: WorkerAnswer): void {
-      this.dispatchEvent(new MessageEvent('message', { data }));
+    #post(data: WorkerAnswer | 'ready'): void {
+      this.onmessage?.(new MessageEvent('message', { data }));
     }
   }
   vi.stubGlobal('Worker', Here);

@@ -11,19 +11,12 @@ import { beforeEach, expect, onTestFinished, test, vi } from 'vitest';
 import { changed } from '../../threepoint/avatar/glb';
 import { countingClientPolicy, countingKind, countingPolicy } from '../room/counting-game';
 import { until } from '../server/running-relay';
+import { stubFileFetch } from './file-fetch';
 import { solvedActor } from './solved-actor';
 
 const mannequinFile = readFile('public/avatars/mannequin.vrm');
 
-// Node's fetch reads no files: the mannequin of the package is one until the package is built.
-const fetchAddress = globalThis.fetch;
-beforeEach(() => {
-  vi.stubGlobal('fetch', async (address: string | URL, options?: RequestInit) =>
-    String(address).startsWith('file:')
-      ? new Response(new Uint8Array(await readFile(new URL(address))))
-      : fetchAddress(address, options),
-  );
-});
+beforeEach(stubFileFetch);
 
 /** A server of somebody else's with rooms on it. */
 async function served(options: AttachRoomsOptions = {}) {

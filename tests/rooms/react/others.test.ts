@@ -4,9 +4,12 @@ import { createElement, createRef } from 'react';
 import { type JoinedRoom, joinRoom } from 'threepoint-rooms/drawing/join-room';
 import { Others, type OthersProps } from 'threepoint-rooms/react';
 import { attachRooms } from 'threepoint-rooms/server/attach-rooms';
-import { expect, onTestFinished, test } from 'vitest';
+import { beforeEach, expect, onTestFinished, test } from 'vitest';
 import { openCanvas } from '../../threepoint/api/canvas';
+import { stubFileFetch } from '../peers/file-fetch';
 import { solvedActor } from '../peers/solved-actor';
+
+beforeEach(stubFileFetch);
 
 /** A server with rooms, and a component that joins one of them. */
 async function opened() {

@@ -7,6 +7,8 @@ const patienceMs = 20_000;
 
 /** Resolves when a worker of check-worker.ts has reported that it runs, or to null where it does not start. */
 async function startedWorker(start: () => Worker | Promise<Worker>): Promise<Worker | null> {
+  // Node has no workers of pages: onnxruntime-web sets this name to the workers of node:worker_threads there.
+  if (!(globalThis.Worker?.prototype instanceof EventTarget)) return null;
   // reason: a page without workers, or whose policy forbids them, throws or emits an error; both mean that none starts.
   const worker = await Promise.resolve()
     .then(start)
