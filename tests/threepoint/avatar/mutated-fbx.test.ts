@@ -84,13 +84,13 @@ async function expectMoments(files: number): Promise<void> {
   vi.spyOn(console, 'error').mockReturnValue(undefined);
   onTestFinished(() => void vi.restoreAllMocks());
   const spoil = spoilers(randomNumbers(20261127));
-  const sound = Math.max(...(await Promise.all(whole.map((file) => growth(file, 'body')))).map(({ bytes }) => bytes));
   const counts = { refused: 0, read: 0 };
-  let [longest, largest] = [0, 0];
+  let [longest, largest] = [0, Number.NEGATIVE_INFINITY];
   for (let i = 0; i < files; i++) {
-    const { read, ms, bytes } = await growth(spoil(), i % 2 === 0 ? 'body' : 'motion');
+    const file = spoil();
+    const { read, ms, bytes } = await growth(file, i % 2 === 0 ? 'body' : 'motion');
     longest = Math.max(longest, ms);
-    largest = Math.max(largest, bytes);
+    largest = Math.max(largest, bytes - 3 * file.byteLength);
     if (read instanceof Error) {
       expect(read.message, `file ${i}`).toMatch(/^person\.fbx: cannot be read as FBX \(.+\)$/s);
       counts.refused += 1;
@@ -105,7 +105,8 @@ async function expectMoments(files: number): Promise<void> {
     'longest reading of one FBX file [ms of the processor]': longest,
   });
   expect(longest, 'the longest [ms]').toBeLessThan(1000);
-  expect(largest, 'memory of one, against a whole one').toBeLessThan(3 * sound);
+  // Each packed array leaves a window of 100 kB until the collector runs.
+  expect(largest, 'the most memory beyond three times the file [bytes]').toBeLessThan(48e6);
   expect(counts.refused).toBeGreaterThan(files / 10);
   expect(counts.read).toBeGreaterThan(files / 10);
 }

@@ -11,8 +11,10 @@ const deepestNesting = 32;
 const mostCorners = 1000;
 /** Turns of a curve by more than half a circle are subdivided by the loader, so many in all. */
 const mostSubdivisions = 2e6;
-/** The number of packed bytes that are unpacked at once: at most a thousand times as many come out. */
-const packedAtOnce = 2 ** 14;
+/** The number of packed bytes that are unpacked at once: at most `mostExpansion` times as many come out. */
+const packedAtOnce = 2 ** 12;
+/** The most bytes that one packed byte of DEFLATE can hold (zlib.net, "Maximum Compression Factor"). */
+const mostExpansion = 1032;
 
 /** The reader asks a window for what these need; a body needs none of them. */
 const unneeded = /^(Camera|Light|NurbsCurve)$/;
@@ -76,6 +78,7 @@ class ArrayChecks {
 
 /** Returns an array of an FBX file as it is unpacked. Throws where it is not as long as the file says. */
 function unpack(packed: Uint8Array, length: number, keep: boolean): Uint8Array | null {
+  if (length > mostExpansion * packed.length) throw new Error('has an array that is shorter than it says');
   const kept = keep ? new Uint8Array(length) : null;
   let count = 0;
   const stream = new Unzlib((chunk) => {
