@@ -1,5 +1,5 @@
-// node scripts/check-server.mjs ORIGIN TOKEN: checks a running server from outside: its page, its rooms, and a study that
-// is stored and exported. TOKEN is the experimenter's.
+// node scripts/check-server.mjs ORIGIN TOKEN: checks a running server from outside: its page, its rooms, and a study
+// that is stored and exported. TOKEN is the experimenter's.
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
