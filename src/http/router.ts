@@ -1,7 +1,7 @@
 import type { IncomingMessage, RequestListener } from 'node:http';
 import { ValidationError } from 'threepoint/core/validation/validation';
 import { type Answer, HttpError, json, refusal, sendAnswer } from './answer';
-import { wholeBody } from './body';
+import { wholeBody } from './request-body';
 import { createSitePolicy, type SitePolicy } from './site-policy';
 import { targetOf } from './target';
 

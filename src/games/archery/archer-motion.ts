@@ -2,7 +2,7 @@ import type { Buttons } from 'threepoint/core/input/button-presses';
 import { clamp } from 'threepoint/core/math/damper';
 import { addScaled, subtract } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { minimumJerk, yawOf } from '../posture';
+import { minimumJerk, yawOf } from '../simulated-body';
 import { type ArcherBody, ArcherPostures, mix, type Posture } from './archer-postures';
 import type { ArcheryState, Target } from './archery-state';
 

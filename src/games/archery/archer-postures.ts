@@ -30,7 +30,7 @@ import {
   shoulderShare,
   swayAt,
   yawOf,
-} from '../posture';
+} from '../simulated-body';
 import { arrowRestHeight, braceHeight, maximumDraw } from './bow';
 import { releaseTowards } from './flight';
 

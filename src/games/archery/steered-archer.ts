@@ -2,7 +2,7 @@ import type { Buttons } from 'threepoint/core/input/button-presses';
 import { clamp, dampVec3 } from 'threepoint/core/math/damper';
 import { subtract, type Vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { minimumJerk, yawOf } from '../posture';
+import { minimumJerk, yawOf } from '../simulated-body';
 import { type ArcherBody, ArcherPostures, mix, type Posture } from './archer-postures';
 
 /** The mouse input that steers an archer. */

@@ -17,7 +17,7 @@ import {
 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { wristAround } from '../fist';
-import { armShare, makeTracked, shoulderBehind, shoulderDrop, shoulderShare, swayAt, yawOf } from '../posture';
+import { armShare, makeTracked, shoulderBehind, shoulderDrop, shoulderShare, swayAt, yawOf } from '../simulated-body';
 
 /** The body and the station of a player. */
 export interface PlayerBody {

@@ -16,7 +16,7 @@ import {
   vec3,
 } from 'threepoint/core/math/vec3';
 import type { Launch } from '../ballistics';
-import { minimumJerk } from '../posture';
+import { minimumJerk } from '../simulated-body';
 import { createHolder } from './holder-motion';
 import {
   copyPosture,

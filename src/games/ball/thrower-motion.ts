@@ -16,7 +16,7 @@ import {
   vec3,
 } from 'threepoint/core/math/vec3';
 import { gravity } from '../ballistics';
-import { minimumJerk } from '../posture';
+import { minimumJerk } from '../simulated-body';
 import type { BallState } from './ball-state';
 import {
   copyPosture,

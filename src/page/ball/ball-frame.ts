@@ -23,7 +23,7 @@ import { ballInPalm } from 'threepoint-games/fist';
 import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
 import type { RemotePerson } from 'threepoint-rooms/client/room-client';
 import { seatLooks } from './court-plan';
-import { proximityFade } from './personal-space';
+import { proximityFade } from './proximity-fade';
 
 /**
  * A person or bot at the court in one frame. Heads and palms are the same objects in every frame: copy what must stay.
