@@ -109,7 +109,7 @@ const filesInModules = {
 /** Returns the code of a worker as one module. */
 async function workerCode(module) {
   const build = await bundle({ worker: join(root, module) }, []);
-  const { output } = await build.generate({ format: 'esm', minify: true });
+  const { output } = await build.generate({ format: 'esm', minify: true, codeSplitting: false });
   await build.close();
   if (output.length !== 1) throw new SetupError(`The worker ${module} is ${output.length} files; it must be one.`);
   return Buffer.from(output[0].code);

@@ -8,7 +8,7 @@ import type { Decoders } from './decoders/decoder-set';
 import { chunksOf } from './file/glb-chunks';
 import { glbOfFile } from './file/glb-of-file';
 import { inspectAvatar } from './file/inspect-avatar';
-import { boneNode } from './humanoid/humanoid';
+import { boneNode } from './humanoid/needed-bones';
 import { type LoadedAvatar, type ParseOptions, parseAvatar } from './load-avatar';
 
 interface FileNode {

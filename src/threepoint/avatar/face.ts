@@ -11,7 +11,7 @@ import { clamp, damp } from '../core/math/damper';
 import { conjugate, copyQuat, multiply, type Quat, quat, rotate } from '../core/math/quat';
 import { nextRandom, type RandomState } from '../core/math/random';
 import { forward, vec3 } from '../core/math/vec3';
-import { boneNode } from './humanoid/humanoid';
+import { boneNode } from './humanoid/needed-bones';
 
 /** The interval between two blinks, and the duration of a blink [s]. */
 const shortestPause = 2;

@@ -12,7 +12,7 @@ import { inspectAvatar } from './file/inspect-avatar';
 import { makeGeometryPlain } from './file/plain-geometry';
 import { viewsOfFile } from './file/views-of-file';
 import { restoreBindPose } from './humanoid/bind-pose';
-import { boneNode, demandBones, humanoidOf } from './humanoid/humanoid';
+import { boneNode, demandBones } from './humanoid/needed-bones';
 import { settleRest } from './humanoid/rest-pose';
 import { betweenFrames } from './in-steps';
 
@@ -68,7 +68,8 @@ export async function parseChecked(
     // VRM 0.x faces −Z at rest, 1.0 faces +Z: from here on all face +Z.
     VRMUtils.rotateVRM0(own);
   } else restoreBindPose(gltf.scene);
-  const vrm = own ?? humanoidOf(gltf.scene, name, bones);
+  // Files without a humanoid of their own need the matcher, which others do not load.
+  const vrm = own ?? (await import('./humanoid/humanoid-of-scene')).humanoidOf(gltf.scene, name, bones);
   settleRest(vrm, name);
   return { name, vrm, nodeIndices: nodeIndicesOf(gltf) };
 }

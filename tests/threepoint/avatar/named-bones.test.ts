@@ -1,7 +1,7 @@
 import { createAvatar } from 'threepoint/avatar/avatar';
 import { gltfFaults } from 'threepoint/avatar/file/validate-gltf';
-import { boneNode } from 'threepoint/avatar/humanoid/humanoid';
 import { withNamedBones } from 'threepoint/avatar/humanoid/name-bones';
+import { boneNode } from 'threepoint/avatar/humanoid/needed-bones';
 import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones';
 import { type LoadedAvatar, parseAvatar } from 'threepoint/avatar/load-avatar';
 import { defaultCalibration } from 'threepoint/core/body/calibration';

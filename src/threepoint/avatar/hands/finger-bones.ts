@@ -29,7 +29,7 @@ import {
   up,
   vec3,
 } from '../../core/math/vec3';
-import { boneNode } from '../humanoid/humanoid';
+import { boneNode } from '../humanoid/needed-bones';
 
 export type BoneIndex = 0 | 1 | 2;
 

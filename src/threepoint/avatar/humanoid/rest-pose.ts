@@ -2,7 +2,7 @@ import type { VRM } from '@pixiv/three-vrm';
 import { Matrix4, type Object3D, Quaternion, Vector3 } from 'three';
 import { type BoneName, handFingerBones, neededBones } from '../../core/humanoid/bones';
 import type { Side } from '../../core/math/side';
-import { boneNode } from './humanoid';
+import { boneNode } from './needed-bones';
 
 // From here on a body at rest faces +Z, as a VRM does: its left is +X.
 const left = new Vector3(1, 0, 0);

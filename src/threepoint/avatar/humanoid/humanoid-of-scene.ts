@@ -1,9 +1,10 @@
 import { VRM, VRMFirstPerson, type VRMHumanBones, VRMHumanoid } from '@pixiv/three-vrm';
 import { type Group, type Object3D, type SkinnedMesh, Vector3 } from 'three';
-import { type BoneMap, type BoneName, neededBones } from '../../core/humanoid/bones';
+import type { BoneMap, BoneName } from '../../core/humanoid/bones';
 import type { SkeletonJoint } from '../../core/humanoid/joint-tree';
 import { humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-humanoid';
 import { distance, isFiniteVec3 } from '../../core/math/vec3';
+import { demandBones } from './needed-bones';
 import { UnknownBones } from './unknown-bones';
 
 /** The file's own name of a node: three.js rewrites names, and keeps the file's beside. */
@@ -131,13 +132,3 @@ export function humanoidOf(scene: Group, name: string, given?: BoneMap): VRM {
   const meta = { metaVersion: '1', name, authors: [], licenseUrl: '' } as unknown as VRM['meta'];
   return new VRM({ scene, meta, humanoid, firstPerson: new VRMFirstPerson(humanoid, meshes as never) });
 }
-
-/** Throws a sentence that names the file and the bones that a body needs and this one lacks. */
-export function demandBones(name: string, has: (bone: (typeof neededBones)[number]) => boolean): void {
-  const missing = neededBones.filter((bone) => !has(bone));
-  if (missing.length > 0) throw new Error(`${name}: its humanoid has no ${missing.join(', ')}`);
-}
-
-/** The node of a bone as the file has it. */
-export const boneNode = (vrm: VRM, bone: keyof BoneMap): Object3D | null =>
-  vrm.humanoid.getRawBoneNode(bone as Parameters<VRM['humanoid']['getRawBoneNode']>[0]);
