@@ -20,7 +20,12 @@ const compressed = () =>
 const plain = () =>
   changed((json) => {
     for (const extension of ['extensions', 'extensionsUsed']) delete json[extension];
-    for (const [index, node] of json.nodes.entries()) node.name = `part ${index}`;
+    // Neither names nor a tree show which bone is which.
+    for (const [index, node] of json.nodes.entries()) {
+      node.name = `part ${index}`;
+      delete node.children;
+    }
+    json.scenes = [{ nodes: json.nodes.map((_, index) => index) }];
   });
 
 /** What the address of an avatar may answer, and what is said of it. */

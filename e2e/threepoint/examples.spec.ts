@@ -206,8 +206,8 @@ test.describe('examples of the package @realtime', () => {
   });
 });
 
-test.describe('the example of a slow stack @nightly', () => {
-  test('next: a page that was rendered without a browser draws the body', async ({ page }) => {
+test.describe('the example of a slow stack', () => {
+  test('next: a page that was rendered without a browser draws the body @nightly', async ({ page }) => {
     test.setTimeout(600_000);
     const server = await serveStatic(join(await built('next'), 'out'));
     const complaints = complaintsOf(page);
