@@ -25,7 +25,9 @@ const plain = () =>
       node.name = `part ${index}`;
       delete node.children;
     }
-    json.scenes = [{ nodes: json.nodes.map((_, index) => index) }];
+    json.scenes = [{ nodes: [json.nodes.length] }];
+    for (const skin of json.skins as { skeleton?: number }[]) delete skin.skeleton;
+    json.nodes.push({ name: 'root', children: json.nodes.map((_, index) => index) });
   });
 
 /** What the address of an avatar may answer, and what is said of it. */
