@@ -204,10 +204,8 @@ test.describe('examples of the package @realtime', () => {
     expect(complaints).toEqual([]);
     await server.close();
   });
-});
 
-test.describe('the example of a slow stack', () => {
-  test('next: a page that was rendered without a browser draws the body @nightly', async ({ page }) => {
+  test('next: a page that was rendered without a browser draws the body', async ({ page }) => {
     test.setTimeout(600_000);
     const server = await serveStatic(join(await built('next'), 'out'));
     const complaints = complaintsOf(page);
