@@ -73,23 +73,22 @@ function trunkBetween(tree: JointTree, armAncestors: readonly number[], legs: Li
   return hips === shared || tree.vote(shared, 'spine') < 0.5 ? down.slice(from) : [hips, ...down.slice(from)];
 }
 
+/** The direction of a limb, from its first named joint to its last. */
+const wayOf = (tree: JointTree, { chain, at }: Limb): Vec3 =>
+  normalise(subtract(tree.position(chain[at[2]]!), tree.position(chain[at[0]]!)), zero);
+
 /** How far the legs at rest point away from the trunk: 1 opposite, −1 along it. */
 export function legsBelow(tree: JointTree, legs: LimbPair, arms: LimbPair): number {
   const trunk = subtract(tree.position(arms.root), tree.position(legs.root));
-  const ways = legs.limbs.map(({ chain, at }) =>
-    normalise(subtract(tree.position(chain[at[2]]!), tree.position(chain[at[0]]!)), zero),
-  );
-  return ways.reduce((sum, way) => sum - dot(way, normalise(trunk, zero)) / 2, 0);
+  return legs.limbs.reduce((sum, leg) => sum - dot(wayOf(tree, leg), normalise(trunk, zero)) / 2, 0);
 }
 
 /** Whether a skeleton stands on four legs: arms point as legs do, across the trunk. */
 function onFourLegs(tree: JointTree, { arms, legs, trunk }: Body): boolean {
   if (!legs) return false;
-  const way = ({ chain, at }: Limb): Vec3 =>
-    normalise(subtract(tree.position(chain[at[2]]!), tree.position(chain[at[0]]!)), zero);
   const along = normalise(subtract(tree.position(arms.root), tree.position(trunk[0]!)), zero);
   return [0, 1].every((i) => {
-    const [arm, leg] = [way(arms.limbs[i]!), way(legs.limbs[i]!)];
+    const [arm, leg] = [wayOf(tree, arms.limbs[i]!), wayOf(tree, legs.limbs[i]!)];
     return dot(arm, leg) > 0.7 && Math.abs(dot(leg, along)) < 0.6;
   });
 }

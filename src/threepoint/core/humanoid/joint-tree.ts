@@ -1,3 +1,4 @@
+import { childrenOf, parentsFirst } from '../math/tree';
 import { distance, type Vec3 } from '../math/vec3';
 import { type NameVotes, type Part, readJointName } from './name-votes';
 
@@ -35,10 +36,9 @@ export class JointTree {
   readonly #parts: readonly number[];
 
   constructor(readonly joints: readonly SkeletonJoint[]) {
-    const children: number[][] = joints.map(() => []);
-    for (const [i, { parent }] of joints.entries()) children[parent]?.push(i);
-    const order = joints.flatMap(({ parent }, i) => (children[parent] ? [] : [i]));
-    for (let i = 0; i < order.length; i++) order.push(...children[order[i]!]!);
+    const parents = joints.map(({ parent }) => parent);
+    const children = childrenOf(parents);
+    const order = parentsFirst(parents, children);
     this.children = children;
     this.order = order;
     this.votes = joints.map(({ name }) => readJointName(name));

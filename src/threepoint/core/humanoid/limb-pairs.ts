@@ -56,7 +56,7 @@ export function findLimb(tree: JointTree, first: number, kind: LimbKind): Limb |
       for (let i = j - 1; i >= 0; i--) {
         const [near, far] = [along[j]! - along[i]!, along[k]! - along[j]!];
         const names = (votes[0][i]! + votes[1][j]! + votes[2][k]!) / 3;
-        // Names show a bone that a file lost: whoever reads the limb refuses it.
+        // Names show a bone that a file lost: the reader of the limb refuses it.
         if (!(near > 0 && far > 0) && names < 0.8) continue;
         const likeness = Math.min(near, far) / (Math.max(near, far) || 1);
         const against = skipped * (k - i - 2) + loose + helper[i]! + helper[j]! + helper[k]!;

@@ -93,7 +93,8 @@ export function* sampledFrames(frameCount: number, most = mostSamples): Generato
   for (let frame = 0; frame < frameCount; frame += step) yield frame;
 }
 
-const median = (values: readonly number[]): number =>
+/** The middle value, of an even number the upper one; NaN: there is none. */
+export const median = (values: readonly number[]): number =>
   [...values].sort((a, b) => a - b)[values.length >> 1] ?? Number.NaN;
 
 /** What a clip shows of its vertical, in floor axes of its rest pose. */
@@ -118,6 +119,7 @@ function stanceOf(file: FileMotion, floor: Quat, joints: StandingJoints): Stance
     file.pose(frame, poses);
     count += 1;
     const at = (joint: number): Vec3 => rotate(floor, poses.positions[joint]!);
+    const places = bodies.map(at);
     const trunk = subtract(at(joints.neck), at(joints.hips));
     const size = length(trunk);
     const way = normalise(trunk, zero);
@@ -126,7 +128,7 @@ function stanceOf(file: FileMotion, floor: Quat, joints: StandingJoints): Stance
     for (const axis of axisNames) {
       const above = directions[axis];
       if (dot(way, above) > standing && legs.every((leg) => dot(leg, above) < 0)) shares[axis] += 1;
-      lows[axis].push(Math.min(...bodies.map((joint) => dot(at(joint), above))) / size);
+      lows[axis].push(Math.min(...places.map((place) => dot(place, above))) / size);
     }
   }
   for (const axis of axisNames) shares[axis] /= count;

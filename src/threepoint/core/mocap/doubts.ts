@@ -1,6 +1,6 @@
 import { sides } from '../math/side';
 import { cross, dot, length, lerp, normalise, subtract, up, type Vec3, vec3, zero } from '../math/vec3';
-import { sampledFrames } from './body-axes';
+import { median, sampledFrames } from './body-axes';
 import { type OurMotion, positionsWidth } from './our-joints';
 import { type TruthJoint, truthJoints } from './skeleton-map';
 
@@ -17,8 +17,6 @@ export const doubtOfErrors = (means: readonly number[]): string | null =>
   means.length > 0 && means.every((mean) => mean > mostError)
     ? `this cannot be right: the error of every method is over ${mostError} cm; look at the truth before the figures`
     : null;
-
-const median = (values: readonly number[]): number => [...values].sort((a, b) => a - b)[values.length >> 1] ?? 0;
 
 /** What cannot be right of a motion, a sentence each: figures that are measured on it are worth little. */
 export function doubtsOf({ positions, rest, frameCount }: OurMotion): readonly string[] {

@@ -133,10 +133,9 @@ function firstFrame(file: FileMotion, joints: StandingJoints, limbs: Limbs): Joi
   const level = sides.every((side) => {
     const [, shoulder, elbow, hand] = limbs.arms[side] as readonly [number, number, number, number];
     const out = outward(axes.turn, side);
-    const bones = [[shoulder, elbow], [elbow, hand]] as const; // biome-ignore format: one thought
-    return bones.every(
-      ([from, to]) => dot(normalise(subtract(pose.positions[to]!, pose.positions[from]!), zero), out) > 0.95,
-    );
+    const points = (from: number, to: number): boolean =>
+      dot(normalise(subtract(pose.positions[to]!, pose.positions[from]!), zero), out) > 0.95;
+    return points(shoulder, elbow) && points(elbow, hand);
   });
   return level ? pose : null;
 }

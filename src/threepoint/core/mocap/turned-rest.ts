@@ -1,4 +1,5 @@
 import { conjugate, type Quat, quat, rotate } from '../math/quat';
+import { parentsFirst } from '../math/tree';
 import { add, dot, subtract, type Vec3, vec3 } from '../math/vec3';
 import { type FileMotion, makeJointPoses } from '../motion/file-motion';
 import { type StandingJoints, sampledFrames, trunkWay } from './body-axes';
@@ -43,9 +44,7 @@ export function axisOfRoot(file: FileMotion, joints: StandingJoints, restUp: Fil
 /** Returns the motion with all offsets of its joints turned; rotations and the root's position stay. */
 export function withTurnedRest(file: FileMotion, turn: Quat): FileMotion {
   const parents = file.parents!;
-  const order = parents.flatMap((parent, i) => (parent < 0 ? [i] : []));
-  for (let i = 0; i < order.length; i++)
-    order.push(...parents.flatMap((parent, child) => (parent === order[i] ? [child] : [])));
+  const order = parentsFirst(parents);
   const before = makeJointPoses(file.names.length);
   const back = quat(0, 0, 0, 1);
   const offset = vec3(0, 0, 0);

@@ -11,6 +11,7 @@ import {
   setQuat,
   slerp,
 } from '../math/quat';
+import { parentsFirst } from '../math/tree';
 import {
   add,
   copyVec3,
@@ -109,10 +110,7 @@ function nodesOf(description: Json): Node[] {
 
 /** The nodes with parents before children; throws where they go in a circle. */
 function inOrder(nodes: readonly Node[]): readonly number[] {
-  const order = nodes.flatMap(({ parent }, i) => (parent < 0 ? [i] : []));
-  const children = new Map<number, number[]>();
-  for (const [i, { parent }] of nodes.entries()) children.set(parent, [...(children.get(parent) ?? []), i]);
-  for (let i = 0; i < order.length; i++) order.push(...(children.get(order[i]!) ?? []));
+  const order = parentsFirst(nodes.map(({ parent }) => parent));
   if (order.length < nodes.length) throw new Error('the nodes go in a circle: a bone is its own ancestor');
   return order;
 }

@@ -97,7 +97,10 @@ export function readGlbMotion(description: Json, binary: Uint8Array): FileMotion
   const nodes = clip.order.filter(isBone);
   const names = nodes.map((node) => String(given[node]!.name ?? `node ${node}`));
   const rest = restOf(clip, bound);
-  const chosen = { positions: nodes.map((node) => rest.positions[node]!), rotations: nodes.map((node) => rest.rotations[node]!) }; // biome-ignore format: one thought
+  const chosen = {
+    positions: nodes.map((node) => rest.positions[node]!),
+    rotations: nodes.map((node) => rest.rotations[node]!),
+  };
   const motion = clip.motion({ names, nodes }, chosen, 0);
   if (animations.length < 2) return motion;
   const { name } = animations[longest]!;
