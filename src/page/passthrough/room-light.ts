@@ -45,7 +45,7 @@ export class RoomLight {
     if (!(length > 0)) return null;
     const from = rotate(pose.transform.orientation, { x: x / length, y: y / length, z: z / length });
     const { x: red, y: green, z: blue } = estimate.primaryLightIntensity;
-    const [r = 0, g = 0, b = 0] = Array.from(estimate.sphericalHarmonicsCoefficients).slice(0, 3);
+    const { 0: r = 0, 1: g = 0, 2: b = 0 } = estimate.sphericalHarmonicsCoefficients;
     return {
       from: [from.x, from.y, from.z],
       key: [clamped(red), clamped(green), clamped(blue)],

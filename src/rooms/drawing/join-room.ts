@@ -14,6 +14,8 @@ import { type Keep, tabStorage } from '../client/room-pass';
 import type { WornAvatar } from '../client/shared-avatar';
 import type { SentBody } from '../peers/pose-sender';
 import type { SeatInfo } from '../protocol/messages';
+import { headBits } from '../protocol/pose-steps';
+import { mostSteps, placeUnit } from '../protocol/quantise';
 import type { HostedGame } from '../room/match-policy';
 import type { People } from '../room/people-policy';
 import { PlacedPose } from './placed-pose';
@@ -83,7 +85,7 @@ const mostAttempts = 3;
 /** The measures of a page that watches; no page draws them. */
 const standIn: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
 /** The farthest that a packet states a head [m], along x and z. */
-const farthest = 8.19;
+const farthest = mostSteps(headBits) * placeUnit;
 
 /**
  * Joins a room of a server that has `attachRooms`, and draws the others in a three.js scene. `url`: the server's
@@ -110,7 +112,7 @@ export async function joinRoom<Game extends HostedGame = People>(
   const address = new RoomAddress(game, { url: base, room, ...(storage && { storage }) });
   const visitor = { name, calibration: body?.calibration ?? standIn, spectate: body === null };
   const worn = avatarFile ? await wornFile(avatarFile) : plainAvatar;
-  // A frame cannot report that the body for everybody is missing.
+  // A frame cannot report that the default body is missing.
   const ready = options.avatar ? [] : [await loadMannequin()];
   const loadBuiltIn = async () => ready.pop() ?? loadMannequin();
   const connection = await connected(address, visitor).catch((error: unknown) => {
@@ -246,7 +248,7 @@ class LiveRoom<Game extends HostedGame> implements JoinedRoom<Game> {
     this.#warnedOfDistance = true;
     console.warn(
       `threepoint-rooms: The body is ${metres.toFixed(1)} m from the origin of room.others.object, and the others draw ` +
-        `it at ${farthest} m. Add room.others.object to a group near the people of the room.`,
+        `it at ${farthest.toFixed(2)} m. Add room.others.object to a group near the people of the room.`,
     );
   }
 

@@ -191,10 +191,10 @@ class BinaryWalk {
     const needed = this.#checks.needs(name) && (type === 'i' || type === 'f' || type === 'd');
     const begin = this.#take(encoding === 0 ? length : packedLength, end);
     const raw = this.#bytes.subarray(begin, this.#at);
-    const values = encoding === 0 ? raw : unpack(raw, length, needed);
-    if (!needed || !values) return;
+    const values = encoding !== 0 ? unpack(raw, length, needed) : needed ? raw.slice() : null;
+    if (!values) return;
     const kind = type === 'i' ? Int32Array : type === 'f' ? Float32Array : Float64Array;
-    this.#checks.check(name, new kind(values.slice().buffer));
+    this.#checks.check(name, new kind(values.buffer as ArrayBuffer));
   }
 }
 
