@@ -23,7 +23,7 @@ export interface RoomBodiesOptions extends SeenAvatarsOptions {
   onRefused(text: string): void;
   /** Loads each avatar in another way; absent: built-in bodies, and the files of the room. */
   readonly load?: ((avatar: AvatarRef) => Promise<Avatar>) | undefined;
-  /** Returns whether everybody is drawn as the mannequin. Default: false. */
+  /** Returns whether all people are drawn as the mannequin. Default: false. */
   plain?(): boolean;
   /** Returns the opening of a person's mouth: 0 shut to 1. Default: shut. */
   mouthOf?(seat: number): number;
@@ -61,17 +61,17 @@ export class RoomBodies {
     this.#shared.update(this.#options.room());
   }
 
-  /** Draws these people and nobody else, at a time [s] on the page's clock. */
+  /** Draws these people alone, at a time [s] on the page's clock. */
   show(people: readonly RemotePerson[], time: number): void {
     this.#drawn.show(people, time);
   }
 
-  /** Returns a person's drawn joints, floor frame of this page [m]; null: nobody is drawn on this seat. */
+  /** Returns a person's drawn joints, floor frame of this page [m]; null: no person is drawn on this seat. */
   jointsOf(seat: number): Readonly<Record<string, Vec3>> | null {
     return this.#drawn.jointsOf(seat);
   }
 
-  /** Returns the avatar that a person is drawn as; null: nobody is drawn on this seat. */
+  /** Returns the avatar that a person is drawn as; null: no person is drawn on this seat. */
   drawnAs(seat: number): AvatarRef | null {
     return this.#drawn.drawnAs(seat);
   }

@@ -117,7 +117,7 @@ export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}
         if (refusesUpgrade(asked, connection) || relay.upgrade(asked, connection, head as Buffer)) return;
         asked.url = url;
       }
-      // Nobody else would ever answer.
+      // No other listener answers.
       if (!passOn(asked, connection, head)) connection.destroy();
     }),
   ];

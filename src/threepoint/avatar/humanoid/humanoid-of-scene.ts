@@ -37,7 +37,7 @@ function candidatesOf(scene: Group): readonly Object3D[] {
   const under = new Map<Object3D, number>();
   for (const bone of skinned)
     for (let node: Object3D | null = bone; node; node = node.parent) under.set(node, (under.get(node) ?? 0) + 1);
-  // Whatever has all skin bones below it, but for the lowest, is no part of the skeleton.
+  // A node with all skin bones below it, except the lowest such node, is no part of the skeleton.
   const whole = all.filter((node) => under.get(node) === skinned.size);
   const root = skinned.has(whole.at(-1)!) ? whole.find((node) => skinned.has(node)) : whole.at(-1);
   const outside = new Set(root ? whole.slice(0, whole.indexOf(root)) : []);
