@@ -10,7 +10,8 @@ import { buildRooms } from './build-rooms.mjs';
 import { main, root, runQuietly, SetupError } from './run-command.mjs';
 
 async function done(command, args, cwd) {
-  const result = await runQuietly(command, args, { cwd });
+  // Playwright sets NODE_ENV to "test", with which Next cannot build.
+  const result = await runQuietly(command, args, { cwd, env: { NODE_ENV: undefined } });
   if (result?.code !== 0) {
     throw new SetupError(
       `${command} ${args.join(' ')} failed in ${cwd}:\n${result?.output.trim() ?? 'it is not there'}`,

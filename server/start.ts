@@ -1,5 +1,5 @@
 import { createConnectionLimiter } from 'threepoint-http/connection-limiter';
-import { createRouter, type Route } from 'threepoint-http/router';
+import { createRouter } from 'threepoint-http/router';
 import { createSitePolicy } from 'threepoint-http/site-policy';
 import { softwareIn } from 'threepoint-http/software';
 import { type Credentials, prepareServer } from 'threepoint-http/web-server';
@@ -30,8 +30,8 @@ export interface RunningServer {
   readonly port: number;
   /** The file of the experimenter's token; null: the token is a setting. */
   readonly tokenFile: string | null;
-  /** The routes of all services. */
-  readonly routes: readonly Route[];
+  /** Methods and paths of all services; ":name" stands for one segment. */
+  readonly routes: readonly { readonly method: string; readonly path: string }[];
   close(): Promise<void>;
 }
 
@@ -66,7 +66,7 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
     secret: options.secret,
     games: shippedRoomKinds(relaying),
     operations: true,
-    connectionLimiter,
+    connections: connectionLimiter,
   });
   const server = await prepared.listen({ host, port }).catch(async (error: unknown) => {
     // Their timers would keep the process alive.

@@ -65,7 +65,7 @@ async function wholeServer() {
     secret: testSecret,
     games: shippedRoomKinds(configuration),
     operations: true,
-    connectionLimiter,
+    connections: connectionLimiter,
   });
   const server = await prepared.listen({ host: '127.0.0.1', port: 0 });
   onTestFinished(async () => {

@@ -1,12 +1,11 @@
 import { METHODS } from 'node:http';
 import fc from 'fast-check';
-import type { Route } from 'threepoint-http/router';
-import { experimenterToken } from './server-child';
+import { experimenterToken, type ServerHello } from './server-child';
 
 // Requests as bytes, by a grammar of what is right and what is not: each part is right more often than not, so that
 // what is wrong is met behind every check, and not only at the first.
 
-type RouteLine = Pick<Route, 'method' | 'path' | 'bodyLimit'>;
+type RouteLine = ServerHello['routes'][number];
 
 const usually = <T>(right: fc.Arbitrary<T>, wrong: fc.Arbitrary<T>): fc.Arbitrary<T> =>
   fc.oneof({ arbitrary: right, weight: 8 }, { arbitrary: wrong, weight: 1 });

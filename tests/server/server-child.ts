@@ -1,6 +1,5 @@
 import { type ChildProcess, spawn } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
-import type { Route } from 'threepoint-http/router';
 import { onTestFinished } from 'vitest';
 import { directoryWith } from '../temporary-directory';
 import { heardFrom, isAlive, kill } from './child-process';
@@ -8,7 +7,7 @@ import { heardFrom, isAlive, kill } from './child-process';
 /** What the process says once it serves. */
 export interface ServerHello {
   readonly port: number;
-  readonly routes: readonly Omit<Route, 'handle'>[];
+  readonly routes: readonly { readonly method: string; readonly path: string }[];
 }
 
 /** What the process reports of itself. */

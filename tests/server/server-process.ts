@@ -45,8 +45,5 @@ process.on('message', (message: 'inspect' | { readonly ahead: number }) => {
   loopDelay.enable();
   loopDelay.reset();
 });
-const hello: ServerHello = {
-  port,
-  routes: routes.map(({ method, path, access, bodyLimit }) => ({ method, path, access, bodyLimit })),
-};
+const hello: ServerHello = { port, routes: routes.map(({ method, path }) => ({ method, path })) };
 process.send?.(hello);

@@ -2,12 +2,12 @@ import { randomBytes } from 'node:crypto';
 import type { IncomingMessage, Server, ServerResponse } from 'node:http';
 import type { Duplex } from 'node:stream';
 import { sendAnswer } from 'threepoint-http/answer';
-import { type ConnectionLimiter, createConnectionLimiter } from 'threepoint-http/connection-limiter';
-import { createRouter, noPage, type Route } from 'threepoint-http/router';
+import { createRouter, noPage } from 'threepoint-http/router';
 import { createSitePolicy, type SitePolicy } from 'threepoint-http/site-policy';
 import { targetOf } from 'threepoint-http/target';
 import { guarded, refusesUpgrade } from 'threepoint-http/web-server';
 import { peopleKind, peoplePolicy } from '../room/people-policy';
+import type { ConnectionCounts } from './connection-counts';
 import type { RoomKinds } from './hosting/room-kinds';
 import { createRelay } from './relay';
 import { type RelayConfiguration, relayConfigurationFrom } from './settings/relay-configuration';
@@ -25,16 +25,16 @@ export interface AttachRoomsOptions extends Partial<Omit<RelayConfiguration, 'se
   readonly hosts?: readonly string[];
   /** Whether the rooms also answer `/healthz` and `/metrics`. Default: false. */
   readonly operations?: boolean;
-  /** The limiter that the server asks about its connections. Default: the server limits none. */
-  readonly connectionLimiter?: ConnectionLimiter;
+  /** Counts of the server's connections, for `/healthz` and `/metrics`. Default: zeros. */
+  readonly connections?: ConnectionCounts;
 }
 
 /** Rooms on a server. */
 export interface AttachedRooms {
   /** The number of rooms and of the people in them. */
   readonly census: { readonly rooms: number; readonly players: number; readonly spectators: number };
-  /** The routes of the rooms, below `path`. */
-  readonly routes: readonly Route[];
+  /** Methods and paths of the rooms' addresses, below `path`; ":name" stands for one segment. */
+  readonly routes: readonly { readonly method: string; readonly path: string }[];
   /** Disconnects everybody and takes the rooms off the server, which stays open. */
   close(): Promise<void>;
 }
@@ -79,14 +79,13 @@ function intercept(
  */
 export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}): AttachedRooms {
   const { secret = randomBytes(32).toString('base64url'), path = '', seats, games, operations, ...settings } = options;
+  const { connections = { open: 0, refused: 0 } } = settings;
   if (secret.length < 32) throw new RangeError(`A secret needs at least 32 characters; this one has ${secret.length}.`);
   if (!/^(\/[\w-]+)*$/.test(path))
     throw new RangeError(`The path must be like '/bodies', not ${JSON.stringify(path)}.`);
   const configuration: RelayConfiguration = { ...relayConfigurationFrom({}), ...settings };
-  const { connectionsPerAddress: perAddress, trustProxy } = configuration;
-  const { connectionLimiter = createConnectionLimiter({ perAddress, behindProxy: trustProxy }) } = settings;
   const kinds = new Map([[peopleKind, () => peoplePolicy(seats)], ...(games ?? [])]);
-  const relay = createRelay(configuration, secret, connectionLimiter, kinds);
+  const relay = createRelay(configuration, secret, connections, kinds);
   const site = settings.hosts ? createSitePolicy(configuration) : originsOnly(configuration);
   const router = createRouter([relay.service], noPage, site);
   const answer = guarded((request, response) => {

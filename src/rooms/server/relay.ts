@@ -2,12 +2,12 @@ import { randomBytes } from 'node:crypto';
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname } from 'node:path';
 import { type Logger, pino } from 'pino';
-import type { ConnectionLimiter } from 'threepoint-http/connection-limiter';
 import type { Service } from 'threepoint-http/router';
 import type { UpgradeListener } from 'threepoint-http/web-server';
 import { createRoomTokens } from './access/room-tokens';
 import { AvatarRoutes } from './avatars/avatar-routes';
 import { AvatarStore } from './avatars/avatar-store';
+import type { ConnectionCounts } from './connection-counts';
 import type { RoomKinds } from './hosting/room-kinds';
 import { createSocketHost, type SocketHost } from './hosting/socket-host';
 import { connectRedis, connectRedisPatiently, createOwnLobby, createRedisLobby } from './lobby/lobby';
@@ -56,11 +56,11 @@ function connectFleet({ redisUrl }: RelayConfiguration, log: Logger) {
   };
 }
 
-/** Starts a relay. `secret` signs the tokens; `connectionLimiter` is that of the HTTP server; `kinds` are the games. */
+/** Starts a relay. `secret` signs the tokens; `connections` are those of the HTTP server; `kinds` are the games. */
 export function createRelay(
   configuration: RelayConfiguration,
   secret: string,
-  connectionLimiter: ConnectionLimiter,
+  connections: ConnectionCounts,
   kinds: RoomKinds,
 ): Relay {
   const log = pino({ level: configuration.logLevel, base: { node: process.pid } });
@@ -70,8 +70,8 @@ export function createRelay(
   const census = (): RelayCensus => ({
     ...host.census,
     sockets: transport.sockets,
-    connections: connectionLimiter.open,
-    refusedConnections: connectionLimiter.refused,
+    connections: connections.open,
+    refusedConnections: connections.refused,
     avatars: avatars.count,
     avatarBytes: avatars.bytes,
   });
