@@ -57,39 +57,45 @@ async function goesOn(page: Page): Promise<void> {
   await expect.poll(async () => (await probe(page)).players.length).toBe(2);
 }
 
+const clocks = {
+  'only the time of day goes on': { wall: hour, running: 0 },
+  'both clocks go on': { wall: hour, running: hour },
+} as const;
+
+/** Each of the clocks and each length of sleep is met in real time, their other pairs by night. */
 const sleeps = [
-  { name: 'only the time of day goes on', slept: { wall: hour, running: 0 } },
-  { name: 'both clocks go on', slept: { wall: hour, running: hour } },
+  { asleep: 'while its seat is held', name: 'both clocks go on', tag: '@realtime' },
+  { asleep: 'until its room is gone', name: 'only the time of day goes on', tag: '@realtime' },
+  { asleep: 'while its seat is held', name: 'only the time of day goes on', tag: '@nightly' },
+  { asleep: 'until its room is gone', name: 'both clocks go on', tag: '@nightly' },
 ] as const;
 
-for (const { name, slept } of sleeps) {
-  for (const asleep of ['while its seat is held', 'until its room is gone'] as const) {
-    test(`a page in a match sleeps ${asleep}; ${name} by an hour @realtime`, async ({ origin, launchOptions }) => {
-      test.setTimeout(240_000);
-      const browserServer = await chromium.launchServer(launchOptions);
-      try {
-        const page = await (await chromium.connect(browserServer.wsEndpoint())).newPage();
-        await withClocks(page);
-        const { errors } = collectErrors(page, origin);
-        const { seat } = await inMatch(page, origin, `asleep-${crypto.randomUUID().slice(0, 8)}`);
-        const processes = processesOf(browserServer.process().pid as number);
-        for (const pid of processes) process.kill(pid, 'SIGSTOP');
-        const left = { sockets: 0, rooms: asleep === 'while its seat is held' ? 1 : 0 };
-        await expect.poll(() => health(origin), { timeout: 90_000 }).toMatchObject(left);
-        for (const pid of processes) process.kill(pid, 'SIGCONT');
-        const awake = Date.now();
-        await page.evaluate((ahead) => Object.assign(window.slept, ahead), slept);
-        await expect.poll(async () => (await health(origin)).sockets, { timeout: 60_000 }).toBeGreaterThan(0);
-        await joinedRoom(page);
-        const seconds = (Date.now() - awake) / 1000;
-        await plays(page);
-        expect(await match(page)).toMatchObject({ seat, voided: asleep === 'while its seat is held' ? 0 : 1 });
-        await goesOn(page);
-        expect(errors.filter((text) => !/WebSocket/.test(text))).toEqual([]);
-        reportFigures('asleep', { [`${name}, ${asleep}`]: `back in its seat after ${seconds.toFixed(1)} s` });
-      } finally {
-        await browserServer.close();
-      }
-    });
-  }
+for (const { asleep, name, tag } of sleeps) {
+  test(`a page in a match sleeps ${asleep}; ${name} by an hour ${tag}`, async ({ origin, launchOptions }) => {
+    test.setTimeout(240_000);
+    const browserServer = await chromium.launchServer(launchOptions);
+    try {
+      const page = await (await chromium.connect(browserServer.wsEndpoint())).newPage();
+      await withClocks(page);
+      const { errors } = collectErrors(page, origin);
+      const { seat } = await inMatch(page, origin, `asleep-${crypto.randomUUID().slice(0, 8)}`);
+      const processes = processesOf(browserServer.process().pid as number);
+      for (const pid of processes) process.kill(pid, 'SIGSTOP');
+      const left = { sockets: 0, rooms: asleep === 'while its seat is held' ? 1 : 0 };
+      await expect.poll(() => health(origin), { timeout: 90_000 }).toMatchObject(left);
+      for (const pid of processes) process.kill(pid, 'SIGCONT');
+      const awake = Date.now();
+      await page.evaluate((ahead) => Object.assign(window.slept, ahead), clocks[name]);
+      await expect.poll(async () => (await health(origin)).sockets, { timeout: 60_000 }).toBeGreaterThan(0);
+      await joinedRoom(page);
+      const seconds = (Date.now() - awake) / 1000;
+      await plays(page);
+      expect(await match(page)).toMatchObject({ seat, voided: asleep === 'while its seat is held' ? 0 : 1 });
+      await goesOn(page);
+      expect(errors.filter((text) => !/WebSocket/.test(text))).toEqual([]);
+      reportFigures('asleep', { [`${name}, ${asleep}`]: `back in its seat after ${seconds.toFixed(1)} s` });
+    } finally {
+      await browserServer.close();
+    }
+  });
 }
