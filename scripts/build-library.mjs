@@ -127,6 +127,8 @@ async function bundle(input, plugins) {
     external,
     plugins,
     tsconfig: join(root, 'tsconfig.json'),
+    // In Node, gltf-validator would call `require`, which a module has not; it runs there as in a browser.
+    transform: { define: { 'process.versions': 'undefined' } },
   });
 }
 

@@ -15,9 +15,7 @@ export type { FingerBend, FingerName, Fingers, HandShape } from '../core/body/ha
 export type { JointName } from '../core/body/joints';
 export { jointNames } from '../core/body/joints';
 export type { Skeleton } from '../core/body/skeleton';
-export { skeletonFromCalibration } from '../core/body/skeleton';
 export type { NetworkName } from '../core/estimation/estimators';
-export { createEstimator } from '../core/estimation/estimators';
 export type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from '../core/estimation/pose-estimator';
 export { estimatorNames } from '../core/estimation/pose-estimator';
 export type { ModelContract, PoseRegressor } from '../core/estimation/pose-regressor';
@@ -36,6 +34,7 @@ export type { BodyOptions } from './body';
 export { Body } from './body';
 export type { BodyEvents, BodySolverOptions, CalibrationSource, TrackedPoint } from './body-solver';
 export { BodySolver } from './body-solver';
+export { createEstimator, skeletonFromCalibration } from './checked-person';
 export type { InferenceProfiler } from './inference-profiler';
 export type { LearnedOptions } from './load-learned';
 export { loadLearned } from './load-learned';

@@ -53,13 +53,7 @@ export function createWithNetwork(
   );
 }
 
-/**
- * Creates an estimator by its name. `paper` and `learned` throw without their regressor; `device` falls back on IK
- * without that of `learned`. Throws a RangeError where no estimator has this name.
- *
- * @example
- * const estimator = createEstimator('learned', calibration, await loadLearned());
- */
+/** Creates an estimator of a person; see `createEstimator` of the public API. */
 export function createEstimator(
   name: EstimatorName,
   calibration: Calibration,
