@@ -258,9 +258,9 @@ export const attackRows = {
     ],
   },
   'mutated-avatars': {
-    inject: '100,000 mutated avatar files and as many FBX files (3,000 and 10,000 by day)',
+    inject: '100,000 mutated avatar files and as many FBX files (3,000 and 1,000 by day)',
     sees: 'A sentence that names the file, or a finite body',
-    target: '0 other exceptions, 0 NaN, no FBX file over 1 s',
+    target: '0 other exceptions, 0 NaN, no file over 1 s; GLB in three times its memory',
     tests: [
       'tests/threepoint/avatar/mutated-files.test.ts',
       'tests/threepoint/avatar/mutated-fbx.test.ts',
@@ -268,9 +268,10 @@ export const attackRows = {
     ],
   },
   'mutated-motion': {
-    inject: '100,000 BVH files and VRM Animations with lines, words, bytes and values changed (10,000 by day)',
+    inject:
+      '100,000 BVH files and as many VRM Animations with lines, words, bytes and values changed (8,000 and 2,000 by day)',
     sees: 'A sentence that names the file, or trackers of finite numbers, with a second of work at most',
-    target: '0 exceptions without a sentence, 0 numbers that are none, 1 s of work on one file at most',
+    target: '0 exceptions without a sentence, 0 numbers that are none, 1 s and three times the file at most',
     tests: ['tests/threepoint/core/mocap/mutated-motion.test.ts'],
   },
   crowd: {

@@ -25,10 +25,12 @@ export interface ShownAvatarOptions extends AvatarLoaderOptions {
 /** A loaded file whose bones could not be matched to a humanoid: the user must map them. */
 export interface WaitingForBones {
   readonly name: string;
-  /** The names of the file's bones. */
-  readonly found: readonly string[];
+  /** The file's bones at rest. */
+  readonly joints: UnknownBones['joints'];
   /** The bones that are known, or that the user gave last. */
   readonly bones: BoneMap;
+  /** How sure each match of the file's bones is, from 0 to 1. */
+  readonly confidence: UnknownBones['confidence'];
   /** A sentence about what is wrong with them; null: the user gave none yet. */
   readonly complaint: string | null;
 }
@@ -244,7 +246,8 @@ export class ShownAvatar {
     const { notices } = this.#options;
     const isNewest = turn === this.#requested;
     if (error instanceof UnknownBones && checked && isNewest) {
-      this.#waiting = { name, found: error.found, bones: error.matched, complaint: null, checked };
+      const { joints, matched: bones, confidence } = error;
+      this.#waiting = { name, joints, bones, confidence, complaint: null, checked };
       this.#pending = `${name} is waiting for its bones to be mapped.`;
       const how = 'Map them by hand: Controls, Avatar, Bones of this file.';
       notices.show('error', `${name} could not be shown. Its bones could not be matched to a humanoid. ${how}`);

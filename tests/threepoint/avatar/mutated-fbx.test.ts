@@ -3,8 +3,8 @@ import type { SceneParts } from 'threepoint/avatar/file/fbx/glb-of-scene';
 import { glbOfFile } from 'threepoint/avatar/file/glb-of-file';
 import { randomNumbers } from 'threepoint/core/math/random';
 import { expect, onTestFinished, test, vi } from 'vitest';
-import { isNightly } from '../../nightly';
 import { reportFigures } from '../../reliability/report-figures';
+import { mutatedFiles, ReadingCosts } from '../mutated-files';
 import { builtFbx } from './built-fbx';
 import { type FbxNode, fbxBinary, fbxText } from './fbx-file';
 import { partsOf } from './glb';
@@ -69,48 +69,34 @@ function spoilers(chance: () => number) {
   };
 }
 
-async function growth(file: ArrayBuffer, parts: SceneParts) {
-  const before = process.memoryUsage().arrayBuffers;
-  // The processor's time: other programs of the machine do not count.
-  const started = process.cpuUsage();
-  const read = await glbOfFile(file, name, parts).catch((error: Error) => error);
-  const { user, system } = process.cpuUsage(started);
-  return { read, ms: (user + system) / 1000, bytes: process.memoryUsage().arrayBuffers - before };
-}
+const files = mutatedFiles(1000);
 
-async function expectMoments(files: number): Promise<void> {
+test(`${files} spoiled FBX files are refused in a sentence or read as GLB, each in a moment`, {
+  timeout: 3_600_000,
+}, async () => {
   // The reader warns of what it passes over.
   vi.spyOn(console, 'warn').mockReturnValue(undefined);
   vi.spyOn(console, 'error').mockReturnValue(undefined);
   onTestFinished(() => void vi.restoreAllMocks());
   const spoil = spoilers(randomNumbers(20261127));
-  const counts = { refused: 0, read: 0 };
-  let [longest, largest] = [0, Number.NEGATIVE_INFINITY];
+  const counts = { 'FBX refused': 0, 'FBX read': 0 };
+  const costs = new ReadingCosts();
   for (let i = 0; i < files; i++) {
     const file = spoil();
-    const { read, ms, bytes } = await growth(file, i % 2 === 0 ? 'body' : 'motion');
-    longest = Math.max(longest, ms);
-    largest = Math.max(largest, bytes - 3 * file.byteLength);
+    const parts: SceneParts = i % 2 === 0 ? 'body' : 'motion';
+    const read = await costs.measure(file.byteLength, () => glbOfFile(file, name, parts));
     if (read instanceof Error) {
       expect(read.message, `file ${i}`).toMatch(/^person\.fbx: cannot be read as FBX \(.+\)$/s);
-      counts.refused += 1;
+      counts['FBX refused'] += 1;
     } else {
       expect(partsOf(new Uint8Array(read)).json.nodes.length, `file ${i}`).toBeGreaterThan(0);
-      counts.read += 1;
+      counts['FBX read'] += 1;
     }
   }
-  reportFigures('mutated-avatars', {
-    'FBX files': files,
-    ...counts,
-    'longest reading of one FBX file [ms of the processor]': longest,
-  });
-  expect(longest, 'the longest [ms]').toBeLessThan(1000);
-  // Each packed array leaves a window of 100 kB until the collector runs.
-  expect(largest, 'the most memory beyond three times the file [bytes]').toBeLessThan(48e6);
-  expect(counts.refused).toBeGreaterThan(files / 10);
-  expect(counts.read).toBeGreaterThan(files / 10);
-}
-
-const what = 'spoiled FBX files are refused in a sentence or read as GLB, each in a moment';
-test(`1,000 ${what}`, { timeout: 600_000 }, () => expectMoments(1000));
-test(`more ${what}`, { tags: ['full'], timeout: 3_600_000 }, () => expectMoments(isNightly ? 100_000 : 10_000));
+  reportFigures('mutated-avatars', { 'FBX files': files, ...counts, ...costs.figures('FBX') });
+  expect(costs.longestMs).toBeLessThan(1000);
+  // Each of some 200 packed arrays leaves tables of up to 130 kB, twice, until the collector runs.
+  expect(costs.largestMultiple).toBeLessThan(800);
+  expect(counts['FBX refused']).toBeGreaterThan(files / 10);
+  expect(counts['FBX read']).toBeGreaterThan(files / 10);
+});

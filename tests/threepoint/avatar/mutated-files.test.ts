@@ -4,15 +4,15 @@ import { seenAvatarLimits } from 'threepoint/avatar/file/inspect-avatar';
 import { parseChecked } from 'threepoint/avatar/load-avatar';
 import { randomNumbers } from 'threepoint/core/math/random';
 import { expect, onTestFinished, test, vi } from 'vitest';
-import { isNightly } from '../../nightly';
 import { reportFigures } from '../../reliability/report-figures';
+import { mutatedFiles, ReadingCosts } from '../mutated-files';
 import { builtRig } from './built-rig';
 import { changed, type GltfJson, glbOf, mannequin, partsOf } from './glb';
 import { vroid } from './rig-namings';
 import { smallOldVrm, smallVrm } from './small-vrms';
 
 const name = 'person.vrm';
-const files = isNightly ? 100_000 : 3000;
+const files = mutatedFiles(3000);
 
 const picture = Buffer.alloc(64);
 picture.write('\x89PNG\r\n\x1a\n', 0, 'latin1');
@@ -107,20 +107,18 @@ test('files of avatars, spoiled, are refused in a sentence or read as a body of 
   onTestFinished(() => void vi.restoreAllMocks());
   const spoil = spoilers(randomNumbers(20261126));
   const counts = { refused: 0, 'refused by the reader': 0, read: 0 };
-  let longest = 0;
+  const [checking, building] = [new ReadingCosts(), new ReadingCosts()];
   for (let i = 0; i < files; i++) {
     const bytes = spoil();
-    const started = performance.now();
-    const checked = await checkAvatar(bytes, { name, unpacked: [], limits: seenAvatarLimits }).catch(
-      (error: Error) => error,
-    );
-    longest = Math.max(longest, performance.now() - started);
+    const size = bytes.byteLength;
+    const options = { name, unpacked: [], limits: seenAvatarLimits };
+    const checked = await checking.measure(size, () => checkAvatar(bytes, options));
     if (checked instanceof Error) {
       expect(checked.message, `file ${i}`).toMatch(/^person\.vrm: /);
       counts.refused += 1;
       continue;
     }
-    const read = await parseChecked(checked, name).catch((error: Error) => error);
+    const read = await building.measure(size, () => parseChecked(checked, name));
     if (read instanceof Error) {
       expect(read.message, `file ${i}: ${read.stack}`).toMatch(/^person\.vrm: /);
       counts['refused by the reader'] += 1;
@@ -129,7 +127,9 @@ test('files of avatars, spoiled, are refused in a sentence or read as a body of 
     counts.read += 1;
     read.vrm.scene.traverse((node) => expect(isFinitePlace(node), `file ${i}: ${node.name}`).toBe(true));
   }
-  reportFigures('mutated-avatars', { files, ...counts, 'longest check of one [ms]': longest });
+  reportFigures('mutated-avatars', { files, ...counts, ...checking.figures('check'), ...building.figures('body') });
+  expect(Math.max(checking.longestMs, building.longestMs)).toBeLessThan(1000);
+  expect(Math.max(checking.largestMultiple, building.largestMultiple)).toBeLessThan(3);
   expect(counts.refused).toBeGreaterThan(files / 10);
   expect(counts.read).toBeGreaterThan(files / 50);
 });

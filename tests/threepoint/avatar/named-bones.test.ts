@@ -10,7 +10,7 @@ import type { BoneMap, BoneName } from 'threepoint/core/humanoid/bones';
 import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { KnownBones } from 'threepoint-page/shell/known-bones';
-import { boneComplaint, bonesIn } from 'threepoint-page/shell/panel/bones-form';
+import { BoneChoices } from 'threepoint-page/shell/panel/bone-choices';
 import { createPreferenceStore } from 'threepoint-page/shell/preferences';
 import { describe, expect, test } from 'vitest';
 import { poseOf } from '../core/estimation/drawn';
@@ -60,13 +60,15 @@ async function refusalOf(file: ArrayBuffer): Promise<UnknownBones> {
 describe('a file whose bones match no humanoid', () => {
   test('is reported with its names, and with those that were matched', async () => {
     const unknown = await refusalOf(builtRig({ nameOf: backwards, without: rightArm }));
-    expect(unknown.found).toContain('spih');
-    expect(unknown.found).toContain('dnaHtfel');
-    expect(Object.values(unknown.matched).every((name) => unknown.found.includes(name))).toBe(true);
+    const found = unknown.joints.map(({ name }) => name);
+    expect(found).toContain('spih');
+    expect(found).toContain('dnaHtfel');
+    expect(Object.values(unknown.matched).every((name) => found.includes(name))).toBe(true);
     const oneHanded = await refusalOf(builtRig({ nameOf: (bone) => (bone === 'leftHand' ? 'leftToe' : bone) }));
     expect(oneHanded.message).toMatch(/^person\.glb: its bones could not be matched to a humanoid.*; no leftHand\./);
     expect(oneHanded.matched).toMatchObject({ hips: 'hips', rightHand: 'rightHand' });
-    expect(oneHanded.found).toContain('leftToe');
+    expect(oneHanded.confidence.hips).toBeGreaterThan(0.9);
+    expect(oneHanded.joints.map(({ name }) => name)).toContain('leftToe');
   });
 
   test('is worn with a map, and by those who have no map once its bones are named', async () => {
@@ -118,34 +120,36 @@ describe('a file whose bones match no humanoid', () => {
   });
 });
 
-describe('a map of bones that is given', () => {
-  const found = ['spih', 'enips', 'daeh'];
-
-  test.each([
-    ['hips: spih', /^The text is not JSON \(/],
-    ['["spih"]', /^The text is not a map of bones/],
-    ['{"hip": "spih"}', /^The text says “hip”: there is no bone of this name\.$/],
-    ['{"hips": 3}', /^The text says “hips”: expected the name of a bone of the file\.$/],
-    ['{"hips": "Bottom"}', /^The text maps hips to “Bottom”, which is not in this file\.$/],
-  ])('%s: is answered with a sentence', (text, sentence) => {
-    expect(bonesIn(text, found)).toEqual({ complaint: expect.stringMatching(sentence) });
-  });
-
-  test('is taken where it is one; empty text maps nothing', () => {
-    expect(bonesIn('{"hips": "spih", "leftIndexProximal": "daeh"}', found)).toEqual({
-      hips: 'spih',
-      leftIndexProximal: 'daeh',
+describe('a map of bones that the user makes', () => {
+  const joint = (name: string) => ({ name, parent: -1, position: { x: 0, y: 0, z: 0 } });
+  const choices = () =>
+    new BoneChoices({
+      joints: ['spih', 'enips', '', 'daeh', 'daeh'].map(joint),
+      bones: { hips: 'spih', head: 'daeh' },
+      confidence: { hips: 0.95, head: 0.4 },
     });
-    expect(bonesIn(' \n', found)).toEqual({});
+
+  test('gives a part one bone, and a bone one part', () => {
+    const map = choices();
+    map.assign(1, 'hips');
+    expect(map.bones).toEqual({ hips: 'enips', head: 'daeh' });
+    map.assign(1, 'spine');
+    expect(map.bones).toEqual({ spine: 'enips', head: 'daeh' });
+    map.assign(3, null);
+    expect(map.bones).toEqual({ spine: 'enips' });
+    expect(map.missing).toEqual(expect.arrayContaining(['hips', 'head', 'leftHand']));
+    expect(map.missing).not.toContain('spine');
   });
 
-  test('is not enough without a bone that a body needs, or with one bone for two', () => {
-    const { leftHand: _, spine: __, ...less } = bones;
-    expect(boneComplaint(bones)).toBeNull();
-    expect(boneComplaint(less)).toBe('Still missing: spine, left hand.');
-    expect(boneComplaint({ ...bones, leftHand: backwards('rightHand') })).toBe(
-      '“dnaHthgir” is mapped to both leftHand and rightHand.',
-    );
+  test('shows a match without confidence as unsure until the user has chosen the bone', () => {
+    const map = choices();
+    expect([map.isUnsure(0), map.isUnsure(1), map.isUnsure(3)]).toEqual([false, false, true]);
+    map.assign(1, 'head');
+    expect(map.isUnsure(1)).toBe(false);
+  });
+
+  test('names no bone without a name of its own', () => {
+    expect([0, 1, 2, 3, 4].filter((each) => choices().canChoose(each))).toEqual([0, 1, 3]);
   });
 
   test('is remembered by the file’s hash over a reload, of the newest twenty files', () => {

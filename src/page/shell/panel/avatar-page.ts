@@ -1,11 +1,12 @@
 import { bodyLabels } from 'threepoint/avatar/built-in-bodies';
 import { skinColors } from 'threepoint/avatar/palettes';
 import { plainAvatar, skinTones } from 'threepoint/core/body/avatar-ref';
+import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { button, element } from 'threepoint-ui/element';
 import { fileButton } from 'threepoint-ui/file-button';
 import { createRunningLine } from 'threepoint-ui/running-line';
 import { toggle } from 'threepoint-ui/toggle';
-import { createBonesForm } from './bones-form';
+import type { createBonesForm } from './bones-form';
 import type { AvatarActions, PanelPage, PanelState } from './panel-state';
 
 /** The colours of a built-in avatar. */
@@ -110,6 +111,34 @@ function otherAvatars(actions: AvatarActions): HTMLElement {
   );
 }
 
+/** Shows the form for the bones of a file. Its code is loaded once a file waits for them. */
+function createBones(actions: AvatarActions) {
+  const node = element('div', {});
+  let waiting: PanelState['waitingForBones'] = null;
+  let form: ReturnType<typeof createBonesForm> | null = null;
+  let isLoading = false;
+  async function load(): Promise<void> {
+    isLoading = true;
+    try {
+      const { createBonesForm } = await import('./bones-form');
+      form = createBonesForm((map) => actions.giveBones(map));
+      node.replaceChildren(form.node);
+      form.show(waiting);
+    } catch (error) {
+      const text = `The form for the bones could not be loaded: ${firstLine(reasonOf(error))}. Reload the page.`;
+      node.replaceChildren(element('p', { class: 'complaint', role: 'alert' }, text));
+    }
+  }
+  return {
+    node,
+    show({ waitingForBones }: PanelState) {
+      waiting = waitingForBones;
+      if (form) form.show(waiting);
+      else if (waiting && !isLoading) void load();
+    },
+  };
+}
+
 /** Which avatars players show to each other. */
 function createSight(actions: AvatarActions) {
   const share = toggle('Others see my avatar', (on) => actions.setShareAvatar(on));
@@ -137,7 +166,7 @@ function createSight(actions: AvatarActions) {
 /** Which avatar the body wears, and how much of it. */
 export function createAvatarPage(palettes: readonly PaletteChoice[], actions: AvatarActions): PanelPage {
   const shown = createShown(palettes, actions);
-  const bones = createBonesForm((map) => actions.giveBones(map));
+  const bones = createBones(actions);
   const sight = createSight(actions);
   const upperBody = toggle('Upper body only', (on) => actions.setUpperBodyOnly(on));
   return {
@@ -145,7 +174,7 @@ export function createAvatarPage(palettes: readonly PaletteChoice[], actions: Av
     content: [shown.node, bones.node, otherAvatars(actions), sight.node, element('section', {}, upperBody.node)],
     show(state) {
       shown.show(state);
-      bones.show(state.waitingForBones);
+      bones.show(state);
       sight.show(state);
       upperBody.input.checked = state.upperBodyOnly;
     },

@@ -1,159 +1,128 @@
-import { type BoneMap, type BoneName, neededBones } from 'threepoint/core/humanoid/bones';
+import type { BoneMap, BoneName } from 'threepoint/core/humanoid/bones';
 import { button, element } from 'threepoint-ui/element';
-import * as v from 'valibot';
-import { boneMap } from '../preferences';
 import type { WaitingForBones } from '../shown-avatar';
+import { BoneChoices, isNeeded, labelOfPart, partGroups } from './bone-choices';
+import { createSkeletonPicture } from './skeleton-picture';
+import './bones-form.css';
 
-const words: Readonly<Partial<Record<BoneName, string>>> = {
-  hips: 'Hips',
-  spine: 'Spine',
-  chest: 'Chest',
-  upperChest: 'Upper chest',
-  neck: 'Neck',
-  head: 'Head',
-};
-const limbs = {
-  Shoulder: 'shoulder (collarbone)',
-  UpperArm: 'upper arm',
-  LowerArm: 'forearm',
-  Hand: 'hand',
-  UpperLeg: 'thigh',
-  LowerLeg: 'lower leg',
-  Foot: 'foot',
-} as const;
-const limbNames = Object.keys(limbs) as (keyof typeof limbs)[];
+/** Fingers, eyes and jaw are listed once a bone is one of them. */
+const alwaysListed = 5;
 
-/** The bones that have a list of their own. Fingers, toes and eyes can be given as text. */
-const listed: readonly { readonly bone: BoneName; readonly label: string }[] = [
-  ...Object.entries(words).map(([bone, label]) => ({ bone: bone as BoneName, label })),
-  ...(['left', 'right'] as const).flatMap((side) =>
-    limbNames.map((limb) => ({
-      bone: `${side}${limb}` as BoneName,
-      label: `${side === 'left' ? 'Left' : 'Right'} ${limbs[limb]}`,
-    })),
-  ),
-];
-const isNeeded = (bone: BoneName): boolean => (neededBones as readonly BoneName[]).includes(bone);
+/** Lets the user map the bones of one file that could not be matched to a humanoid: on a picture, and by a list. */
+function createMapping(waiting: WaitingForBones, give: (bones: BoneMap) => void) {
+  const choices = new BoneChoices(waiting);
+  /** The bone that is chosen, and the part that the user wants to find on the picture. */
+  let chosen: number | null = null;
+  let wanted: BoneName | null = null;
 
-/** Parses a map of bones. Returns a sentence about the first fault instead. */
-export function bonesIn(text: string, found: readonly string[]): BoneMap | { readonly complaint: string } {
-  if (text.trim() === '') return {};
-  let value: unknown;
-  try {
-    value = JSON.parse(text);
-  } catch (error) {
-    if (!(error instanceof SyntaxError)) throw error;
-    return { complaint: `The text is not JSON (${error.message}). Write it like {"hips": "…", "spine": "…"}.` };
-  }
-  const read = v.safeParse(boneMap, Array.isArray(value) ? null : value);
-  if (!read.success) {
-    const [issue] = read.issues;
-    const where = v.getDotPath(issue);
-    return {
-      complaint:
-        where === null
-          ? 'The text is not a map of bones. Write it like {"hips": "…", "spine": "…"}.'
-          : `The text says “${where}”: ${issue.message}.`,
-    };
-  }
-  const bones = read.output as BoneMap;
-  const strange = Object.entries(bones).find(([, called]) => !found.includes(called));
-  return strange ? { complaint: `The text maps ${strange[0]} to “${strange[1]}”, which is not in this file.` } : bones;
-}
-
-/** A sentence about a map with which no body can be moved; null: one can. */
-export function boneComplaint(bones: BoneMap): string | null {
-  const missing = listed.filter(({ bone }) => isNeeded(bone) && !bones[bone]).map(({ label }) => label.toLowerCase());
-  if (missing.length > 0) return `Still missing: ${missing.join(', ')}.`;
-  const seen = new Map<string, string>();
-  for (const [bone, called] of Object.entries(bones)) {
-    const other = seen.get(called);
-    if (other) return `“${called}” is mapped to both ${other} and ${bone}.`;
-    seen.set(called, bone);
-  }
-  return null;
-}
-
-/** Lets the user write a map as text, in a section that can be folded. */
-const asText = (text: HTMLTextAreaElement): HTMLElement =>
-  element(
-    'details',
-    {},
-    element('summary', {}, 'As text, including fingers and toes'),
-    element('p', { class: 'hint' }, 'JSON that maps VRM’s name of a bone to the file’s. It overrides the lists.'),
-    text,
+  const picture = createSkeletonPicture(choices, (joint) => {
+    if (wanted) choices.assign(joint, wanted);
+    choose(joint);
+  });
+  const called = element('span', {});
+  const groups = partGroups.map(({ label, parts }) =>
+    element('optgroup', { label }, ...parts.map(([part, label]) => element('option', { value: part }, label))),
   );
-
-/** Lets the user map the bones of a file that could not be matched to a humanoid. */
-export function createBonesForm(give: (bones: BoneMap) => void) {
-  const title = element('h2', {}, 'Bones of this file');
-  const hint = element('p', { class: 'hint' });
-  const complaint = element('p', { class: 'complaint', role: 'alert' });
-  const selects = listed.map(({ bone, label }) => {
-    const select = element('select', {});
-    const name = isNeeded(bone) ? label : `${label} (if there is one)`;
-    return { bone, select, node: element('label', { class: 'bone' }, element('span', {}, name), select) };
+  const select = element('select', {}, element('option', { value: '' }, 'no part of the body'), ...groups);
+  const bone = element('label', { class: 'bone' }, called, select);
+  const hint = element('p', { class: 'hint', role: 'status' });
+  select.addEventListener('change', () => {
+    if (chosen !== null) choices.assign(chosen, select.value === '' ? null : (select.value as BoneName));
+    choose(chosen);
   });
-  const text = element('textarea', {
-    rows: 4,
-    spellcheck: 'false',
-    'aria-label': 'Bone map as text: JSON, by VRM names',
-    placeholder: '{"leftIndexProximal": "…"}',
+  const listed = partGroups.flatMap(({ label, parts }, group) => {
+    const rows = parts.map(([part]) => ({
+      part,
+      always: group < alwaysListed && (isNeeded(part) || !/Eye$|^jaw$|Toes$/.test(part)),
+      // The group has the side.
+      node: button(labelOfPart(part).replace(/^(Left|Right) (?!eye)/, ''), () => {
+        const joint = choices.jointOf(part);
+        choose(joint < 0 ? null : joint, joint < 0 ? part : null);
+        picture.node.scrollIntoView({ block: 'nearest' });
+      }),
+    }));
+    const node = element(
+      'div',
+      { class: 'parts', role: 'group', 'aria-label': label },
+      element('span', { 'aria-hidden': 'true' }, label),
+      ...rows.map(({ node }) => node),
+    );
+    return { node, rows };
   });
-  let found: readonly string[] = [];
-  /** The page's last complaint about given bones. */
-  let told: string | null = null;
 
-  function submit(): void {
-    const written = bonesIn(text.value, found);
-    if ('complaint' in written) {
-      complaint.textContent = String(written.complaint);
-      return;
+  function choose(joint: number | null, part: BoneName | null = null): void {
+    chosen = joint;
+    wanted = part;
+    picture.show(chosen);
+    bone.hidden = chosen === null;
+    called.textContent = chosen === null ? '' : `${choices.joints[chosen]!.name} is`;
+    const current = chosen === null ? wanted : choices.partOf(chosen);
+    select.value = (chosen !== null && current) || '';
+    hint.textContent = wanted ? `Choose the bone of the ${labelOfPart(wanted).toLowerCase()} on the picture.` : '';
+    for (const { node, rows } of listed) {
+      for (const { part: each, always, node } of rows) {
+        const joint = choices.jointOf(each);
+        node.hidden = joint < 0 && !always;
+        node.title = joint < 0 ? (isNeeded(each) ? 'missing' : 'not mapped') : choices.joints[joint]!.name;
+        node.className =
+          joint < 0 ? (isNeeded(each) ? 'missing' : 'none') : choices.isUnsure(joint) ? 'unsure' : 'sure';
+        node.setAttribute('aria-label', `${labelOfPart(each)}: ${node.title}`);
+        node.setAttribute('aria-pressed', String(each === current));
+      }
+      node.hidden = rows.every(({ node }) => node.hidden);
     }
-    const chosen = selects.filter(({ select }) => select.value !== '').map(({ bone, select }) => [bone, select.value]);
-    const bones: BoneMap = { ...Object.fromEntries(chosen), ...written };
-    const wrong = boneComplaint(bones);
-    complaint.textContent = wrong ?? '';
-    if (wrong === null) give(bones);
   }
 
+  const complaint = element('p', { class: 'complaint', role: 'alert' });
+  function submit(): void {
+    const { missing } = choices;
+    const names = missing.map((part) => labelOfPart(part).toLowerCase());
+    complaint.textContent = missing.length > 0 ? `Still missing: ${names.join(', ')}.` : '';
+    if (missing.length === 0) give(choices.bones);
+  }
+  choose(null);
   const node = element(
     'section',
     { class: 'bones' },
-    title,
+    element('h2', {}, 'Bones of this file'),
+    element(
+      'p',
+      { class: 'hint' },
+      `The ${choices.joints.length} bones of ${waiting.name} could not be matched to a humanoid. Choose a bone on the ` +
+        'picture, then its part of the body. A tap among bones that are close together enlarges them. The page ' +
+        'remembers the map for this file.',
+    ),
+    picture.node,
+    bone,
     hint,
-    ...selects.map((each) => each.node),
-    asText(text),
+    element(
+      'p',
+      { class: 'hint' },
+      `${choices.pairs.length > 0 ? 'Seen from the front: its left is on the right. ' : ''}Orange bones are guesses, ` +
+        'grey bones are no part of the body, red parts are missing.',
+    ),
+    ...listed.map(({ node }) => node),
     complaint,
     button('Use these bones', submit, { class: 'primary' }),
   );
+  return { node, complaint };
+}
 
-  /** Another file: its names in every list, those that are known chosen. */
-  function fill(waiting: WaitingForBones): void {
-    found = waiting.found;
-    for (const { bone, select } of selects) {
-      const options = found.map((name) => element('option', { value: name }, name));
-      select.replaceChildren(element('option', { value: '' }, '—'), ...options);
-      select.value = waiting.bones[bone] ?? '';
-    }
-    text.value = '';
-    hint.textContent = `The ${found.length} bones of ${waiting.name} could not be matched to a humanoid. Map them by hand. The page remembers the map for this file.`;
-  }
-
+/** Lets the user map the bones of the file that waits for it, one file after another. */
+export function createBonesForm(give: (bones: BoneMap) => void) {
+  const node = element('div', {});
+  let mapping: ReturnType<typeof createMapping> | null = null;
+  let shown: WaitingForBones | null = null;
   return {
     node,
     show(waiting: WaitingForBones | null) {
-      node.hidden = waiting === null;
-      if (!waiting) {
-        found = [];
-        return;
+      if (waiting?.joints !== shown?.joints) {
+        mapping = waiting && createMapping(waiting, give);
+        node.replaceChildren(...(mapping ? [mapping.node] : []));
       }
-      if (waiting.found !== found) {
-        fill(waiting);
-        complaint.textContent = '';
-      }
-      if (waiting.complaint !== told) complaint.textContent = waiting.complaint ?? '';
-      told = waiting.complaint;
+      // The page's complaint about a map that was given.
+      if (mapping && waiting?.complaint !== shown?.complaint) mapping.complaint.textContent = waiting?.complaint ?? '';
+      shown = waiting;
     },
   };
 }

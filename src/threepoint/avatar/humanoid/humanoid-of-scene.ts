@@ -84,15 +84,11 @@ function foundBones(scene: Group, name: string): ReadonlyMap<BoneName, Object3D>
     throw new Error(`${name}: its joints lie all in one place: is the scene scaled to nothing?`);
   const match = matchHumanoid(joints);
   const complaint = humanoidComplaint(match);
-  const matched = Object.entries(match.map).map(([bone, { joint }]) => [bone as BoneName, nodes[joint]!] as const);
-  if (!complaint) return new Map(matched);
-  const found = [...new Set(joints.flatMap((joint) => (joint.name === '' ? [] : [joint.name])))];
-  if (found.length === 0) throw new Error(`${name}: no humanoid in the file: it has no bones`);
-  throw new UnknownBones(
-    `${name}: ${complaint}. Map them by hand: loadAvatar(source, {bones: {hips: '…', …}})`,
-    found,
-    Object.fromEntries(matched.map(([bone, node]) => [bone, nameOf(node)])),
-  );
+  if (!complaint)
+    return new Map(Object.entries(match.map).map(([bone, { joint }]) => [bone as BoneName, nodes[joint]!]));
+  if (joints.every((joint) => joint.name === '')) throw new Error(`${name}: no humanoid in the file: it has no bones`);
+  const advice = "Map them by hand: loadAvatar(source, {bones: {hips: '…', …}})";
+  throw new UnknownBones(`${name}: ${complaint}. ${advice}`, joints, match.map);
 }
 
 /** The nodes that a map names, of several of one name one that carries skin. Throws where one is not in the file. */

@@ -34,6 +34,8 @@ export class JointTree {
   /** Whether a joint is no bone of the body, by its name or because it moves no skin. */
   readonly auxiliary: readonly boolean[];
   readonly #parts: readonly number[];
+  /** The children that may continue a chain. */
+  readonly #chained: readonly (readonly number[])[];
 
   constructor(readonly joints: readonly SkeletonJoint[]) {
     const parents = joints.map(({ parent }) => parent);
@@ -48,19 +50,23 @@ export class JointTree {
     const heights = new Array<number>(joints.length).fill(0);
     const parts = new Array<number>(joints.length).fill(0);
     const weights = joints.map(({ weight }) => weight ?? 0);
+    const skinned = weights.some((weight) => weight > 0);
+    // Ends of chains that move no skin may lie anywhere: some exporters scale them by 100.
+    const isLooseEnd = (i: number): boolean =>
+      skinned && weights[i] === 0 && children[i]!.length === 0 && this.votes[i]!.auxiliary;
     for (const i of [...order].reverse()) {
       const { parent } = joints[i]!;
       const { auxiliary, parts: own } = this.votes[i]!;
       if (!auxiliary) for (const [bit, part] of limbParts.entries()) if ((own[part] ?? 0) > 0.5) parts[i]! |= 1 << bit;
       if (!children[parent]) continue;
-      heights[parent] = Math.max(heights[parent]!, heights[i]! + this.segments[i]!);
+      if (!isLooseEnd(i)) heights[parent] = Math.max(heights[parent]!, heights[i]! + this.segments[i]!);
       parts[parent]! |= parts[i]!;
       weights[parent]! += weights[i]!;
     }
+    this.#chained = children.map((each) => each.filter((child) => !isLooseEnd(child)));
     this.heights = heights;
     this.#parts = parts;
     this.size = heights.reduce((most, height) => Math.max(most, height), 0);
-    const skinned = weights.some((weight) => weight > 0);
     this.auxiliary = joints.map((_, i) => this.votes[i]!.auxiliary || (skinned && weights[i] === 0));
   }
 
@@ -101,7 +107,7 @@ export class JointTree {
   /** The joints of a limb from its first along its main chain, `most` of them at most. */
   mainChain(joint: number, most: number): readonly number[] {
     const chain = [joint];
-    for (let next = this.children[joint]!; next.length > 0 && chain.length < most; next = this.children[chain.at(-1)!]!)
+    for (let next = this.#chained[joint]!; next.length > 0 && chain.length < most; next = this.#chained[chain.at(-1)!]!)
       chain.push(next.reduce((a, b) => (this.#limbShare(b) > this.#limbShare(a) ? b : a)));
     return chain;
   }

@@ -69,6 +69,18 @@ describe.each(rigs)('the skeleton of $name', ({ name, joints, bones }) => {
   });
 });
 
+test('ends of chains that move no skin may lie anywhere', () => {
+  for (const { joints, bones } of rigs.filter(({ name }) => /Quaternius|feet that follow a control/.test(name))) {
+    const leaf = (i: number) => joints.every(({ parent }) => parent !== i);
+    const skinned = joints.map((joint) => ({ ...joint, weight: joint.end ? 0 : 1 }));
+    const ends = joints.flatMap(({ name, position }, i): SkeletonJoint[] =>
+      leaf(i) ? [{ name: `${name}_end`, parent: i, position: scale(position, 100), weight: 0 }] : [],
+    );
+    const { map } = matchHumanoid([...skinned, ...ends]);
+    for (const [bone, joint] of Object.entries(bones)) expect(map[bone as keyof typeof map]?.joint, bone).toBe(joint);
+  }
+});
+
 describe('what is no humanoid is refused with what was found and what is missing', () => {
   const at = (x: number, y: number) => ({ x, y, z: 0 });
   test.each<[string, readonly SkeletonJoint[], RegExp]>([

@@ -181,6 +181,19 @@ describe('a VRM Animation without', () => {
   });
 });
 
+test('lost bones of cmuconvert are put back once, whether joints have three channels or six', () => {
+  const [three, six] = [{}, { positionOf: (offset: readonly [number, number, number]) => offset }].map((options) =>
+    prepare(madeBvh({ cmuconvert: true, ...options })),
+  );
+  expect(three!.notes.join()).toMatch(/lost the thorax bone.*lost the left wrist bone.*lost the right wrist bone/);
+  expect(six!.notes).toEqual(three!.notes);
+  const [one, other] = [three!.clips[0]!.truth, six!.clips[0]!.truth];
+  expect(other).toHaveLength(one.length);
+  for (const [i, value] of one.entries()) expect(Math.abs(other[i]! - value)).toBeLessThan(1e-6);
+  const at = (joint: (typeof truthJoints)[number]) => one[3 * truthJoints.indexOf(joint) + 1]!;
+  expect(at('neck') - at('hips')).toBeGreaterThan(0.35);
+});
+
 describe('what cannot be right is said', () => {
   const doubts = (options: MadeOptions) =>
     finishWork(prepareMocap({ format: 'bvh', name: 'wave.bvh', text: madeBvh(options) })).doubts.join();
@@ -197,6 +210,15 @@ describe('what cannot be right is said', () => {
     const lying: MadeOptions = { rootZUp: true, rootPlace: [0, 12, 0] };
     expect(doubts(lying)).toMatch(/the trunk lies in most frames/);
     expect(prepare(madeBvh(lying)).notes).toEqual([]);
+  });
+
+  test('of elbows that stay behind the back', () => {
+    const back = (degrees: number): MadeOptions => ({
+      anglesOf: { LeftArm: [0, 0, degrees], RightArm: [0, 0, -degrees] },
+    });
+    expect(doubts(back(60))).toBe('this cannot be right: both elbows are behind the back in most frames');
+    expect(doubts(back(-60))).toBe('');
+    expect(doubts(back(10))).toBe('');
   });
 
   test('of methods that all err', () => {

@@ -21,6 +21,20 @@ const bones: readonly Bone[] = [
   ...side(-1, 'Right'),
 ];
 
+const fingerBase = (word: string): readonly Bone[] => [
+  [`${word}FingerBase`, `${word}Hand`, [0, 0, 0]],
+  [`${word[0]}Thumb`, `${word}Hand`, [0, 0, 0]],
+];
+const cmuBones: readonly Bone[] = [
+  ...bones.map(([name, parent, offset]): Bone => {
+    if (name === 'Spine') return [name, 'LowerBack', [0, 10, 0]];
+    return [name, parent, /^(Neck|LeftShoulder|RightShoulder)$/.test(name) ? [0, 0, 0] : offset];
+  }),
+  ['LowerBack', 'Hips', [0, 0, 0]],
+  ...fingerBase('Left'),
+  ...fingerBase('Right'),
+];
+
 /** Angles about Z, X and Y [degrees] at a time [s]: one arm hangs, the other waves. */
 function anglesAt(name: string, time: number): readonly [number, number, number] {
   if (name === 'LeftArm') return [-75, 0, 0];
@@ -43,6 +57,10 @@ export interface MadeOptions {
   /** Lengths of the file per centimetre. */
   readonly unit?: number;
   readonly without?: readonly string[];
+  /** The skeleton as cmuconvert writes it of the CMU database: thorax and wrists have no length. */
+  readonly cmuconvert?: boolean;
+  /** Angles about Z, X and Y of joints that move in another way [degrees]. */
+  readonly anglesOf?: Readonly<Record<string, readonly [number, number, number]>>;
   /** The number of frames at 60 Hz (60). */
   readonly frames?: number;
 }
@@ -53,7 +71,7 @@ const plainNumber = (value: number): string => value.toFixed(4);
 export function madeBvh(options: MadeOptions = {}): string {
   const { nameOf = (name) => name, numberOf = plainNumber, unit = 1, without = [], frames: count = 60 } = options;
   const offsetOf = options.offsetOf ?? ((offset) => offset);
-  const kept = bones.filter(([name]) => !without.includes(name));
+  const kept = (options.cmuconvert ? cmuBones : bones).filter(([name]) => !without.includes(name));
   const row = (values: readonly number[]) => values.map(numberOf).join(' ');
   const lengths = (values: readonly number[]) => values.map((value) => value * unit);
   const order: Bone[] = [];
@@ -79,7 +97,7 @@ export function madeBvh(options: MadeOptions = {}): string {
   const frames = Array.from({ length: count }, (_, frame) =>
     row(
       order.flatMap(([name, parent, offset]) => {
-        const [z, x, y] = anglesAt(name, frame / 60);
+        const [z, x, y] = options.anglesOf?.[name] ?? anglesAt(name, frame / 60);
         const turned = parent === null && options.rootZUp === true;
         const root = turned ? [offset[0], -offset[2], offset[1]] : offset;
         const place = parent === null ? (options.rootPlace ?? root) : options.positionOf?.(offset, name);

@@ -4,8 +4,8 @@ import { type MocapSource, prepareMocap } from 'threepoint/core/mocap/prepare-mo
 import { finishWork } from 'threepoint/core/motion/work';
 import { writeVrma } from 'threepoint/core/motion/write-vrma';
 import { expect, test } from 'vitest';
-import { isNightly } from '../../../nightly';
 import { reportFigures } from '../../../reliability/report-figures';
+import { mutatedFiles, ReadingCosts } from '../../mutated-files';
 import { actingPerson, bytesOf } from '../motion/moved-person';
 import { madeBvh } from './made-bvh';
 
@@ -14,40 +14,35 @@ const below = (end: number): number => Math.floor(chance() * end);
 const oneOf = <T>(values: readonly T[]): T => values[below(values.length)]!;
 
 /** Reads spoiled files; each is refused in a sentence or becomes finite trackers, with a second of work at most. */
-function readAll(name: string, count: number, spoil: () => MocapSource): void {
+async function readAll(format: string, count: number, spoil: () => MocapSource & { readonly bytes: number }) {
   // Every format has its own numbers, so that one can be run without the other.
   chance = randomNumbers(20261127);
   const counts = { refused: 0, read: 0 };
-  let longest = 0;
+  const costs = new ReadingCosts();
   for (let i = 0; i < count; i++) {
-    const source = spoil();
-    const start = process.cpuUsage();
-    try {
-      const { clips } = finishWork(prepareMocap(source));
-      counts.read += 1;
-      for (const { tracked } of clips) expect(tracked.every(Number.isFinite), `file ${i}`).toBe(true);
-    } catch (error) {
-      expect(error, `file ${i}`).toBeInstanceOf(Error);
-      const { message, stack } = error as Error;
+    const { bytes, ...source } = spoil();
+    const read = await costs.measure(bytes, () => finishWork(prepareMocap(source)));
+    if (read instanceof Error) {
+      const { message, stack } = read;
       expect(message, `file ${i}: ${stack}`).toMatch(/^wave\.(bvh|vrma): /);
       expect(message, `file ${i}: ${stack}`).not.toMatch(
         /undefined|is not a function|Cannot read|Invalid|out of memory/,
       );
       counts.refused += 1;
+    } else {
+      counts.read += 1;
+      for (const { tracked } of read.clips) expect(tracked.every(Number.isFinite), `file ${i}`).toBe(true);
     }
-    longest = Math.max(longest, process.cpuUsage(start).user / 1e3);
   }
   reportFigures('mutated-motion', {
-    ...{ [`${name} files`]: count, [`${name} refused`]: counts.refused, [`${name} read`]: counts.read },
-    [`longest work on one ${name} [ms]`]: longest,
+    ...{ [`${format} files`]: count, [`${format} refused`]: counts.refused, [`${format} read`]: counts.read },
+    ...costs.figures(format),
   });
-  expect(longest).toBeLessThan(1000);
+  expect(costs.longestMs).toBeLessThan(1000);
+  expect(costs.largestMultiple).toBeLessThan(3);
   expect(counts.refused).toBeGreaterThan(count / 20);
   expect(counts.read).toBeGreaterThan(count / 20);
 }
-
-/** Ten thousand files by day, ten times as many at night. */
-const times = isNightly ? 10 : 1;
 
 test('BVH files, spoiled, are refused in a sentence or read as finite numbers, each in a moment', {
   timeout: 3_600_000,
@@ -95,10 +90,11 @@ test('BVH files, spoiled, are refused in a sentence or read as finite numbers, e
       lines[at] = line.join('');
     },
   ];
-  readAll('bvh', 8000 * times, () => {
+  return readAll('bvh', mutatedFiles(8000), () => {
     const lines = [...oneOf(originals)];
     for (let i = 1 + below(2); i > 0 && lines.length > 1; i--) oneOf(ways)(lines);
-    return { format: 'bvh', name: 'wave.bvh', text: lines.join('\n') };
+    const text = lines.join('\n');
+    return { format: 'bvh', name: 'wave.bvh', text, bytes: text.length };
   });
 });
 
@@ -120,7 +116,7 @@ test('VRM Animations, spoiled, are refused in a sentence or read as finite numbe
     typeof value === 'object' && value !== null
       ? [value as Record<string, unknown>, ...Object.values(value).flatMap(containersIn)]
       : [];
-  readAll('vrma', 2000 * times, () => {
+  return readAll('vrma', mutatedFiles(2000), () => {
     const description: unknown = JSON.parse(json);
     const bytes = new Uint8Array(binary.slice());
     if (chance() < 0.3) for (let i = 1 + below(8); i > 0; i--) bytes[below(bytes.length)]! ^= 1 << below(8);
@@ -133,6 +129,7 @@ test('VRM Animations, spoiled, are refused in a sentence or read as finite numbe
         else container[key] = structuredClone(chance() < 0.5 ? oneOf(odd) : oneOf(containersIn(description)));
       }
     }
-    return { format: 'gltf', name: 'wave.vrma', description, binary: bytes };
+    const size = bytes.length + JSON.stringify(description).length;
+    return { format: 'gltf', name: 'wave.vrma', description, binary: bytes, bytes: size };
   });
 });

@@ -1,0 +1,123 @@
+import { fingerBones } from 'threepoint/core/body/finger-bones';
+import { type BoneMap, type BoneName, boneNames, fingerNames, neededBones } from 'threepoint/core/humanoid/bones';
+import { type Side, sides } from 'threepoint/core/math/side';
+import type { WaitingForBones } from '../shown-avatar';
+
+const trunk = {
+  hips: 'Hips',
+  spine: 'Spine',
+  chest: 'Chest',
+  upperChest: 'Upper chest',
+  neck: 'Neck',
+  head: 'Head',
+  jaw: 'Jaw',
+  leftEye: 'Left eye',
+  rightEye: 'Right eye',
+};
+const arm = { Shoulder: 'shoulder (collarbone)', UpperArm: 'upper arm', LowerArm: 'forearm', Hand: 'hand' };
+const leg = { UpperLeg: 'thigh', LowerLeg: 'lower leg', Foot: 'foot', Toes: 'toes' };
+const fingers = Object.fromEntries(
+  fingerNames.flatMap((finger) =>
+    fingerBones(finger).map((bone, i) => [
+      bone,
+      `${finger.toLowerCase()} ${finger === 'Thumb' ? '' : 'finger '}${i + 1}`,
+    ]),
+  ),
+);
+
+type Labels = readonly (readonly [bone: BoneName, label: string])[];
+
+const sided = (side: Side, labels: Readonly<Record<string, string>>): Labels =>
+  Object.entries(labels).map(([bone, label]) => [
+    `${side}${bone}` as BoneName,
+    `${side === 'left' ? 'Left' : 'Right'} ${label}`,
+  ]);
+
+/** The parts of a body that a bone can be, in groups. */
+export const partGroups: readonly { readonly label: string; readonly parts: Labels }[] = [
+  { label: 'Trunk and head', parts: Object.entries(trunk) as unknown as Labels },
+  ...sides.map((side) => ({ label: `${side === 'left' ? 'Left' : 'Right'} arm`, parts: sided(side, arm) })),
+  ...sides.map((side) => ({ label: `${side === 'left' ? 'Left' : 'Right'} leg`, parts: sided(side, leg) })),
+  ...sides.map((side) => ({ label: `${side === 'left' ? 'Left' : 'Right'} fingers`, parts: sided(side, fingers) })),
+];
+
+const labels = new Map(partGroups.flatMap(({ parts }) => parts));
+
+/** Returns the name of a part of a body for the user. */
+export const labelOfPart = (part: BoneName): string => labels.get(part) ?? part;
+
+const needed: ReadonlySet<string> = new Set(neededBones);
+export const isNeeded = (part: BoneName): boolean => needed.has(part);
+
+/** A match below this confidence is shown as unsure. */
+const sureFrom = 0.75;
+
+/** Which bones of a file are which parts of a body. A bone is one part at most, and a part one bone. */
+export class BoneChoices {
+  readonly joints: WaitingForBones['joints'];
+  readonly #confidence: WaitingForBones['confidence'];
+  readonly #guesses: BoneMap;
+  /** The first joint with each name: a map names its bones. */
+  readonly #byName = new Map<string, number>();
+  readonly #partOf = new Map<number, BoneName>();
+
+  constructor({ joints, bones, confidence }: Pick<WaitingForBones, 'joints' | 'bones' | 'confidence'>) {
+    this.joints = joints;
+    this.#confidence = confidence;
+    this.#guesses = bones;
+    for (const [i, { name }] of joints.entries()) if (name !== '' && !this.#byName.has(name)) this.#byName.set(name, i);
+    for (const [part, name] of Object.entries(bones)) {
+      const joint = this.#byName.get(name);
+      if (joint !== undefined && boneNames.has(part)) this.#partOf.set(joint, part as BoneName);
+    }
+  }
+
+  /** Whether a map can name this joint: it has a name that no joint before it has. */
+  canChoose(joint: number): boolean {
+    return this.#byName.get(this.joints[joint]!.name) === joint;
+  }
+
+  /** null: the bone is no part of the body. */
+  partOf(joint: number): BoneName | null {
+    return this.#partOf.get(joint) ?? null;
+  }
+
+  /** −1: no bone is this part. */
+  jointOf(part: BoneName): number {
+    for (const [joint, each] of this.#partOf) if (each === part) return joint;
+    return -1;
+  }
+
+  /** The joints of parts that both sides have, left and right. */
+  get pairs(): readonly (readonly [left: number, right: number])[] {
+    return [...this.#partOf].flatMap(([left, part]) => {
+      const right = part.startsWith('left') ? this.jointOf(part.replace('left', 'right') as BoneName) : -1;
+      return right < 0 ? [] : [[left, right] as const];
+    });
+  }
+
+  /** Makes a bone this part of the body; null: no part. */
+  assign(joint: number, part: BoneName | null): void {
+    if (part) this.#partOf.delete(this.jointOf(part));
+    if (part) this.#partOf.set(joint, part);
+    else this.#partOf.delete(joint);
+  }
+
+  /** Whether the matcher only guessed this bone and the user has not changed it. */
+  isUnsure(joint: number): boolean {
+    const part = this.partOf(joint);
+    return (
+      part !== null && this.#guesses[part] === this.joints[joint]!.name && (this.#confidence[part] ?? 1) < sureFrom
+    );
+  }
+
+  /** The map of the file's bones. */
+  get bones(): BoneMap {
+    return Object.fromEntries([...this.#partOf].map(([joint, part]) => [part, this.joints[joint]!.name]));
+  }
+
+  /** Parts without which no body can be moved and that no bone is. */
+  get missing(): readonly BoneName[] {
+    return neededBones.filter((part) => this.jointOf(part) < 0);
+  }
+}

@@ -1,0 +1,44 @@
+import { isNightly } from '../nightly';
+
+/** Returns how many mutated files of a format are read: `byDay`, 100,000 at night, or what MUTATED_FILES states. */
+export const mutatedFiles = (byDay: number): number =>
+  Number(process.env.MUTATED_FILES ?? (isNightly ? 100_000 : byDay));
+
+/** A smaller file counts as this many bytes: what a reader allocates for any file is no multiple of it. */
+const leastBytes = 65_536;
+
+/** The largest costs of the files that were read one after another. */
+export class ReadingCosts {
+  /** Time of the processor [ms]: other programs of the machine do not count. */
+  longestMs = 0;
+  /**
+   * Growth of all array buffers while one file is read, garbage included, as a multiple of its size (`leastBytes` at
+   * least).
+   */
+  largestMultiple = Number.NEGATIVE_INFINITY;
+
+  /** Reads a file of this size and returns the result, or the error that was thrown. */
+  async measure<T>(fileBytes: number, read: () => T | Promise<T>): Promise<T | Error> {
+    const before = process.memoryUsage().arrayBuffers;
+    const started = process.cpuUsage();
+    try {
+      return await read();
+    } catch (error) {
+      if (error instanceof Error) return error;
+      throw error;
+    } finally {
+      const { user, system } = process.cpuUsage(started);
+      this.longestMs = Math.max(this.longestMs, (user + system) / 1000);
+      const grown = process.memoryUsage().arrayBuffers - before;
+      this.largestMultiple = Math.max(this.largestMultiple, grown / Math.max(fileBytes, leastBytes));
+    }
+  }
+
+  /** The figures for docs/reliability.md. */
+  figures(format: string): Record<string, number> {
+    return {
+      [`longest work on one ${format} [ms of the processor]`]: this.longestMs,
+      [`most memory for one ${format} [× the file]`]: this.largestMultiple,
+    };
+  }
+}
