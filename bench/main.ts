@@ -8,12 +8,14 @@ import { createPageHandler } from '../server/page';
 import { printFigures } from '../tests/print-figures';
 import { builtIn, measureAllocations } from './allocations';
 import { measureAvatarLoading } from './avatar-loading';
+import { countWorlds, overBudget } from './counts';
 import { type MeasuredNetwork, measureNetworks } from './networks';
 import type { PageResult } from './page/main';
 import {
   printAllocations,
   printArchery,
   printCosts,
+  printCounts,
   printCourt,
   printCrowd,
   printNetworks,
@@ -40,7 +42,17 @@ const { values: options, positionals } = parseArgs({
 });
 
 /** What is measured without --allocations; named on the command line, only these. */
-const everyPart = ['visit', 'frames', 'archery', 'ball', 'crowd', 'allocations', 'networks', 'avatar'] as const;
+const everyPart = [
+  'visit',
+  'counts',
+  'frames',
+  'archery',
+  'ball',
+  'crowd',
+  'allocations',
+  'networks',
+  'avatar',
+] as const;
 type Part = (typeof everyPart)[number];
 const parts: readonly string[] = options.allocations || positionals.length === 0 ? everyPart : positionals;
 const unknown = parts.filter((part) => !everyPart.some((known) => known === part));
@@ -164,6 +176,19 @@ const measurePart: Readonly<Record<Part, (browser: Browser) => Promise<object>>>
     const visit = await measureVisit(browser);
     printVisit(visit);
     return visit;
+  },
+  async counts(browser) {
+    const server = await serveIsolated(builtIn('.cache/bench'));
+    try {
+      const counts = await countWorlds(browser, `http://localhost:${server.port}`);
+      printCounts(counts);
+      const exceeded = overBudget(counts);
+      for (const sentence of exceeded) console.error(`bench: ${sentence}`);
+      if (exceeded.length > 0) process.exitCode = 1;
+      return { counts, exceeded };
+    } finally {
+      await server.close();
+    }
   },
   async frames(browser) {
     const result = await measureOnPage(browser, 'frames');

@@ -1,5 +1,6 @@
 import { stageNames } from 'threepoint-page/shell/frame-timing';
 import type { Allocations } from './allocations';
+import { type WorldCounts, whole } from './counts';
 import type { MeasuredNetwork } from './networks';
 import type { CrowdTimes } from './page/crowd';
 import type { PageResult } from './page/main';
@@ -39,6 +40,21 @@ export function printNetworks(costs: Readonly<Record<string, MeasuredNetwork>>):
   for (const [way, { inFrameMs, threadMs, firstBodyMs, bytes, provider }] of Object.entries(costs)) {
     const times = [inFrameMs.p50, inFrameMs.p95, threadMs.p50, threadMs.p95].map((ms) => ms.toFixed(3));
     row(way, [...times, firstBodyMs.toFixed(0), (bytes / 1000).toFixed(0), provider]);
+  }
+}
+
+/** By world: both eyes and shadows, the part of the shadows, the mirror's reflections, and all of it. */
+export function printCounts(counts: Readonly<Record<string, WorldCounts>>): void {
+  console.log('\nThe most that a picture of a world takes: draw calls and thousands of triangles; textures [MB]');
+  row('', ['eyes', 'k', 'shadows', 'k', 'mirror', 'k', 'all', 'k', 'textures']);
+  for (const [name, { scene, shadows, mirror, texturesMB }] of Object.entries(counts)) {
+    const eyes = {
+      drawCalls: scene.drawCalls - shadows.drawCalls,
+      triangles: scene.triangles - shadows.triangles,
+    };
+    const all = whole({ scene, mirror });
+    const cells = [eyes, shadows, mirror, all].flatMap((part) => [part.drawCalls, Math.round(part.triangles / 1000)]);
+    row(name, [...cells, texturesMB.toFixed(1)]);
   }
 }
 

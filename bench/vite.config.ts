@@ -14,7 +14,7 @@ export default defineConfig({
     emptyOutDir: true,
     target: 'es2022',
     rolldownOptions: {
-      input: [path('./page/index.html'), path('./page/allocations.html'), path('./page/networks.html')],
+      input: ['index', 'allocations', 'counts', 'networks'].map((name) => path(`./page/${name}.html`)),
     },
   },
 });

@@ -1,5 +1,5 @@
-// npm run bench [-- --json FILE] [visit frames archery ball crowd allocations networks avatar] [--rounds N]: measures
-// the time of a frame by estimator and by stage, in headless Chromium. Without names it measures every part, which
+// npm run bench [-- --json FILE] [visit counts frames archery ball crowd allocations networks avatar] [--rounds N]:
+// measures the time of a frame by estimator and by stage, in headless Chromium. Without names it measures every part, which
 // takes an hour on two cores without a GPU; "frames --rounds 3" takes minutes. npm run bench networks -- --device: uses
 // WebGPU on the machine's GPU instead of in software. Each part prints its duration and is written to FILE when it
 // ends; ratios of frames have 95 % confidence intervals. npm run bench -- --allocations [ik paper learned mirror

@@ -105,7 +105,7 @@ async function hands(): Promise<FrameOf> {
     avatar.setFingers('left', frame.fingers?.left ?? null);
     avatar.setFingers('right', frame.fingers?.right ?? null);
     avatar.setPose(estimator.update(frame).pose, time);
-    mirror.reflect(renderer, studio.scene, camera);
+    mirror.reflect(renderer, studio.scene, camera, time);
     draw();
   };
 }

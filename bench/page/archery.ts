@@ -72,7 +72,7 @@ export async function measureArchery(stage: ArcheryStage): Promise<Record<Estima
         const { pose, request } = estimator.update(frame);
         avatar.setPose(pose, frame.time);
         view.show(state, bow, time, frame.head);
-        mirror.reflect(renderer, studio.scene, camera);
+        mirror.reflect(renderer, studio.scene, camera, frame.time);
         renderer.render(studio.scene, camera);
         void request?.ask();
         const ended = performance.now();

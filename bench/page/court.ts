@@ -8,6 +8,7 @@ import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/ske
 import { composeTransforms, invertTransform, type TrackedPose } from 'threepoint/core/math/pose';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { createBallView } from 'threepoint-page/ball/ball-view';
+import type { Quality } from 'threepoint-page/scene/renderer';
 import type { Studio } from 'threepoint-page/studio/studio';
 import { createRemotePlayers } from 'threepoint-rooms/client/remote-players';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
@@ -33,10 +34,10 @@ export class Court {
   readonly #shown: Writable<Parameters<ReturnType<typeof createBallView>['show']>[0]>;
   #players = createRemotePlayers();
 
-  constructor(studio: Studio, mannequin: ArrayBuffer, places: number) {
+  constructor(studio: Studio, mannequin: ArrayBuffer, places: number, quality: Quality = 'low') {
     this.#studio = studio;
     const floorFromArena = invertTransform(arenaFromCirclePlace(0, places));
-    this.#view = createBallView({ quality: 'low', balls: 20, onCaption: () => undefined });
+    this.#view = createBallView({ quality, balls: 20, onCaption: () => undefined });
     studio.setSurroundings(this.#view.placed(floorFromArena));
     this.#others = createRemoteAvatars({
       load: async () => createAvatarBetweenFrames(await parseAvatar(mannequin, 'mannequin.vrm')),

@@ -4,6 +4,7 @@ import type { ArcheryStage } from './archery';
 import { Court } from './court';
 import { nextFrame } from './frame-times';
 import { createSenders } from './senders';
+import { withoutDevice } from './without-device';
 
 /** What fifteen others cost the page's thread beyond the own body, frames of 72 Hz, medians [ms]. */
 export interface CrowdTimes {
@@ -30,12 +31,6 @@ const median = (values: readonly number[]): number => {
   return sorted[Math.floor(sorted.length / 2)] ?? Number.NaN;
 };
 const mean = (values: readonly number[]): number => values.reduce((sum, value) => sum + value, 0) / values.length;
-
-/** Draw calls reach no device: in software that would be most of a frame, and the page's thread would wait for it. */
-function withoutDevice(gl: WebGLRenderingContext | WebGL2RenderingContext): void {
-  for (const name of ['clear', 'drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElementsInstanced'])
-    Object.assign(gl, { [name]: () => undefined });
-}
 
 /**
  * Frames with everyone and with the own body alone, block by block in turns, so that what else the machine does meets

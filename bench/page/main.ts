@@ -255,7 +255,7 @@ class FrameBench {
           this.#picture.avatar.setPose(pose, frame.time);
           if (pose.body) this.#skinned = pose;
         },
-        render: () => this.#draw(),
+        render: (time) => this.#draw(time),
         fail: (error) => {
           this.#failure = error;
         },
@@ -265,9 +265,9 @@ class FrameBench {
     );
   }
 
-  #draw(): void {
+  #draw(time: number): void {
     const { mirror, renderer, studio, camera } = this.#picture;
-    mirror.reflect(renderer, studio.scene, camera);
+    mirror.reflect(renderer, studio.scene, camera, time);
     renderer.render(studio.scene, camera);
   }
 
@@ -322,7 +322,7 @@ class FrameBench {
     this.#withLaterMs = this.#inFrameMs;
     // It solves a rig of its own; the avatar is skinned all the same, so that the frame is as much work.
     if (this.#skinned) this.#picture.avatar.setPose(this.#skinned, frame.time);
-    this.#draw();
+    this.#draw(frame.time);
   }
 }
 

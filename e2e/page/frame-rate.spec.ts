@@ -22,7 +22,12 @@ test('a headset that draws late is asked for a lower rate, and View shows it @fu
   await expect.poll(async () => (await probe(page)).activity).toBe('vr');
   // The rates of the emulated headset are names alone: this window draws at 60 Hz or less, and is late at 90 Hz.
   await expect.poll(async () => (await probe(page)).frame.rateHz, { timeout: 60_000 }).toBeLessThan(90);
-  const { rateHz } = (await probe(page)).frame;
+  const {
+    frame: { rateHz },
+    drawing: { savings },
+  } = await probe(page);
+  // Before the rate is lowered, the picture gives up what is missed least.
+  expect(savings).toEqual({ foveation: 1, mirrorRateHz: 36 });
   await page.getByRole('button', { name: 'Controls' }).click();
   await page.getByRole('tab', { name: 'View' }).click();
   await expect(page.getByRole('tabpanel')).toContainText(

@@ -24,6 +24,7 @@ test('the mirror stands on the real floor, is moved by a grab and anchored, and 
   page,
 }) => {
   const headset = await enterRoom(page, livingRoom);
+  await expect(page.getByRole('button', { name: 'Exit AR' })).toBeVisible();
   await expect.poll(async () => (await passthrough(page))?.anchored).toBe(true);
   const before = (await passthrough(page))!;
   expect(before.showsRoom).toBe(true);

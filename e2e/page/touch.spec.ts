@@ -76,6 +76,8 @@ test.describe('on a phone', () => {
 
       await button('Ball game').tap();
       await expect(button('Ball game')).toHaveAttribute('aria-pressed', 'true', { timeout: 60_000 });
+      await button('Play by touch').tap();
+      await expect(page.getByText(/^Put a finger/)).toBeVisible();
       await keepPicture(page, 'touch-ball');
       await button('Mirror').tap();
       await expect(button('Mirror')).toHaveAttribute('aria-pressed', 'true', { timeout: 60_000 });

@@ -2,6 +2,7 @@ import type { ServerState } from 'threepoint-http/server-presence';
 import { button, element } from 'threepoint-ui/element';
 import { ballRulesText, rulesList } from 'threepoint-ui/game-rules-text';
 import { createRoomLink } from 'threepoint-ui/invitation';
+import { isTouchFirst } from 'threepoint-ui/mouse-aim';
 import { toggle } from 'threepoint-ui/toggle';
 import type { BallRound } from './ball-round';
 import { otherPlayers } from './other-players';
@@ -146,18 +147,35 @@ function createScore() {
   };
 }
 
+/** How a player without a headset plays. */
+const hints = {
+  mouse: {
+    throwing:
+      'Point at the basket and hold the button. The ring shows where the ball will land. Release the button when it is green. Esc cancels the throw.',
+    catching: 'Point to where you want the basket. It turns towards the balls by itself.',
+  },
+  touch: {
+    throwing:
+      'Put a finger on the basket. The ring shows where the ball will land. Lift the finger when the ring is green. A second finger cancels the throw.',
+    catching: 'Put a finger where you want the basket. It turns towards the balls by itself.',
+  },
+} as const;
+
 /** The buttons of the current state. If this page is no longer in the room, only the way back is enabled. */
 function createButtons(actions: BallBarActions) {
   let isReady = false;
   const ready = button('Ready', () => actions.ready(!isReady), { class: 'primary' });
   const rejoin = button('Rejoin', actions.rejoin, { class: 'primary' });
   const watch = button('Watch', () => actions.sit(null));
-  const steer = button('Play with the mouse', () => actions.steer(true), { class: 'primary' });
+  const touch = isTouchFirst();
+  const steer = button(touch ? 'Play by touch' : 'Play with the mouse', () => actions.steer(true), {
+    class: 'primary',
+  });
   const rest = button('Let the computer play', () => actions.steer(false));
   const hint = element('p', { class: 'hint' });
   return {
     node: element('div', { class: 'row' }, rejoin, ready, steer, rest, watch),
-    /** How a mouse plays. */
+    /** How a mouse or a finger plays. */
     hint,
     show({ round, acting, mouse }: BallBarState): void {
       const out = isOut(round);
@@ -173,9 +191,7 @@ function createButtons(actions: BallBarActions) {
       watch.hidden = !seated;
       for (const each of [ready, steer, rest, watch]) each.disabled = out;
       hint.hidden = !seated || mouse !== true || out;
-      hint.textContent = round?.throws
-        ? 'Point at the basket and hold the button. The ring shows where the ball will land. Release the button when it is green. Esc cancels the throw.'
-        : 'Point to where you want the basket. It turns towards the balls by itself.';
+      hint.textContent = hints[touch ? 'touch' : 'mouse'][round?.throws ? 'throwing' : 'catching'];
     },
   };
 }

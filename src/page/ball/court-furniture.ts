@@ -128,7 +128,8 @@ export function createCourtFurniture(balls: number): Group {
   const random = createScatter(611);
   const racks = new Mesh(
     merged([...rack(0, balls), ...rack(1, balls)].map((part) => withoutIndex(part))),
-    new MeshLambertMaterial({ vertexColors: true }),
+    // The pennants have two sides; racks of the same material are drawn with them in one call.
+    new MeshLambertMaterial({ vertexColors: true, side: DoubleSide }),
   );
   const side = court.halfWidth + 0.75;
   const tubs = [-1, 1].flatMap((sign) => [court.near - 0.3, -2.5, court.far + 0.3].map((z) => ({ x: sign * side, z })));

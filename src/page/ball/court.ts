@@ -1,6 +1,7 @@
 import { Group, Vector3 } from 'three';
 import type { Transform } from 'threepoint/core/math/pose';
 import { disposeTree } from '../scene/dispose-tree';
+import { mergeAlike } from '../scene/merge-alike';
 import { daylight } from '../scene/outdoors/daylight';
 import { createLandscape } from '../scene/outdoors/landscape';
 import { createNoiseTexture } from '../scene/outdoors/noise-texture';
@@ -32,6 +33,7 @@ export function createCourt(quality: Quality, balls: number): Court {
     createLandscape(quality),
     createCourtFurniture(balls),
   );
+  mergeAlike(object);
   return {
     object,
     placed(floorFromArena) {

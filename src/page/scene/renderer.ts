@@ -49,7 +49,6 @@ export function createRenderer(canvas: HTMLCanvasElement, quality: Quality): Web
   renderer.shadowMap.type = PCFShadowMap;
   renderer.xr.enabled = true;
   renderer.xr.setReferenceSpaceType('local-floor');
-  renderer.xr.setFoveation(1);
   return renderer;
 }
 

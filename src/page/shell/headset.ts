@@ -1,6 +1,6 @@
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { DeviceBodyReader } from 'threepoint/xr/device-body-reader';
-import { FrameRateControl } from 'threepoint/xr/frame-rate';
+import { FrameRateControl, type Savings, unjudgedSavings } from 'threepoint/xr/frame-rate';
 import { giveFramesToEvents } from 'threepoint/xr/frameless-events';
 import { buzz, type Pulse } from 'threepoint/xr/haptics';
 import {
@@ -146,6 +146,11 @@ export class Headset {
   /** The rates that the headset offers [Hz], ascending; empty: it offers no choice, or none is worn. */
   get ratesHz(): readonly number[] {
     return this.#session?.rates.rates ?? [];
+  }
+
+  /** What pictures give up so that their frames are in time. */
+  get savings(): Savings {
+    return this.#session?.rates.savings ?? unjudgedSavings;
   }
 
   /** Counts a frame at this time [s] whose work took this long [s]; lets the headset draw at the rate that is held. */

@@ -7,6 +7,7 @@ import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { Side } from 'threepoint/core/math/side';
 import type { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { unjudgedSavings } from 'threepoint/xr/frame-rate';
 import type { Notices } from 'threepoint-ui/notices';
 import type { Recorder } from '../studio/recorder';
 import type { Activities } from './activities';
@@ -174,7 +175,7 @@ export class PageFrame implements FrameParts<XRFrame> {
   }
 
   #shot(time: number, frame: TrackingFrame | null): Shot {
-    const { avatar, headset, activities, mocap, settings } = this.#options;
+    const { avatar, headset, activities, mocap, settings, study } = this.#options;
     const besideUser = settings.beside && headset.passthrough !== null && activities.current === null;
     return {
       time,
@@ -185,6 +186,8 @@ export class PageFrame implements FrameParts<XRFrame> {
       inSession: headset.worn,
       watched: activities.current?.watched ?? null,
       mirror: this.#mirror(),
+      // All pictures of a study are alike.
+      savings: study.run ? unjudgedSavings : headset.savings,
     };
   }
 

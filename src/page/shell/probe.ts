@@ -5,6 +5,7 @@ import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { Side } from 'threepoint/core/math/side';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { Savings } from 'threepoint/xr/frame-rate';
 import type { StudyProbe } from 'threepoint-study/participant/study-run';
 import type { Notices } from 'threepoint-ui/notices';
 import type { PlayerProbe } from '../activity/activity';
@@ -19,7 +20,7 @@ import type { PageStudy } from './page-study';
 import type { PassthroughHost } from './passthrough-host';
 import type { Settings } from './settings';
 import type { ShownAvatar } from './shown-avatar';
-import type { Stage } from './stage';
+import type { DrawnCounts, Stage } from './stage';
 import type { TrackingSource } from './tracking-source';
 
 type Triple = readonly [number, number, number];
@@ -72,6 +73,11 @@ export interface Probe {
     readonly textures: number;
     readonly programs: number;
     readonly darkness: number;
+    /** What the newest picture asked of the graphics device. */
+    readonly mirror: DrawnCounts;
+    readonly scene: DrawnCounts;
+    /** What the pictures of a session give up so that its frames are in time. */
+    readonly savings: Savings;
   };
   /** The others as they are drawn here. */
   readonly players: readonly PlayerProbe[];
@@ -96,7 +102,7 @@ export interface ProbeParts {
   readonly recorder: Pick<Recorder, 'mode' | 'frameCount' | 'seconds'>;
   readonly activities: Pick<Activities, 'current'>;
   readonly study: Pick<PageStudy, 'run'>;
-  readonly stage: Pick<Stage, 'renderer' | 'view' | 'vignette'>;
+  readonly stage: Pick<Stage, 'renderer' | 'view' | 'vignette' | 'drawn' | 'savings'>;
   readonly passthrough: Pick<PassthroughHost, 'room'>;
 }
 
@@ -126,11 +132,14 @@ function avatarOf({ current, name }: ProbeParts['avatar']): Probe['avatar'] {
   };
 }
 
-function drawingOf({ renderer, vignette }: ProbeParts['stage']): Probe['drawing'] {
+function drawingOf({ renderer, vignette, drawn, savings }: ProbeParts['stage']): Probe['drawing'] {
   return {
     ...renderer.info.memory,
     programs: renderer.info.programs?.length ?? 0,
     darkness: vignette.darkness,
+    mirror: { ...drawn.mirror },
+    scene: { ...drawn.scene },
+    savings: { ...savings },
   };
 }
 

@@ -4,6 +4,7 @@ import { createMirror } from 'threepoint/avatar/mirror';
 import { createHeadLoss } from 'threepoint/avatar/rig/head-loss';
 import type { Side } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { type Savings, unjudgedSavings } from 'threepoint/xr/frame-rate';
 import { createVrCaptions } from 'threepoint-ui/vr-captions';
 import type { Watched } from '../activity/activity';
 import { DesktopView, type Insets } from '../scene/desktop-view';
@@ -21,6 +22,12 @@ const outOfSight = 100;
 const longestStep = 0.1;
 /** The height of the pelvis as a share of the eye height, without a body. */
 const pelvisShare = 0.58;
+
+/** What a picture, or a part of it, asks of the graphics device. */
+export interface DrawnCounts {
+  readonly drawCalls: number;
+  readonly triangles: number;
+}
 
 /** One picture: its people and its viewer. */
 export interface Shot {
@@ -40,6 +47,8 @@ export interface Shot {
    * never; always; or only for a camera that does not stand behind the mirror: from there one wants to see the body.
    */
   readonly mirror: 'never' | 'always' | 'unless-behind';
+  /** What the picture of a session gives up so that its frames are in time. */
+  readonly savings: Savings;
 }
 
 /** What is always there to be drawn, and the cameras it is drawn with. */
@@ -48,6 +57,10 @@ export interface Stage {
   readonly studio: Studio;
   readonly view: DesktopView;
   readonly vignette: Vignette;
+  /** The newest picture: its reflections in the mirror, and the rest with all eyes and shadows. */
+  readonly drawn: Readonly<Record<'mirror' | 'scene', DrawnCounts>>;
+  /** What the newest picture gave up. */
+  readonly savings: Savings;
   /** A line low before the eyes of a session; empty: none. */
   caption(text: string): void;
   /** Places the mirror at this side of the user; null: ahead of the user. */
@@ -78,12 +91,32 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
   studio.scene.add(mirror.object, skeleton.object, vignette.object, captions.object);
   const mirrorHeight = mirror.object.position.y;
   let lastTime = 0;
+  const { info } = renderer;
+  let spared = unjudgedSavings;
+  const save = (savings: Savings): void => {
+    if (savings === spared) return;
+    spared = savings;
+    renderer.xr.setFoveation(savings.foveation);
+    mirror.setMostRate(savings.mirrorRateHz);
+  };
+  // A picture has several renders, and three.js would restart its counts in each of them.
+  info.autoReset = false;
+  const drawn = { mirror: { drawCalls: 0, triangles: 0 }, scene: { drawCalls: 0, triangles: 0 } };
+  const count = (part: 'mirror' | 'scene'): void => {
+    drawn[part].drawCalls = info.render.calls;
+    drawn[part].triangles = info.render.triangles;
+    info.reset();
+  };
 
   return {
     renderer,
     studio,
     view,
     vignette,
+    drawn,
+    get savings() {
+      return spared;
+    },
     caption: captions.setText,
     placeMirror(side) {
       const { x, z, turned } = mirrorAside;
@@ -117,7 +150,8 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
         view.update(aside === 0 ? pelvis : { ...pelvis, x: pelvis.x + aside }, frame.head, elapsed);
       }
     },
-    draw({ time, frame, avatar, inSession, watched, beside, mirror: wanted }) {
+    draw({ time, frame, avatar, inSession, watched, beside, mirror: wanted, savings }) {
+      save(savings);
       const inside = inSession || view.view === 'first-person';
       if (avatar) {
         skeleton.show(avatar.jointPositions());
@@ -133,8 +167,11 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
       const beforeIt = inside || view.camera.position.z > 0.1 - mirrorDistance;
       mirror.setVisible(wanted === 'always' || (wanted === 'unless-behind' && beforeIt));
       const camera = inSession ? headsetCamera : view.camera;
-      mirror.reflect(renderer, studio.scene, camera);
+      info.reset();
+      mirror.reflect(renderer, studio.scene, camera, time);
+      count('mirror');
       renderer.render(studio.scene, camera);
+      count('scene');
     },
   };
 }

@@ -8,11 +8,13 @@ import {
   type Object3D,
   PlaneGeometry,
   type Scene,
+  UnsignedByteType,
   type WebGLRenderer,
 } from 'three';
 import { Reflector } from 'three/addons/objects/Reflector.js';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import { eyeLayers } from './eye-layers';
+import { Pace, reflectionSize } from './reflection-cost';
 import { thirdPersonOnlyLayer } from './rig/body-meshes';
 import { seesRectangle } from './sees-rectangle';
 
@@ -21,7 +23,10 @@ export interface MirrorOptions {
   readonly distance?: number;
   readonly width?: number;
   readonly height?: number;
-  /** The width of the reflection's texture [pixels]; a headset draws one for each eye. */
+  /**
+   * The largest width of the reflection's texture [pixels]; a headset draws one for each eye, of at most half the eye's
+   * pixels.
+   */
   readonly resolution?: number;
   /** Samples per pixel of the reflection; 0 for software rendering. */
   readonly samples?: number;
@@ -35,10 +40,13 @@ export interface Mirror {
   setVisible(visible: boolean): void;
   /** Moves its middle to (x, z) [m], floor frame; turned by 0 it faces +Z, positive to +X [rad]. */
   place(x: number, z: number, turned: number): void;
+  /** Draws at most so many reflections in a second of a session [Hz]; null: one in each frame. */
+  setMostRate(rateHz: number | null): void;
   /**
-   * Draws the reflection of the scene for this camera, or in a session for the eyes. Call it before the scene is drawn.
+   * Draws the reflection of the scene for this camera, or in a session for the eyes, at this time [s]. Call it before
+   * the scene is drawn.
    */
-  reflect(renderer: WebGLRenderer, scene: Scene, camera: Camera): void;
+  reflect(renderer: WebGLRenderer, scene: Scene, camera: Camera, time: number): void;
   dispose(): void;
 }
 
@@ -70,6 +78,9 @@ class StandingMirror implements Mirror {
   private readonly height: number;
   private readonly resolution: number;
   private readonly samples: number;
+  private readonly pace = new Pace();
+  /** The textures take no memory. */
+  private released = true;
   private readonly frame = new Mesh<BufferGeometry, MeshStandardMaterial>(
     undefined,
     new MeshStandardMaterial({ color: 0x2a2f38, roughness: 0.35, metalness: 0.7 }),
@@ -95,24 +106,54 @@ class StandingMirror implements Mirror {
     this.object.rotation.y = turned;
   }
 
-  reflect(renderer: WebGLRenderer, scene: Scene, camera: Camera): void {
-    if (!this.object.visible) return;
+  setMostRate(rateHz: number | null): void {
+    this.pace.rateHz = rateHz;
+  }
+
+  reflect(renderer: WebGLRenderer, scene: Scene, camera: Camera, time: number): void {
     const { xr } = renderer;
+    if (!this.object.visible) {
+      this.release();
+      return;
+    }
     if (!xr.isPresenting) {
       if (camera.parent === null) camera.updateMatrixWorld();
       for (let i = 1; i < this.glasses.length; i++) this.glasses[i]!.visible = false;
       this.glasses[0]!.layers.set(0);
+      this.released = false;
+      this.pace.restart();
       this.reflectTo(0, renderer, scene, camera);
       return;
     }
+    if (!this.pace.isDue(time)) return;
+    this.released = false;
     // three.js does this at the start of a frame in a session.
     xr.updateCamera(camera as Parameters<typeof xr.updateCamera>[0]);
     const { cameras } = xr.getCamera();
     for (let eye = 0; eye < cameras.length && eye < eyeLayers.length; eye++) {
+      const { z: wide, w: high } = cameras[eye]!.viewport;
+      // An emulated headset may have an eye without pixels.
+      if (wide * high === 0) continue;
       if (!this.glasses[eye]) this.addGlass();
       this.glasses[eye]!.layers.set(eyeLayers[eye]!);
+      this.fitTarget(eye, wide * high);
       this.reflectTo(eye, renderer, scene, cameras[eye]!);
     }
+  }
+
+  /** Frees the memory of the textures: half a hundred megabytes for each eye. The next reflection allocates it again. */
+  private release(): void {
+    if (this.released) return;
+    this.released = true;
+    this.pace.restart();
+    for (const glass of this.glasses) glass.getRenderTarget().dispose();
+  }
+
+  /** Gives a glass a texture for a picture of this many pixels. */
+  private fitTarget(index: number, pixels: number): void {
+    const { width, height } = reflectionSize(pixels, this.height / this.width, this.resolution);
+    const target = this.glasses[index]!.getRenderTarget();
+    if (target.width !== width || target.height !== height) target.setSize(width, height);
   }
 
   dispose(): void {
@@ -161,8 +202,10 @@ class StandingMirror implements Mirror {
       color: 0xb6b9bb,
       shader,
     });
-    // three.js recognises by this property a target whose colours are encoded like a canvas's.
-    Object.assign(glass.getRenderTarget(), { isXRRenderTarget: true });
+    const target = glass.getRenderTarget();
+    // three.js recognises by this property a target whose colours are encoded like a canvas's: it needs no more bits.
+    Object.assign(target, { isXRRenderTarget: true });
+    target.texture.type = UnsignedByteType;
     // In first person the own head lies on this layer alone: a mirror shows it all the same. What lies on the layers of
     // the eyes alone it does not show. The reflecting camera is a copy made on demand by a method that three's types
     // leave out.

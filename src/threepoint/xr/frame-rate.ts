@@ -1,13 +1,15 @@
 /** A rate is held when fewer frames than this share are late over a window of this length [s]. */
 const lateShare = 0.01;
 const windowSeconds = 10;
+/** Where more than this share of the frames is late, all savings are taken at once. */
+const veryLateShare = 0.05;
 /** A frame that takes more than this many intervals of the device is late. */
 const lateAfterIntervals = 1.5;
 /** A higher rate is tried only if the work of a frame leaves this share of its interval to compositor and graphics. */
 const workShare = 0.6;
 /** Frames right after the start or a change of the rate do not count [s]. */
 const settleSeconds = 1;
-/** A rate that was not held is tried again after this time [s], which doubles with each failure up to the second. */
+/** What was not held is tried again after this time [s], which doubles with each failure up to the second. */
 const shortestRetry = 60;
 const longestRetry = 960;
 
@@ -18,24 +20,48 @@ export interface RatedSession {
   readonly updateTargetFrameRate?: ((rate: number) => Promise<void>) | undefined;
 }
 
-/** How often a rate was not held, and when it may be tried again [s]. */
+/** What a picture gives up so that its frames are in time. */
+export interface Savings {
+  /** How much coarser the edges of the eyes' pictures are drawn, 0 to 1. */
+  readonly foveation: number;
+  /** The most reflections that a mirror draws in a second [Hz]; null: one in each frame. */
+  readonly mirrorRateHz: number | null;
+}
+
+/** From none to all, in the order in which people miss them least. */
+const levels: readonly Savings[] = [
+  { foveation: 0, mirrorRateHz: null },
+  { foveation: 0.5, mirrorRateHz: null },
+  { foveation: 1, mirrorRateHz: null },
+  { foveation: 1, mirrorRateHz: 36 },
+];
+const allSavings = levels.length - 1;
+
+/** The savings where no load is known: all that one does not see in a mirror. */
+export const unjudgedSavings: Savings = { foveation: 1, mirrorRateHz: null };
+
+/** How often a rate was not held with some savings, and when it may be tried again [s]. */
 interface Failures {
   readonly count: number;
   readonly retryAt: number;
 }
 
 /**
- * Chooses the highest frame rate that the page holds: fewer than 1 % late frames over ten seconds. It lowers the rate
- * as soon as a window has failed and raises it step by step after windows with time to spare; a rate that failed is
- * tried again later each time.
+ * Judges the load of the page: a rate is held with fewer than 1 % late frames over ten seconds. As soon as a window has
+ * failed, it takes savings, and with all of them the next lower rate. After windows that held it tries the next higher
+ * rate if there is time to spare, then fewer savings; what failed is tried again later each time.
  */
 export class FrameRateControl {
   /** The rates that the device offers [Hz], ascending; empty: it offers no choice. */
   readonly rates: readonly number[];
   readonly #session: RatedSession;
-  readonly #failures = new Map<number, Failures>();
+  readonly #failures = new Map<string, Failures>();
+  /** The savings with which each rate was held. */
+  readonly #heldAt = new Map<number, number>();
+  #level = 0;
   #last = Number.NaN;
   #windowStart = Number.NaN;
+  #frames = 0;
   #late = 0;
   #heavy = 0;
   /** The rate that the device was asked for and does not run at yet [Hz]; null: none. */
@@ -52,16 +78,21 @@ export class FrameRateControl {
     return this.#session.frameRate ?? null;
   }
 
+  /** What the picture has to give up now. */
+  get savings(): Savings {
+    return this.rate === null ? unjudgedSavings : levels[this.#level]!;
+  }
+
   /** Starts a new window: what was counted does not compare with what follows. */
   restart(): void {
     this.#last = Number.NaN;
     this.#windowStart = Number.NaN;
   }
 
-  /** Counts a frame at this time [s] whose work took this long [s], and asks the device for another rate if needed. */
+  /** Counts a frame at this time [s] whose work took this long [s]. */
   observe(time: number, workSeconds: number): void {
     const { rate } = this;
-    if (rate === null || this.rates.length === 0) return;
+    if (rate === null) return;
     const interval = time - this.#last;
     this.#last = time;
     if (Number.isNaN(interval)) {
@@ -69,35 +100,61 @@ export class FrameRateControl {
       return;
     }
     if (time < this.#windowStart) return;
+    this.#frames += 1;
     // A pause, however long, is one late frame.
     if (interval > lateAfterIntervals / rate) this.#late += 1;
     const next = this.rates.find((higher) => higher > rate);
     if (next !== undefined && workSeconds > workShare / next) this.#heavy += 1;
     const allowed = lateShare * windowSeconds * rate;
-    if (this.#late > allowed) this.#lower(rate, time);
+    if (this.#late > allowed) this.#relieve(rate, time);
     else if (time - this.#windowStart >= windowSeconds) {
-      if (next !== undefined && this.#heavy <= allowed) this.#raise(next, time);
+      this.#heldAt.set(rate, this.#level);
+      this.#improve(rate, this.#heavy <= allowed ? next : undefined, time);
       this.#begin(time - settleSeconds);
     }
   }
 
   #begin(time: number): void {
     this.#windowStart = time + settleSeconds;
+    this.#frames = 0;
     this.#late = 0;
     this.#heavy = 0;
   }
 
-  #lower(rate: number, time: number): void {
-    const lower = this.rates.findLast((each) => each < rate);
-    const count = (this.#failures.get(rate)?.count ?? 0) + 1;
-    const retryAt = time + Math.min(longestRetry, shortestRetry * 2 ** (count - 1));
-    this.#failures.set(rate, { count, retryAt });
+  /** Takes savings, or the next lower rate where there are no more. */
+  #relieve(rate: number, time: number): void {
+    const veryLate = this.#late > veryLateShare * this.#frames;
+    this.#fail(rate, time);
     this.#begin(time);
-    if (lower !== undefined) this.#ask(lower);
+    if (this.#level < allSavings) {
+      this.#level = veryLate ? allSavings : this.#level + 1;
+      return;
+    }
+    const lower = this.rates.findLast((each) => each < rate);
+    if (lower === undefined) return;
+    this.#level = this.#heldAt.get(lower) ?? this.#level;
+    this.#ask(lower);
   }
 
-  #raise(rate: number, time: number): void {
-    if (time >= (this.#failures.get(rate)?.retryAt ?? 0)) this.#ask(rate);
+  /** Tries the next higher rate, where one is given, or fewer savings. */
+  #improve(rate: number, next: number | undefined, time: number): void {
+    if (next !== undefined && this.#mayTry(next, this.#level, time)) this.#ask(next);
+    else if (this.#level > 0 && this.#mayTry(rate, this.#level - 1, time)) this.#level -= 1;
+  }
+
+  #fail(rate: number, time: number): void {
+    const key = keyOf(rate, this.#level);
+    const count = (this.#failures.get(key)?.count ?? 0) + 1;
+    const retryAt = time + Math.min(longestRetry, shortestRetry * 2 ** (count - 1));
+    this.#failures.set(key, { count, retryAt });
+  }
+
+  /** Returns whether a rate may be tried: what failed with more savings fails with fewer. */
+  #mayTry(rate: number, level: number, time: number): boolean {
+    for (let more = level; more <= allSavings; more++) {
+      if (time < (this.#failures.get(keyOf(rate, more))?.retryAt ?? 0)) return false;
+    }
+    return true;
   }
 
   #ask(rate: number): void {
@@ -111,3 +168,5 @@ export class FrameRateControl {
     this.#session.updateTargetFrameRate?.(rate).then(answered, answered);
   }
 }
+
+const keyOf = (rate: number, level: number): string => `${rate}:${level}`;

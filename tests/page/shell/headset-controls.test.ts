@@ -298,6 +298,14 @@ describe('the buttons of the menu', () => {
     expect(talking('in', true, true)).toContain('No microphone');
   });
 
+  test.each([
+    [false, 'Exit VR'],
+    [true, 'Exit AR'],
+  ])('name the session that ends (in passthrough: %s)', (inPassthrough, label) => {
+    const exit = menuButtons({ ...mirror, inPassthrough }, actions).find(({ id }) => id === 'exit');
+    expect(exit?.label).toBe(label);
+  });
+
   test('that change something ask for the other state', () => {
     const press = (id: string, state: VrMenuState) =>
       menuButtons(state, actions)

@@ -10,6 +10,7 @@ export const studioMenu: VrMenuState = {
   deviceBody: false,
   nextPassthrough: null,
   beside: null,
+  inPassthrough: false,
   builtInBody: 'mannequin',
   skinTone: undefined,
   places: [],

@@ -1,4 +1,4 @@
-import { FrameRateControl } from 'threepoint/xr/frame-rate';
+import { FrameRateControl, type Savings } from 'threepoint/xr/frame-rate';
 import { describe, expect, test } from 'vitest';
 
 /**
@@ -6,16 +6,21 @@ import { describe, expect, test } from 'vitest';
  * time; above it every tenth frame is late.
  */
 class Wearing {
-  readonly supportedFrameRates = Float32Array.of(120, 72, 90, 80);
+  supportedFrameRates: Float32Array | null = Float32Array.of(120, 72, 90, 80);
   frameRate: number;
   fastest = 120;
+  /** Draws every frame in time with these savings, whatever the rate. */
+  helps: (savings: Savings) => boolean = () => false;
+  /** The share of frames that are late where they are: one in this many. */
+  lateOneIn = 10;
   refuses: number | null = null;
   time = 0;
   readonly asked: number[] = [];
   readonly control: FrameRateControl;
 
-  constructor(startRate: number) {
+  constructor(startRate: number, rates?: null) {
     this.frameRate = startRate;
+    if (rates === null) this.supportedFrameRates = null;
     this.control = new FrameRateControl(this);
   }
 
@@ -32,7 +37,8 @@ class Wearing {
     let frames = 0;
     while (this.time < end) {
       frames += 1;
-      const missed = this.frameRate > this.fastest && frames % 10 === 0;
+      const heavy = this.frameRate > this.fastest && !this.helps(this.control.savings);
+      const missed = heavy && frames % this.lateOneIn === 0;
       if (missed) late += 1;
       this.time += (missed ? 2 : 1) / this.frameRate;
       this.control.observe(this.time, workSeconds);
@@ -58,10 +64,10 @@ describe('the frame rate of a headset', () => {
     },
   );
 
-  test('is lowered within two seconds where a tenth of the frames are late', async () => {
+  test('is lowered within five seconds where a tenth of the frames are late with all savings', async () => {
     const worn = new Wearing(120);
     worn.fastest = 90;
-    await worn.draw(3);
+    await worn.draw(5);
     expect(worn.frameRate).toBe(90);
   });
 
@@ -134,5 +140,83 @@ describe('the frame rate of a headset', () => {
       for (let i = 0; i < 2000; i++) control.observe(i / 20, 0.04);
       expect(control.rate).toBe('frameRate' in session ? 72 : null);
     }
+  });
+});
+
+describe('the savings of a picture', () => {
+  const none: Savings = { foveation: 0, mirrorRateHz: null };
+  const all: Savings = { foveation: 1, mirrorRateHz: 36 };
+
+  test('are none while frames are in time', async () => {
+    const worn = new Wearing(72);
+    for (let i = 0; i < 60; i++) {
+      await worn.draw(1);
+      expect(worn.control.savings).toEqual(none);
+    }
+  });
+
+  test('are taken one by one where few frames are late, the edges of the picture first', async () => {
+    const worn = new Wearing(72, null);
+    worn.fastest = 60;
+    worn.lateOneIn = 50;
+    const seen: Savings[] = [worn.control.savings];
+    for (let i = 0; i < 60; i++) {
+      await worn.draw(1);
+      if (worn.control.savings !== seen.at(-1)) seen.push(worn.control.savings);
+    }
+    expect(seen).toEqual([none, { ...none, foveation: 0.5 }, { ...none, foveation: 1 }, all]);
+  });
+
+  test('are all taken within three seconds where a tenth of the frames are late', async () => {
+    const worn = new Wearing(72, null);
+    worn.fastest = 60;
+    await worn.draw(3);
+    expect(worn.control.savings).toEqual(all);
+  });
+
+  test('hold a rate that would be lowered without them', async () => {
+    const worn = new Wearing(90);
+    worn.fastest = 72;
+    worn.helps = ({ foveation, mirrorRateHz }) => foveation === 1 && mirrorRateHz === 36;
+    await worn.draw(30);
+    expect(worn.asked).not.toContain(72);
+    expect(worn.control.savings).toEqual(all);
+  });
+
+  test('end when the load has gone, step by step', async () => {
+    const worn = new Wearing(72, null);
+    worn.fastest = 60;
+    await worn.draw(5);
+    worn.fastest = 120;
+    await worn.draw(200);
+    expect(worn.control.savings).toEqual(none);
+  });
+
+  test('are tried without at most eight times in half an hour of constant load', async () => {
+    const worn = new Wearing(72, null);
+    worn.fastest = 60;
+    worn.helps = ({ foveation }) => foveation === 1;
+    let changes = 0;
+    let last = worn.control.savings;
+    for (let i = 0; i < 1800; i++) {
+      await worn.draw(1);
+      if (worn.control.savings.foveation < last.foveation) changes += 1;
+      last = worn.control.savings;
+    }
+    expect(changes).toBeGreaterThan(0);
+    expect(changes).toBeLessThanOrEqual(8);
+  });
+
+  test('are those of an unknown load on a device that reports no rate', () => {
+    expect(new FrameRateControl({}).savings).toEqual({ foveation: 1, mirrorRateHz: null });
+  });
+
+  test('are taken back with a rate that held without them', async () => {
+    const worn = new Wearing(72);
+    worn.fastest = 72;
+    await worn.draw(40);
+    expect(worn.asked).toContain(80);
+    expect(worn.frameRate).toBe(72);
+    expect(worn.control.savings).toEqual(none);
   });
 });

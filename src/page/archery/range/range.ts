@@ -1,6 +1,7 @@
 import { Group, Vector3 } from 'three';
 import type { Transform } from 'threepoint/core/math/pose';
 import { disposeTree } from '../../scene/dispose-tree';
+import { mergeAlike } from '../../scene/merge-alike';
 import { daylight } from '../../scene/outdoors/daylight';
 import { createLandscape } from '../../scene/outdoors/landscape';
 import { createNoiseTexture } from '../../scene/outdoors/noise-texture';
@@ -52,6 +53,7 @@ export function createRange(
     createDistanceSigns(distances, quality),
     zone.object,
   );
+  mergeAlike(object);
   if (quality === 'high') object.add(createTufts());
   return {
     object,

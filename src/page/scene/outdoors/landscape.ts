@@ -206,6 +206,8 @@ export function createLandscape(quality: Quality): Group {
   const hills = new Mesh(merged(ridges.map((ridge, index) => ridgeGeometry(ridge, 31 + index))), far);
   hills.renderOrder = -1;
   const trees = new Mesh(treeGeometry(quality), new MeshLambertMaterial({ vertexColors: true }));
+  // No shadow reaches them; they are drawn together with what receives shadows.
+  trees.receiveShadow = true;
   landscape.add(hills, trees);
   return landscape;
 }

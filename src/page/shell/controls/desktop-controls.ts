@@ -96,6 +96,7 @@ export class DesktopControls {
       eyeHeightCm: centimetres(eyeHeight),
       emulated: headset.emulator !== null,
       inSession: headset.worn,
+      inPassthrough: headset.passthrough !== null,
       rateHz: headset.worn ? headset.rateHz : null,
       ratesHz: headset.ratesHz,
       bodyComplaint: headset.bodyComplaint,

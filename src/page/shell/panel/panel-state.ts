@@ -73,6 +73,8 @@ export interface PanelState {
   /** null: nothing is being made. */
   readonly exporting: ExportState | null;
   readonly inSession: boolean;
+  /** The session shows the room around the user. */
+  readonly inPassthrough: boolean;
   /** The frame rate of the worn headset [Hz]; null: it does not report it, or none is worn. */
   readonly rateHz: number | null;
   /** The rates that it offers [Hz]. */

@@ -1,5 +1,6 @@
 import { button, element } from 'threepoint-ui/element';
 import { createTabs } from 'threepoint-ui/tabs';
+import { exitLabel } from '../exit-label';
 import { createAvatarPage, type PaletteChoice } from './avatar-page';
 import { createBodyPage, type MeasureRanges } from './body-page';
 import type { AvatarActions, BodyActions, PanelState, RecordingActions, ViewActions } from './panel-state';
@@ -36,7 +37,7 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
   ];
   const content = element('div', { class: 'panel', id: 'panel' }, ...createTabs('Controls', pages));
   const recentre = button('Recentre', () => actions.recentre(), { class: 'quiet' });
-  const exit = button('Exit VR', () => actions.exitVr(), { class: 'quiet' });
+  const exit = button(exitLabel(false), () => actions.exitVr(), { class: 'quiet' });
   const opener = button('Controls', () => toggle(), {
     class: 'quiet opener',
     'aria-controls': 'panel',
@@ -61,6 +62,8 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
     toggle,
     show(state) {
       exit.hidden = !state.inSession;
+      const label = exitLabel(state.inPassthrough);
+      if (exit.textContent !== label) exit.textContent = label;
       for (const page of pages) page.show(state);
     },
   };

@@ -20,6 +20,7 @@ import {
 } from '../../activity/activity-menu';
 import { home } from '../activity-registry';
 import { estimatorOrder, estimatorTexts } from '../estimator-texts';
+import { exitLabel } from '../exit-label';
 
 /** What the menu in the headset shows. */
 export interface VrMenuState {
@@ -33,6 +34,8 @@ export interface VrMenuState {
   readonly nextPassthrough: boolean | null;
   /** The avatar stands beside its user; null: the room is not seen. */
   readonly beside: boolean | null;
+  /** The session shows the room around the user. */
+  readonly inPassthrough: boolean;
   /** The built-in avatar that is worn, or would be instead of another one. */
   readonly builtInBody: BuiltInBody;
   /** The skin tone of a human avatar; undefined: the avatar's own. */
@@ -120,7 +123,7 @@ export function menuButtons(state: VrMenuState, actions: VrMenuActions): readonl
     { id: 'calibrate', label: 'Calibrate', act: () => actions.calibrate() },
     { id: 'recentre', label: 'Recentre', act: () => actions.recentre() },
     { id: 'overlay', label: overlay, act: () => actions.setOverlay(!state.overlay) },
-    { id: 'exit', label: 'Exit VR', act: () => actions.exit() },
+    { id: 'exit', label: exitLabel(state.inPassthrough), act: () => actions.exit() },
     ...placeEntries(state, actions),
   ];
   const each = Math.min(112, Math.floor((noticesTop - entriesTop) / Math.ceil(entries.length / 2)));

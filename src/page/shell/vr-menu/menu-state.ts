@@ -31,6 +31,7 @@ export function menuStateOf({ body, settings, activities, measuring, notices, he
     deviceBody: settings.deviceBody,
     nextPassthrough: headset.passthroughOffered ? settings.passthrough : null,
     beside: headset.passthrough ? settings.beside : null,
+    inPassthrough: headset.passthrough !== null,
     builtInBody: settings.builtInBody,
     skinTone: settings.skinTone,
     places: activities.all.map(({ name, title }) => ({ name, title })),

@@ -1,0 +1,40 @@
+import { emulatedHeadset, frames } from '../emulated-headset';
+import { enterVr, expect, load, probe, freshTest as test } from '../page-fixture';
+
+// Counts do not depend on pixels.
+test.use({ viewport: { width: 320, height: 160 } });
+
+/**
+ * The draw calls of a world heavy with gameplay in Meta's "Guidance for Custom Models: Budgets and Model Specs", and
+ * 400,000 triangles, for both eyes, shadows and reflections together.
+ */
+const budget = { drawCalls: 150, triangles: 400_000 };
+
+test('mirror, archery and the ball for three stay within the budget of a headset @full', async ({ page }) => {
+  test.setTimeout(90_000);
+  // Nothing is drawn: at high quality a picture takes software a second.
+  await page.addInitScript(() => {
+    for (const name of ['clear', 'drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElementsInstanced'])
+      Object.assign(WebGL2RenderingContext.prototype, { [name]: () => undefined });
+  });
+  for (const [world, query] of [
+    ['mirror', ''],
+    ['archery', '&play=archery&seed=7'],
+    ['ball', '&play=ball&seed=5'],
+  ] as const) {
+    await load(page, `emulate&panel=off&quality=high&estimator=ik${query}`);
+    await emulatedHeadset(page);
+    await page.evaluate(() => Object.assign(window.emulatedDevice, { stereoEnabled: true }));
+    await enterVr(page, { stepMs: null });
+    // The others of the ball are drawn when their bodies are loaded.
+    await expect.poll(async () => (await probe(page)).players.length).toBe(world === 'ball' ? 2 : 0);
+    await frames(page, 5);
+    const { scene, mirror } = (await probe(page)).drawing;
+    test.info().annotations.push({ type: world, description: JSON.stringify({ scene, mirror }) });
+    // The own body and its shadow, twice the floor and the sky: whoever counts nothing has not drawn.
+    expect(scene.drawCalls, world).toBeGreaterThan(10);
+    expect(mirror.drawCalls > 0, `${world}: reflections`).toBe(world === 'mirror');
+    expect(scene.drawCalls + mirror.drawCalls, world).toBeLessThanOrEqual(budget.drawCalls);
+    expect(scene.triangles + mirror.triangles, world).toBeLessThanOrEqual(budget.triangles);
+  }
+});
