@@ -38,6 +38,7 @@ export function createVrPanel(width: number, height: number, pixelsPerMetre: num
     new MeshBasicMaterial({ map: texture, transparent: true, toneMapped: false, fog: false }),
   );
   const local = new Vector3();
+  const scale = new Vector3();
   return {
     mesh,
     width,
@@ -49,7 +50,12 @@ export function createVrPanel(width: number, height: number, pixelsPerMetre: num
     },
     locate(point) {
       mesh.worldToLocal(local.copy(point));
-      return { x: width / 2 + local.x * pixelsPerMetre, y: height / 2 - local.y * pixelsPerMetre, distance: local.z };
+      const { z } = mesh.getWorldScale(scale);
+      return {
+        x: width / 2 + local.x * pixelsPerMetre,
+        y: height / 2 - local.y * pixelsPerMetre,
+        distance: local.z * z,
+      };
     },
   };
 }

@@ -6,106 +6,84 @@ import {
   LineBasicMaterial,
   Mesh,
   MeshBasicMaterial,
+  RingGeometry,
   SphereGeometry,
   Vector3,
-  type WebGLRenderer,
 } from 'three';
+import type { Pointer } from 'threepoint/core/input/pointer';
 
-/**
- * What one input source points with: a ray (origin, direction, world) and, where there is one, a finger tip. The same
- * object in every frame while its source is there, as of the last `take`.
- */
-export interface Pointer {
-  readonly origin: Vector3;
-  readonly direction: Vector3;
-  readonly tip: Vector3 | null;
-  /** The trigger or pinch went down since the last frame. */
-  readonly pressed: boolean;
-  /** Shows the ray up to this distance [m]; null hides it. */
-  showRay(distance: number | null): void;
-}
-
-/** Pointers of controllers, of bare hands and of pinches that aim by the eyes, as many as a headset has at a time. */
+/** Shows where pointers point; in the space that they are given in. */
 export interface VrPointers {
   readonly objects: Group;
-  /** The pointers of this frame; presses are handed out once. */
-  take(): readonly Pointer[];
+  /** Draws the pointers of a frame, after everything has reported what they point at. */
+  show(pointers: readonly Pointer[]): void;
 }
 
-/**
- * Two hands, and a pinch of each: where eyes aim, hands themselves select nothing, and a pinch is an input source
- * beside them.
- */
-const mostSources = 4;
+/** Two hands, a pinch of each and a gaze. */
+const mostPointers = 5;
+/** A gaze that meets nothing shows its dot this far away [m]: the user must see where the head points. */
+const gazeDistance = 2;
+const dotRadius = 0.007;
+/** The ring of a gaze, as a share of its distance: 1.4° wide. */
+const ringShare = 0.024;
+const ringSegments = 48;
 
-/** Reads target rays, triggers and index fingers through three; poses themselves belong to xr/input-reader. */
-export function createVrPointers(renderer: WebGLRenderer): VrPointers {
+const seen = { fog: false, toneMapped: false } as const;
+const ahead = new Vector3(0, 0, -1);
+
+class DrawnPointer {
+  readonly object = new Group();
+  readonly #line = new Line(
+    new BufferGeometry().setAttribute('position', new Float32BufferAttribute([0, 0, 0, 0, 0, -1], 3)),
+    new LineBasicMaterial({ color: '#ffb468', transparent: true, opacity: 0.7, ...seen }),
+  );
+  readonly #dot = new Mesh(new SphereGeometry(dotRadius, 12, 8), new MeshBasicMaterial({ color: '#ffe3c4', ...seen }));
+  readonly #ring = new Mesh(
+    new RingGeometry(0.78, 1, ringSegments, 1, Math.PI / 2, -2 * Math.PI),
+    // A ring that runs clockwise shows its back.
+    new MeshBasicMaterial({ color: '#ffb468', depthTest: false, transparent: true, side: 2, ...seen }),
+  );
+  readonly #direction = new Vector3();
+
+  constructor() {
+    this.#ring.name = 'dwell ring';
+    this.#ring.renderOrder = 10;
+    this.object.add(this.#line, this.#dot, this.#ring);
+  }
+
+  show(pointer: Pointer): void {
+    const { origin, direction, pointedAt, source, progress } = pointer;
+    const gazes = source === 'gaze';
+    const distance = pointedAt?.distance ?? (gazes ? gazeDistance : null);
+    this.object.visible = distance !== null;
+    if (distance === null) return;
+    this.object.position.copy(origin);
+    this.object.quaternion.setFromUnitVectors(ahead, this.#direction.copy(direction));
+    // A line that begins between the eyes would only blind its user.
+    this.#line.visible = !gazes && source !== 'transient';
+    this.#line.scale.z = distance;
+    this.#dot.position.z = -distance;
+    this.#dot.scale.setScalar(gazes ? Math.max(1, distance / gazeDistance) : 1);
+    this.#ring.visible = progress > 0;
+    if (!this.#ring.visible) return;
+    this.#ring.position.z = -distance;
+    this.#ring.scale.setScalar(ringShare * distance);
+    this.#ring.geometry.setDrawRange(0, 6 * Math.ceil(ringSegments * progress));
+  }
+}
+
+export function createVrPointers(): VrPointers {
   const objects = new Group();
-  const sources = Array.from({ length: mostSources }, (_, index) => {
-    const ray = renderer.xr.getController(index);
-    const hand = renderer.xr.getHand(index);
-    const state = { connected: false, pressed: false, byEyes: false };
-    const line = new Line(
-      new BufferGeometry().setAttribute('position', new Float32BufferAttribute([0, 0, 0, 0, 0, -1], 3)),
-      new LineBasicMaterial({ color: '#ffb468', transparent: true, opacity: 0.7, fog: false, toneMapped: false }),
-    );
-    const dot = new Mesh(new SphereGeometry(0.007, 12, 8), new MeshBasicMaterial({ color: '#ffe3c4', fog: false }));
-    line.visible = false;
-    dot.visible = false;
-    ray.add(line, dot);
-    ray.addEventListener('connected', ({ data }) => {
-      state.connected = true;
-      state.byEyes = data.targetRayMode === 'transient-pointer';
-    });
-    ray.addEventListener('disconnected', () => {
-      state.connected = false;
-      state.pressed = false;
-    });
-    ray.addEventListener('selectstart', () => {
-      state.pressed = true;
-    });
-    objects.add(ray, hand);
-    const tip = new Vector3();
-    const pointer = {
-      origin: new Vector3(),
-      direction: new Vector3(),
-      tip: null as Vector3 | null,
-      pressed: false,
-      showRay(distance: number | null) {
-        dot.visible = distance !== null;
-        // A line that begins between the eyes would only blind its wearer.
-        line.visible = dot.visible && !state.byEyes;
-        if (distance === null) return;
-        line.scale.z = distance;
-        dot.position.z = -distance;
-      },
-    };
-    return { ray, hand, state, tip, pointer };
-  });
-
+  const drawn = Array.from({ length: mostPointers }, () => new DrawnPointer());
+  for (const { object } of drawn) objects.add(object);
   return {
     objects,
-    take() {
-      const pointers: Pointer[] = [];
-      for (const { ray, hand, state, tip, pointer } of sources) {
-        pointer.pressed = state.pressed;
-        state.pressed = false;
-        if (!state.connected || !ray.visible) {
-          pointer.showRay(null);
-          continue;
-        }
-        ray.updateWorldMatrix(true, false);
-        pointer.origin.setFromMatrixPosition(ray.matrixWorld);
-        pointer.direction.set(0, 0, -1).transformDirection(ray.matrixWorld);
-        const finger = hand.joints?.['index-finger-tip'];
-        pointer.tip = finger?.visible ? tip : null;
-        if (finger && pointer.tip) {
-          finger.updateWorldMatrix(true, false);
-          tip.setFromMatrixPosition(finger.matrixWorld);
-        }
-        pointers.push(pointer);
+    show(pointers) {
+      for (const [index, each] of drawn.entries()) {
+        const pointer = pointers[index];
+        if (pointer) each.show(pointer);
+        else each.object.visible = false;
       }
-      return pointers;
     },
   };
 }

@@ -1,6 +1,6 @@
-import { Raycaster } from 'three';
+import { Raycaster, Vector3 } from 'three';
+import type { Pointer } from 'threepoint/core/input/pointer';
 import type { VrPanel } from './vr-panel';
-import type { Pointer } from './vr-pointers';
 
 /** A finger tip that comes from this far before the sheet [m] to behind it touches. */
 const touchDepth = 0.015;
@@ -16,7 +16,8 @@ export interface PanelTarget {
 /** Rays and finger tips on one panel. */
 export interface PanelTouch {
   /**
-   * What the hands point at and press in this frame; a target pressed by both hands is pressed once. Shows the rays.
+   * Returns what the pointers point at and press in this frame; a target pressed by two of them is pressed once.
+   * Reports to the pointers what they point at.
    */
   follow<Target extends PanelTarget>(
     pointers: readonly Pointer[],
@@ -24,9 +25,18 @@ export interface PanelTouch {
   ): { readonly pointedAt: Target | null; readonly pressed: readonly Target[] };
 }
 
-export function createPanelTouch(panel: VrPanel): PanelTouch {
-  const touching = new WeakMap<Pointer, boolean>();
+/**
+ * `owner`: the part of the page that the panel belongs to. `countsRay`: whether the ray of a pointer counts; its finger
+ * tip always does.
+ */
+export function createPanelTouch(
+  panel: VrPanel,
+  owner: string,
+  countsRay: (pointer: Pointer) => boolean = () => true,
+): PanelTouch {
+  const behind = new WeakMap<Pointer, boolean>();
   const raycaster = new Raycaster();
+  const tip = new Vector3();
   return {
     follow<Target extends PanelTarget>(pointers: readonly Pointer[], targets: readonly Target[]) {
       panel.mesh.updateWorldMatrix(true, false);
@@ -35,23 +45,27 @@ export function createPanelTouch(panel: VrPanel): PanelTouch {
       let pointedAt: Target | null = null;
       const pressed = new Map<string, Target>();
       for (const pointer of pointers) {
-        raycaster.set(pointer.origin, pointer.direction);
-        const [hit] = raycaster.intersectObject(panel.mesh, false);
-        pointer.showRay(hit ? hit.distance : null);
+        raycaster.ray.origin.copy(pointer.origin);
+        raycaster.ray.direction.copy(pointer.direction);
+        const hit = countsRay(pointer) ? raycaster.intersectObject(panel.mesh, false)[0] : undefined;
         if (hit) {
           const { x, y } = panel.locate(hit.point);
           const target = targetAt(x, y);
+          // The sheet itself covers what lies behind it; nothing on it can be rested on but a target.
+          pointer.pointAt({ distance: hit.distance, owner, id: target?.id ?? null });
           if (target) pointedAt = target;
           if (target && pointer.pressed) pressed.set(target.id, target);
         }
-        const touch = panel.locate(pointer.tip ?? pointer.origin);
+        const touching = pointer.tip ?? (pointer.source === 'controller' ? pointer.origin : null);
+        if (!touching) continue;
+        const touch = panel.locate(tip.copy(touching));
         const target = Math.abs(touch.distance) < hoverDepth ? targetAt(touch.x, touch.y) : undefined;
         if (target) pointedAt = target;
         const through = target !== undefined && touch.distance < 0;
         // Only coming from the front counts: a hand that was behind the sheet has touched nothing.
-        if (through && touching.get(pointer) === false) pressed.set(target.id, target);
-        if (through || touch.distance < 0) touching.set(pointer, true);
-        else if (touch.distance > touchDepth) touching.set(pointer, false);
+        if (through && behind.get(pointer) === false) pressed.set(target.id, target);
+        if (through || touch.distance < 0) behind.set(pointer, true);
+        else if (touch.distance > touchDepth) behind.set(pointer, false);
       }
       return { pointedAt, pressed: [...pressed.values()] };
     },

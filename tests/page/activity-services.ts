@@ -1,6 +1,7 @@
 import { Scene } from 'three';
 import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { MovedPointer } from 'threepoint/core/input/pointer';
 import { vec3 } from 'threepoint/core/math/vec3';
 import { createPageClock } from 'threepoint/core/tracking/page-clock';
 import { ServerPresence } from 'threepoint-http/server-presence';
@@ -13,6 +14,9 @@ import { readSwitches } from 'threepoint-page/shell/switches';
 import type { Notice } from 'threepoint-ui/notices';
 
 const ahead = { x: 0, y: 0, z: 0, w: 1 };
+
+/** The pointers of a page without a session. */
+export const noPointers = { follow: () => undefined, steering: null };
 
 /** The services of a page with this address, which draws nothing, and what activities did with them. */
 export function activityServices(address = '?seed=5&quality=low') {
@@ -29,6 +33,17 @@ export function activityServices(address = '?seed=5&quality=low') {
   const captions: string[] = [];
   const headset = { worn: false, emulator: null };
   const aims = { enabled: false };
+  const mouse = {
+    x: 0,
+    y: 0.1,
+    pressed: false,
+    cancelled: false,
+    setEnabled(on: boolean) {
+      aims.enabled = on;
+    },
+  };
+  const mousePointer = new MovedPointer('mouse');
+  mousePointer.setRay(vec3(0, 1.6, 0), vec3(0, 0, -1));
   const study = new PageStudy();
   const services = {
     quality: 'low',
@@ -43,15 +58,7 @@ export function activityServices(address = '?seed=5&quality=low') {
         rayThrough: () => ({ origin: vec3(0, 1.6, 0), direction: vec3(0, 0, -1) }),
       },
     },
-    mouse: {
-      x: 0,
-      y: 0.1,
-      pressed: false,
-      cancelled: false,
-      setEnabled(on: boolean) {
-        aims.enabled = on;
-      },
-    },
+    pointer: () => (settings.mouse && !headset.worn ? mousePointer : null),
     headset,
     body: { calibration: defaultCalibration },
     avatar: { isBuiltIn: true, worn: plainAvatar },
@@ -62,5 +69,5 @@ export function activityServices(address = '?seed=5&quality=low') {
     onCaption: (text) => void captions.push(text),
     onChange: () => undefined,
   } satisfies ActivityServices;
-  return { services, settings, writer, headset, study, kept, places, notices, captions, aims };
+  return { services, mouse, settings, writer, headset, study, kept, places, notices, captions, aims };
 }

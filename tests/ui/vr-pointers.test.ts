@@ -1,38 +1,41 @@
-import { Group, type WebGLRenderer } from 'three';
+import type { Mesh } from 'three';
+import { MovedPointer, type PointerSource } from 'threepoint/core/input/pointer';
 import { createVrPointers } from 'threepoint-ui/vr-pointers';
 import { expect, test } from 'vitest';
 
-/** three's controllers and hands, by the index of their input source. */
-function sourcesOfThree() {
-  const groups = new Map<string, Group>();
-  const group = (kind: string) => (index: number) => {
-    const key = `${kind} ${index}`;
-    const known = groups.get(key) ?? new Group();
-    return groups.set(key, known).get(key)!;
-  };
-  const xr = { getController: group('ray'), getHand: group('hand') };
-  const tell = (index: number, type: string, data: object = {}) =>
-    // biome-ignore lint/suspicious/noExplicitAny: three types events of controllers for its own manager alone.
-    (xr.getController(index) as any).dispatchEvent({ type, data });
-  return { renderer: { xr } as unknown as WebGLRenderer, xr, tell };
+/** A pointer of this source that has met something 2 m away. */
+function pointing(source: PointerSource, progress = 0): MovedPointer {
+  const pointer = new MovedPointer(source);
+  pointer.progress = progress;
+  pointer.pointAt({ distance: 2, owner: 'menu', id: 'exit' });
+  return pointer;
 }
 
-test('a pinch that aims by the eyes, the third source beside two tracked hands, presses and draws no line', () => {
-  const { renderer, xr, tell } = sourcesOfThree();
-  const pointers = createVrPointers(renderer);
-  for (const hand of [0, 1]) tell(hand, 'connected', { targetRayMode: 'tracked-pointer' });
-  xr.getController(2).position.set(0, 1.6, 0);
-  tell(2, 'connected', { targetRayMode: 'transient-pointer' });
-  tell(2, 'selectstart');
+/** What is drawn of each pointer: line, dot, ring. */
+function drawn(...shown: readonly MovedPointer[]) {
+  const pointers = createVrPointers();
+  pointers.show(shown);
+  return pointers.objects.children.map((each) => each.visible && each.children.map(({ visible }) => visible));
+}
 
-  const taken = pointers.take();
-  expect(taken.map(({ pressed }) => pressed)).toEqual([false, false, true]);
-  expect(taken[2]?.origin.y).toBeCloseTo(1.6);
-  for (const pointer of taken) pointer.showRay(2);
-  const visible = (index: number) => xr.getController(index).children.map((child) => child.visible);
-  expect(visible(0)).toEqual([true, true]);
-  expect(visible(2)).toEqual([false, true]);
+test('hands draw a line to what they point at; eyes and pinches that aim by them draw its end alone', () => {
+  const shown = drawn(pointing('controller'), pointing('hand'), pointing('transient'), pointing('gaze'));
+  expect(shown).toEqual([[true, true, false], [true, true, false], [false, true, false], [false, true, false], false]);
+});
 
-  tell(2, 'disconnected');
-  expect(pointers.take()).toHaveLength(2);
+test('a ray that meets nothing is not drawn; a gaze shows where it goes', () => {
+  expect(drawn(new MovedPointer('hand'), new MovedPointer('gaze')).slice(0, 2)).toEqual([false, [false, true, false]]);
+});
+
+test('a gaze that rests on something fills a ring there', () => {
+  const pointers = createVrPointers();
+  const filled = [0.25, 0.5, 1].map((progress) => {
+    pointers.show([pointing('gaze', progress)]);
+    const ring = pointers.objects.getObjectByName('dwell ring') as Mesh;
+    expect(ring.visible).toBe(true);
+    expect(ring.position.z).toBe(-2);
+    const whole = ring.geometry.index?.count ?? 0;
+    return ring.geometry.drawRange.count / whole;
+  });
+  expect(filled).toEqual([0.25, 0.5, 1]);
 });

@@ -4,19 +4,34 @@ import type { Target } from './archery-state';
 /** Distance of the aim point for a ray into the sky [m]. */
 const farthest = 14;
 
+/** What a ray aims at. */
+export interface Aim {
+  readonly point: Vec3;
+  /** From the origin of the ray [m]. */
+  readonly distance: number;
+  /** The index of the target; null: none. */
+  readonly target: number | null;
+}
+
 /**
- * Returns the point at which a ray (unit direction, arena frame) aims: on the nearest target, else on the ground, else
- * as far away as the range is long.
+ * Returns what a ray (unit direction, arena frame) aims at: the nearest target, else the ground, else a point as far
+ * away as the range is long.
  */
-export function aimPoint(origin: Vec3, direction: Vec3, targets: readonly Target[]): Vec3 {
+export function aimOf(origin: Vec3, direction: Vec3, targets: readonly Target[]): Aim {
   let nearest = farthest;
+  let target: number | null = null;
   if (direction.y < 0) nearest = Math.min(nearest, -origin.y / direction.y);
-  for (const { centre, normal, radius } of targets) {
+  for (const [index, { centre, normal, radius }] of targets.entries()) {
     const facing = dot(direction, normal);
     if (facing >= 0) continue;
     const along = dot(subtract(centre, origin), normal) / facing;
-    if (along > 0 && along < nearest && distance(addScaled(origin, direction, along), centre) <= radius)
-      nearest = along;
+    if (along <= 0 || along >= nearest || distance(addScaled(origin, direction, along), centre) > radius) continue;
+    nearest = along;
+    target = index;
   }
-  return addScaled(origin, direction, nearest);
+  return { point: addScaled(origin, direction, nearest), distance: nearest, target };
 }
+
+/** Returns the point at which a ray aims, as `aimOf`. */
+export const aimPoint = (origin: Vec3, direction: Vec3, targets: readonly Target[]): Vec3 =>
+  aimOf(origin, direction, targets).point;

@@ -4,17 +4,11 @@ import {
   type Buttons,
   createButtonPresses,
   nothingPressed,
+  playingHand,
   pressureOf,
   releasedBelow,
 } from 'threepoint/core/input/button-presses';
-import {
-  copyPose,
-  makePose,
-  type TrackedPose,
-  type Transform,
-  trackedOrNull,
-  transformPoint,
-} from 'threepoint/core/math/pose';
+import { copyPose, makePose, type TrackedPose, type Transform, transformPoint } from 'threepoint/core/math/pose';
 import { identity, rotate } from 'threepoint/core/math/quat';
 import { otherSide, type Side, sides } from 'threepoint/core/math/side';
 import { addScaled, copyVec3, distance, type Vec3, vec3, zero } from 'threepoint/core/math/vec3';
@@ -212,7 +206,7 @@ export class ArcheryGestures {
   }
 
   #look(side: Side, tracked: TrackedPose | null): void {
-    const hand = trackedOrNull(tracked);
+    const hand = playingHand(tracked, this.#buttons[side]);
     this.#hands[side] = hand;
     this.#pressed[side] = this.#presses.follow(side, this.#buttons[side], hand !== null);
   }

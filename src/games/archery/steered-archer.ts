@@ -5,7 +5,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { minimumJerk, yawOf } from '../simulated-body';
 import { type ArcherBody, ArcherPostures, mix, type Posture } from './archer-postures';
 
-/** The mouse input that steers an archer. */
+/** What a pointer asks of an archer. */
 export interface Steering {
   /** The point of the arena to hit. */
   readonly target: Vec3;
@@ -15,8 +15,10 @@ export interface Steering {
   readonly cancelled: boolean;
 }
 
-/** An archer that is steered by a mouse instead of two hands. */
+/** An archer that is steered by a pointer instead of two hands. */
 export interface SteeredArcher {
+  /** The hands return from a shot, and a press is not heeded yet. */
+  readonly recovers: boolean;
   /** Returns head, hands (floor frame) and buttons at `time` [s, not decreasing]. */
   follow(time: number, steering: Steering): { readonly frame: TrackingFrame; readonly buttons: Buttons };
 }
@@ -51,6 +53,9 @@ export function createSteeredArcher(body: ArcherBody): SteeredArcher {
   }
 
   return {
+    get recovers() {
+      return phase === 'loosing' || phase === 'following' || phase === 'returning' || phase === 'lowering';
+    },
     follow(time, { target, pressed, cancelled }) {
       aim = aim === null || last === null ? target : dampVec3(aim, target, aimHalfLife, time - last);
       last = time;

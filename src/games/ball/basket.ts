@@ -17,8 +17,15 @@ import {
   type Vec3,
   vec3,
 } from 'threepoint/core/math/vec3';
+import { fallsTo, type Launch, positionAt } from '../ballistics';
 import { fistOf, thumbOf } from '../fist';
-import { basketRadius } from './flight';
+import { ballRadius, basketRadius } from './flight';
+
+/** Returns whether the middle of a launched ball goes into a level basket whose opening is here (arena frame). */
+export function landsIn(launch: Launch, basket: Vec3): boolean {
+  const lands = positionAt(launch, fallsTo(launch, basket.y));
+  return Math.hypot(lands.x - basket.x, lands.z - basket.z) < basketRadius - ballRadius / 2;
+}
 
 /** The opening of a basket: its centre, and the unit normal out of it. */
 export interface Opening {

@@ -4,6 +4,7 @@ import {
   type ButtonPresses,
   type Buttons,
   createButtonPresses,
+  playingHand,
   pressureOf,
   releasedBelow,
 } from 'threepoint/core/input/button-presses';
@@ -13,7 +14,6 @@ import {
   makeTransform,
   type TrackedPose,
   type Transform,
-  trackedOrNull,
   transformPoint,
   transformPose,
 } from 'threepoint/core/math/pose';
@@ -158,8 +158,8 @@ export class BallGestures {
     const { player, state, arenaFromFloor } = this.now;
     const paused = frame.time - this.lastTime > longestPause;
     this.lastTime = frame.time;
-    const left = trackedOrNull(frame.leftHand);
-    const right = trackedOrNull(frame.rightHand);
+    const left = playingHand(frame.leftHand, buttons.left);
+    const right = playingHand(frame.rightHand, buttons.right);
     this.pose.left = left && transformPose(arenaFromFloor, left, this.hands.left.pose);
     this.pose.right = right && transformPose(arenaFromFloor, right, this.hands.right.pose);
     const playing = state.players[player]?.role === 'thrower' && state.phase === 'running';

@@ -1,5 +1,6 @@
 import type { BuiltInBody } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
+import type { Pointer } from 'threepoint/core/input/pointer';
 import type { Pose } from 'threepoint/core/math/pose';
 import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
@@ -7,7 +8,6 @@ import type { PageClock } from 'threepoint/core/tracking/page-clock';
 import type { ServerPresence } from 'threepoint-http/server-presence';
 import type { WornAvatar } from 'threepoint-rooms/client/shared-avatar';
 import type { TaskPlace } from 'threepoint-study/participant/trial/task-runner';
-import type { MouseAim } from 'threepoint-ui/mouse-aim';
 import type { Notices } from 'threepoint-ui/notices';
 import type { Quality } from '../scene/renderer';
 import type { SurroundingsHost } from '../scene/surroundings';
@@ -79,7 +79,11 @@ export interface ActivityServices {
     readonly studio: SurroundingsHost;
     readonly view: { readonly pose: Pose<'floor'>; rayThrough(x: number, y: number): Ray };
   };
-  readonly mouse: MouseAim;
+  /**
+   * Returns the pointer that steers a player here: the mouse, or in a headset a gaze or a pinch while no hand is
+   * tracked. null: hands or a simulated player play.
+   */
+  pointer(): Pointer | null;
   readonly headset: { readonly worn: boolean; readonly emulator: object | null };
   readonly body: { readonly calibration: Calibration };
   /** The user's avatar; `isBuiltIn`: it is a built-in one, not a file. */

@@ -4,6 +4,7 @@ import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { Fingers, MutableHandShape } from 'threepoint/core/body/hand-shape';
 import type { Buttons } from 'threepoint/core/input/button-presses';
+import type { PointedAt } from 'threepoint/core/input/pointer';
 import type { Pose } from 'threepoint/core/math/pose';
 import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
@@ -15,7 +16,7 @@ import type { CameraScene } from '../scene/desktop-view';
 import type { ActivityContext, ActivitySettings, ActivitySettingsWriter } from './activity-context';
 import type { ActivityMenu } from './activity-menu';
 
-/** Head, hands and buttons of a simulated or mouse-driven player at one moment. */
+/** Head, hands and buttons of a simulated player, or of one that a pointer steers, at one moment. */
 export interface PlayerInput {
   readonly frame: TrackingFrame;
   readonly buttons: Buttons;
@@ -74,7 +75,7 @@ export interface OpenActivity {
   readonly mouth?: number;
   /** Receives from the network and advances simulated players. */
   begin?(time: number): void;
-  /** Returns the input of the simulated or mouse-driven player; null: nobody plays. */
+  /** Returns the input of the simulated player, or of the one that a pointer steers; null: nobody plays. */
   act(time: number): PlayerInput | null;
   /** Advances the game by a tracked frame. Returns haptic pulses for the hands; null: the game is paused. */
   update(frame: TrackingFrame, buttons: Buttons): readonly Pulse[] | null;
@@ -84,8 +85,8 @@ export interface OpenActivity {
   send?(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void;
   /** Updates the view. `frame`: null if the head is not tracked. */
   show(time: number, frame: TrackingFrame | null): void;
-  /** Returns the distance [m] along a ray to a button in the scene, or null. `press`: also presses the button. */
-  point?(ray: Ray, press: boolean): number | null;
+  /** Returns the button in the scene that a ray meets, or null. `press`: also presses the button. */
+  point?(ray: Ray, press: boolean): PointedAt | null;
   /** The user's floor frame changed: movement since the last frame is not a gesture. */
   discontinuity?(): void;
   /** A session started or ended: another input source moves the hands from now on. */

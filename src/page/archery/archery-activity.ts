@@ -1,6 +1,7 @@
 import type { Holding } from 'threepoint/avatar/hands/holding';
 import type { MutableHandShape } from 'threepoint/core/body/hand-shape';
 import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
+import type { PointedAt } from 'threepoint/core/input/pointer';
 import type { Pose } from 'threepoint/core/math/pose';
 import { identity, rotate } from 'threepoint/core/math/quat';
 import type { Ray } from 'threepoint/core/math/ray';
@@ -10,7 +11,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Pulse } from 'threepoint/xr/haptics';
 import type { ActivityPanel, OpenActivity, PlayerInput } from '../activity/activity';
 import type { ActivityContext } from '../activity/activity-context';
-import type { ActivityMenu } from '../activity/activity-menu';
+import type { ActivityMenu, MenuEntry } from '../activity/activity-menu';
 import type { CameraScene } from '../scene/desktop-view';
 import { eventHaptics } from './archery-haptics';
 import { type ArcheryRound, type ArcheryRules, createArcheryPanel } from './archery-panel';
@@ -66,9 +67,11 @@ export class ArcheryActivity implements OpenActivity {
   }
 
   act(time: number): PlayerInput {
-    const { settings, headset, stage, mouse } = this.#context;
-    if (!settings.mouse || headset.worn) return this.play.act(time);
-    return this.play.steer(time, stage.view.rayThrough(mouse.x, mouse.y), mouse);
+    const { headset, pointer } = this.#context;
+    const steering = pointer();
+    if (!steering) return this.play.act(time);
+    const head = headset.worn ? this.#newestFrame?.head.position : undefined;
+    return this.play.steer(time, steering, head && vec3(head.x, 0, head.z));
   }
 
   update(frame: TrackingFrame, allButtons: Buttons): readonly Pulse[] | null {
@@ -110,11 +113,12 @@ export class ArcheryActivity implements OpenActivity {
     this.#view.show(newest.state, this.#context.study.idle ? null : newest.bow, newest.time, frame.head);
   }
 
-  point({ origin, direction }: Ray, press: boolean): number | null {
+  point({ origin, direction }: Ray, press: boolean): PointedAt | null {
     const distance = this.#view.result.restartAt(origin, direction);
     this.#view.result.setHovered(distance !== null);
-    if (distance !== null && press) this.restart();
-    return distance;
+    if (distance === null) return null;
+    if (press) this.restart();
+    return { distance, owner: 'result', id: 'restart' };
   }
 
   discontinuity(): void {
@@ -130,15 +134,21 @@ export class ArcheryActivity implements OpenActivity {
   }
 
   menu(): ActivityMenu {
-    const { bowSide } = this.#context.settings;
-    const entry = this.round()?.over
-      ? { id: 'restart', label: 'New round', act: () => this.restart() }
-      : {
-          id: 'bow',
-          label: `Bow: ${bowSide} hand`,
-          act: () => this.setRules({ bowSide: bowSide === 'left' ? 'right' : 'left' }),
-        };
-    return { entries: [entry], sheet: null, notice: null, hint: null };
+    const { bowSide, oneHanded } = this.#context.settings;
+    const entries: readonly MenuEntry[] = [
+      { id: 'restart', label: 'New round', act: () => this.restart() },
+      {
+        id: 'bow',
+        label: `Bow: ${bowSide} hand`,
+        act: () => this.setRules({ bowSide: bowSide === 'left' ? 'right' : 'left' }),
+      },
+      {
+        id: 'one-handed',
+        label: oneHanded ? 'Draw: one hand' : 'Draw: both hands',
+        act: () => this.setRules({ oneHanded: !oneHanded }),
+      },
+    ];
+    return { entries, sheet: null, notice: null, hint: null };
   }
 
   round(): ArcheryRound | null {

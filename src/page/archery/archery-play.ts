@@ -1,10 +1,12 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { chestSpaceBody } from 'threepoint/core/body/skeleton';
 import type { Buttons } from 'threepoint/core/input/button-presses';
-import type { Ray } from 'threepoint/core/math/ray';
+import type { Pointer } from 'threepoint/core/input/pointer';
+import type { TrackedPose } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
+import { add, subtract, type Vec3, zero } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { aimPoint } from 'threepoint-games/archery/aim-point';
+import { aimOf } from 'threepoint-games/archery/aim-point';
 import { type Archer, createArcher } from 'threepoint-games/archery/archer-motion';
 import type { ArcheryAction, ArcheryEvent, ArcheryState, BowView } from 'threepoint-games/archery/archery-state';
 import {
@@ -50,8 +52,11 @@ export interface ArcheryPlay {
   follow(frame: TrackingFrame, buttons: Buttons): ArcheryFrame;
   /** Returns the input of the simulated archer at a time [s]. */
   act(time: number): PlayerInput;
-  /** Returns the input of an archer who is steered by a mouse: aims along a ray (arena frame, unit direction). */
-  steer(time: number, ray: Ray, wish: { readonly pressed: boolean; readonly cancelled: boolean }): PlayerInput;
+  /**
+   * Returns the input of an archer who aims along a pointer (arena frame) and draws while it is held. `place`: where
+   * the archer stands, from the middle of the zone [m].
+   */
+  steer(time: number, pointer: Pointer, place?: Vec3): PlayerInput;
   /**
    * Starts another round for a person with this calibration, whose eyes are at this height now [m], standing or seated.
    */
@@ -107,6 +112,16 @@ export function roundOf({ state }: ArcheryFrame) {
     secondsLeft: secondsLeft(state),
     over: state.phase === 'over',
   };
+}
+
+/** The owner of what a pointer holds here, and the time in which a gaze at a target nocks, draws and shoots [s]. */
+const owner = 'archery';
+const dwellSeconds = 2;
+
+/** Returns the input with its hands at this place. */
+function movedTo(place: Vec3, { frame, buttons }: PlayerInput): PlayerInput {
+  const moved = (hand: TrackedPose | null) => hand && { ...hand, position: add(hand.position, place) };
+  return { frame: { ...frame, leftHand: moved(frame.leftHand), rightHand: moved(frame.rightHand) }, buttons };
 }
 
 /** `seed` gives each round its own layout. */
@@ -176,9 +191,18 @@ export function createArcheryPlay(
       return newest;
     },
     act: (time) => archer.follow(time, match.state),
-    steer(time, { origin, direction }, wish) {
-      const target = aimPoint(origin, direction, match.state.targets);
-      return steered.follow(time, { target, ...wish });
+    steer(time, pointer, place = zero) {
+      const { arrowsLeft, targets } = match.state;
+      const aim = aimOf(pointer.origin, pointer.direction, targets);
+      if (aim.target !== null && isArmed(match.state) && !steered.recovers) {
+        const id = `target ${aim.target}, ${arrowsLeft} left`;
+        pointer.pointAt({ distance: aim.distance, owner, id, dwellSeconds });
+      }
+      const pressed = pointer.isHeldFor(owner);
+      const { cancelled } = pointer;
+      // The simulated archer stands in the middle of the zone: what it sees and does moves to the place.
+      const input = steered.follow(time, { target: subtract(aim.point, place), pressed, cancelled });
+      return movedTo(place, input);
     },
     restart,
     discontinuity: () => gestures.discontinuity(),

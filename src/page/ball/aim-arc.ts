@@ -9,8 +9,8 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
-import type { Opening } from 'threepoint-games/ball/basket';
-import { ballRadius, basketRadius } from 'threepoint-games/ball/flight';
+import { landsIn, type Opening } from 'threepoint-games/ball/basket';
+import { basketRadius } from 'threepoint-games/ball/flight';
 import { fallsTo, type Launch, positionAt } from 'threepoint-games/ballistics';
 import { bothSides } from '../scene/both-sides';
 import { disposeTree } from '../scene/dispose-tree';
@@ -68,9 +68,7 @@ export function createAimArc(): AimArc {
       path.count = shown;
       path.instanceMatrix.needsUpdate = true;
       ring.position.copy(lands);
-      ringMaterial.color.set(
-        Math.hypot(lands.x - basket.x, lands.z - basket.z) < basketRadius - ballRadius / 2 ? inside : beside,
-      );
+      ringMaterial.color.set(landsIn(launch, basket) ? inside : beside);
     },
     dispose() {
       object.removeFromParent();

@@ -3,6 +3,7 @@ import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { Fingers, MutableHandShape } from 'threepoint/core/body/hand-shape';
 import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
+import type { PointedAt } from 'threepoint/core/input/pointer';
 import type { Pose, Transform } from 'threepoint/core/math/pose';
 import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
@@ -76,7 +77,7 @@ export class CourtActivity implements OpenActivity {
   constructor(context: ActivityContext, room: BallPlace, mannequin: ArrayBuffer) {
     const { quality, place, settings, switches, body, layout, stage, onCaption } = context;
     this.#context = context;
-    this.#input = new CourtInput(context);
+    this.#input = new CourtInput(context, () => this.play ?? null);
     this.#unnamed = place === null && settings.name === '';
     this.play = createBallPlay({
       connect: room.connect,
@@ -189,13 +190,13 @@ export class CourtActivity implements OpenActivity {
     this.#view.playEvents(newest.resumed ? noEvents : newest.events, newest.cues);
   }
 
-  point({ origin, direction }: Ray, press: boolean): number | null {
+  point({ origin, direction }: Ray, press: boolean): PointedAt | null {
     const { lobby } = this.#view;
     const hit = this.#ended ? null : lobby.buttonAt(origin, direction);
     lobby.setHovered(hit?.id ?? null);
     if (!hit) return null;
     if (press) this.#press(hit.id);
-    return hit.distance;
+    return { ...hit, owner: 'lobby' };
   }
 
   discontinuity(): void {

@@ -1,12 +1,35 @@
+import type { Pointer } from 'threepoint/core/input/pointer';
+import { transformPoint } from 'threepoint/core/math/pose';
+import { addScaled, distance, dot, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { landsIn } from 'threepoint-games/ball/basket';
 import type { BallSteering } from 'threepoint-games/ball/steered-players';
 import type { ActivityContext } from '../activity/activity-context';
+import type { BallFrame } from './ball-frame';
+import type { BallPlay } from './ball-play';
 
-/** The source that moves the user's body at the court: a person in a headset, a mouse, or a simulated player. */
+/** The owner of what a pointer holds here. */
+const owner = 'ball';
+/** A pointer aims at the basket within this distance of its opening [m]. */
+const basketReach = 0.8;
+/** A gaze that rests at the basket for this time [s] throws, if the ball has not left for the basket before. */
+const dwellSeconds = 2.5;
+
+/** The middle of the basket's opening, arena frame [m]. */
+const basketOf = ({ opening, state }: BallFrame): Vec3 => opening?.position ?? state.basket.position;
+
+/** The source that moves the user's body at the court: a person in a headset, a pointer, or a simulated player. */
 export class CourtInput {
-  readonly #context: Pick<ActivityContext, 'place' | 'settings' | 'headset' | 'stage' | 'mouse'>;
+  readonly #context: Pick<ActivityContext, 'place' | 'settings' | 'headset' | 'pointer'>;
+  readonly #play: () => Pick<BallPlay, 'newest' | 'floorFromArena'> | null;
+  readonly #basket = vec3(0, 0, 0);
 
-  constructor(context: Pick<ActivityContext, 'place' | 'settings' | 'headset' | 'stage' | 'mouse'>) {
+  /** `play`: the match; null before there is one. */
+  constructor(
+    context: Pick<ActivityContext, 'place' | 'settings' | 'headset' | 'pointer'>,
+    play: () => Pick<BallPlay, 'newest' | 'floorFromArena'> | null,
+  ) {
     this.#context = context;
+    this.#play = play;
   }
 
   /** No person wears the headset that moves the user's body. */
@@ -15,15 +38,39 @@ export class CourtInput {
     return place === null && settings.actor && (!headset.worn || headset.emulator !== null);
   }
 
-  /** A simulated player moves the user's body, not a mouse: no person can be asked. */
+  /** A simulated player moves the user's body, no pointer does: no person can be asked. */
   get isActor(): boolean {
     return this.isSimulated && this.steering() === null;
   }
 
-  /** Returns the mouse's target, floor frame of the user; null: the mouse does not play. */
+  /** Returns what the pointer asks of the user's player, floor frame of the user; null: no pointer plays. */
   steering(): BallSteering | null {
-    const { settings, headset, stage, mouse } = this.#context;
-    if (!settings.mouse || headset.worn) return null;
-    return { ray: stage.view.rayThrough(mouse.x, mouse.y), pressed: mouse.pressed, cancelled: mouse.cancelled };
+    const pointer = this.#context.pointer();
+    if (!pointer) return null;
+    this.#pointAtBasket(pointer);
+    const held = pointer.isHeldFor(owner);
+    return {
+      ray: { origin: pointer.origin, direction: pointer.direction },
+      // A throw that its user cannot end leaves when it would land in the basket.
+      pressed: held && (pointer.releases || !this.#isOnTarget()),
+      cancelled: pointer.cancelled,
+    };
+  }
+
+  /** Reports that the pointer aims at the basket, for a player with a ball in the hand. */
+  #pointAtBasket(pointer: Pointer): void {
+    const play = this.#play();
+    const newest = play?.newest;
+    const ball = newest?.held.left ?? newest?.held.right ?? null;
+    if (!play || !newest || ball === null) return;
+    const basket = transformPoint(play.floorFromArena, basketOf(newest), this.#basket);
+    const along = dot(subtract(basket, pointer.origin), pointer.direction);
+    if (along <= 0 || distance(addScaled(pointer.origin, pointer.direction, along), basket) > basketReach) return;
+    pointer.pointAt({ distance: along, owner, id: `ball ${ball}`, dwellSeconds });
+  }
+
+  #isOnTarget(): boolean {
+    const newest = this.#play()?.newest;
+    return Boolean(newest?.aim && landsIn(newest.aim, basketOf(newest)));
   }
 }

@@ -1,4 +1,5 @@
 import type { Object3D } from 'three';
+import { sides } from 'threepoint/core/math/side';
 import { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
 import { ServerPresence } from 'threepoint-http/server-presence';
 import { pageElement } from 'threepoint-ui/element';
@@ -19,6 +20,7 @@ import { Emitter } from './emitter';
 import { createFrameTiming } from './frame-timing';
 import { Headset } from './headset';
 import { KnownBones } from './known-bones';
+import { createMousePointer } from './mouse-pointer';
 import { createPageBody } from './page-body';
 import type { PageContext } from './page-context';
 import { handleLostGraphics } from './page-faults';
@@ -27,6 +29,7 @@ import type { PageLoading } from './page-loading';
 import { PageMocap } from './page-mocap';
 import { PageStudy } from './page-study';
 import { PassthroughHost } from './passthrough-host';
+import { Pointers } from './pointers';
 import { exposeProbe, readProbe } from './probe';
 import { SessionChanges } from './session-changes';
 import { pressSheetsByMouse } from './sheet-pointing';
@@ -79,6 +82,8 @@ function createPlay({ context, notices }: PageOptions, base: Base) {
   const server = new ServerPresence(pageFolder(), changes.emit);
   const actor = createActor();
   const mouse = createMouseAim(canvas);
+  const mousePointer = createMousePointer(mouse, stage.view);
+  const pointers = new Pointers({ headset, settings });
   const captions = new Emitter<[text: string]>();
   const arrivals = new Emitter();
   const activities = new Activities({
@@ -90,7 +95,7 @@ function createPlay({ context, notices }: PageOptions, base: Base) {
       writer,
       switches,
       stage,
-      mouse,
+      pointer: () => (headset.worn ? pointers.steering : settings.mouse ? mousePointer() : null),
       headset,
       body,
       avatar,
@@ -111,7 +116,7 @@ function createPlay({ context, notices }: PageOptions, base: Base) {
     onArrival: arrivals.emit,
   });
   const userCalibration = new UserCalibration({ body, headset, view: stage.view, writer, store, notices });
-  const source = new TrackingSource({ settings, headset, recorder, body, actor, activities, study });
+  const source = new TrackingSource({ settings, headset, recorder, body, actor, activities, study, pointers });
   actor.calibrate(body.calibration);
   pageBody.calibrated.listen((calibration, from) => {
     userCalibration.measured(from);
@@ -124,7 +129,7 @@ function createPlay({ context, notices }: PageOptions, base: Base) {
     impaired.reset();
     activities.current?.discontinuity?.();
   });
-  return { study, impaired, server, activities, captions, arrivals, userCalibration, source };
+  return { study, impaired, server, activities, captions, arrivals, userCalibration, source, pointers };
 }
 
 type Play = ReturnType<typeof createPlay>;
@@ -134,7 +139,7 @@ function createInterface({ context, notices }: PageOptions, base: Base, play: Pl
   const { switches, settings, writer, store, changes } = context;
   const { timing, stage, recorder, avatar, headset, prepare, quality } = base;
   const { body, networks } = base.pageBody;
-  const { study, server, activities, userCalibration, source, impaired } = play;
+  const { study, server, activities, userCalibration, source, impaired, pointers } = play;
   const { scene } = stage.studio;
   const difference = new DeviceDifference();
   const onChange = changes.emit;
@@ -170,6 +175,7 @@ function createInterface({ context, notices }: PageOptions, base: Base, play: Pl
     userCalibration,
     study,
     server,
+    pointers,
   });
   const passthrough = new PassthroughHost({
     quality,
@@ -178,7 +184,7 @@ function createInterface({ context, notices }: PageOptions, base: Base, play: Pl
     activities,
     store,
     notices,
-    isCovered: () => controls.isPointedAt,
+    isCovered: () => controls.isPointedAt || sides.some((side) => headset.tracking?.inputs.buttons[side].taken),
   });
   const frame = new PageFrame({
     settings,

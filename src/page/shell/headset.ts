@@ -1,5 +1,6 @@
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { DeviceBodyReader } from 'threepoint/xr/device-body-reader';
+import type { DeviceCommands } from 'threepoint/xr/device-commands';
 import { FrameRateControl, type Savings, unjudgedSavings } from 'threepoint/xr/frame-rate';
 import { giveFramesToEvents } from 'threepoint/xr/frameless-events';
 import { buzz, type Pulse } from 'threepoint/xr/haptics';
@@ -242,16 +243,26 @@ export class Headset {
     this.#session?.tracking.recentre();
   }
 
-  /** Turns the user where a stick was pushed; returns whether one was. */
-  turnByStick(): boolean {
-    const pushed = this.#session?.tracking.inputs.takeTurn() ?? 0;
-    if (pushed !== 0) this.#session?.tracking.turn(pushed * snapAngle);
-    return pushed !== 0;
+  /** What the devices ask of the page besides pointing; null: no headset is worn. */
+  get commands(): DeviceCommands | null {
+    return this.#session?.tracking.inputs.commands ?? null;
   }
 
-  /** Returns whether a stick was pressed down since the last call. */
-  takePress(): boolean {
-    return this.#session?.tracking.inputs.takePress() ?? false;
+  /** Turns the user where a stick, a thumb or the menu asked for it; returns whether one did. */
+  turnIfAsked(): boolean {
+    const asked = this.commands?.takeTurn() ?? 0;
+    if (asked !== 0) this.#session?.tracking.turn(asked * snapAngle);
+    return asked !== 0;
+  }
+
+  /** How much higher the user stands than the device reports [m]. */
+  get raised(): number {
+    return this.#session?.tracking.raised ?? 0;
+  }
+
+  /** Overrides the user's height for this session: this much higher than the device reports [m]. */
+  raise(height: number): void {
+    this.#session?.tracking.raise(height);
   }
 
   buzz(pulses: readonly Pulse[]): void {

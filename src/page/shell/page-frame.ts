@@ -123,7 +123,7 @@ export class PageFrame implements FrameParts<XRFrame> {
     this.#count += 1;
     if (this.#waiting.length > 0) for (const tell of this.#waiting.splice(0)) tell();
     study.run?.frame(time, frame);
-    this.#point();
+    this.#point(frame);
     this.#turn(time);
     const shot = this.#shot(time, frame);
     stage.look(shot);
@@ -162,16 +162,16 @@ export class PageFrame implements FrameParts<XRFrame> {
   }
 
   /** Hands behind a menu of the device point at nothing. */
-  #point(): void {
+  #point(frame: TrackingFrame | null): void {
     const { headset, controls } = this.#options;
-    if (headset.visibility === 'visible') controls.point();
+    if (headset.visibility === 'visible') controls.point(frame);
   }
 
   #turn(time: number): void {
     const { headset, stage, activities } = this.#options;
-    if (headset.takePress()) activities.current?.toggleMuted?.();
+    if (headset.commands?.mute.take()) activities.current?.toggleMuted?.();
     // A room that is seen cannot be turned.
-    if (!headset.passthrough && headset.turnByStick()) stage.vignette.close(time);
+    if (!headset.passthrough && headset.turnIfAsked()) stage.vignette.close(time);
   }
 
   #shot(time: number, frame: TrackingFrame | null): Shot {

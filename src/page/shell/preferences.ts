@@ -50,6 +50,7 @@ const schema = v.object({
   plainOthers: v.optional(v.boolean()),
   voicesByRelay: v.optional(v.boolean()),
   passthrough: v.optional(v.boolean()),
+  gaze: v.optional(v.boolean()),
   /** The handle of the persistent anchor that the mirror stands at in passthrough. */
   mirrorAnchor: v.optional(v.pipe(v.string(), v.maxLength(200))),
 });

@@ -29,6 +29,8 @@ export interface Settings extends ActivitySettings {
   readonly deviceBody: boolean;
   /** The next session shows the room around the user, if the headset can. */
   readonly passthrough: boolean;
+  /** The gaze presses what it rests on, also while hands are tracked. */
+  readonly gaze: boolean;
   /** In passthrough the avatar stands beside its user. */
   readonly beside: boolean;
   /** The source of the user's measurements, in words. */
@@ -57,6 +59,7 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
     emulatorPanel: true,
     deviceBody: false,
     passthrough: preferences.passthrough ?? false,
+    gaze: preferences.gaze ?? false,
     beside: false,
     bowSide: preferences.bowSide ?? 'left',
     oneHanded: preferences.oneHanded ?? false,
@@ -86,6 +89,7 @@ export type LastingSettings = Partial<
       | 'builtInBody'
       | 'skinTone'
       | 'passthrough'
+      | 'gaze'
     >
 >;
 

@@ -13,18 +13,18 @@ export interface SheetPointingOptions {
 
 /** The mouse presses what the sheets of a game offer. A study's participant plays with the headset alone. */
 export function pressSheetsByMouse({ canvas, view, headset, study, activities }: SheetPointingOptions): void {
-  /** The distance [m] to the sheet under the mouse; null: none. */
-  function pointAt({ clientX, clientY }: MouseEvent, press: boolean): number | null {
-    if (headset.worn || study.run) return null;
+  /** Whether the mouse is on a button of a sheet. */
+  function pointAt({ clientX, clientY }: MouseEvent, press: boolean): boolean {
+    if (headset.worn || study.run) return false;
     const { width, height } = canvas.getBoundingClientRect();
     const ray = view.rayThrough((2 * clientX) / width - 1, 1 - (2 * clientY) / height);
-    return activities.current?.point?.(ray, press) ?? null;
+    return Boolean(activities.current?.point?.(ray, press));
   }
 
   /** Whether the mouse button went down on a sheet: a sheet that came under a throw is not meant. */
   let pressing = false;
   canvas.addEventListener('pointerdown', (event) => {
-    pressing = pointAt(event, false) !== null;
+    pressing = pointAt(event, false);
   });
   canvas.addEventListener('click', (event) => {
     if (pressing) pointAt(event, true);

@@ -9,6 +9,7 @@ import type { Recorder } from '../studio/recorder';
 import type { Activities } from './activities';
 import type { Headset } from './headset';
 import type { PageStudy } from './page-study';
+import type { Pointers } from './pointers';
 import type { Settings } from './settings';
 
 /** What is read of a session. */
@@ -22,6 +23,7 @@ export interface TrackingSourceOptions {
   readonly actor: Pick<Actor, 'frameAt' | 'standAt'>;
   readonly activities: Pick<Activities, 'current' | 'act'>;
   readonly study: Pick<PageStudy, 'idle'>;
+  readonly pointers: Pick<Pointers, 'follow' | 'steering'>;
 }
 
 /**
@@ -32,6 +34,8 @@ export class TrackingSource {
   readonly #options: TrackingSourceOptions;
   #buttons: Buttons = nothingPressed;
   #newest: TrackingFrame | null = null;
+  /** A pointer steered the player in the last frame. */
+  #steered = false;
 
   constructor(options: TrackingSourceOptions) {
     this.#options = options;
@@ -67,7 +71,7 @@ export class TrackingSource {
   }
 
   #readSession(tracking: SessionTracking, time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
-    const { headset, settings, study, recorder } = this.#options;
+    const { headset, settings, study, recorder, pointers } = this.#options;
     // A file may arrive in a session: the wearer's body neither follows its replay nor stands still with it.
     recorder.giveWay();
     if (headset.emulator && settings.actor && !study.idle) {
@@ -77,7 +81,23 @@ export class TrackingSource {
     }
     const tracked = deviceFrame ? tracking.read(deviceFrame, time) : null;
     this.#buttons = tracking.inputs.buttons;
-    return tracked;
+    pointers.follow(time, tracked?.suspended ? null : (tracked?.head ?? null));
+    return tracked && this.#steer(tracked);
+  }
+
+  /** Gives the user the hands of a player that a pointer steers, where no hand is tracked. */
+  #steer(tracked: TrackingFrame): TrackingFrame {
+    const { pointers, activities } = this.#options;
+    const performed = pointers.steering && activities.act(tracked.time);
+    const changed = this.#steered !== Boolean(performed);
+    this.#steered = Boolean(performed);
+    // The move from one player's hands to the other's is no gesture.
+    const suspended = changed ? ({ suspended: true } as const) : {};
+    if (!performed) return changed ? { ...tracked, ...suspended } : tracked;
+    this.#buttons = performed.buttons;
+    const { leftHand, rightHand } = performed.frame;
+    const { fingers: _, ...seen } = tracked;
+    return { ...seen, leftHand, rightHand, ...suspended };
   }
 
   #readDesktop(time: number): TrackingFrame | null {

@@ -4,7 +4,7 @@ import { type FingerName, type HandShape, type MutableHandShape, makeHandShape }
 import { type MutablePose, makePose, type TrackedPose } from '../core/math/pose';
 import { fromAxes } from '../core/math/quat';
 import type { Side } from '../core/math/side';
-import { isFiniteVec3, setVec3, vec3 } from '../core/math/vec3';
+import { copyVec3, isFiniteVec3, setVec3, type Vec3, vec3 } from '../core/math/vec3';
 import { toTrackedPose } from './tracked-pose';
 
 /** WebXR's hand input, which the types describe in part and some browsers lack. */
@@ -43,6 +43,9 @@ const followed: readonly FollowedJoint[] = [
   ...longFinger('little', 'pinky'),
 ];
 
+/** The tip of the index finger among the joints. */
+const indexTip = followed.findIndex(({ name }) => name === 'index-finger-tip');
+
 /** Reads wrist and fingers of one tracked hand by one call of `fillPoses` a frame, into buffers of the reader. */
 export class HandReader {
   /**
@@ -57,6 +60,7 @@ export class HandReader {
   readonly #matrices = new Float32Array(16 * (1 + followed.length));
   readonly #wrist: MutablePose<'floor'> = makePose<'floor'>();
   readonly #at = vec3(0, 0, 0);
+  readonly #indexTip = vec3(Number.NaN, 0, 0);
   #hand: XRHand | null = null;
   /** The joints of `#hand` in the order of `#matrices`; fewer where the device lacks joints. */
   #spaces: XRJointSpace[] = [];
@@ -72,6 +76,11 @@ export class HandReader {
     return this.#seen.pinch;
   }
 
+  /** The tip of the index finger in this frame, floor frame; null: not seen. */
+  get indexTip(): Vec3 | null {
+    return isFiniteVec3(this.#indexTip) ? this.#indexTip : null;
+  }
+
   /** Returns the wrist, floor frame; null: the hand is not seen. `time`: [s], on the clock of the frames. */
   read(frame: XRFrame, hand: XRHand, space: XRReferenceSpace, time: number): TrackedPose | null {
     if (hand !== this.#hand) this.#follow(hand);
@@ -79,6 +88,7 @@ export class HandReader {
     const wrist = filled ? this.#filledWrist() : this.#ask(frame, hand, space);
     if (!wrist) {
       this.#seen.pinch = Number.NaN;
+      this.#indexTip.x = Number.NaN;
       return null;
     }
     const deltaSeconds = this.#lastTime === null ? 0 : Math.max(0, time - this.#lastTime);
@@ -117,6 +127,7 @@ export class HandReader {
     for (let i = 0; i < followed.length; i++) {
       const at = 16 * (1 + i) + 12;
       setVec3(this.#at, m[at]!, m[at + 1]!, m[at + 2]!);
+      if (i === indexTip) copyVec3(this.#at, this.#indexTip);
       setHandJoint(this.#joints, followed[i]!, this.#wrist, this.#side, this.#at);
     }
     return { position: { ...position }, orientation: { ...orientation }, tracking: 'tracked' };
@@ -133,6 +144,7 @@ export class HandReader {
       const at = joint && frame.getJointPose?.(joint, space)?.transform.position;
       if (at) setVec3(this.#at, at.x, at.y, at.z);
       else setVec3(this.#at, Number.NaN, Number.NaN, Number.NaN);
+      if (i === indexTip) copyVec3(this.#at, this.#indexTip);
       setHandJoint(this.#joints, followed[i]!, wrist, this.#side, this.#at);
     }
     return wrist;

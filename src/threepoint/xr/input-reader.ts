@@ -1,11 +1,15 @@
 import { type HandShape, makeHandShape, shapeOfClosing } from '../core/body/hand-shape';
 import { allReleased, type HandButtons } from '../core/input/button-presses';
-import type { TrackedPose } from '../core/math/pose';
+import type { Pointer } from '../core/input/pointer';
+import type { Pose, TrackedPose } from '../core/math/pose';
 import { type Side, sides } from '../core/math/side';
 import { ControllerFingers, squeezeButton, triggerButton } from './controller-fingers';
+import { DeviceCommands, isMenuPinch } from './device-commands';
 import { bareHandFit, handleFit, wristFromGrip } from './grip-offsets';
 import { HandReader } from './hand-reader';
+import { PointerReader } from './pointer-reader';
 import { SourceChoice } from './source-choice';
+import { SystemGesture } from './system-gesture';
 import { toTrackedPose } from './tracked-pose';
 
 const pressedButtons = (gamepad: Gamepad | undefined): HandButtons => ({
@@ -21,7 +25,26 @@ const maximumOf = (a: HandButtons, b: HandButtons): HandButtons => ({
   trigger: Math.max(a.trigger, b.trigger),
   grip: Math.max(a.grip, b.grip),
   pinch: Math.max(a.pinch, b.pinch),
+  ...((a.taken || b.taken) && { taken: true }),
 });
+
+/** One frame of a session, to be read in a space. */
+export interface InputFrame {
+  readonly frame: XRFrame;
+  readonly space: XRReferenceSpace;
+  /** [s] */
+  readonly time: number;
+  /** The head in the space; null: not seen. */
+  readonly head: Pose<'floor'> | null;
+}
+
+/** A bare hand that was just read. */
+interface SeenSource {
+  readonly pose: TrackedPose;
+  readonly pressed: HandButtons;
+  readonly ray: XRPose | null;
+  readonly head: Pose<'floor'> | null;
+}
 
 /** How a side is tracked. */
 export type InputKind = 'controller' | 'hand' | 'none';
@@ -37,12 +60,6 @@ function kindOf(source: XRInputSource): InputKind {
   return fitOf(source) === bareHandFit ? 'hand' : 'controller';
 }
 
-/** A stick pushed this far to the side turns, and may turn again once it is back below the second. */
-const stickPushed = 0.7;
-const stickBack = 0.35;
-/** The index of a stick's button in an “xr-standard” gamepad. */
-const stickButton = 3;
-
 /**
  * Reads wrists, fingers and buttons of a session by handedness, never by index: swapped and returning devices keep
  * their sides.
@@ -54,24 +71,26 @@ export class InputReader {
   readonly buttons: Record<Side, HandButtons> = { left: allReleased, right: allReleased };
   /** The finger bends of the newest frame, in memory that the next one overwrites. */
   readonly fingers: Record<Side, HandShape | null> = { left: null, right: null };
+  /** What devices ask of the page besides pointing. */
+  readonly commands = new DeviceCommands();
+  /** The time of the newest frame in which a hand or a controller was seen [s]; −∞: none was. */
+  handsSeenAt = Number.NEGATIVE_INFINITY;
   readonly #session: XRSession;
   readonly #held = { controller: false, hand: false };
-  readonly #sticks = new Sticks();
   readonly #handReaders = { left: new HandReader('left'), right: new HandReader('right') };
   readonly #controllerFingers = { left: new ControllerFingers(), right: new ControllerFingers() };
   /** The fingers of hands without joints, which pinch or are open. */
   readonly #plainFingers = { left: makeHandShape(), right: makeHandShape() };
   readonly #choices = { left: new SourceChoice(), right: new SourceChoice() };
-  /** The sources that select now: the pinches of hands without joints and without a gamepad. */
-  readonly #selecting = new WeakSet<XRInputSource>();
+  readonly #pointers: PointerReader;
+  readonly #gestures = { left: new SystemGesture(), right: new SystemGesture() };
   /** Input sources, numbered in the order in which they appeared. */
   readonly #devices = new WeakMap<XRInputSource, number>();
   #deviceCount = 0;
 
   constructor(session: XRSession) {
     this.#session = session;
-    session.addEventListener('selectstart', ({ inputSource }) => this.#selecting.add(inputSource));
-    session.addEventListener('selectend', ({ inputSource }) => this.#selecting.delete(inputSource));
+    this.#pointers = new PointerReader(session);
   }
 
   /** The inputs used since the session began: 'mixed' where they changed or differed between the sides. */
@@ -81,29 +100,21 @@ export class InputReader {
     return hand ? 'hands' : 'controllers';
   }
 
-  /** Returns −1 or 1 once for each push of a stick to the right or left; else 0. */
-  takeTurn(): -1 | 0 | 1 {
-    return this.#sticks.take();
-  }
-
-  /** Returns whether a stick was pressed down since the last call. */
-  takePress(): boolean {
-    return this.#sticks.takePress();
+  /** The pointers of the newest frame; none while the session is suspended. */
+  get pointers(): readonly Pointer[] {
+    return this.#pointers.pointers;
   }
 
   /**
-   * Returns the wrists of this frame in the space, and updates kinds, buttons and fingers; null: not seen. While the
-   * session is `suspended` behind a menu of the device, no hand is read: it is busy there.
+   * Returns the wrists of this frame in the space, and updates kinds, buttons, fingers and pointers; null: not seen.
+   * While the session is `suspended` behind a menu of the device, no hand is read: it is busy there. `head`: in the
+   * space; null: not seen.
    */
-  read(
-    frame: XRFrame,
-    space: XRReferenceSpace,
-    time: number,
-    suspended: boolean,
-  ): Readonly<Record<Side, TrackedPose | null>> {
+  read({ frame, space, time, head }: InputFrame, suspended: boolean): Readonly<Record<Side, TrackedPose | null>> {
     const { kinds, buttons, fingers } = this;
-    if (suspended) this.#sticks.waitForRelease();
-    else this.#sticks.watch(this.#session.inputSources);
+    if (suspended) this.commands.waitForRelease();
+    else this.commands.watch(this.#session.inputSources);
+    this.#pointers.begin();
     const hands: Record<Side, TrackedPose | null> = { left: null, right: null };
     for (const side of sides) {
       kinds[side] = 'none';
@@ -111,17 +122,10 @@ export class InputReader {
       fingers[side] = null;
       this.#choices[side].begin(time);
     }
+    if (!suspended)
+      for (const source of this.#session.inputSources) this.#readSource(source, { frame, space, time, head });
+    this.#pointers.finish(suspended);
     if (suspended) return hands;
-    for (const source of this.#session.inputSources) {
-      const side = source.handedness;
-      if (side === 'none' || this.#repeatsHand(source)) continue;
-      const pose = this.#readHand(frame, space, source, time);
-      const kind = kindOf(source);
-      if (pose) this.#choices[side].offer({ source, pose, isHand: kind === 'hand' });
-      if (kinds[side] === 'none') kinds[side] = kind;
-      const device = buttons[side].device ?? this.#deviceOf(source);
-      buttons[side] = { ...maximumOf(buttons[side], this.#pressedBy(source, side)), device };
-    }
     for (const side of sides) {
       const chosen = this.#choices[side].best;
       if (chosen) {
@@ -136,6 +140,37 @@ export class InputReader {
       buttons[side] = { ...buttons[side], kind };
     }
     return hands;
+  }
+
+  #readSource(source: XRInputSource, now: InputFrame): void {
+    const { kinds, buttons } = this;
+    const { frame, space, time } = now;
+    const ray = frame.getPose(source.targetRaySpace, space) ?? null;
+    const side = source.handedness;
+    if (side === 'none' || this.#repeatsHand(source)) {
+      this.#pointers.read(source, ray, { taken: false, tip: null });
+      return;
+    }
+    const pose = this.#readHand(frame, space, source, time);
+    const kind = kindOf(source);
+    if (pose) this.#choices[side].offer({ source, pose, isHand: kind === 'hand' });
+    if (pose && source.targetRayMode === 'tracked-pointer') this.handsSeenAt = time;
+    if (kinds[side] === 'none') kinds[side] = kind;
+    const device = buttons[side].device ?? this.#deviceOf(source);
+    const pressed = this.#pressedBy(source, side);
+    const taken =
+      pose !== null && kind === 'hand' && this.#isTaken(source, side, { pose, pressed, ray, head: now.head });
+    buttons[side] = { ...maximumOf(buttons[side], taken ? { ...allReleased, taken } : pressed), device };
+    const tip = hasJoints(source) && pose ? this.#handReaders[side].indexTip : null;
+    this.#pointers.read(source, ray, { taken, tip });
+  }
+
+  /** Returns whether a bare hand belongs to the device. */
+  #isTaken(source: XRInputSource, side: Side, seen: SeenSource): boolean {
+    if (source.targetRayMode !== 'tracked-pointer') return false;
+    const { pose, pressed, ray, head } = seen;
+    const pinch = hasJoints(source) ? this.#handReaders[side].pinch : pressed.pinch;
+    return this.#gestures[side].follow({ wrist: pose, pinch, hasRay: ray !== null, menu: isMenuPinch(source) }, head);
   }
 
   /**
@@ -171,7 +206,7 @@ export class InputReader {
   }
 
   #selected(source: XRInputSource): number {
-    return this.#selecting.has(source) ? 1 : pressedButtons(source.gamepad).trigger;
+    return this.#pointers.selects(source) ? 1 : pressedButtons(source.gamepad).trigger;
   }
 
   #shapeOf(source: XRInputSource, side: Side, time: number): HandShape {
@@ -186,48 +221,5 @@ export class InputReader {
     this.#deviceCount += 1;
     this.#devices.set(source, this.#deviceCount);
     return this.#deviceCount;
-  }
-}
-
-/** Detects pushes to the side and presses of the controllers' sticks. */
-class Sticks {
-  #pushed = false;
-  #wanted: -1 | 0 | 1 = 0;
-  #down = false;
-  #pressed = false;
-
-  watch(sources: XRInputSourceArray): void {
-    let furthest = 0;
-    let down = false;
-    for (const { gamepad } of sources) {
-      down ||= gamepad?.buttons[stickButton]?.pressed ?? false;
-      const sideways = gamepad?.axes[2] ?? 0;
-      if (Math.abs(sideways) > Math.abs(furthest)) furthest = sideways;
-    }
-    if (down && !this.#down) this.#pressed = true;
-    this.#down = down;
-    if (Math.abs(furthest) < stickBack) this.#pushed = false;
-    else if (Math.abs(furthest) > stickPushed && !this.#pushed) {
-      this.#pushed = true;
-      this.#wanted = furthest > 0 ? -1 : 1;
-    }
-  }
-
-  /** Ignores sticks that are pushed or pressed now until they were released. */
-  waitForRelease(): void {
-    this.#pushed = true;
-    this.#down = true;
-  }
-
-  takePress(): boolean {
-    const pressed = this.#pressed;
-    this.#pressed = false;
-    return pressed;
-  }
-
-  take(): -1 | 0 | 1 {
-    const wanted = this.#wanted;
-    this.#wanted = 0;
-    return wanted;
   }
 }

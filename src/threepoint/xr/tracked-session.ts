@@ -49,9 +49,12 @@ export class TrackedSession {
   #recentred: { readonly space: XRReferenceSpace; readonly before: XRReferenceSpace | null } | null = null;
   readonly #floorPose = makePose();
   #lastHead: Pose<'floor'> | null = null;
+  /** How much higher the user stands than the device reports [m]. */
+  #raised = 0;
   readonly #onReset = () => {
     this.#lastHead = null;
     if (this.#own && this.#floor !== this.#own) this.#moveTo(this.#own);
+    if (this.#own && this.#raised !== 0) this.#moveTo(lowered(this.#own, this.#raised));
     this.#options.onDiscontinuity?.();
   };
   readonly #onEnd = () => {
@@ -98,8 +101,8 @@ export class TrackedSession {
     this.#locateFloor(frame, this.#floor);
     const viewer = frame.getViewerPose(this.#floor);
     const suspended = this.#session.visibilityState !== 'visible';
-    const { left, right } = this.inputs.read(frame, this.#floor, time, suspended);
     const head = viewer && toTrackedPose(viewer);
+    const { left, right } = this.inputs.read({ frame, space: this.#floor, time, head: head ?? null }, suspended);
     if (!head) return null;
     this.#lastHead = head;
     const deviceBody = this.bodyReader?.read(frame, this.#floor);
@@ -135,6 +138,25 @@ export class TrackedSession {
       this.#moveTo(this.#floor.getOffsetReferenceSpace(new XRRigidTransform({ ...origin, w: 1 }, oldFromNew)));
       this.#lastHead = { ...head, orientation: multiply(conjugate(oldFromNew), head.orientation) };
     }
+    this.#options.onDiscontinuity?.();
+  }
+
+  /** How much higher the user stands than the device reports [m]. */
+  get raised(): number {
+    return this.#raised;
+  }
+
+  /**
+   * Overrides the height of the user: the floor lies this far [m] below the device's own. 0: the device's height. It
+   * stays through recentring.
+   */
+  raise(height: number): void {
+    const by = height - this.#raised;
+    if (!Number.isFinite(by) || by === 0) return;
+    this.#raised = height;
+    const head = this.#lastHead;
+    if (head) this.#lastHead = { ...head, position: { ...head.position, y: head.position.y + by } };
+    if (this.#floor) this.#moveTo(lowered(this.#floor, by));
     this.#options.onDiscontinuity?.();
   }
 
@@ -176,6 +198,10 @@ export class TrackedSession {
     this.#drawing.setReferenceSpace(space);
   }
 }
+
+/** Returns a space whose floor lies this far [m] lower. */
+const lowered = (space: XRReferenceSpace, by: number): XRReferenceSpace =>
+  space.getOffsetReferenceSpace(new XRRigidTransform({ x: 0, y: -by, z: 0, w: 1 }, identity));
 
 /** Returns the space that the renderer requested from the session, whichever one the page lets it draw in. */
 function ownSpaceOf(drawing: DrawingSpace): XRReferenceSpace | null {

@@ -22,7 +22,7 @@ import { Recorder } from 'threepoint-page/studio/recorder';
 import type { StudyRun } from 'threepoint-study/participant/study-run';
 import { describe, expect, test, vi } from 'vitest';
 import { posed } from '../../games/archery/bowman';
-import { activityServices } from '../activity-services';
+import { activityServices, noPointers } from '../activity-services';
 import { drawNowhere } from './drawing-in-node';
 
 drawNowhere();
@@ -40,7 +40,7 @@ const wearer = (time: number, eyeHeight: number): TrackingFrame => ({
 /** A page with these activities, and what they do to it. */
 function page(listed: readonly Activity[] = registered) {
   const opened = activityServices();
-  const { services, settings, headset, study } = opened;
+  const { services, mouse, settings, headset, study } = opened;
   const seen = {
     mirror: null as Side | null,
     scene: studioScene,
@@ -71,7 +71,7 @@ function page(listed: readonly Activity[] = registered) {
         seen.mirror = side;
       },
     },
-    mouse: services.mouse,
+    mouse,
     recorder,
     body: services.body,
     study,
@@ -88,6 +88,7 @@ function page(listed: readonly Activity[] = registered) {
     study,
     body: { wearerCalibration: defaultCalibration },
     actor: createActor(),
+    pointers: noPointers,
   });
   const tracked = (time: number) => source.read(time, undefined);
   return { ...opened, activities, seen, recorder, tracked };
@@ -363,7 +364,7 @@ function darts(done: string[]) {
       send: () => void done.push('send'),
       grasp: () => true,
       show: (_, frame) => void done.push(frame ? 'show' : 'show without a head'),
-      point: (_, press) => (press ? 1 : null),
+      point: (_, press) => (press ? { distance: 1, owner: 'darts', id: 'board' } : null),
       setAway: (away) => void done.push(`away ${away}`),
       banner: () => 'The dartboard is wet.',
       menu: () => ({
@@ -429,21 +430,27 @@ describe('a third activity', () => {
     activities.current?.setAway?.(true);
     expect(done).toEqual(['update at 7 s', 'send', 'show', 'show without a head', 'away true']);
     const ray = { origin: vec3(0, 1.6, 0), direction: vec3(0, 0, -1) };
-    expect([activities.current?.point?.(ray, false), activities.current?.point?.(ray, true)]).toEqual([null, 1]);
+    expect([activities.current?.point?.(ray, false), activities.current?.point?.(ray, true)]).toMatchObject([
+      null,
+      { distance: 1 },
+    ]);
   });
 
   test('has its button and its part in the menu of the headset', async () => {
     const { activities, settings, writer } = dartsPage();
     const actions = {} as VrMenuActions;
     const state = () =>
-      menuStateOf({
-        activities,
-        settings,
-        body: { estimator: 'ik', unavailable: {} },
-        measuring: { step: null },
-        notices: { current: () => [] },
-        headset: { passthrough: null, passthroughOffered: false },
-      });
+      menuStateOf(
+        {
+          activities,
+          settings,
+          body: { estimator: 'ik', unavailable: {} },
+          measuring: { step: null },
+          notices: { current: () => [] },
+          headset: { passthrough: null, passthroughOffered: false },
+        },
+        null,
+      );
     const labels = () => menuButtons(state(), actions).map(({ label }) => label);
     expect(labels()).toContain('Darts');
     await activities.goTo('darts');

@@ -1,5 +1,12 @@
 import { Group, Vector3 } from 'three';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { GazePointer } from 'threepoint/core/input/gaze-pointer';
+import { MovedPointer, type Pointer } from 'threepoint/core/input/pointer';
+import { fromAxes, identity } from 'threepoint/core/math/quat';
 import type { Ray } from 'threepoint/core/math/ray';
+import { vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { DeviceCommands } from 'threepoint/xr/device-commands';
 import type { OpenActivity } from 'threepoint-page/activity/activity';
 import { menuHeight } from 'threepoint-page/activity/activity-menu';
 import { type BallMenuActions, type BallMenuState, ballEntries } from 'threepoint-page/ball/ball-menu';
@@ -9,6 +16,7 @@ import { HeadsetControls } from 'threepoint-page/shell/controls/headset-controls
 import { PageStudy } from 'threepoint-page/shell/page-study';
 import { createSettings, SettingsWriter } from 'threepoint-page/shell/settings';
 import { readSwitches } from 'threepoint-page/shell/switches';
+import { type ComfortActions, type ComfortState, comfortSheet } from 'threepoint-page/shell/vr-menu/comfort-sheet';
 import {
   menuButtons,
   noticesTop,
@@ -16,7 +24,7 @@ import {
   type VrMenuState,
 } from 'threepoint-page/shell/vr-menu/menu-buttons';
 import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
-import type { Pointer } from 'threepoint-ui/vr-pointers';
+import { createVrPointers } from 'threepoint-ui/vr-pointers';
 import { afterAll, describe, expect, test, vi } from 'vitest';
 import { drawNowhere } from './drawing-in-node';
 import { expectApart, studioMenu } from './menu-parts';
@@ -24,18 +32,20 @@ import { expectApart, studioMenu } from './menu-parts';
 drawNowhere();
 afterAll(() => vi.unstubAllGlobals());
 
+/** The back of the left hand towards the eyes, its fingers to the right, as one reads a watch. */
+const turnedToFace = fromAxes(
+  vec3(0, -Math.SQRT1_2, Math.SQRT1_2),
+  vec3(0, Math.SQRT1_2, Math.SQRT1_2),
+  vec3(-1, 0, 0),
+);
+
 /** A hand that points from before the menu at this point of the world [m], its trigger just pressed. */
-function handAt(target: Vector3) {
+function handAt(target: Vector3, pressed = true): MovedPointer {
   const origin = new Vector3(0, 1.4, 0);
-  const shown: (number | null)[] = [];
-  const hand: Pointer = {
-    origin,
-    direction: target.clone().sub(origin).normalize(),
-    tip: null,
-    pressed: true,
-    showRay: (distance) => void shown.push(distance),
-  };
-  return { hand, shown };
+  const hand = new MovedPointer('controller', 'right');
+  hand.setRay(origin, target.clone().sub(origin).normalize());
+  hand.pressed = pressed;
+  return hand;
 }
 
 /** The controls of a headset in the studio, and what their buttons asked for. */
@@ -46,25 +56,41 @@ function headset() {
   const study = new PageStudy();
   const hands: Pointer[] = [];
   let step: CalibrationStep | null = null;
-  const pointers = { objects: new Group(), take: () => hands };
+  const rays = createVrPointers();
+  const pointers = { all: hands, offersGaze: false };
+  const commands = new DeviceCommands();
+  const device = { raised: 0 };
   const controls = new HeadsetControls({
     settings,
     writer,
     study,
+    rays,
     pointers,
     notices: { show: () => undefined, current: () => [] },
-    body: { estimator: 'ik', unavailable: {} },
-    headset: { passthrough: null, passthroughOffered: false },
+    body: { estimator: 'ik', unavailable: {}, calibration: { ...defaultCalibration, eyeHeight: 1.6 } },
+    headset: {
+      passthrough: null,
+      passthroughOffered: false,
+      commands,
+      get raised() {
+        return device.raised;
+      },
+      raise(height) {
+        device.raised = height;
+      },
+    },
+    userCalibration: { recentre: () => void done.push('recentre') },
     activities: {
       all: registered,
       current: {
         point({ direction }: Ray, press: boolean) {
           done.push(press ? 'a sheet of the game is pressed' : 'a sheet of the game is pointed at');
           // The game's sheet hangs overhead.
-          return direction.y > 0.9 ? 2 : null;
+          return direction.y > 0.9 ? { distance: 2, owner: 'game', id: 'restart' } : null;
         },
       } as OpenActivity,
       goTo: async (name) => void done.push(`go to ${name}`),
+      setSound: (on) => void done.push(`sound ${on}`),
     },
     measuring: {
       get step() {
@@ -77,7 +103,6 @@ function headset() {
       chooseEstimator: (name) => void done.push(`estimate by ${name}`),
       chooseBuiltInBody: (name) => void done.push(`wear ${name}`),
       chooseSkinTone: (tone) => void done.push(`in ${tone}`),
-      recentre: () => void done.push('recentre'),
       exitVr: () => void done.push('exit'),
     },
   });
@@ -88,6 +113,9 @@ function headset() {
     done,
     hands,
     pointers,
+    rays,
+    commands,
+    device,
     menu,
     settings,
     measure(next: CalibrationStep | null) {
@@ -122,34 +150,34 @@ function studyOf(pointed: (readonly Pointer[])[]) {
 
 describe('in the headset', () => {
   test('the menu is there while it is worn, and hands point', () => {
-    const { controls, menu, pointers } = headset();
-    expect([menu.visible, pointers.objects.visible]).toEqual([false, false]);
+    const { controls, menu, rays } = headset();
+    expect([menu.visible, rays.objects.visible]).toEqual([false, false]);
     controls.setWorn(true);
-    expect([menu.visible, pointers.objects.visible]).toEqual([true, true]);
+    expect([menu.visible, rays.objects.visible]).toEqual([true, true]);
     controls.setWorn(false);
-    expect([menu.visible, pointers.objects.visible]).toEqual([false, false]);
+    expect([menu.visible, rays.objects.visible]).toEqual([false, false]);
   });
 
   test('of two hands at a sheet of the game the one that presses is heard', () => {
     const { controls, hands, done } = headset();
     controls.setWorn(true);
-    const overhead = () => handAt(new Vector3(0, 5, 0));
-    const [idle, pressing] = [overhead(), overhead()];
-    hands.push({ ...idle.hand, pressed: false }, pressing.hand);
-    controls.point();
+    const overhead = (pressed: boolean) => handAt(new Vector3(0, 5, 0), pressed);
+    const [idle, pressing] = [overhead(false), overhead(true)];
+    hands.push(idle, pressing);
+    controls.point(null);
     expect(done).toEqual(['a sheet of the game is pressed']);
-    expect([idle.shown.at(-1), pressing.shown.at(-1)]).toEqual([null, 2]);
+    expect([idle.pointedAt, pressing.pointedAt?.distance]).toEqual([null, 2]);
   });
 
   test('a study’s sheet takes the place of the menu: it alone hears the hands', () => {
-    const { controls, study, menu, pointers, hands, done, onMenu } = headset();
+    const { controls, study, menu, rays, hands, done, onMenu } = headset();
     const pointed: (readonly Pointer[])[] = [];
     study.join(studyOf(pointed));
     controls.setWorn(true);
     controls.show();
-    expect([menu.visible, pointers.objects.visible]).toEqual([false, true]);
-    hands.push(handAt(onMenu(320, 162)).hand);
-    controls.point();
+    expect([menu.visible, rays.objects.visible]).toEqual([false, true]);
+    hands.push(handAt(onMenu(320, 162)));
+    controls.point(null);
     expect(pointed).toEqual([hands]);
     expect(done).toEqual([]);
   });
@@ -166,21 +194,20 @@ describe('in the headset', () => {
     const { controls, hands, done, onMenu } = headset();
     controls.setWorn(true);
     controls.show();
-    const { hand, shown } = handAt(onMenu(320, 162));
+    const hand = handAt(onMenu(320, 162));
     hands.push(hand);
-    controls.point();
+    controls.point(null);
     expect(done).toContain('estimate by learned');
-    expect(shown.at(-1)).toBeCloseTo(1.6, 0);
+    expect(hand.pointedAt?.distance).toBeCloseTo(1.6, 0);
   });
 
   test('a hand that rests on a button has the menu compared with what it shows once, not in every frame', () => {
     const { controls, hands, onMenu } = headset();
     controls.setWorn(true);
     controls.show();
-    const { hand } = handAt(onMenu(160, 600));
-    hands.push({ ...hand, pressed: false });
+    hands.push(handAt(onMenu(160, 600), false));
     const compared = vi.spyOn(JSON, 'stringify');
-    for (let frame = 0; frame < 100; frame++) controls.point();
+    for (let frame = 0; frame < 100; frame++) controls.point(null);
     expect(compared).toHaveBeenCalledTimes(1);
     compared.mockRestore();
   });
@@ -196,12 +223,166 @@ describe('in the headset', () => {
     const { controls, hands, done, onMenu, measure } = headset();
     controls.setWorn(true);
     measure({ kind: 'countdown', secondsLeft: 3 });
-    hands.push(handAt(onMenu(320, 162)).hand);
-    controls.point();
+    hands.push(handAt(onMenu(320, 162)));
+    controls.point(null);
     expect(done.filter((each) => !each.includes('sheet'))).toEqual([]);
-    hands[0] = handAt(onMenu(320, menuHeight - 84)).hand;
-    controls.point();
+    hands[0] = handAt(onMenu(320, menuHeight - 84));
+    controls.point(null);
     expect(done).toContain('cancel');
+  });
+});
+
+/** A frame of a user who looks ahead; the left hand lies on the belly with its back towards the eyes. */
+const wearing = (height = 1.6, leftHand: TrackingFrame['leftHand'] = null): TrackingFrame => ({
+  time: 1,
+  head: { position: vec3(0, height, 0), orientation: identity, tracking: 'tracked' },
+  leftHand,
+  rightHand: null,
+});
+
+describe('without a controller', () => {
+  /** The centre of the button with this label in the world, as drawn now. */
+  function press({ controls, hands, onMenu }: ReturnType<typeof headset>, label: string, state: VrMenuState) {
+    const button = menuButtons(state, {} as VrMenuActions).find((each) => each.label === label);
+    const [x, y, w, h] = button!.at;
+    hands.length = 0;
+    hands.push(handAt(onMenu(x + w / 2, y + h / 2)));
+    controls.point(wearing());
+    hands.length = 0;
+  }
+
+  test('the menu comes before the eyes at the device’s menu button, within reach, and goes back', () => {
+    const page = headset();
+    const { controls, commands, menu, hands, done } = page;
+    controls.setWorn(true);
+    controls.show();
+    const sheet = menu.children[0]!;
+    const home = sheet.getWorldPosition(new Vector3());
+    const call = () => {
+      const source = { profiles: ['oculus-hand'], gamepad: { buttons: { 9: { pressed: true } }, axes: [] } };
+      commands.watch([source] as unknown as XRInputSourceArray);
+      controls.point(wearing());
+      commands.watch([] as unknown as XRInputSourceArray);
+    };
+    call();
+    const at = sheet.getWorldPosition(new Vector3());
+    expect(at.distanceTo(new Vector3(0, 1.6, 0))).toBeLessThan(0.6);
+    // A finger tip reaches and presses it there.
+    menu.updateWorldMatrix(true, true);
+    const poke = new MovedPointer('hand', 'left');
+    poke.setRay(vec3(0, 1, 0), vec3(0, 1, 0));
+    hands.push(poke);
+    for (const before of [0.1, 0.05, -0.01]) {
+      poke.setTip(sheet.localToWorld(new Vector3(0, (menuHeight / 2 - 162) / 1000, before / 0.5)));
+      controls.point(wearing());
+    }
+    expect(done).toContain('estimate by learned');
+    call();
+    expect(sheet.getWorldPosition(new Vector3()).distanceTo(home)).toBeLessThan(1e-6);
+  });
+
+  test('the back of a wrist before the eyes has a button for the menu, for a finger of the other hand', () => {
+    const { controls, menu, hands } = headset();
+    controls.setWorn(true);
+    controls.show();
+    const wrist = { position: vec3(0, 1.2, -0.3), orientation: turnedToFace, tracking: 'tracked' as const };
+    controls.point(wearing(1.6, wrist));
+    const [button] = controls.objects[2].children;
+    expect(button?.visible).toBe(true);
+    const poke = (side: 'left' | 'right') => {
+      const finger = new MovedPointer('hand', side);
+      finger.setRay(vec3(0, 1, 0), vec3(0, 1, 0));
+      hands.splice(0, hands.length, finger);
+      for (const before of [0.1, 0.03, -0.01]) {
+        button!.updateWorldMatrix(true, false);
+        finger.setTip(button!.localToWorld(new Vector3(0, 0, before)));
+        controls.point(wearing(1.6, wrist));
+      }
+    };
+    const distance = () => menu.children[0]!.getWorldPosition(new Vector3()).distanceTo(new Vector3(0, 1.6, 0));
+    poke('left');
+    expect(distance(), 'a hand does not touch its own wrist').toBeGreaterThan(1);
+    poke('right');
+    expect(distance()).toBeLessThan(0.6);
+    // The palm: no button.
+    controls.point(wearing(1.6, { ...wrist, orientation: identity, position: vec3(0, 1.9, -0.1) }));
+    expect(button?.visible).toBe(false);
+  });
+
+  test('the gaze is offered to who has no hands, acts on nothing else before, and then on the menu', () => {
+    const { controls, settings, hands, pointers, done, onMenu, menu } = headset();
+    controls.setWorn(true);
+    controls.show();
+    const gaze = new GazePointer();
+    let time = 0;
+    const look = (target: Vector3, seconds: number) => {
+      for (let frame = 0; frame < 72 * seconds; frame++) {
+        time += 1 / 72;
+        const head = new Group();
+        head.position.set(0, 1.6, 0);
+        // An object looks along +Z, a head along −Z.
+        head.lookAt(head.position.clone().multiplyScalar(2).sub(target));
+        const { x, y, z, w } = head.quaternion;
+        const pose = { position: vec3(0, 1.6, 0), orientation: { x, y, z, w } };
+        gaze.follow(time, pose);
+        controls.point({ ...wearing(), head: { ...pose, tracking: 'tracked' } });
+      }
+    };
+    hands.push(gaze);
+    pointers.offersGaze = true;
+    const exit = () => onMenu(160, 600);
+    look(exit(), 2);
+    expect(done.filter((each) => !each.includes('sheet'))).toEqual([]);
+    const offer = controls.objects[3];
+    expect(offer.visible).toBe(true);
+    look(offer.position.clone(), 2);
+    expect(settings.gaze).toBe(true);
+    pointers.offersGaze = false;
+    look(exit(), 2);
+    expect(offer.visible).toBe(false);
+    expect(done).toContain('calibrate');
+    expect(menu.visible).toBe(true);
+  });
+
+  test('the comfort sheet turns, raises, seats and lets the gaze choose', () => {
+    const page = headset();
+    const { controls, commands, device, settings, done } = page;
+    controls.setWorn(true);
+    controls.show();
+    press(page, 'Comfort', { ...studioMenu, places: [] });
+    const sheet = (change: Partial<ComfortState> = {}): VrMenuState => ({
+      ...studioMenu,
+      sheet: comfortSheet(
+        { moves: true, raised: 0, seated: false, gaze: false, sound: true, largerText: false, ...change },
+        {} as ComfortActions,
+      ),
+    });
+    const turns = ['Turn left', 'Turn right'].map((label) => {
+      press(page, label, sheet());
+      return commands.takeTurn();
+    });
+    expect(turns).toEqual([1, -1]);
+    press(page, 'Raise me', sheet());
+    press(page, 'Raise me', sheet());
+    expect(device.raised).toBeCloseTo(0.1);
+    press(page, 'Lower me', sheet());
+    expect(device.raised).toBeCloseTo(0.05);
+    // Seated: the eyes, 1.15 m high as tracked, are shown at the calibrated 1.6 m.
+    controls.point(wearing(1.2));
+    const pressSeated = (label: string, seated: boolean) => {
+      const button = menuButtons(sheet({ seated }), {} as VrMenuActions).find((each) => each.label === label)!;
+      const [x, y, w, h] = button.at;
+      page.hands.push(handAt(page.onMenu(x + w / 2, y + h / 2)));
+      controls.point(wearing(1.15 + device.raised));
+      page.hands.length = 0;
+    };
+    pressSeated('I sit', false);
+    expect(device.raised).toBeCloseTo(0.45);
+    expect(done).toContain('recentre');
+    pressSeated('I stand', true);
+    expect(device.raised).toBe(0);
+    press(page, 'Gaze: off', sheet());
+    expect(settings.gaze).toBe(true);
   });
 });
 
@@ -229,6 +410,7 @@ describe('the buttons of the menu', () => {
     calibrate: () => undefined,
     cancelCalibration: () => undefined,
     recentre: () => undefined,
+    openComfort: () => void done.push('comfort'),
     setOverlay: (on) => void done.push(`overlay ${on}`),
     setPassthrough: (on) => void done.push(`next in the room ${on}`),
     setBeside: (on) => void done.push(`beside ${on}`),
@@ -249,7 +431,7 @@ describe('the buttons of the menu', () => {
   /** The menu at the court. */
   const atCourt = (change: Partial<BallMenuState> = {}): VrMenuState => ({
     ...mirror,
-    activity: { entries: ballEntries({ ...match, ...change }, ballActions), sheet: null },
+    activity: { entries: ballEntries({ ...match, ...change }, ballActions) },
   });
   const labels = (state: VrMenuState) => menuButtons(state, actions).map(({ label }) => label);
 

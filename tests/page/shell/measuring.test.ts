@@ -8,6 +8,7 @@ import { Measuring } from 'threepoint-page/shell/controls/measuring';
 import { TrackingSource } from 'threepoint-page/shell/tracking-source';
 import { Recorder } from 'threepoint-page/studio/recorder';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
+import { noPointers } from '../activity-services';
 
 /** The part of an element that the dialog needs. */
 class Element extends EventTarget {
@@ -69,6 +70,7 @@ function page({ actor = false, emulator = null as Emulator | null } = {}) {
     actor: createActor(),
     activities: { current: null, act: () => null },
     study: { idle: false },
+    pointers: noPointers,
   });
   let now = 0;
   return {

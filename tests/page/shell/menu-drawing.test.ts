@@ -15,7 +15,7 @@ function drawn(change: Partial<ShownInvitation>) {
   const invitation: ShownInvitation = { room: 'meadow', address, limit: null, code: 'loading', ...change };
   const state: VrMenuState = {
     ...studioMenu,
-    activity: { entries: [], sheet: invitationSheet(invitation, () => undefined) },
+    sheet: invitationSheet(invitation, () => undefined),
     notice: 'Waiting for you.',
   };
   const { context, texts, boxes } = paper();

@@ -15,6 +15,7 @@ export const studioMenu: VrMenuState = {
   skinTone: undefined,
   places: [],
   activity: null,
+  sheet: null,
   notice: null,
 };
 

@@ -8,7 +8,7 @@ import { expect, test } from 'vitest';
 function page(draw: () => void = () => undefined): PageFrame {
   const parts = {
     settings: { mirror: false },
-    headset: { visibility: 'visible', worn: true, takePress: () => false, turnByStick: () => false },
+    headset: { visibility: 'visible', worn: true, commands: null, turnIfAsked: () => false },
     activities: { name: 'studio', current: null, show: () => undefined },
     controls: { point: () => undefined },
     study: { run: null },

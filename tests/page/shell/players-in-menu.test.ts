@@ -1,4 +1,6 @@
 import { Vector3 } from 'three';
+import { MovedPointer } from 'threepoint/core/input/pointer';
+import { up, zero } from 'threepoint/core/math/vec3';
 import { stations } from 'threepoint-games/ball/stations';
 import { menuHeight, menuMargin, menuWidth } from 'threepoint-page/activity/activity-menu';
 import type { OtherPlayer } from 'threepoint-page/ball/other-players';
@@ -7,7 +9,6 @@ import { menuButtons, type VrMenuActions, type VrMenuState } from 'threepoint-pa
 import { drawMenu } from 'threepoint-page/shell/vr-menu/menu-drawing';
 import { VrMenu } from 'threepoint-page/shell/vr-menu/vr-menu';
 import { longestName } from 'threepoint-rooms/protocol/names';
-import type { Pointer } from 'threepoint-ui/vr-pointers';
 import { describe, expect, test } from 'vitest';
 import { drawNowhere } from './drawing-in-node';
 import { expectApart, paper, studioMenu } from './menu-parts';
@@ -42,7 +43,7 @@ function recorded() {
 /** The menu while it lists the other players. */
 const listing = (others: readonly OtherPlayer[], { actions } = recorded()): VrMenuState => ({
   ...studioMenu,
-  activity: { entries: [], sheet: playersSheet(others, actions) },
+  sheet: playersSheet(others, actions),
   notice: 'Waiting.',
 });
 
@@ -117,16 +118,17 @@ describe('the other players in the headset', () => {
     const sheet = menu.object.children[0];
     const [x, y, w, h] = buttonsFor(ben)[0]?.at ?? [0, 0, 0, 0];
     /** Hands whose rays point away from the sheet. */
-    const hand = (): Pointer & { tip: Vector3 } => {
-      const tip = new Vector3();
-      return { origin: tip, direction: new Vector3(0, 1, 0), tip, pressed: false, showRay: () => undefined };
+    const hand = (side: 'left' | 'right') => {
+      const pointer = new MovedPointer('hand', side);
+      pointer.setRay(zero, up);
+      return pointer;
     };
-    const [left, right] = [hand(), hand()];
+    const [left, right] = [hand('left'), hand('right')];
     /** Puts a finger tip so far before the middle of the first button [m]. */
-    const put = ({ tip }: { tip: Vector3 }, before: number) => {
+    const put = (pointer: MovedPointer, before: number) => {
       menu.object.updateWorldMatrix(true, true);
-      tip.set((x + w / 2 - menuWidth / 2) / 1000, (menuHeight / 2 - y - h / 2) / 1000, before);
-      sheet?.localToWorld(tip);
+      const tip = new Vector3((x + w / 2 - menuWidth / 2) / 1000, (menuHeight / 2 - y - h / 2) / 1000, before);
+      pointer.setTip(sheet!.localToWorld(tip));
     };
     // A hand that was behind the sheet before has touched nothing, also where the other is no longer seen.
     put(left, 0.1);

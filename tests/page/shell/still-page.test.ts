@@ -27,6 +27,7 @@ import {
   stillPerson,
   watched,
 } from '../../threepoint/core/estimation/still-people';
+import { noPointers } from '../activity-services';
 
 type Networks = ConstructorParameters<typeof BodySolver>[0]['networks'];
 
@@ -50,8 +51,8 @@ async function openPage(estimator: EstimatorName, calibration: Calibration, netw
       read: (_: unknown, time: number) => reported && { ...reported, time },
     },
     buzz: () => undefined,
-    takePress: () => false,
-    turnByStick: () => false,
+    commands: null,
+    turnIfAsked: () => false,
   };
   const activities = {
     current: null,
@@ -69,6 +70,7 @@ async function openPage(estimator: EstimatorName, calibration: Calibration, netw
     actor: createActor(),
     activities,
     study: { idle: false },
+    pointers: noPointers,
   });
   const faults: unknown[] = [];
   const parts = {

@@ -9,6 +9,7 @@ import { createActor } from 'threepoint-page/emulator/actor';
 import { TrackingSource } from 'threepoint-page/shell/tracking-source';
 import { Recorder } from 'threepoint-page/studio/recorder';
 import { expect, test } from 'vitest';
+import { noPointers } from '../activity-services';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 
@@ -32,6 +33,7 @@ function worn() {
     actor: createActor(),
     activities: { current: null, act: () => null },
     study: { idle: false },
+    pointers: noPointers,
   });
   const wristAt = (time: number) => {
     const pose = replayed.update(source.read(time, {} as XRFrame), source.standIn);
@@ -56,6 +58,7 @@ test('with the actor off before a real headset is put on, the body stands still'
       },
     },
     study: { idle: false },
+    pointers: noPointers,
   });
   const [earlier, later] = [source.read(10, undefined), source.read(13, undefined)];
   expect(later).toEqual({ ...earlier, time: 13 });

@@ -42,11 +42,15 @@ class RigidTransform {
 
 export interface Input {
   readonly handedness: XRHandedness;
-  readonly targetRayMode?: XRTargetRayMode;
+  readonly targetRayMode: XRTargetRayMode;
+  readonly targetRaySpace: { at: Seen };
   readonly profiles: readonly string[];
   readonly gripSpace: { at: Seen };
   readonly hand?: Map<string, { at: Seen }>;
-  readonly gamepad: { readonly buttons: { value: number; touched?: boolean }[]; readonly axes: number[] };
+  readonly gamepad: {
+    readonly buttons: { value: number; touched?: boolean; pressed?: boolean }[];
+    readonly axes: number[];
+  };
 }
 
 /** What of a session is read. */
@@ -110,6 +114,10 @@ export function fakeHeadset() {
     setInputs(...inputs: Input[]) {
       session.inputSources = inputs;
     },
+    /** A source begins or ends its select. */
+    select(type: 'selectstart' | 'selectend', inputSource: Input) {
+      session.dispatchEvent(Object.assign(new Event(type), { inputSource }));
+    },
     /** The device recentres: the room lies elsewhere in the floor's space from now on. */
     reset(roomFromFloor: Place) {
       floor.roomFromSpace = roomFromFloor;
@@ -132,6 +140,8 @@ function matrixOf({ position, orientation }: Place): readonly number[] {
 export function controller(handedness: Side, at: Seen, trigger = 0): Input {
   return {
     handedness,
+    targetRayMode: 'tracked-pointer',
+    targetRaySpace: { at },
     profiles: ['meta-quest-touch-plus'],
     gripSpace: { at },
     gamepad: { buttons: [{ value: trigger }, { value: 0 }], axes: [0, 0, 0, 0] },
@@ -144,6 +154,7 @@ export function bareHand(handedness: Side, at: Seen, gap = 0.08): Input {
   });
   return {
     ...controller(handedness, at),
+    profiles: ['oculus-hand', 'generic-hand'],
     hand: new Map([
       ['wrist', { at }],
       ['thumb-tip', tip(0)],

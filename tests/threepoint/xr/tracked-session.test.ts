@@ -166,8 +166,7 @@ describe('which hand it is', () => {
 
   test('is a bare hand where the device reports no joints, and it pinches where the device selects', () => {
     const { read, setInputs, inputs, session } = tracked();
-    const { gripSpace } = controller('right', right);
-    const hand = { handedness: 'right' as const, profiles: ['generic-hand-select'], gripSpace };
+    const hand = { ...controller('right', right), profiles: ['generic-hand-select'] };
     const source = { ...hand, gamepad: { buttons: [], axes: [] } };
     setInputs(source);
     const wrist = read()?.rightHand;
@@ -304,9 +303,9 @@ describe('where the floor is', () => {
     const before = read()!;
     source.gamepad.axes[2] = 0.9;
     read();
-    expect(inputs.takeTurn()).toBe(-1);
+    expect(inputs.commands.takeTurn()).toBe(-1);
     read();
-    expect(inputs.takeTurn(), 'the stick is still there').toBe(0);
+    expect(inputs.commands.takeTurn(), 'the stick is still there').toBe(0);
     tracker.turn(-Math.PI / 6);
     const after = read()!;
     const off = 1000 * distance(after.head.position, before.head.position);
@@ -316,7 +315,7 @@ describe('where the floor is', () => {
     read();
     source.gamepad.axes[2] = -0.9;
     read();
-    expect(inputs.takeTurn()).toBe(1);
+    expect(inputs.commands.takeTurn()).toBe(1);
     reportFigures('comfort', { 'a turn moves the head by': `${off.toFixed(3)} mm` });
   });
 

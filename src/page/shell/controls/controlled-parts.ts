@@ -8,6 +8,7 @@ import type { FrameTiming } from '../frame-timing';
 import type { Headset } from '../headset';
 import type { PageMocap } from '../page-mocap';
 import type { PageStudy } from '../page-study';
+import type { Pointers } from '../pointers';
 import type { PreferenceStore } from '../preferences';
 import type { Settings, SettingsWriter } from '../settings';
 import type { ShownAvatar } from '../shown-avatar';
@@ -35,6 +36,7 @@ export interface ControlledParts {
   readonly userCalibration: UserCalibration;
   readonly study: Pick<PageStudy, 'run'>;
   readonly server: ServerPresence;
+  readonly pointers: Pick<Pointers, 'all' | 'offersGaze'>;
   readonly mocap: Pick<PageMocap, 'open' | 'show' | 'covers'>;
   /** Something changed that is on the screen. */
   onChange(): void;

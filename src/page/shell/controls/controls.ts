@@ -43,8 +43,7 @@ export class Controls {
     const motionExport = new MotionExport(parts);
     const actions = createPanelActions({ ...parts, measuring, motionExport, files: this.#files });
     this.#desktop = new DesktopControls(panelRegion, { ...parts, motionExport, actions });
-    const pointers = createVrPointers(stage.renderer);
-    this.#inHeadset = new HeadsetControls({ ...parts, measuring, actions, pointers });
+    this.#inHeadset = new HeadsetControls({ ...parts, measuring, actions, rays: createVrPointers() });
     this.#layout = new WindowLayout({
       stage,
       panelRegion,
@@ -108,9 +107,9 @@ export class Controls {
     return this.#inHeadset.isPointedAt;
   }
 
-  /** Rays and finger tips in the headset. */
-  point(): void {
-    this.#inHeadset.point();
+  /** Rays and finger tips in the headset. `frame`: null if the head is not tracked. */
+  point(frame: TrackingFrame | null): void {
+    this.#inHeadset.point(frame);
   }
 
   /** Replays a file of this device, or what an address answers. `asked`: the recorder's place for this wish. */

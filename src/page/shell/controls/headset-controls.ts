@@ -1,12 +1,20 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
+import type { Pointer } from 'threepoint/core/input/pointer';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { FrameReport } from 'threepoint-ui/overlay';
 import type { VrPointers } from 'threepoint-ui/vr-pointers';
 import type { Activities } from '../activities';
 import type { Headset } from '../headset';
 import type { PanelActions } from '../panel/panel';
+import type { Pointers } from '../pointers';
+import type { UserCalibration } from '../user-calibration';
+import { type ComfortActions, comfortSheet } from '../vr-menu/comfort-sheet';
+import { GazeOffer } from '../vr-menu/gaze-offer';
 import type { VrMenuActions } from '../vr-menu/menu-buttons';
 import { menuStateOf } from '../vr-menu/menu-state';
 import { VrMenu } from '../vr-menu/vr-menu';
+import { WristButtons } from '../vr-menu/wrist-buttons';
+import { Comfort } from './comfort';
 import type { ControlledParts } from './controlled-parts';
 import type { Measuring } from './measuring';
 
@@ -14,38 +22,50 @@ import type { Measuring } from './measuring';
 const largerMenu = 1.3;
 
 export interface HeadsetControlsOptions extends Pick<ControlledParts, 'settings' | 'writer' | 'notices' | 'study'> {
-  readonly pointers: VrPointers;
-  readonly body: Pick<BodySolver, 'estimator' | 'unavailable'>;
-  readonly activities: Pick<Activities, 'all' | 'current' | 'goTo'>;
-  readonly headset: Pick<Headset, 'passthrough' | 'passthroughOffered'>;
+  /** Draws the pointers. */
+  readonly rays: VrPointers;
+  readonly pointers: Pick<Pointers, 'all' | 'offersGaze'>;
+  readonly body: Pick<BodySolver, 'estimator' | 'unavailable' | 'calibration'>;
+  readonly activities: Pick<Activities, 'all' | 'current' | 'goTo' | 'setSound'>;
+  readonly headset: Pick<Headset, 'passthrough' | 'passthroughOffered' | 'commands' | 'raised' | 'raise'>;
+  readonly userCalibration: Pick<UserCalibration, 'recentre'>;
   readonly measuring: Pick<Measuring, 'step' | 'begin' | 'cancel'>;
-  readonly actions: Pick<
-    PanelActions,
-    'chooseEstimator' | 'chooseBuiltInBody' | 'chooseSkinTone' | 'recentre' | 'exitVr'
-  >;
+  readonly actions: Pick<PanelActions, 'chooseEstimator' | 'chooseBuiltInBody' | 'chooseSkinTone' | 'exitVr'>;
 }
+
+const isGaze = ({ source }: Pointer): boolean => source === 'gaze';
 
 /** What can be pressed in the headset: the menu, or a study's sheet in its place, and the sheets of a game. */
 export class HeadsetControls {
   readonly #options: HeadsetControlsOptions;
   readonly #menu: VrMenu;
+  readonly #wrists = new WristButtons();
+  readonly #offer = new GazeOffer();
+  readonly #comfort: Comfort;
+  #comfortOpen = false;
   #worn = false;
 
   constructor(options: HeadsetControlsOptions) {
     this.#options = options;
     this.#menu = new VrMenu(this.#menuActions());
-    options.pointers.objects.visible = false;
+    this.#comfort = new Comfort(options);
+    options.rays.objects.visible = false;
   }
 
   /** For the scene. */
   get objects() {
-    return [this.#menu.object, this.#options.pointers.objects] as const;
+    return [this.#menu.object, this.#options.rays.objects, this.#wrists.object, this.#offer.object] as const;
   }
 
   /** The headset is on, or off again. A study's sheet takes the place of the menu. */
   setWorn(worn: boolean): void {
     this.#worn = worn;
-    this.#options.pointers.objects.visible = worn;
+    this.#options.rays.objects.visible = worn;
+    this.#comfortOpen = false;
+    this.#comfort.reset();
+    this.#menu.sendBack();
+    this.#wrists.hide();
+    this.#offer.hide();
     this.#showMenu();
   }
 
@@ -60,31 +80,93 @@ export class HeadsetControls {
   show(): void {
     this.#showMenu();
     this.#menu.object.scale.setScalar(this.#options.settings.largerText ? largerMenu : 1);
-    this.#menu.show(menuStateOf(this.#options));
+    this.#menu.show(menuStateOf(this.#options, this.#comfortOpen ? this.#comfortSheet() : null));
   }
 
   showReport(report: FrameReport): void {
     this.#menu.showReport(report);
   }
 
-  /** Rays and finger tips: the study or the menu first, then the sheets of a game. */
-  point(): void {
-    const { study, pointers, activities } = this.#options;
-    const hands = pointers.take();
-    if (study.run) {
-      study.run.point(hands);
-      return;
+  /**
+   * Lets the pointers act: on the study or the menu first, then on the sheets of a game. `frame`: null if the head is
+   * not seen.
+   */
+  point(frame: TrackingFrame | null): void {
+    const { study, pointers, rays } = this.#options;
+    if (frame) this.#comfort.observe(frame);
+    const offers = pointers.offersGaze && frame !== null && study.run === null;
+    if (!offers) this.#offer.hide();
+    else if (this.#offer.follow(frame.head, pointers.all.filter(isGaze))) this.#options.writer.change({ gaze: true });
+    // A gaze that was not accepted yet presses nothing else.
+    const acting = pointers.offersGaze ? pointers.all.filter((pointer) => !isGaze(pointer)) : pointers.all;
+    if (study.run) study.run.point(acting);
+    else this.#pointAtPage(frame, acting);
+    rays.show(pointers.offersGaze && !offers ? acting : pointers.all);
+  }
+
+  #pointAtPage(frame: TrackingFrame | null, pointers: readonly Pointer[]): void {
+    if (frame) {
+      const pressed = this.#wrists.follow(frame, pointers);
+      const asked = this.#options.headset.commands?.menu.take() ?? false;
+      if (pressed || asked) this.#callMenu(frame);
     }
-    this.#menu.point(hands);
-    const pressingFirst = [...hands].sort((a, b) => Number(b.pressed) - Number(a.pressed));
-    for (const { origin, direction, pressed, showRay } of pressingFirst) {
+    this.#menu.point(pointers);
+    this.#pointAtSheets(pointers);
+  }
+
+  /** Brings the menu before the user, or puts it back. */
+  #callMenu({ head }: TrackingFrame): void {
+    if (this.#menu.isBrought) this.#menu.sendBack();
+    else this.#menu.bring(head);
+  }
+
+  #pointAtSheets(pointers: readonly Pointer[]): void {
+    const { current } = this.#options.activities;
+    if (!current?.point) return;
+    const pressingFirst = [...pointers].sort((a, b) => Number(b.pressed) - Number(a.pressed));
+    for (const pointer of pressingFirst) {
+      const { origin, direction, pressed, pointedAt } = pointer;
       const ray = { origin: { ...origin }, direction: { ...direction } };
-      const distance = activities.current?.point?.(ray, pressed) ?? null;
-      if (distance === null) continue;
-      showRay(distance);
+      const hit = current.point(ray, pressed && pointedAt?.owner !== 'menu');
+      if (hit === null) continue;
+      pointer.pointAt(hit);
       // One hand's ray is lit; the other's would put the light out again.
       break;
     }
+  }
+
+  #comfortSheet() {
+    const { settings, headset } = this.#options;
+    const { gaze, sound, largerText } = settings;
+    const moves = headset.passthrough === null;
+    const { seated } = this.#comfort;
+    return comfortSheet({ moves, raised: headset.raised, seated, gaze, sound, largerText }, this.#comfortActions());
+  }
+
+  #comfortActions(): ComfortActions {
+    const { headset, writer, activities } = this.#options;
+    const comfort = this.#comfort;
+    return {
+      turn: (direction) => headset.commands?.turn(direction),
+      setSeated: (on) => this.#change(() => comfort.setSeated(on)),
+      raiseBy: (metres) => this.#change(() => comfort.raiseBy(metres)),
+      setGaze: (gaze) => writer.keep({ gaze }),
+      setSound: (on) => activities.setSound(on),
+      setLargerText: (largerText) => writer.keep({ largerText }),
+      close: () => this.#openComfort(false),
+    };
+  }
+
+  #openComfort(open: boolean): void {
+    this.#change(() => {
+      this.#comfortOpen = open;
+    });
+  }
+
+  /** Shows the effect of a press at once. */
+  #change(act: () => void): void {
+    act();
+    this.show();
   }
 
   #menuActions(): VrMenuActions {
@@ -93,7 +175,8 @@ export class HeadsetControls {
       chooseEstimator: (name) => actions.chooseEstimator(name),
       calibrate: () => measuring.begin(),
       cancelCalibration: () => measuring.cancel(),
-      recentre: () => actions.recentre(),
+      recentre: () => this.#comfort.recentre(),
+      openComfort: () => this.#openComfort(true),
       setOverlay: (on) => writer.change({ vrOverlay: on }),
       setPassthrough: (passthrough) => writer.keep({ passthrough }),
       setBeside: (beside) => writer.change({ beside }),

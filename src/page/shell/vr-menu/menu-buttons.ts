@@ -16,6 +16,7 @@ import {
   halfWidth,
   type MenuButton,
   type MenuEntry,
+  type MenuSheet,
   menuMargin,
 } from '../../activity/activity-menu';
 import { home } from '../activity-registry';
@@ -43,7 +44,9 @@ export interface VrMenuState {
   /** The activities that the user can go to, with the labels of their buttons. */
   readonly places: readonly { readonly name: string; readonly title: string }[];
   /** The part of the current activity; null: the user is at the mirror. */
-  readonly activity: Pick<ActivityMenu, 'entries' | 'sheet'> | null;
+  readonly activity: Pick<ActivityMenu, 'entries'> | null;
+  /** A page that replaces the menu; null: the menu itself is shown. */
+  readonly sheet: MenuSheet | null;
   /** A sentence at the bottom of the menu; null: none. */
   readonly notice: string | null;
 }
@@ -53,6 +56,7 @@ export interface VrMenuActions {
   calibrate(): void;
   cancelCalibration(): void;
   recentre(): void;
+  openComfort(): void;
   setOverlay(on: boolean): void;
   setPassthrough(on: boolean): void;
   setBeside(on: boolean): void;
@@ -117,11 +121,12 @@ function placeEntries(state: VrMenuState, actions: VrMenuActions): readonly Menu
 export function menuButtons(state: VrMenuState, actions: VrMenuActions): readonly MenuButton[] {
   if (state.calibration)
     return [bottomButton('cancel', isOver(state.calibration) ? 'Close' : 'Cancel', () => actions.cancelCalibration())];
-  if (state.activity?.sheet) return state.activity.sheet.buttons;
+  if (state.sheet) return state.sheet.buttons;
   const overlay = state.overlay ? 'Hide frame times' : 'Frame times';
   const entries: readonly MenuEntry[] = [
     { id: 'calibrate', label: 'Calibrate', act: () => actions.calibrate() },
     { id: 'recentre', label: 'Recentre', act: () => actions.recentre() },
+    { id: 'comfort', label: 'Comfort', act: () => actions.openComfort() },
     { id: 'overlay', label: overlay, act: () => actions.setOverlay(!state.overlay) },
     { id: 'exit', label: exitLabel(state.inPassthrough), act: () => actions.exit() },
     ...placeEntries(state, actions),

@@ -52,8 +52,7 @@ export function drawMenu(
   context.textAlign = 'left';
   context.fillStyle = vrColors.inkSoft;
   context.font = `600 30px ${vrFont}`;
-  const { calibration, activity, notice } = state;
-  const sheet = activity?.sheet ?? null;
+  const { calibration, sheet, notice } = state;
   const heading = calibration ? 'Calibrate' : (sheet?.heading ?? 'Estimator');
   context.fillText(heading, menuMargin + 4, 72);
   if (calibration) drawCalibration(context, calibration);

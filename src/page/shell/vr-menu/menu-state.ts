@@ -1,6 +1,6 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
 import type { Notices } from 'threepoint-ui/notices';
-import type { ActivityMenu } from '../../activity/activity-menu';
+import type { ActivityMenu, MenuSheet } from '../../activity/activity-menu';
 import type { Activities } from '../activities';
 import type { Measuring } from '../controls/measuring';
 import type { Headset } from '../headset';
@@ -20,8 +20,9 @@ export interface MenuParts {
 /** The menu of an activity that has none. */
 const noMenu: ActivityMenu = { entries: [], sheet: null, notice: null, hint: null };
 
-/** Returns the current state of the menu in the headset. */
-export function menuStateOf({ body, settings, activities, measuring, notices, headset }: MenuParts): VrMenuState {
+/** Returns the current state of the menu in the headset. `sheet`: the shell's own page in place of it; null: none. */
+export function menuStateOf(parts: MenuParts, sheet: MenuSheet | null): VrMenuState {
+  const { body, settings, activities, measuring, notices, headset } = parts;
   const activity = activities.current && (activities.current.menu?.() ?? noMenu);
   return {
     estimator: body.estimator,
@@ -36,6 +37,7 @@ export function menuStateOf({ body, settings, activities, measuring, notices, he
     skinTone: settings.skinTone,
     places: activities.all.map(({ name, title }) => ({ name, title })),
     activity,
+    sheet: sheet ?? activity?.sheet ?? null,
     notice: activity?.notice ?? notices.current().at(-1)?.text ?? activity?.hint ?? null,
   };
 }

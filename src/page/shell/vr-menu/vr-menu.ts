@@ -1,7 +1,8 @@
-import { Group } from 'three';
+import { Group, Vector3 } from 'three';
+import type { Pointer } from 'threepoint/core/input/pointer';
+import type { Pose } from 'threepoint/core/math/pose';
 import type { FrameReport } from 'threepoint-ui/overlay';
 import { createVrPanel } from 'threepoint-ui/vr-panel';
-import type { Pointer } from 'threepoint-ui/vr-pointers';
 import { createPanelTouch } from 'threepoint-ui/vr-touch';
 import { type MenuButton, menuHeight, menuWidth } from '../../activity/activity-menu';
 import { drawFrameTimes, frameTimesHeight, frameTimesWidth } from './frame-times-drawing';
@@ -10,12 +11,17 @@ import { drawMenu } from './menu-drawing';
 
 const pixelsPerMetre = 1000;
 
-/** The menu right of the mirror and the frame times left of it. */
+/** The place of the menu beside the mirror. */
+const beside = { position: [1.1, 1.3, -1.15], turned: -0.74 } as const;
+/** The place of a menu that was brought: this far ahead of the eyes and below them [m], in reach of a finger. */
+const brought = { ahead: 0.52, below: 0.14, scale: 0.5 };
+
+/** The menu right of the mirror, or before the user, and the frame times left of the mirror. */
 export class VrMenu {
   readonly object = new Group();
   readonly #menu = createVrPanel(menuWidth, menuHeight, pixelsPerMetre);
   readonly #frameTimes = createVrPanel(frameTimesWidth, frameTimesHeight, pixelsPerMetre);
-  readonly #touch = createPanelTouch(this.#menu);
+  readonly #touch = createPanelTouch(this.#menu, 'menu');
   readonly #actions: VrMenuActions;
   #state: VrMenuState | null = null;
   #buttons: readonly MenuButton[] = [];
@@ -23,13 +29,13 @@ export class VrMenu {
   #usable: readonly MenuButton[] = [];
   /** The button that a hand points at. */
   #hovered: string | null = null;
+  #brought = false;
   /** What the sheet shows, as a text that changes with it. */
   #drawn = '';
 
   constructor(actions: VrMenuActions) {
     this.#actions = actions;
-    this.#menu.mesh.position.set(1.1, 1.3, -1.15);
-    this.#menu.mesh.rotation.y = -0.74;
+    this.sendBack();
     this.#frameTimes.mesh.position.set(-1.1, 1.35, -1.15);
     this.#frameTimes.mesh.rotation.y = 0.74;
     this.object.add(this.#menu.mesh, this.#frameTimes.mesh);
@@ -39,6 +45,33 @@ export class VrMenu {
   /** A hand points at one of the buttons. */
   get isPointedAt(): boolean {
     return this.object.visible && this.#hovered !== null;
+  }
+
+  /** The menu was brought before the user. */
+  get isBrought(): boolean {
+    return this.#brought;
+  }
+
+  /** Brings the menu before a head (floor frame). */
+  bring({ position, orientation }: Pose<'floor'>): void {
+    const { mesh } = this.#menu;
+    this.#brought = true;
+    const ahead = new Vector3(0, 0, -1).applyQuaternion(mesh.quaternion.copy(orientation)).setY(0).normalize();
+    const at = ahead.multiplyScalar(brought.ahead).add(position);
+    at.y -= brought.below;
+    this.object.updateWorldMatrix(true, false);
+    mesh.position.copy(this.object.worldToLocal(at));
+    mesh.lookAt(new Vector3().copy(position));
+    mesh.scale.setScalar(brought.scale);
+  }
+
+  /** Puts the menu back beside the mirror. */
+  sendBack(): void {
+    const { mesh } = this.#menu;
+    this.#brought = false;
+    mesh.position.set(...beside.position);
+    mesh.rotation.set(0, beside.turned, 0);
+    mesh.scale.setScalar(1);
   }
 
   setVisible(visible: boolean): void {
@@ -56,12 +89,9 @@ export class VrMenu {
     this.#frameTimes.draw((context) => drawFrameTimes(context, report));
   }
 
-  /** Follows the hands' rays and finger tips; a press or a touch on a button is its action. */
+  /** Follows rays and finger tips; a press or a touch on a button is its action. */
   point(pointers: readonly Pointer[]): void {
-    if (!this.object.visible) {
-      for (const pointer of pointers) pointer.showRay(null);
-      return;
-    }
+    if (!this.object.visible) return;
     const { pointedAt, pressed } = this.#touch.follow(pointers, this.#usable);
     const hovered = pointedAt?.id ?? null;
     const moved = hovered !== this.#hovered;

@@ -1,7 +1,7 @@
 import { Group, Vector3 } from 'three';
+import type { Pointer } from 'threepoint/core/input/pointer';
 import { wrapAngle } from 'threepoint/core/math/angle';
 import { createVrPanel } from 'threepoint-ui/vr-panel';
-import type { Pointer } from 'threepoint-ui/vr-pointers';
 import { createPanelTouch } from 'threepoint-ui/vr-touch';
 import { height, pixelsPerMetre, type Target, width } from '../questions/sheet-target';
 import type { StudyScreen } from '../questions/study-screen';
@@ -27,7 +27,7 @@ const mostRise = 0.3;
 export class VrStudyPanel {
   readonly object = new Group();
   readonly #panel = createVrPanel(width, height, pixelsPerMetre);
-  readonly #touch = createPanelTouch(this.#panel);
+  readonly #touch = createPanelTouch(this.#panel, 'study');
   readonly #centre = new Vector3();
   #screen: StudyScreen | null = null;
   #targets: readonly Target[] = [];
@@ -70,10 +70,7 @@ export class VrStudyPanel {
   }
 
   point(pointers: readonly Pointer[]): void {
-    if (!this.object.visible) {
-      for (const pointer of pointers) pointer.showRay(null);
-      return;
-    }
+    if (!this.object.visible) return;
     const { pointedAt, pressed } = this.#touch.follow(pointers, this.#open);
     this.#hovered = pointedAt?.id ?? null;
     // Only the first press acts, because it may have changed the screen.

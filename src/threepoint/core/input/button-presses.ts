@@ -1,3 +1,4 @@
+import { type TrackedPose, trackedOrNull } from '../math/pose';
 import type { Side } from '../math/side';
 
 /** How far each button of a hand is pressed, 0 to 1. A controller has no pinch, a bare hand nothing but. */
@@ -9,11 +10,17 @@ export interface HandButtons {
   readonly kind?: 'controller' | 'hand';
   /** The number of the device among all of the session; absent where devices are not distinguished. */
   readonly device?: number;
+  /** The hand is busy with a gesture of the device's own, such as the one for its menu: for games it is not seen. */
+  readonly taken?: boolean;
 }
 
 export type Buttons = Readonly<Record<Side, HandButtons>>;
 
 export type Button = 'trigger' | 'grip' | 'pinch';
+
+/** Returns the pose of a hand that plays: null where the device does not see it, or uses it itself. */
+export const playingHand = (hand: TrackedPose | null, { taken }: HandButtons): TrackedPose | null =>
+  taken ? null : trackedOrNull(hand);
 
 export const allReleased: HandButtons = { trigger: 0, grip: 0, pinch: 0 };
 export const nothingPressed: Buttons = { left: allReleased, right: allReleased };

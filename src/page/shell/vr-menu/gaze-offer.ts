@@ -1,0 +1,56 @@
+import { Vector3 } from 'three';
+import type { Pointer } from 'threepoint/core/input/pointer';
+import type { Pose } from 'threepoint/core/math/pose';
+import { createVrPanel, fillRounded, vrColors, vrFont } from 'threepoint-ui/vr-panel';
+import { createPanelTouch } from 'threepoint-ui/vr-touch';
+
+const [width, height] = [720, 200];
+/** Before the eyes, and below them there [m]. */
+const away = 1.2;
+const below = 0.3;
+
+const offer = { id: 'gaze', at: [0, 0, width, height] } as const;
+
+/** A sign before a user whose hands no device tracks: it offers to choose by gaze. */
+export class GazeOffer {
+  readonly #panel = createVrPanel(width, height, 1100);
+  readonly #touch = createPanelTouch(this.#panel, 'offer');
+  readonly #ahead = new Vector3();
+
+  constructor() {
+    this.#panel.mesh.name = 'gaze offer';
+    this.#panel.mesh.visible = false;
+    this.#panel.draw((context) => {
+      fillRounded(context, [2, 2, width - 4, height - 4], 40, vrColors.glass, vrColors.line);
+      context.textAlign = 'center';
+      context.textBaseline = 'middle';
+      context.fillStyle = vrColors.inkSoft;
+      context.font = `500 34px ${vrFont}`;
+      context.fillText('No hand or controller is tracked.', width / 2, 68);
+      context.fillStyle = vrColors.ink;
+      context.font = `650 44px ${vrFont}`;
+      context.fillText('Look here to choose by gaze', width / 2, 130);
+    });
+  }
+
+  get object() {
+    return this.#panel.mesh;
+  }
+
+  hide(): void {
+    this.object.visible = false;
+  }
+
+  /** Shows the sign before a head (floor frame); returns whether a gaze has accepted it. */
+  follow(head: Pose<'floor'>, pointers: readonly Pointer[]): boolean {
+    const { object } = this;
+    if (!object.visible) {
+      const ahead = this.#ahead.set(0, 0, -1).applyQuaternion(object.quaternion.copy(head.orientation)).setY(0);
+      object.position.copy(head.position).addScaledVector(ahead.normalize(), away);
+      object.position.y -= below;
+      object.lookAt(this.#ahead.copy(head.position));
+      object.visible = true;
+    }
+    return this.#touch.follow(pointers, [offer]).pressed.length > 0;
+  }
+}

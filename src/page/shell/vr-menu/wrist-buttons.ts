@@ -1,0 +1,81 @@
+import { Group, Matrix4, Vector3 } from 'three';
+import { sideSign } from 'threepoint/core/body/skeleton';
+import type { Pointer } from 'threepoint/core/input/pointer';
+import { type Side, sides } from 'threepoint/core/math/side';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { createVrPanel, fillRounded, vrColors, vrFont } from 'threepoint-ui/vr-panel';
+import { createPanelTouch } from 'threepoint-ui/vr-touch';
+
+const [width, height] = [240, 120];
+/** The button lies this far above the skin, and this far up the forearm from the wrist [m], like a watch. */
+const above = 0.035;
+const upArm = 0.05;
+/** The button shows while the back of the wrist is turned to the eyes by less than 40°. */
+const turnedToEyes = Math.cos((40 * Math.PI) / 180);
+
+const button = { id: 'menu', at: [0, 0, width, height] } as const;
+
+/** A ray of a hand or a controller may cross a wrist at any time; only a finger tip that touches it means it. */
+const aimsByEyes = ({ source }: Pointer): boolean => source === 'gaze' || source === 'transient';
+
+function createWristButton(side: Side) {
+  const panel = createVrPanel(width, height, 3000);
+  panel.mesh.name = `${side} wrist button`;
+  panel.mesh.visible = false;
+  panel.draw((context) => {
+    fillRounded(context, [4, 4, width - 8, height - 8], 40, vrColors.glass, vrColors.accent);
+    context.fillStyle = vrColors.ink;
+    context.font = `650 52px ${vrFont}`;
+    context.textAlign = 'center';
+    context.textBaseline = 'middle';
+    context.fillText('Menu', width / 2, height / 2 + 3);
+  });
+  return { side, panel, touch: createPanelTouch(panel, 'wrist', aimsByEyes) };
+}
+
+/** A button on the back of each wrist that brings the menu: touched by the other hand, looked at, or pinched at. */
+export class WristButtons {
+  readonly object = new Group();
+  readonly #buttons = sides.map(createWristButton);
+  readonly #axes = { along: new Vector3(), back: new Vector3(), across: new Vector3() };
+  readonly #toEyes = new Vector3();
+  readonly #turned = new Matrix4();
+
+  constructor() {
+    this.object.add(...this.#buttons.map(({ panel }) => panel.mesh));
+  }
+
+  hide(): void {
+    for (const { panel } of this.#buttons) panel.mesh.visible = false;
+  }
+
+  /** Follows the wrists of a frame (floor frame); returns whether a button was pressed. */
+  follow(frame: TrackingFrame, pointers: readonly Pointer[]): boolean {
+    let pressed = false;
+    for (const each of this.#buttons) {
+      const { side, panel, touch } = each;
+      panel.mesh.visible = this.#place(each, frame);
+      if (!panel.mesh.visible) continue;
+      // A hand that holds something is not poking, and no hand reaches its own wrist.
+      const others = pointers.filter((pointer) => pointer.side !== side && (!pointer.held || aimsByEyes(pointer)));
+      pressed ||= touch.follow(others, [button]).pressed.length > 0;
+    }
+    return pressed;
+  }
+
+  /** Places a button on its wrist; returns whether it can be seen there. */
+  #place({ side, panel: { mesh } }: ReturnType<typeof createWristButton>, frame: TrackingFrame): boolean {
+    const wrist = side === 'left' ? frame.leftHand : frame.rightHand;
+    if (wrist?.tracking !== 'tracked' || frame.suspended) return false;
+    const { along, back, across } = this.#axes;
+    mesh.quaternion.copy(wrist.orientation);
+    back.set(0, 1, 0).applyQuaternion(mesh.quaternion);
+    // The text runs along the forearm, as on a watch that is held before the chest: to the fingers at the left hand.
+    along.set(0, 0, sideSign(side) > 0 ? 1 : -1).applyQuaternion(mesh.quaternion);
+    across.crossVectors(back, along);
+    mesh.quaternion.setFromRotationMatrix(this.#turned.makeBasis(along, across, back));
+    const up = side === 'left' ? -upArm : upArm;
+    mesh.position.copy(wrist.position).addScaledVector(back, above).addScaledVector(along, up);
+    return this.#toEyes.copy(frame.head.position).sub(mesh.position).normalize().dot(back) > turnedToEyes;
+  }
+}
