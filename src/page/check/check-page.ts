@@ -4,7 +4,7 @@ import { element, pageElement } from 'threepoint-ui/element';
 import { createEnterButton } from 'threepoint-ui/enter-button';
 import { allowOwnScripts } from 'threepoint-ui/own-scripts';
 import { installEmulator } from '../emulator/emulator';
-import { affordableQuality, createRenderer } from '../scene/renderer';
+import { affordableQuality, createRenderer, fitToWindow } from '../scene/renderer';
 import { fetchBuiltInAvatar } from '../shell/avatar-loader';
 import { createNetworkLoader } from '../shell/network-loading';
 import type { CheckStep } from './check-steps';
@@ -42,8 +42,10 @@ async function prepareHeadset(
   const support = await describeXrSupport();
   if (support.kind === 'device' && !emulate) return { emulated: false, sentence: null };
   await installEmulator();
-  const reason = emulate ? 'The address asks for the emulated headset.' : (support.sentence ?? '');
-  return { emulated: true, sentence: `${reason} An emulated headset takes its place: its figures are no measurement.` };
+  const reason = emulate
+    ? 'The address asks for the emulated headset'
+    : `${support.sentence} An emulated headset takes its place`;
+  return { emulated: true, sentence: `${reason}: its figures are no measurement of a device.` };
 }
 
 /** Builds the page; each click on the button is a check of its own. */
@@ -52,7 +54,8 @@ async function start(): Promise<void> {
   const parts = regions();
   const switches = readCheckSwitches(location.search);
   const quality = switches.quality ?? affordableQuality();
-  const renderer = createRenderer(pageElement('stage', HTMLCanvasElement), quality);
+  const canvas = pageElement('stage', HTMLCanvasElement);
+  const renderer = createRenderer(canvas, quality);
   let ready: Promise<HeadsetCheck>;
   const button = createEnterButton(parts.enter, () => void run());
   const show = (label: string, sentence: string | null, enabled: boolean) =>
@@ -82,6 +85,7 @@ async function start(): Promise<void> {
       onStep: (step, steps) => showStep(parts, step, steps),
       onReport(report) {
         parts.progress.hidden = true;
+        canvas.hidden = true;
         showResultCard(parts.result, report);
         ready = check.dispose().then(prepare);
         void ready.then(() => show('Check again', told, true));
@@ -94,9 +98,12 @@ async function start(): Promise<void> {
   async function run(): Promise<void> {
     show('Checking …', null, false);
     parts.result.hidden = true;
+    canvas.hidden = false;
+    fitToWindow(renderer, quality);
     try {
       await (await ready).start();
     } catch (error) {
+      canvas.hidden = true;
       show(label, `The check could not start: ${firstLine(reasonOf(error))}. Try again.`, true);
     }
   }

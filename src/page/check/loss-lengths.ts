@@ -2,7 +2,7 @@
 export interface HandLosses {
   /** How long the hand was to be tracked [s]: from its first frame on, without system menus. */
   readonly observedSeconds: number;
-  /** The length of each loss with a return [ms], ascending. */
+  /** The length of each loss with a return [whole ms], ascending. */
   readonly lengthsMs: readonly number[];
   /** Whether the hand was lost when the observation ended: the length of that loss is not known. */
   readonly openEnd: boolean;
@@ -29,7 +29,7 @@ export class LossLengths {
     this.#last = time;
     if (!tracked) this.#lostAt ??= time;
     else if (this.#lostAt !== null) {
-      this.#lengths.push((time - this.#lostAt) * 1000);
+      this.#lengths.push(Math.round((time - this.#lostAt) * 1000));
       this.#lostAt = null;
     }
   }

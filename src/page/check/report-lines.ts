@@ -81,18 +81,25 @@ function noiseSection({ noise }: HeadsetReport): ReportSection {
 function lossSection({ losses }: HeadsetReport): ReportSection {
   const bars = (lengthsMs: readonly number[]) =>
     histogramOf(lengthsMs)
-      .map((count, bar) => `${bar < histogramEdgesMs.length ? `≤ ${histogramEdgesMs[bar]}` : 'longer'}: ${count}`)
+      .flatMap((count, bar) => (count > 0 ? [`${count} ${rangeOf(bar)}`] : []))
       .join(', ');
   return {
     title: 'Lost hands',
     lines: losses.map(({ hand, source, lengthsMs, observedSeconds, openEnd }) => ({
       label: `${trackers[hand]} (${source})`,
       value:
-        `${lengthsMs.length} losses in ${observedSeconds.toFixed(0)} s${openEnd ? ', lost at the end' : ''}` +
-        `${lengthsMs.length > 0 ? `; lengths [ms] ${bars(lengthsMs)}` : ''}`,
+        `Losses in ${observedSeconds.toFixed(0)} s: ${bars(lengthsMs) || 'none'}` +
+        `${openEnd ? '; lost at the end' : ''}`,
     })),
     note: 'A loss lasts until the hand is seen again, so it includes the time that the person hid it.',
   };
+}
+
+/** Returns the range of a bar of the histogram in words. */
+function rangeOf(bar: number): string {
+  const [from, to] = [histogramEdgesMs[bar - 1], histogramEdgesMs[bar]];
+  if (from === undefined) return `up to ${to} ms`;
+  return to === undefined ? `over ${from} ms` : `of ${from} to ${to} ms`;
 }
 
 function frameSection({ frameTimes }: HeadsetReport): ReportSection {

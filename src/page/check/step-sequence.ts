@@ -11,15 +11,15 @@ export interface StepListener {
 }
 
 /**
- * Goes through steps by the time of frames. Steps that depend on what the first ones found are asked for when those are
- * over.
+ * Goes through steps by the time of frames. Steps that depend on what the first ones found are settled when those are
+ * over; until then they are a preview.
  */
 export class StepSequence {
   readonly #listener: StepListener;
   readonly #pace: number;
+  readonly #first: readonly CheckStep[];
   readonly #more: () => readonly CheckStep[];
   #steps: readonly CheckStep[];
-  #asked = false;
   #index = -1;
   /** When the step began [s]. */
   #since = Number.NaN;
@@ -32,8 +32,9 @@ export class StepSequence {
     readonly pace: number;
     readonly listener: StepListener;
   }) {
-    this.#steps = options.first;
+    this.#first = options.first;
     this.#more = options.more;
+    this.#steps = [...options.first, ...options.more()];
     this.#pace = options.pace;
     this.#listener = options.listener;
   }
@@ -48,7 +49,7 @@ export class StepSequence {
   }
 
   get over(): boolean {
-    return this.#asked && this.#index >= this.#steps.length;
+    return this.#index >= this.#steps.length;
   }
 
   /** What frames count for now; null: they do not count. */
@@ -79,10 +80,7 @@ export class StepSequence {
 
   #end(step: CheckStep, time: number): void {
     this.#listener.end(step);
-    if (this.#index === this.#steps.length - 1 && !this.#asked) {
-      this.#asked = true;
-      this.#steps = [...this.#steps, ...this.#more()];
-    }
+    if (this.#index === this.#first.length - 1) this.#steps = [...this.#first, ...this.#more()];
     this.#begin(this.#index + 1, time);
   }
 
