@@ -72,6 +72,15 @@ const studyPluginsInPages: Plugin = {
   },
 };
 
+/**
+ * The pages of a build. The headset check is a build of its own (scripts/build.mjs): a page that shares its chunks would
+ * split those of the others.
+ */
+const pages =
+  process.env.THREEPOINT_BUILD_PAGES === 'check'
+    ? { input: ['check.html'], first: false }
+    : { input: ['index.html', 'results.html', 'experimenter.html', 'preview.html', 'withdraw.html'], first: true };
+
 /** The server for rooms and studies: `npm start`, which runs next to the development server, on the same PORT. */
 const server = `http://127.0.0.1:${process.env.PORT ?? 3333}`;
 
@@ -89,11 +98,13 @@ export default defineConfig({
     // The server's policy allows scripts from files of the same origin only: nothing may be inlined as a data: URL.
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },
+    emptyOutDir: pages.first,
+    copyPublicDir: pages.first,
     // The manifest of imports is for scripts/build-service-worker.mjs, which deletes it.
-    manifest: true,
+    manifest: pages.first,
     chunkSizeWarningLimit: 1200,
     rolldownOptions: {
-      input: ['index.html', 'results.html', 'experimenter.html', 'preview.html', 'withdraw.html'],
+      input: pages.input,
       // The emulator's panel uses packages with directives for server components, which this page does not have.
       onwarn(warning, warn) {
         if (warning.code !== 'MODULE_LEVEL_DIRECTIVE') warn(warning);

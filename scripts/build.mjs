@@ -10,6 +10,7 @@ import { main, root, run, SetupError } from './run-command.mjs';
 /** The paths that the built page depends on. */
 const sources = [
   'index.html',
+  'check.html',
   'results.html',
   'experimenter.html',
   'preview.html',
@@ -120,11 +121,19 @@ async function precompress(directory) {
 export async function build({ base, out, filesFrom = usual.filesFrom } = usual) {
   const hash = sourceHash({ base, filesFrom });
   const vite = ['node_modules/vite/bin/vite.js', 'build', '--logLevel', 'warn'];
-  const { code } = await run(process.execPath, [...vite, '--base', base, '--outDir', out, '--emptyOutDir'], {
-    env: filesFrom === null ? {} : { THREEPOINT_BUILD_FILES_FROM: filesFrom },
-  });
-  if (code !== 0) throw new SetupError(`The build failed with exit code ${code}; its messages are above.`);
+  const buildPages = async (pages) => {
+    const { code } = await run(process.execPath, [...vite, '--base', base, '--outDir', out], {
+      env: {
+        THREEPOINT_BUILD_PAGES: pages,
+        ...(filesFrom !== null && { THREEPOINT_BUILD_FILES_FROM: filesFrom }),
+      },
+    });
+    if (code !== 0) throw new SetupError(`The build failed with exit code ${code}; its messages are above.`);
+  };
+  await buildPages('all');
   await buildServiceWorker(out);
+  // After the service worker, whose list is what the other pages load.
+  await buildPages('check');
   await precompress(out);
   writeFileSync(join(out, stampFile), hash);
 }

@@ -1,7 +1,7 @@
 // npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--robustness]
-// [--speed] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR] [--legs]: evaluates the shipping code
-// path on recorded motion. Python prepares the recordings with their ground truth; TypeScript runs the estimators on
-// them. npm run evaluate -- --recording FILE [--recording FILE] [--json FILE] [--models DIR]: evaluates on recordings
+// [--noise FILE] [--speed] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR] [--legs]: evaluates the
+// shipping code path on recorded motion. Python prepares the recordings with their ground truth; TypeScript runs the
+// estimators on them. npm run evaluate -- --recording FILE [--recording FILE] [--json FILE] [--models DIR]: evaluates on recordings
 // of the page, with the body that the device reported as ground truth.
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -12,7 +12,7 @@ import { pythonEnvironment } from './python-environment.mjs';
 import { main, root, run, runProgram, SetupError, typedPath } from './run-command.mjs';
 
 const usage =
-  'npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--robustness] [--speed] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR]\n' +
+  'npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--robustness] [--noise FILE] [--speed] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR]\n' +
   'npm run evaluate -- --legs --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--gaits DIR]\n' +
   'npm run evaluate -- --recording FILE [--recording FILE] [--json FILE] [--models DIR]\n' +
   'DIR holds .asf and .amc or .bvh files; docs/accuracy.md says the rest.';
@@ -30,6 +30,7 @@ function options() {
         people: text,
         models: text,
         robustness: { type: 'boolean' },
+        noise: text,
         speed: { type: 'boolean' },
         'hands-measured': { type: 'boolean' },
         'forearm-typed': { type: 'boolean' },
@@ -43,7 +44,7 @@ function options() {
     const beside = Object.keys(values).find((name) => !['recording', 'json', 'models'].includes(name));
     if (values.recording && beside)
       throw new Error(`--recording measures against what a device reported: without --${beside}`);
-    const other = ['robustness', 'speed', 'hands-measured', 'forearm-typed', 'figures', 'fp32'].find(
+    const other = ['robustness', 'noise', 'speed', 'hands-measured', 'forearm-typed', 'figures', 'fp32'].find(
       (name) => values[name],
     );
     if (values.gaits && !values.legs) throw new Error('--gaits are the networks of legs: with --legs');
@@ -79,7 +80,8 @@ await main(async () => {
     const drive = ['--recordings', recordings];
     drive.push('--models', given.models ? typedPath(given.models) : join(root, 'public/models'));
     if (given.json) drive.push('--json', typedPath(given.json));
-    for (const name of ['figures', 'fp32', 'gaits']) if (given[name]) drive.push(`--${name}`, typedPath(given[name]));
+    for (const name of ['noise', 'figures', 'fp32', 'gaits'])
+      if (given[name]) drive.push(`--${name}`, typedPath(given[name]));
     for (const name of ['robustness', 'speed', 'hands-measured', 'forearm-typed'])
       if (given[name]) drive.push(`--${name}`);
     return await runProgram(program, drive, { limitSeconds: twoHours });

@@ -37,14 +37,22 @@ export const lasting =
   () =>
     seconds;
 
-/** Losses as long as those of a headset's hand tracking: geometric between its quantiles, no longer than the last. */
-export const asHandTracking: LossLength = (random) => {
-  const share = random();
-  const above = quantiles.findIndex((quantile) => quantile.share > share);
-  const [from, to] = [quantiles.at(above < 0 ? -1 : above - 1)!, quantiles.at(above)!];
-  const within = from === to ? 0 : (share - from.share) / (to.share - from.share);
-  return (from.frames * (to.frames / from.frames) ** within) / handTrackingHz;
-};
+/** The share of losses that last so long [s] or less. */
+export interface LossQuantile {
+  readonly share: number;
+  readonly seconds: number;
+}
+
+/** Draws lengths between quantiles in ascending order: geometric, from the first to the last. */
+export const lossLengthFrom =
+  (losses: readonly LossQuantile[]): LossLength =>
+  (random) => {
+    const share = random();
+    const above = losses.findIndex((quantile) => quantile.share > share);
+    const [from, to] = [losses.at(above < 0 ? -1 : above - 1)!, losses.at(above)!];
+    const within = from === to ? 0 : (share - from.share) / (to.share - from.share);
+    return from.seconds * (to.seconds / from.seconds) ** within;
+  };
 
 /** Losses at seeded times, of either hand; up to the first that the clip is too short for, with its aftermath. */
 export function scheduleLosses(frames: number, rateHz: number, lengthOf: LossLength, seed: number): Loss[] {
@@ -102,12 +110,33 @@ export interface TrackerNoise {
   readonly radians: number;
 }
 
-/** Noise of head or hands as in the simulated trackers of the evaluation. */
-export const simulatedNoise = (tracker: 'head' | 'hands'): TrackerNoise =>
-  noiseOf(simulated.positionNoise[tracker], simulated.rotationNoiseDegrees[tracker]);
+/** The noise of a device's trackers. */
+export type TrackingNoise = Readonly<Record<'head' | 'hands', TrackerNoise>>;
+
+/** The noise of the simulated trackers, which every recording of the evaluation has. */
+export const simulatedNoise: TrackingNoise = {
+  head: noiseOf(simulated.positionNoise.head, simulated.rotationNoiseDegrees.head),
+  hands: noiseOf(simulated.positionNoise.hands, simulated.rotationNoiseDegrees.hands),
+};
+
+/** The tracking of one device, for the rows of robustness that depend on it. */
+export interface DeviceTracking {
+  /** The name of its noise in the table. */
+  readonly name: string;
+  readonly noise: TrackingNoise;
+  /** The lengths of its hands' losses, ascending; at least two. */
+  readonly losses: readonly LossQuantile[];
+}
 
 /** White noise that no still headset shows, the same for head and hands: 0.3 mm by axis and 0.1° about a random one. */
-export const strongNoise = noiseOf(0.0003, 0.1);
+const strong = noiseOf(0.0003, 0.1);
+
+/** The tracking that is assumed without a measured one: strong noise, and losses of a commercial headset. */
+export const usualTracking: DeviceTracking = {
+  name: 'strong noise',
+  noise: { head: strong, hands: strong },
+  losses: quantiles.map(({ share, frames }) => ({ share, seconds: frames / handTrackingHz })),
+};
 
 function noiseOf(metres: number, degrees: number): TrackerNoise {
   return { metres, radians: (degrees * Math.PI) / 180 / Math.sqrt(3) };
@@ -126,11 +155,11 @@ export function addNoise<P extends TrackedPose>(pose: P, { metres, radians }: Tr
 }
 
 /** Recorded frames with the simulated trackers' noise raised to `noise`: independent variances add up. */
-export function raiseNoise(frames: readonly RecordedFrame[], noise: TrackerNoise, seed: number): RecordedFrame[] {
+export function raiseNoise(frames: readonly RecordedFrame[], noise: TrackingNoise, seed: number): RecordedFrame[] {
   const normal = normalNumbers(seed);
   const missing = (tracker: 'head' | 'hands'): TrackerNoise => {
-    const there = simulatedNoise(tracker);
-    const rest = (part: keyof TrackerNoise) => Math.sqrt(Math.max(0, noise[part] ** 2 - there[part] ** 2));
+    const rest = (part: keyof TrackerNoise) =>
+      Math.sqrt(Math.max(0, noise[tracker][part] ** 2 - simulatedNoise[tracker][part] ** 2));
     return { metres: rest('metres'), radians: rest('radians') };
   };
   const [ofHead, ofHands] = [missing('head'), missing('hands')];

@@ -2,6 +2,8 @@ import { writeFileSync } from 'node:fs';
 import { parseArgs } from 'node:util';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { doubtOfErrors } from 'threepoint/core/mocap/doubts';
+import { readCheckFile, trackingOf } from './checked-headset';
+import { type DeviceTracking, usualTracking } from './disturbances';
 import { drive, type MeasuredMethod, measuredMethods } from './drive';
 import { addFigures, emptyCollection, figuresOf } from './figures';
 import { addClip, emptyMeasures, type MeasuredFrame, type Measures, merge, type Report, report } from './measures';
@@ -21,6 +23,7 @@ const { values: options } = parseArgs({
     models: { type: 'string' },
     json: { type: 'string' },
     robustness: { type: 'boolean' },
+    noise: { type: 'string' },
     speed: { type: 'boolean' },
     'hands-measured': { type: 'boolean' },
     'forearm-typed': { type: 'boolean' },
@@ -178,8 +181,8 @@ function printResult(
   }
 }
 
-/** The judged clips again, each with one thing wrong. */
-function measureDisturbed(corpus: Corpus) {
+/** The judged clips again, each with one thing wrong; `tracking`: the device whose noise and losses they have. */
+function measureDisturbed(corpus: Corpus, tracking: DeviceTracking) {
   const { recordings, index, regressors } = corpus;
   const judged = judgedOf(corpus);
   const clips = index.clips.filter(({ person }) => judged.has(person));
@@ -193,6 +196,7 @@ function measureDisturbed(corpus: Corpus) {
     }),
     regressors,
     rateHz: index.rateHz,
+    tracking,
     onProgress: progress,
   });
 }
@@ -215,16 +219,19 @@ async function measureSpeeds(corpus: Corpus) {
 }
 
 async function main(): Promise<void> {
-  const { recordings, models, json, robustness, figures, fp32 } = options;
+  const { recordings, models, json, robustness, noise, figures, fp32 } = options;
   if (!recordings || !models)
     throw new Error('evaluate: --recordings and --models are needed; `npm run evaluate` gives them');
+  // A file with a fault is refused before minutes of work.
+  const checked = noise ? trackingOf(readCheckFile(noise), noise) : null;
+  for (const remark of checked?.remarks ?? []) console.log(remark);
   const corpus = await readCorpus(recordings, models, fp32);
   const measured = await measureClips(corpus);
   const result = resultOf(corpus, measured);
   printResult(corpus, result, measured.reaches);
   const { rateHz } = corpus.index;
   if (figures) writeFileSync(figures, `${JSON.stringify(figuresOf(measured.collection, rateHz))}\n`);
-  const disturbed = robustness ? await measureDisturbed(corpus) : null;
+  const disturbed = robustness || checked ? await measureDisturbed(corpus, checked ?? usualTracking) : null;
   if (disturbed) console.log(robustnessText(disturbed, rateHz));
   const speeds = options.speed ? await measureSpeeds(corpus) : null;
   if (speeds) console.log(speedTable(speeds));

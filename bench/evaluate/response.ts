@@ -4,7 +4,7 @@ import { identity, type Quat } from 'threepoint/core/math/quat';
 import { normalNumbers } from 'threepoint/core/math/random';
 import { add, dot, length, scale, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { addNoise, simulatedNoise, type TrackerNoise } from './disturbances';
+import { addNoise, simulatedNoise, type TrackingNoise } from './disturbances';
 import type { Driver } from './drive';
 
 /** The calibration of the person who stands there. */
@@ -114,7 +114,7 @@ function responseOf(slow: Fundamental, quick: Fundamental, hz: number): Response
 export async function measureTremble(
   driver: Driver,
   joints: readonly string[],
-  noiseOf: (tracker: 'head' | 'hands') => TrackerNoise = simulatedNoise,
+  noise: TrackingNoise = simulatedNoise,
   rateHz = 60,
 ): Promise<Readonly<Record<string, number>>> {
   const normal = normalNumbers(15);
@@ -126,9 +126,9 @@ export async function measureTremble(
     const { head, leftHand, rightHand } = frame;
     const drawn = await driver.draw({
       ...frame,
-      head: addNoise(head, noiseOf('head'), normal),
-      leftHand: leftHand && addNoise(leftHand, noiseOf('hands'), normal),
-      rightHand: rightHand && addNoise(rightHand, noiseOf('hands'), normal),
+      head: addNoise(head, noise.head, normal),
+      leftHand: leftHand && addNoise(leftHand, noise.hands, normal),
+      rightHand: rightHand && addNoise(rightHand, noise.hands, normal),
     });
     if (before && row >= 0) {
       for (const joint of joints) {

@@ -3,10 +3,11 @@ import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
 import { nextRandom } from 'threepoint/core/math/random';
 import { vec3 } from 'threepoint/core/math/vec3';
 import {
-  asHandTracking,
+  type DeviceTracking,
   type LossLength,
   lasting,
   loseHands,
+  lossLengthFrom,
   offsetTrackers,
   raiseNoise,
   resampleEstimates,
@@ -14,9 +15,10 @@ import {
   scheduleLosses,
   seedOf,
   simulatedNoise,
-  strongNoise,
   type Tracker,
+  type TrackingNoise,
   trackers,
+  usualTracking,
 } from './disturbances';
 import { createDriver, drive, type MeasuredMethod } from './drive';
 import { addLosses, emptyLossTally, type LongestStep, type LossReport, reportLosses } from './losses';
@@ -32,10 +34,12 @@ export interface RobustnessClip {
 }
 
 export const lossSeconds = [0.1, 0.5, 2] as const;
-/** Losses of each of those lengths, then of a headset's hand tracking. */
-const lossKinds: readonly { readonly key: string; readonly lengthOf: LossLength }[] = [
+/** Returns the losses of each of those lengths, then of the device's hand tracking. */
+const lossKindsOf = ({
+  losses,
+}: DeviceTracking): readonly { readonly key: string; readonly lengthOf: LossLength }[] => [
   ...lossSeconds.map((seconds) => ({ key: String(seconds), lengthOf: lasting(seconds) })),
-  { key: 'hand tracking', lengthOf: asHandTracking },
+  { key: 'hand tracking', lengthOf: lossLengthFrom(losses) },
 ];
 export const offsetsCm = [-3, -1, 1, 3] as const;
 const axes = ['x', 'y', 'z'] as const;
@@ -55,9 +59,9 @@ export interface MethodRobustness {
   readonly mpjpeCm: number;
   readonly jerkRatio: number;
   readonly losses: readonly LossReport[];
-  /** Losses as long as those of a headset's hand tracking. */
+  /** Losses as long as those of the device's hand tracking. */
   readonly handTracking: LossReport;
-  /** The simulated noise, which every other figure is of, then the strong one. */
+  /** The simulated noise, which every other figure is of, then the device's. */
   readonly noises: readonly NoiseReport[];
   readonly offsets: readonly {
     readonly tracker: Tracker;
@@ -74,6 +78,8 @@ export interface RobustnessReport<Method extends MeasuredMethod = MeasuredMethod
   readonly people: readonly string[];
   readonly clips: number;
   readonly frames: number;
+  /** The name of the device's noise, whose losses are those “as tracked”. */
+  readonly tracking: string;
   readonly estimators: Readonly<Record<Method, MethodRobustness>>;
 }
 
@@ -104,7 +110,7 @@ interface Condition {
 }
 
 /** All conditions but losses, in the order of the report. */
-function conditions(rateHz: number) {
+function conditions(rateHz: number, { noise }: DeviceTracking) {
   const same: Condition = { rateHz, frames: (clip) => clip.frames, calibration: (calibration) => calibration };
   const offsets = trackers.flatMap((tracker) =>
     axes.flatMap((axis) =>
@@ -138,7 +144,7 @@ function conditions(rateHz: number) {
   }));
   return {
     clean: same,
-    strongNoise: { ...same, frames: (clip: RobustnessClip) => raiseNoise(clip.frames, strongNoise, seedOf(clip.name)) },
+    deviceNoise: { ...same, frames: (clip: RobustnessClip) => raiseNoise(clip.frames, noise, seedOf(clip.name)) },
     offsets,
     heights: scaled('eyeHeight', heightPercents),
     spans: scaled('armSpan', spanPercents),
@@ -153,6 +159,8 @@ interface RobustnessOptions<Method, Listed> {
   load(clip: Listed): RobustnessClip;
   readonly regressors: ReadonlyMap<MeasuredMethod, PoseRegressor>;
   readonly rateHz: number;
+  /** The device whose noise and losses are measured with; default: `usualTracking`. */
+  readonly tracking?: DeviceTracking;
   /** Receives the share of the work that is done. */
   onProgress?(share: number): void;
 }
@@ -165,11 +173,12 @@ export async function measureRobustness<
   Method extends MeasuredMethod,
   Listed extends { readonly person: string; readonly frames: number },
 >(options: RobustnessOptions<Method, Listed>): Promise<RobustnessReport<Method>> {
-  const { methods, clips, regressors, rateHz } = options;
-  const all = conditions(rateHz);
+  const { methods, clips, regressors, rateHz, tracking = usualTracking } = options;
+  const all = conditions(rateHz, tracking);
+  const lossKinds = lossKindsOf(tracking);
   const listed: readonly Condition[] = [
     all.clean,
-    all.strongNoise,
+    all.deviceNoise,
     ...[...all.offsets, ...all.heights, ...all.spans, ...all.rates].map(({ condition }) => condition),
   ];
   const measures = methods.map(() => new Map<Condition, Measures>(listed.map((c) => [c, emptyMeasures()])));
@@ -200,7 +209,9 @@ export async function measureRobustness<
     options.onProgress?.(done / total);
   }
   const lossesOf = (number: number) => lossKinds.map((_, which) => reportLosses(tallies[number]![which]!));
-  const trembles = await Promise.all(methods.map((name) => measureTrembles(name, regressors.get(name) ?? null)));
+  const trembles = await Promise.all(
+    methods.map((name) => measureTrembles(name, regressors.get(name) ?? null, tracking.noise)),
+  );
   const rows = methods.map((name, number): [Method, MethodRobustness] => {
     const figures = ({ condition }: { readonly condition: Condition }) => {
       const { mpjpeCm, jerkRatio } = report(measures[number]?.get(condition) ?? emptyMeasures());
@@ -213,7 +224,7 @@ export async function measureRobustness<
         ...figures({ condition: all.clean }),
         losses: lossesOf(number).slice(0, lossSeconds.length),
         handTracking: lossesOf(number).at(-1)!,
-        noises: [all.clean, all.strongNoise].map((condition, which) => ({
+        noises: [all.clean, all.deviceNoise].map((condition, which) => ({
           ...figures({ condition }),
           ...trembles[number]![which]!,
         })),
@@ -233,19 +244,21 @@ export async function measureRobustness<
     people: [...new Set(clips.map(({ person }) => person))].sort(),
     clips: clips.length,
     frames: total,
+    tracking: tracking.name,
     estimators: Object.fromEntries(rows) as Record<Method, MethodRobustness>,
   };
 }
 
-/** How elbow and hips tremble under the simulated noise, then under the strong one. */
+/** How elbow and hips tremble under the simulated noise, then under the device's. */
 async function measureTrembles(
   name: MeasuredMethod,
   regressor: PoseRegressor | null,
+  deviceNoise: TrackingNoise,
 ): Promise<Pick<NoiseReport, 'elbowTrembleMm' | 'hipsTrembleMm'>[]> {
   const reports = [];
-  for (const noiseOf of [simulatedNoise, () => strongNoise]) {
+  for (const noise of [simulatedNoise, deviceNoise]) {
     const driver = createDriver(name, standing, regressor);
-    const { rightLowerArm, hips } = await measureTremble(driver, ['rightLowerArm', 'hips'], noiseOf);
+    const { rightLowerArm, hips } = await measureTremble(driver, ['rightLowerArm', 'hips'], noise);
     reports.push({ elbowTrembleMm: rounded(rightLowerArm!, 3), hipsTrembleMm: rounded(hips!, 3) });
   }
   return reports;
@@ -271,7 +284,7 @@ export function addErrorsAndJerk(
 
 /** The table that `--robustness` prints. */
 export function robustnessText<Method extends MeasuredMethod>(
-  { people, clips, frames, estimators }: RobustnessReport<Method>,
+  { people, clips, frames, tracking, estimators }: RobustnessReport<Method>,
   rateHz: number,
 ): string {
   const methods = Object.keys(estimators) as Method[];
@@ -299,7 +312,7 @@ export function robustnessText<Method extends MeasuredMethod>(
     lossRows(`${Math.round(seconds * 1000)} ms`, (m) => m.losses[index]!);
   }
   lossRows('as tracked', (m) => m.handTracking);
-  for (const [index, label] of ['simulated noise', 'strong noise'].entries()) {
+  for (const [index, label] of ['simulated noise', tracking].entries()) {
     const of = (m: MethodRobustness) => m.noises[index]!;
     row(`${label}: MPJPE / jerk`, (m) => `${of(m).mpjpeCm.toFixed(2)} / ${of(m).jerkRatio.toFixed(2)} ×`);
     row(

@@ -4,9 +4,9 @@ import { distance, subtract } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
 import {
   aftermathSeconds,
-  asHandTracking,
   lasting,
   loseHands,
+  lossLengthFrom,
   offsetTrackers,
   raiseNoise,
   resampleEstimates,
@@ -14,7 +14,7 @@ import {
   scheduleLosses,
   seedOf,
   simulatedNoise,
-  strongNoise,
+  usualTracking,
 } from '../../bench/evaluate/disturbances';
 import { drive } from '../../bench/evaluate/drive';
 import { quantiles, rateHz } from '../../bench/evaluate/hand-tracking-losses.json';
@@ -43,7 +43,7 @@ describe('losses', () => {
   });
 
   test('last as long as those of a headset that tracks hands', () => {
-    const losses = scheduleLosses(10_000_000, 60, asHandTracking, seedOf('any'));
+    const losses = scheduleLosses(10_000_000, 60, lossLengthFrom(usualTracking.losses), seedOf('any'));
     const seconds = losses.map(({ start, end }) => (end - start) / 60).sort((a, b) => a - b);
     expect(seconds.length).toBeGreaterThan(10_000);
     for (const { share, frames } of quantiles.slice(1, -1)) {
@@ -71,7 +71,7 @@ describe('losses', () => {
 describe('noise', () => {
   test('is raised to what it is to be, of head and hands alike', () => {
     const still = Array.from({ length: 4000 }, () => recordedMotion(1, 1)[0]!);
-    const noisy = raiseNoise(still, strongNoise, 7);
+    const noisy = raiseNoise(still, usualTracking.noise, 7);
     for (const [point, tracker] of [
       ['head', 'head'],
       ['rightHand', 'hands'],
@@ -84,8 +84,8 @@ describe('noise', () => {
           noisy.length /
           3,
       );
-      const before = simulatedNoise(tracker).metres;
-      expect(Math.sqrt(deviation ** 2 + before ** 2)).toBeCloseTo(strongNoise.metres, 5);
+      const before = simulatedNoise[tracker].metres;
+      expect(Math.sqrt(deviation ** 2 + before ** 2)).toBeCloseTo(usualTracking.noise[tracker].metres, 5);
     }
     expect(noisy.map(({ truth }) => truth)).toEqual(still.map(({ truth }) => truth));
   });

@@ -23,14 +23,20 @@ const labels: Readonly<Record<EstimatedJoint, string>> = {
 
 const place = vec3(0, 0, 0);
 
-/** How far the drawn joints are from where the device has them, over the last moments. */
+/** How far the drawn joints are from where the device has them: a mean over the last moments, or as `shareOf` weighs. */
 export class DeviceDifference {
+  readonly #shareOf: (elapsed: number) => number;
   readonly #joints = makeJointPoses();
   /** [m], in the order of `estimatedJoints`. */
   readonly #means = new Float64Array(estimatedJoints.length);
   #skeleton: Skeleton | null = null;
   #skeletonOf: Calibration | null = null;
   #time = Number.NaN;
+
+  /** `shareOf`: the share of a frame in the mean, so long after the frame before [s]. */
+  constructor(shareOf = (elapsed: number) => smoothingFactor(halfLife, elapsed)) {
+    this.#shareOf = shareOf;
+  }
 
   /** Called with every drawn frame. A frame without a body of the device is ignored. */
   observe({ time, deviceBody }: TrackingFrame, { body }: AvatarPose, calibration: Calibration): void {
@@ -41,7 +47,7 @@ export class DeviceDifference {
     if (this.#skeletonOf !== calibration) this.#skeleton = skeletonFromCalibration(calibration);
     this.#skeletonOf = calibration;
     forwardKinematics(this.#skeleton!, body, this.#joints);
-    const share = Number.isNaN(this.#time) ? 1 : smoothingFactor(halfLife, Math.max(0, time - this.#time));
+    const share = Number.isNaN(this.#time) ? 1 : this.#shareOf(Math.max(0, time - this.#time));
     this.#time = time;
     for (let index = 0; index < estimatedJoints.length; index++) {
       const joint = estimatedJoints[index]!;

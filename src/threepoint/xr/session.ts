@@ -58,12 +58,16 @@ export const requestVrSession = (deviceBody = false): Promise<XRSession> =>
 export const requestPassthroughSession = (deviceBody = false): Promise<XRSession> =>
   requestSession('immersive-ar', [...roomFeatures, ...(deviceBody ? [bodyFeature] : [])]);
 
-async function requestSession(mode: XRSessionMode, features: readonly string[]): Promise<XRSession> {
+/** The session features that every session asks for beside the floor. */
+export const usualFeatures = ['hand-tracking', 'bounded-floor', 'layers'] as const;
+
+/** Requests a session with a floor, the usual features and these. Rejects with a sentence. Needs a click. */
+export async function requestSession(mode: XRSessionMode, features: readonly string[]): Promise<XRSession> {
   if (!navigator.xr) throw new Error('this browser has no WebXR');
   try {
     return await navigator.xr.requestSession(mode, {
       requiredFeatures: ['local-floor'],
-      optionalFeatures: ['hand-tracking', 'bounded-floor', 'layers', ...features],
+      optionalFeatures: [...usualFeatures, ...features],
     });
   } catch (error) {
     const name = error instanceof DOMException ? error.name : '';

@@ -1,0 +1,75 @@
+import type { WebGLRenderer } from 'three';
+import { bodyFeature, DeviceBodyReader } from 'threepoint/xr/device-body-reader';
+import { giveFramesToEvents } from 'threepoint/xr/frameless-events';
+import { requestSession, usualFeatures } from 'threepoint/xr/session';
+import { TrackedSession } from 'threepoint/xr/tracked-session';
+import type { HeadsetReport } from './headset-report';
+
+/** The optional features that are asked for beside the usual ones. None of them asks for the user's room. */
+const askedFeatures = [bodyFeature, 'anchors', 'hit-test'] as const;
+const modes = ['inline', 'immersive-vr', 'immersive-ar'] as const;
+
+/** A session that is measured. */
+export interface CheckSession {
+  readonly xr: XRSession;
+  readonly tracking: TrackedSession;
+  readonly bodyReader: DeviceBodyReader;
+}
+
+export interface CheckSessionEvents {
+  onDiscontinuity(): void;
+  onEnd(): void;
+}
+
+/** Enters a session that the renderer draws. Rejects with a sentence. Needs a click. */
+export async function enterSession(renderer: WebGLRenderer, events: CheckSessionEvents): Promise<CheckSession> {
+  const xr = await requestSession('immersive-vr', askedFeatures);
+  try {
+    giveFramesToEvents(xr);
+    await renderer.xr.setSession(xr);
+  } catch (error) {
+    // A session that is not drawn would keep the headset waiting.
+    await xr.end();
+    throw error;
+  }
+  const bodyReader = new DeviceBodyReader();
+  const tracking = new TrackedSession({ session: xr, drawing: renderer.xr, bodyReader, ...events });
+  tracking.start();
+  return { xr, tracking, bodyReader };
+}
+
+/** Collects what a session offers; profiles appear with their devices, so they are collected in every frame. */
+export class OfferedFeatures {
+  readonly #xr: XRSession;
+  readonly #profiles = new Set<string>();
+
+  constructor(xr: XRSession) {
+    this.#xr = xr;
+  }
+
+  observe(): void {
+    for (const { profiles } of this.#xr.inputSources) if (profiles[0]) this.#profiles.add(profiles[0]);
+  }
+
+  get profiles(): string[] {
+    return [...this.#profiles];
+  }
+
+  get ratesHz(): number[] {
+    return Array.from(this.#xr.supportedFrameRates ?? []).sort((a, b) => a - b);
+  }
+
+  async features(): Promise<HeadsetReport['features']> {
+    const offered = await Promise.all(modes.map(isOffered));
+    return {
+      modes: modes.filter((_, index) => offered[index]),
+      asked: ['local-floor', ...usualFeatures, ...askedFeatures],
+      granted: this.#xr.enabledFeatures ? [...this.#xr.enabledFeatures] : null,
+    };
+  }
+}
+
+async function isOffered(mode: XRSessionMode): Promise<boolean> {
+  // reason: a mode that the browser may not be asked for is not offered
+  return (await navigator.xr?.isSessionSupported(mode).catch(() => false)) ?? false;
+}

@@ -1,0 +1,146 @@
+import { type Camera, Group, type WebGLRenderer } from 'three';
+import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
+import { parseAvatar } from 'threepoint/avatar/load-avatar';
+import { createMirror, type Mirror } from 'threepoint/avatar/mirror';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { createEstimator } from 'threepoint/core/estimation/estimators';
+import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
+import { nothingPressed } from 'threepoint/core/input/button-presses';
+import { composeTransforms, invertTransform } from 'threepoint/core/math/pose';
+import { identity } from 'threepoint/core/math/quat';
+import { zero } from 'threepoint/core/math/vec3';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { ballRules, defaultBallOptions } from 'threepoint-games/ball/rules';
+import { stations } from 'threepoint-games/ball/stations';
+import { type ArcheryPlay, createArcheryPlay } from '../archery/archery-play';
+import { type ArcheryView, createArcheryView } from '../archery/archery-view';
+import { type BallScene, type BallView, createBallView } from '../ball/ball-view';
+import type { Quality } from '../scene/renderer';
+import type { Surroundings } from '../scene/surroundings';
+import { createStudio, type Studio } from '../studio/studio';
+import type { WorldName } from './headset-report';
+
+/** The mirror ahead of the user, and at their right where something flies ahead [m, rad]. */
+const mirrorAhead = { x: 0, z: -1.5, turned: 0 };
+const mirrorAside = { x: 1.95, z: -0.1, turned: -1.3 };
+const archerySettings = { bowSide: 'left', oneHanded: false, everyHitCounts: false } as const;
+/** The other players are this far apart in the actor's performance [s]. */
+const actorsApart = 7;
+
+const silent = () => undefined;
+
+/** Another player of the ball court, moved by the built-in actor. */
+interface OtherPlayer {
+  readonly avatar: Avatar;
+  readonly estimator: PoseEstimator;
+}
+
+/** The worlds of the page as a user sees them who does not play: mirror, archery with the bow, ball court for three. */
+export class CheckWorlds {
+  readonly avatar: Avatar;
+  readonly #renderer: WebGLRenderer;
+  readonly #studio: Studio;
+  readonly #mirror: Mirror;
+  readonly #archery: ArcheryView;
+  readonly #archeryPlay: ArcheryPlay;
+  readonly #ball: BallView;
+  readonly #court: Surroundings;
+  readonly #ballScene: Omit<BallScene, 'time' | 'pageTime' | 'head'>;
+  readonly #others: readonly OtherPlayer[];
+  readonly #otherBodies = new Group();
+  #world: WorldName = 'mirror';
+
+  private constructor(renderer: WebGLRenderer, quality: Quality, avatars: readonly [Avatar, Avatar, Avatar]) {
+    this.#renderer = renderer;
+    this.#studio = createStudio(renderer, quality);
+    this.#mirror = createMirror({
+      distance: -mirrorAhead.z,
+      ...(quality === 'low' && { resolution: 400, samples: 0 }),
+    });
+    this.#archeryPlay = createArcheryPlay(
+      defaultCalibration,
+      () => archerySettings,
+      () => 7,
+    );
+    this.#archery = createArcheryView({
+      quality,
+      floorFromArena: { position: zero, orientation: identity },
+      distances: this.#archeryPlay.targets.map(({ distance }) => distance),
+      onCaption: silent,
+    });
+    this.#ball = createBallView({ quality, balls: defaultBallOptions.balls, onCaption: silent });
+    const floorFromArena = invertTransform(stations[0]!);
+    this.#court = this.#ball.placed(floorFromArena);
+    this.#ballScene = {
+      state: ballRules.start(['a', 'b', 'c'], 1),
+      attendants: [null, null, null],
+      me: null,
+      rotate: false,
+      opening: null,
+      aim: null,
+      secondsLeft: defaultBallOptions.seconds,
+      inRoom: true,
+      acting: true,
+      voices: { markOf: () => 'none', levelOf: () => 0 },
+      hidden: new Set<number>(),
+      paused: false,
+    };
+    const [own, ...others] = avatars;
+    this.avatar = own;
+    this.#others = others.map((avatar, index) => {
+      const { position, orientation } = composeTransforms(floorFromArena, stations[index + 1]!);
+      avatar.object.position.copy(position);
+      avatar.object.quaternion.copy(orientation);
+      this.#otherBodies.add(avatar.object);
+      return { avatar, estimator: createEstimator('ik', defaultCalibration) };
+    });
+    this.#studio.scene.add(own.object, this.#mirror.object, this.#archery.bow, this.#ball.own, this.#otherBodies);
+    own.setFirstPerson(true);
+    this.show('mirror');
+  }
+
+  /** Builds the worlds and three bodies from the file of the built-in avatar. */
+  static async create(renderer: WebGLRenderer, quality: Quality, file: ArrayBuffer): Promise<CheckWorlds> {
+    const avatar = async () => createAvatarBetweenFrames(await parseAvatar(file, 'mannequin.vrm'));
+    return new CheckWorlds(renderer, quality, [await avatar(), await avatar(), await avatar()]);
+  }
+
+  get scene(): Studio['scene'] {
+    return this.#studio.scene;
+  }
+
+  /** Puts the user into a world. */
+  show(world: WorldName): void {
+    this.#world = world;
+    const place = { mirror: null, archery: this.#archery.range, ball: this.#court }[world];
+    this.#studio.setSurroundings(place);
+    this.#mirror.setVisible(world !== 'ball');
+    const { x, z, turned } = world === 'archery' ? mirrorAside : mirrorAhead;
+    this.#mirror.place(x, z, turned);
+    this.#archery.bow.visible = world === 'archery';
+    this.#ball.own.visible = world === 'ball';
+    this.#otherBodies.visible = world === 'ball';
+  }
+
+  /** Moves what lives in the world, at a time [s], around this user. */
+  update(time: number, frame: TrackingFrame): void {
+    const { x, z } = frame.head.position;
+    this.#studio.follow(x, z);
+    if (this.#world === 'archery') {
+      const { state, bow, time: matchTime } = this.#archeryPlay.follow(frame, nothingPressed);
+      this.#archery.show(state, bow, matchTime, frame.head);
+    }
+    if (this.#world !== 'ball') return;
+    this.#ball.show({ ...this.#ballScene, time, pageTime: time, head: frame.head });
+    this.#others.forEach(({ avatar, estimator }, index) => {
+      const acted = { ...actorFrame(time + actorsApart * index, defaultCalibration), time };
+      avatar.setPose(estimator.update(acted).pose, time);
+    });
+  }
+
+  draw(camera: Camera): void {
+    this.#mirror.reflect(this.#renderer, this.#studio.scene, camera);
+    this.#renderer.render(this.#studio.scene, camera);
+  }
+}

@@ -1,0 +1,179 @@
+import type { WebGLRenderer } from 'three';
+import { BodySolver, type BodySolverOptions } from 'threepoint/api/body-solver';
+import { createHeadsetCamera, easeEmulatedPicture, type Quality } from '../scene/renderer';
+import { createFrameTiming } from '../shell/frame-timing';
+import { type CheckSession, enterSession, OfferedFeatures } from './check-session';
+import { type CheckStep, openingSteps, remainingSteps } from './check-steps';
+import type { CheckWorlds } from './check-worlds';
+import { type HeadsetReport, reportFormat, reportVersion } from './headset-report';
+import { Measurements } from './measurements';
+import { Speaker } from './speaker';
+import { StepCaption } from './step-caption';
+import { StepSequence } from './step-sequence';
+
+/** The rate [Hz] of an emulated headset, and of one that reports none. */
+const windowRateHz = 60;
+const usualRateHz = 72;
+/** The estimators whose networks are loaded before the session; the last one draws first. */
+const preloaded = ['paper', 'learned'] as const;
+
+export interface HeadsetCheckOptions {
+  readonly renderer: WebGLRenderer;
+  readonly quality: Quality;
+  readonly worlds: CheckWorlds;
+  readonly networks: BodySolverOptions['networks'];
+  /** Whether the headset is the emulated one. */
+  readonly emulated: boolean;
+  /** The factor of all durations. */
+  readonly pace: number;
+  /** A step begins; `steps` may have grown. */
+  onStep(step: CheckStep, steps: readonly CheckStep[]): void;
+  onReport(report: HeadsetReport): void;
+}
+
+/** One check, from entering the session to its report. */
+export class HeadsetCheck {
+  readonly #options: HeadsetCheckOptions;
+  readonly #timing = createFrameTiming(() => performance.now());
+  readonly #body: BodySolver;
+  readonly #measurements: Measurements;
+  readonly #sequence: StepSequence;
+  readonly #caption = new StepCaption();
+  readonly #speaker = new Speaker();
+  readonly #camera = createHeadsetCamera();
+  #session: CheckSession | null = null;
+  #offered: OfferedFeatures | null = null;
+  #views = 0;
+  #startedAt = Number.NaN;
+  #time = Number.NaN;
+  #spoken = '';
+
+  constructor(options: HeadsetCheckOptions) {
+    this.#options = options;
+    this.#body = new BodySolver({
+      estimator: 'ik',
+      networks: options.networks,
+      profiler: this.#timing,
+      events: { calibrated: (calibration) => options.worlds.avatar.setCalibration(calibration) },
+    });
+    this.#measurements = new Measurements(this.#body);
+    this.#sequence = new StepSequence({
+      first: openingSteps,
+      more: () => remainingSteps(this.#measurements.deviceBodySeen),
+      pace: options.pace,
+      listener: {
+        begin: (step) => this.#beginStep(step),
+        count: () => this.#timing.reset(),
+        end: (step) => this.#endStep(step),
+      },
+    });
+    options.worlds.scene.add(this.#caption.object);
+  }
+
+  /** Loads the networks; one that cannot be loaded is replaced by inverse kinematics, and the report says so. */
+  async load(): Promise<void> {
+    for (const name of preloaded) await this.#body.setEstimator(name);
+  }
+
+  /** Enters the session and starts. Rejects with a sentence. Needs a click. */
+  async start(): Promise<void> {
+    const { renderer, quality, emulated } = this.#options;
+    const session = await enterSession(renderer, {
+      onDiscontinuity: () => this.#body.discontinuity(),
+      onEnd: () => void this.#finish(),
+    });
+    if (emulated) easeEmulatedPicture(renderer, quality);
+    this.#session = session;
+    this.#offered = new OfferedFeatures(session.xr);
+    this.#body.startSession();
+    renderer.setAnimationLoop((timestampMs, frame) => {
+      if (frame) this.#frame(session, timestampMs, frame);
+    });
+  }
+
+  /** Releases networks and the caption. */
+  async dispose(): Promise<void> {
+    this.#speaker.stop();
+    this.#caption.object.removeFromParent();
+    await this.#body.dispose();
+  }
+
+  #frame({ xr, tracking }: CheckSession, timestampMs: number, frame: XRFrame): void {
+    const { worlds, emulated, renderer } = this.#options;
+    const startMs = performance.now();
+    const time = this.#body.tick(timestampMs);
+    if (Number.isNaN(this.#startedAt)) this.#startedAt = time;
+    this.#time = time;
+    this.#timing.setRate(emulated ? windowRateHz : (xr.frameRate ?? usualRateHz));
+    this.#timing.begin(time * 1000);
+    const tracked = tracking.read(frame, time);
+    this.#timing.mark('tracking');
+    const pose = this.#body.update(tracked);
+    this.#timing.mark('kinematics');
+    if (tracked && pose) worlds.avatar.setPose(pose, time);
+    this.#timing.mark('skinning');
+    if (tracked) worlds.update(time, tracked);
+    this.#writeCaption(time);
+    this.#caption.show(time, tracked?.head ?? null);
+    worlds.draw(this.#camera);
+    this.#timing.mark('render');
+    this.#timing.end();
+    this.#views = Math.max(this.#views, renderer.xr.getCamera().cameras.length);
+    this.#offered?.observe();
+    const { predictedDisplayTime } = frame as { readonly predictedDisplayTime?: number };
+    const aheadMs = predictedDisplayTime === undefined ? undefined : predictedDisplayTime - startMs;
+    this.#measurements.addLatency(aheadMs, startMs - timestampMs);
+    const { kinds } = tracking.inputs;
+    this.#measurements.add({ time, tracked, pose, kinds }, this.#sequence.measured);
+    this.#sequence.advance(time);
+    if (this.#sequence.over) void xr.end();
+  }
+
+  #beginStep(step: CheckStep): void {
+    const { measured, sentence } = step;
+    if (sentence !== this.#spoken) this.#speaker.say(sentence);
+    this.#spoken = sentence;
+    if (measured.kind === 'frames') {
+      this.#options.worlds.show(measured.world);
+      void this.#body.setEstimator(measured.estimator);
+    }
+    if (measured.kind === 'body') void this.#body.setEstimator('learned');
+    this.#options.onStep(step, this.#sequence.steps);
+  }
+
+  #endStep({ measured }: CheckStep): void {
+    if (measured.kind !== 'frames') return;
+    this.#measurements.addFrameTimes(measured.world, measured.estimator, this.#timing.summary());
+  }
+
+  #writeCaption(time: number): void {
+    const { current, steps } = this.#sequence;
+    if (!current) return;
+    const number = steps.indexOf(current) + 1;
+    const seconds = Math.ceil(this.#sequence.remaining(time));
+    this.#caption.write(current.sentence, `${current.title} · ${seconds} s`, number / steps.length);
+  }
+
+  async #finish(): Promise<void> {
+    const { renderer, emulated, onReport } = this.#options;
+    renderer.setAnimationLoop(null);
+    this.#speaker.stop();
+    this.#body.endSession();
+    const [session, offered] = [this.#session, this.#offered];
+    if (!session || !offered) return;
+    onReport({
+      format: reportFormat,
+      version: reportVersion,
+      device: { userAgent: navigator.userAgent, emulated, profiles: offered.profiles },
+      session: {
+        seconds: Number.isNaN(this.#startedAt) ? 0 : this.#time - this.#startedAt,
+        complete: this.#sequence.over,
+        rateHz: session.xr.frameRate ?? null,
+        ratesHz: offered.ratesHz,
+        views: this.#views,
+      },
+      features: await offered.features(),
+      ...this.#measurements.figures(session.bodyReader.complaint),
+    });
+  }
+}

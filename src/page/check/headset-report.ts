@@ -1,0 +1,131 @@
+import { estimatedJoints } from 'threepoint/core/body/joints';
+import { reasonOf } from 'threepoint/core/errors/reasons';
+import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
+import { checked, integerBetween, numberBetween, text, ValidationError } from 'threepoint/core/validation/validation';
+import * as v from 'valibot';
+
+/** The first field of each file. */
+export const reportFormat = 'threepoint-headset-check';
+/** The version of the format that this page writes and reads. */
+export const reportVersion = 1;
+/** The longest file that is read [bytes]; a usual one has 8 kB. */
+export const longestReport = 1_000_000;
+
+export const worldNames = ['mirror', 'archery', 'ball'] as const;
+export type WorldName = (typeof worldNames)[number];
+export const trackerNames = ['head', 'left', 'right'] as const;
+
+/** Values over these are no measurement of a person at rest, and no frame of a page. */
+const [mostMm, mostDegrees, mostMs] = [1000, 180, 600_000];
+const share = numberBetween(0, 1);
+const count = integerBetween(0, 1_000_000);
+const rate = numberBetween(1, 1000);
+const unique = (values: readonly string[]): boolean => new Set(values).size === values.length;
+const list = <Item extends v.GenericSchema>(item: Item, most: number) =>
+  v.pipe(v.array(item), v.maxLength(most, `expected at most ${most} entries`));
+
+const levels = (most: number) =>
+  v.strictObject({ frame: numberBetween(0, most), slow: numberBetween(0, most), sway: numberBetween(0, most) });
+
+const noise = v.strictObject({
+  tracker: v.picklist(trackerNames),
+  source: v.picklist(['headset', 'controller', 'hand']),
+  frames: count,
+  rateHz: rate,
+  repeated: share,
+  positionMm: levels(mostMm),
+  rotationDegrees: levels(mostDegrees),
+});
+
+const losses = v.strictObject({
+  hand: v.picklist(['left', 'right']),
+  source: v.picklist(['controller', 'hand']),
+  observedSeconds: numberBetween(0, 3600),
+  lengthsMs: v.pipe(
+    list(numberBetween(0, mostMs), 10_000),
+    v.check((lengths) => lengths.every((ms, index) => ms >= (lengths[index - 1] ?? 0)), 'expected ascending lengths'),
+  ),
+  openEnd: v.boolean(),
+});
+
+const quantiles = v.pipe(
+  v.strictObject({ p50Ms: numberBetween(-mostMs, mostMs), p95Ms: numberBetween(-mostMs, mostMs) }),
+  v.check(({ p50Ms, p95Ms }) => p50Ms <= p95Ms, 'expected a median (p50Ms) that is no greater than p95Ms'),
+);
+
+const frameTimes = v.pipe(
+  v.strictObject({
+    world: v.picklist(worldNames),
+    estimator: v.picklist(estimatorNames),
+    drawnBy: v.picklist(estimatorNames),
+    rateHz: rate,
+    frames: count,
+    missed: count,
+    work: quantiles,
+  }),
+  v.check(({ frames, missed }) => missed <= frames, 'expected no more missed frames than frames'),
+);
+
+const bodyTracking = v.pipe(
+  v.strictObject({
+    frames: count,
+    complaint: v.nullable(text(500)),
+    joints: v.nullable(v.strictObject(v.entriesFromList(estimatedJoints, numberBetween(0, 500)))),
+  }),
+  v.check(({ frames, joints }) => (joints !== null) === frames > 0, 'expected joints where frames were compared'),
+);
+
+/** The file that a headset check writes. */
+const report = v.strictObject({
+  format: v.literal(reportFormat, `expected "${reportFormat}"`),
+  version: v.literal(reportVersion, `expected ${reportVersion}: this program reads no other version`),
+  device: v.strictObject({ userAgent: text(1000), emulated: v.boolean(), profiles: list(text(200), 40) }),
+  session: v.strictObject({
+    seconds: numberBetween(0, 3600),
+    complete: v.boolean(),
+    rateHz: v.nullable(rate),
+    ratesHz: list(rate, 40),
+    views: integerBetween(0, 8),
+  }),
+  features: v.strictObject({
+    modes: list(text(40), 10),
+    asked: list(text(80), 40),
+    granted: v.nullable(list(text(80), 80)),
+  }),
+  latency: v.strictObject({ displayAhead: v.nullable(quantiles), callbackDelay: v.nullable(quantiles) }),
+  noise: v.pipe(
+    list(noise, trackerNames.length),
+    v.check((all) => unique(all.map(({ tracker }) => tracker)), 'expected each tracker once'),
+  ),
+  losses: v.pipe(
+    list(losses, 2),
+    v.check((all) => unique(all.map(({ hand }) => hand)), 'expected each hand once'),
+  ),
+  frameTimes: v.pipe(
+    list(frameTimes, worldNames.length * estimatorNames.length),
+    v.check((all) => unique(all.map((row) => `${row.world} ${row.estimator}`)), 'expected each pair once'),
+  ),
+  bodyTracking,
+});
+
+/** The figures of one headset check; they hold no motion. */
+export type HeadsetReport = v.InferOutput<typeof report>;
+
+/** Reads the text of a file. Throws a ValidationError that says what is wrong and where. */
+export function readHeadsetReport(source: string): HeadsetReport {
+  if (source.length > longestReport) throw new ValidationError('', `expected at most ${longestReport} characters`);
+  let value: unknown;
+  try {
+    value = JSON.parse(source);
+  } catch (error) {
+    throw new ValidationError('', `is no JSON (${reasonOf(error)})`);
+  }
+  return checked(report, value);
+}
+
+/** Returns the value; a number that is not whole is rounded to four significant digits. */
+const rounded = (_: string, value: unknown): unknown =>
+  typeof value === 'number' && !Number.isInteger(value) ? Number(value.toPrecision(4)) : value;
+
+/** Returns the text of the file. */
+export const writeHeadsetReport = (figures: HeadsetReport): string => `${JSON.stringify(figures, rounded, 2)}\n`;

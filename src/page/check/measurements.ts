@@ -1,0 +1,151 @@
+import type { BodySolver } from 'threepoint/api/body-solver';
+import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import { estimatedJoints } from 'threepoint/core/body/joints';
+import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
+import { isTracked } from 'threepoint/core/math/pose';
+import { type Side, sides } from 'threepoint/core/math/side';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { InputKind } from 'threepoint/xr/input-reader';
+import { DeviceDifference } from '../shell/device-difference';
+import type { FrameSummary } from '../shell/frame-timing';
+import type { Measured } from './check-steps';
+import type { HeadsetReport, WorldName } from './headset-report';
+import { LossLengths } from './loss-lengths';
+import { NoiseRecorder } from './noise';
+
+/** A frame of the session as it is measured. */
+export interface CheckFrame {
+  readonly time: number;
+  /** null: the head is not seen. */
+  readonly tracked: TrackingFrame | null;
+  readonly pose: AvatarPose | null;
+  readonly kinds: Readonly<Record<Side, InputKind>>;
+}
+
+/** Collects the figures of a check from its frames. No frame is kept beyond the noise figures that it gives. */
+export class Measurements {
+  readonly #body: Pick<BodySolver, 'calibration' | 'estimator'>;
+  readonly #noise = { head: new NoiseRecorder(), left: new NoiseRecorder(), right: new NoiseRecorder() };
+  readonly #losses = { left: new LossLengths(), right: new LossLengths() };
+  readonly #noiseKinds: Record<Side, InputKind> = { left: 'none', right: 'none' };
+  readonly #lossKinds: Record<Side, InputKind> = { left: 'none', right: 'none' };
+  #compared = 0;
+  /** Every frame has the same share in the mean. */
+  readonly #difference = new DeviceDifference(() => 1 / this.#compared);
+  #deviceBodySeen = false;
+  readonly #frameTimes: HeadsetReport['frameTimes'] = [];
+  readonly #ahead: number[] = [];
+  readonly #delays: number[] = [];
+
+  constructor(body: Pick<BodySolver, 'calibration' | 'estimator'>) {
+    this.#body = body;
+  }
+
+  get deviceBodySeen(): boolean {
+    return this.#deviceBodySeen;
+  }
+
+  /** Adds the latencies of a frame [ms]; undefined: the browser does not report its display time. */
+  addLatency(aheadMs: number | undefined, delayMs: number): void {
+    if (aheadMs !== undefined && Number.isFinite(aheadMs)) this.#ahead.push(aheadMs);
+    this.#delays.push(delayMs);
+  }
+
+  /** Adds a frame; `measured`: what counts now, null in the lead of a step. */
+  add(frame: CheckFrame, measured: Measured | null): void {
+    this.#deviceBodySeen ||= frame.tracked?.deviceBody !== undefined;
+    if (measured?.kind === 'noise') this.#addNoise(frame);
+    if (measured?.kind === 'losses') this.#addLosses(frame);
+    if (measured?.kind === 'body') this.#addBody(frame);
+  }
+
+  /** Adds the frame times of a world and an estimator, if there are any. */
+  addFrameTimes(
+    world: WorldName,
+    estimator: EstimatorName,
+    { p50Ms, p95Ms, missed, frames, rateHz }: FrameSummary,
+  ): void {
+    if (frames === 0) return;
+    const drawnBy = this.#body.estimator;
+    this.#frameTimes.push({ world, estimator, drawnBy, rateHz, frames, missed, work: { p50Ms, p95Ms } });
+  }
+
+  #addNoise({ time, tracked, kinds }: CheckFrame): void {
+    if (!tracked || tracked.suspended) return;
+    if (isTracked(tracked.head)) this.#noise.head.add(time, tracked.head);
+    for (const side of sides) {
+      const hand = tracked[`${side}Hand`];
+      if (!hand || !isTracked(hand)) continue;
+      this.#noise[side].add(time, hand);
+      this.#noiseKinds[side] = kinds[side];
+    }
+  }
+
+  #addLosses({ time, tracked, kinds }: CheckFrame): void {
+    for (const side of sides) {
+      if (!tracked || tracked.suspended) {
+        this.#losses[side].interrupt();
+        continue;
+      }
+      const hand = tracked[`${side}Hand`];
+      const seen = hand !== null && isTracked(hand);
+      if (seen) this.#lossKinds[side] = kinds[side];
+      this.#losses[side].add(time, seen);
+    }
+  }
+
+  #addBody({ tracked, pose }: CheckFrame): void {
+    // A frame without a body would begin the mean again.
+    if (!tracked?.deviceBody || !pose?.body) return;
+    this.#compared += 1;
+    this.#difference.observe(tracked, pose, this.#body.calibration);
+  }
+
+  /** Returns the figures; `bodyComplaint`: why the device reports no body. */
+  figures(
+    bodyComplaint: string | null,
+  ): Pick<HeadsetReport, 'latency' | 'noise' | 'losses' | 'frameTimes' | 'bodyTracking'> {
+    return {
+      latency: { displayAhead: quantilesOf(this.#ahead), callbackDelay: quantilesOf(this.#delays) },
+      noise: this.#noiseFigures(),
+      losses: sides.flatMap((hand) => {
+        const losses = this.#losses[hand].losses();
+        const source = this.#lossKinds[hand];
+        if (!losses || source === 'none') return [];
+        return [{ hand, source, ...losses, lengthsMs: [...losses.lengthsMs] }];
+      }),
+      frameTimes: this.#frameTimes,
+      bodyTracking: this.#bodyFigures(bodyComplaint),
+    };
+  }
+
+  #noiseFigures(): HeadsetReport['noise'] {
+    const head = this.#noise.head.figures();
+    return [
+      ...(head ? [{ tracker: 'head' as const, source: 'headset' as const, ...head }] : []),
+      ...sides.flatMap((tracker) => {
+        const figures = this.#noise[tracker].figures();
+        const source = this.#noiseKinds[tracker];
+        return figures && source !== 'none' ? [{ tracker, source, ...figures }] : [];
+      }),
+    ];
+  }
+
+  #bodyFigures(complaint: string | null): HeadsetReport['bodyTracking'] {
+    const frames = this.#compared;
+    const means = this.#difference.report();
+    if (!means) return { frames: 0, complaint, joints: null };
+    const joints = Object.fromEntries(estimatedJoints.map((joint, index) => [joint, means[index]?.cm])) as NonNullable<
+      HeadsetReport['bodyTracking']['joints']
+    >;
+    return { frames, complaint: null, joints };
+  }
+}
+
+/** Returns median and 95th percentile; null: there is no value. */
+function quantilesOf(values: readonly number[]): HeadsetReport['latency']['displayAhead'] {
+  if (values.length === 0) return null;
+  const sorted = Float64Array.from(values).sort();
+  const at = (share: number) => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))]!;
+  return { p50Ms: at(0.5), p95Ms: at(0.95) };
+}

@@ -1,0 +1,71 @@
+import type { Mesh } from 'three';
+import { showToEyesAlone } from 'threepoint/avatar/eye-layers';
+import { dampVec3 } from 'threepoint/core/math/damper';
+import type { Pose } from 'threepoint/core/math/pose';
+import { rotate } from 'threepoint/core/math/quat';
+import { addScaled, forward, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { headingOf } from 'threepoint/core/tracking/heading';
+import { createVrPanel, fillRounded, vrColors, vrFont, wrap } from 'threepoint-ui/vr-panel';
+
+const [width, height] = [900, 300];
+/** The distance of the caption, and how far it lies below the eyes [m]. */
+const [away, below] = [1.5, 0.42];
+/** It follows the head with this half-life [s], so that a glance leaves it in its place. */
+const halfLife = 0.2;
+
+/** Shows a step in the headset, always in view: what to do, how far the check is, and the seconds left. */
+export class StepCaption {
+  readonly object: Mesh;
+  readonly #panel = createVrPanel(width, height, 1000);
+  #drawn = '';
+  #place: Vec3 | null = null;
+  #last = 0;
+
+  constructor() {
+    this.object = this.#panel.mesh;
+    this.object.name = 'step caption';
+    this.object.renderOrder = 20;
+    this.object.visible = false;
+    showToEyesAlone(this.object);
+    const material = [this.object.material].flat()[0];
+    if (material) material.depthTest = false;
+  }
+
+  /** Draws the sentence, and a line such as “3 of 7 · 12 s” below it. Redraws only what changed. */
+  write(sentence: string, progress: string, share: number): void {
+    const drawn = `${sentence}\n${progress}`;
+    if (drawn === this.#drawn) return;
+    this.#drawn = drawn;
+    this.#panel.draw((context) => {
+      fillRounded(context, [4, 4, width - 8, height - 8], 32, vrColors.glass, vrColors.line);
+      context.textBaseline = 'middle';
+      context.textAlign = 'left';
+      context.fillStyle = vrColors.ink;
+      context.font = `600 46px ${vrFont}`;
+      wrap(context, sentence, width - 96).forEach((line, index) => {
+        context.fillText(line, 48, 66 + 56 * index);
+      });
+      context.fillStyle = vrColors.inkSoft;
+      context.font = `500 34px ${vrFont}`;
+      context.fillText(progress, 48, height - 66);
+      fillRounded(context, [48, height - 34, width - 96, 10], 5, vrColors.liftMore);
+      fillRounded(context, [48, height - 34, Math.max(10, (width - 96) * share), 10], 5, vrColors.accent);
+    });
+  }
+
+  /** Places the caption before these eyes, floor frame; null: no person wears the headset. */
+  show(time: number, eyes: Pose<'floor'> | null): void {
+    this.object.visible = eyes !== null;
+    if (!eyes) {
+      this.#place = null;
+      return;
+    }
+    const ahead = rotate(headingOf(eyes.orientation), forward);
+    const goal = addScaled(addScaled(eyes.position, ahead, away), vec3(0, -1, 0), below);
+    this.#place = this.#place ? dampVec3(this.#place, goal, halfLife, Math.max(0, time - this.#last)) : goal;
+    this.#last = time;
+    const { x, y, z } = this.#place;
+    this.object.position.set(x, y, z);
+    this.object.lookAt(eyes.position.x, eyes.position.y, eyes.position.z);
+  }
+}
