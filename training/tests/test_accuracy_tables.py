@@ -45,10 +45,6 @@ def robustness(clean):
         "jerkRatio": 1.05,
         "losses": [lost(ms) for ms in (100, 500, 2000)],
         "handTracking": lost(300),
-        "noises": [
-            {"mpjpeCm": clean + more, "jerkRatio": 1.05, "elbowTrembleMm": 0.2 + more, "hipsTrembleMm": 0.1 + more}
-            for more in (0, 0.5)
-        ],
         "offsets": [
             {"tracker": tracker, "axis": axis, "offsetCm": cm, "mpjpeCm": clean + abs(cm) / 10}
             for tracker in ("headset", "grips")
@@ -57,7 +53,6 @@ def robustness(clean):
         ],
         "heights": [{"percent": p, "mpjpeCm": clean + 0.25} for p in (-5, -2, 2, 5)],
         "spans": [{"percent": p, "mpjpeCm": clean - 0.04} for p in (-5, 5)],
-        "rates": [{"hz": hz, "mpjpeCm": clean, "jerkRatio": 1.0} for hz in (72, 90, 120)],
     }
 
 
@@ -172,14 +167,6 @@ def test_losses_end_with_those_of_hand_tracking():
         "| 2000 ms, 7 losses",
         "| as in hand tracking, 300 ms on average, 7 losses",
     ]
-
-
-def test_noises_and_rates_have_rows():
-    measured, white, *rates = accuracy_tables.signals(evaluation()).splitlines()[2:]
-    assert measured.endswith("| 4.00 / 1.05 / 0.20 / 0.10 |")
-    assert white.startswith("| 60 Hz, white noise of 0.3 mm and 0.1° |")
-    assert white.endswith("| 4.50 / 1.05 / 0.70 / 0.60 |")
-    assert [row.split(" | ")[0] for row in rates] == ["| 72 Hz", "| 90 Hz", "| 120 Hz"]
 
 
 def test_a_fault_has_the_figure_of_its_worst_direction():

@@ -85,28 +85,6 @@ def _losses(evaluation: Json) -> list[tuple[str, dict[str, Json]]]:
     return [*fixed, (f"as in hand tracking, {tracked['ik']['milliseconds']} ms on average", tracked)]
 
 
-def signals(evaluation: Json) -> str:
-    """Returns the table of error, jerk and trembling by the trackers' noise and rate."""
-    estimators = evaluation["robustness"]["estimators"]
-    noises = ("60 Hz, noise as measured", "60 Hz, white noise of 0.3 mm and 0.1°")
-
-    def cell(figures: Json) -> str:
-        return f"{figures['mpjpeCm']:.2f} / {figures['jerkRatio']:.2f}"
-
-    def noisy(figures: Json) -> str:
-        return f"{cell(figures)} / {figures['elbowTrembleMm']:.2f} / {figures['hipsTrembleMm']:.2f}"
-
-    rows = [
-        [name, *(noisy(estimators[method]["noises"][number]) for method in METHODS)]
-        for number, name in enumerate(noises)
-    ]
-    rows += [
-        [f"{entry['hz']} Hz", *(cell(estimators[method]["rates"][number]) for method in METHODS)]
-        for number, entry in enumerate(estimators["ik"]["rates"])
-    ]
-    return table(["MPJPE [cm] / jerk / trembling of elbow / hips [mm]", *METHODS.values()], rows)
-
-
 def loss(evaluation: Json) -> str:
     def ratio(cm: float, seen: float) -> str:
         return f"{cm:.2f} ({cm / seen:.2f} ×)"
