@@ -86,21 +86,23 @@ def _losses(evaluation: Json) -> list[tuple[str, dict[str, Json]]]:
 
 
 def loss(evaluation: Json) -> str:
-    def ratio(cm: float, seen: float) -> str:
-        return f"{cm:.2f} ({cm / seen:.2f} ×)"
+    """Returns the table of errors while a hand is lost, with the ratios to the same frames with the hand seen."""
+    methods = ("ik", "learned")
 
-    rows = [["0 ms", "all joints", *(f"{evaluation['robustness']['estimators'][m]['mpjpeCm']:.2f}" for m in METHODS)]]
-    for length, by_method in _losses(evaluation):
-        lines: list[tuple[str, Callable[[Json], str]]] = [
-            ("all joints", lambda f: ratio(f["during"]["allCm"], f["during"]["allSeenCm"])),
-            ("its elbow", lambda f: ratio(f["during"]["elbowCm"], f["during"]["elbowSeenCm"])),
-            ("longest excess of a step", lambda f: f"{max(f['atLoss']['excessCm'], f['atReturn']['excessCm']):.1f}"),
-        ]
-        for number, (label, cell) in enumerate(lines):
-            count = by_method["ik"]["losses"]
-            name = f"{length}, {count} losses" if number == 0 else ""
-            rows.append([name, label, *(cell(by_method[method]) for method in METHODS)])
-    return re.sub(r"(?m)^\| --- \| ---:", "| --- | ---", table(["hand lost for", "cm", *METHODS.values()], rows))
+    def ratio(figures: Json, joints: str) -> str:
+        cm = figures["during"][f"{joints}Cm"]
+        return f"{cm:.2f} ({cm / figures['during'][f'{joints}SeenCm']:.2f} ×)"
+
+    def step(figures: Json) -> str:
+        return f"{max(figures['atLoss']['excessCm'], figures['atReturn']['excessCm']):.1f}"
+
+    cells = (lambda f: ratio(f, "all"), lambda f: ratio(f, "elbow"), step)
+    rows = [
+        [f"{length}, {by_method['ik']['losses']} losses", *(cell(by_method[m]) for cell in cells for m in methods)]
+        for length, by_method in _losses(evaluation)
+    ]
+    head = [f"{what}: {METHODS[method]}" for what in ("all joints", "its elbow", "step") for method in methods]
+    return table(["hand lost for [cm]", *head], rows)
 
 
 def faults(evaluation: Json) -> str:
@@ -121,8 +123,9 @@ def faults(evaluation: Json) -> str:
         worst = max(entry["mpjpeCm"] for entry in estimators[method][key] if chosen(entry))
         return signed(worst - estimators[method]["mpjpeCm"])
 
-    rows = [[label, *(cell(method, key, chosen) for method in METHODS)] for label, key, chosen in kinds]
-    return table(["added to the MPJPE [cm], worst direction", *METHODS.values()], rows)
+    methods = ("ik", "learned")
+    rows = [[label, *(cell(method, key, chosen) for method in methods)] for label, key, chosen in kinds]
+    return table(["added to the MPJPE [cm], worst direction", *(METHODS[method] for method in methods)], rows)
 
 
 def laboratories(home: ByHands, elsewhere: ByHands) -> str:
