@@ -32,11 +32,9 @@ function table(part: Readonly<Record<string, Row>>, figures: Figures): string {
     const known = figures[name as RowName] ?? {};
     const shown = row.shows ?? Object.keys(known).slice(0, 2);
     const measured = shown.map((what) => `${what}: ${formatted(known[what] ?? 'not measured')}`);
-    const files = row.tests.map((file) => `\`${file}\``);
-    const cells = [row.inject, `${row.sees}. *${row.target}*`, measured.join('; '), files.join(' ')];
-    return `| ${cells.map(cell).join(' | ')} |`;
+    return `| ${[row.inject, `${row.sees}. *${row.target}*`, measured.join('; ')].map(cell).join(' | ')} |`;
   });
-  return ['| fault | result and *target* | measured | tests |', '|---|---|---|---|', ...lines].join('\n');
+  return ['| fault | result and *target* | measured |', '|---|---|---|', ...lines].join('\n');
 }
 
 /** Returns the text of docs/reliability.md. */
@@ -44,8 +42,8 @@ export function reliabilityPage(figures: Figures): string {
   const manual = Object.values(rows).flatMap(({ manual }) => (manual ? [`- ${manual}`] : []));
   return `# Reliability
 
-Each row is a fault, a promise or an attack with the tests that measure it. \`npm run reliability\` writes this page from
-\`tests/reliability/rows.ts\`: \`-- --unit\` without a browser, \`-- --long\` with twenty minutes of play.
+Each row is a fault, a promise or an attack. [rows.ts](../tests/reliability/rows.ts) names the tests that measure it, from
+which \`npm run reliability\` writes this page: \`-- --unit\` without a browser, \`-- --long\` with twenty minutes of play.
 [reliability.json](reliability.json) has every figure. Durations are those of two cores with software rendering.
 
 ## Tracking and device
