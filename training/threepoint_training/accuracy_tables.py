@@ -43,7 +43,6 @@ def signed(value: float, digits: int = 2) -> str:
 
 def summary(evaluation: Json) -> str:
     figures = held_out(evaluation)
-    ik = figures["ik"]["mpjpeCm"]["mean"]
 
     def row(label: str, cell: Callable[[Json], str]) -> list[str]:
         return [label, *(cell(figures[method]) for method in METHODS)]
@@ -53,7 +52,6 @@ def summary(evaluation: Json) -> str:
         [
             row("MPJPE, six joints: mean [cm]", lambda f: f"{f['mpjpeCm']['mean']:.2f}"),
             row("median / p95 [cm]", lambda f: f"{f['mpjpeCm']['median']:.2f} / {f['mpjpeCm']['p95']:.2f}"),
-            row("relative to IK", lambda f: f"{f['mpjpeCm']['mean'] / ik:.3f}"),
             row(
                 "network alone, before kinematics [cm]",
                 lambda f: f"{f['rawMpjpeCm']:.2f}" if "rawMpjpeCm" in f else "–",
