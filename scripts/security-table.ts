@@ -1,6 +1,6 @@
-// node --import tsx scripts/security-table.ts: writes the tables of docs/security.md from tests/server/access-rows.ts.
+// node --import tsx scripts/security-table.ts: writes the lists of docs/security.md from tests/server/access-rows.ts.
 import { readFileSync, writeFileSync } from 'node:fs';
-import { withTables } from '../tests/server/access-rows';
+import { withLists } from '../tests/server/access-rows';
 
 const page = new URL('../docs/security.md', import.meta.url);
-writeFileSync(page, withTables(readFileSync(page, 'utf8')));
+writeFileSync(page, withLists(readFileSync(page, 'utf8')));

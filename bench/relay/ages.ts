@@ -43,8 +43,7 @@ export interface Seen {
 }
 
 /**
- * Standard deviations of what a headset says of a place, along each axis [m]: assumptions, which jerk depends on
- * (src/rooms/README.md).
+ * Standard deviations of what a headset says of a place, along each axis [m]: assumptions, which jerk depends on.
  */
 export const tremors = [1e-4, 3e-5, 0] as const;
 const displayHz = 72;

@@ -30,7 +30,7 @@ function packet(): Uint8Array {
   return bytes;
 }
 
-/** The first bit of the time in a pose packet, and its number of bits (src/rooms/README.md). */
+/** The first bit of the time in a pose packet, and its number of bits (`writePacket`). */
 const timeAt = 13;
 const timeBits = 14;
 

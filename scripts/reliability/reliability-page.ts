@@ -3,9 +3,12 @@ import { attackRows, faultRows, promiseRows, type Row, type RowName, rows } from
 /** The measured figures, by row and by name. */
 export type Figures = Readonly<Partial<Record<RowName, Readonly<Record<string, string | number>>>>>;
 
-/** Returns the rows without figures. */
+/** Returns the rows that lack figures, or one that the page shows. */
 export const missingFigures = (figures: Figures): RowName[] =>
-  (Object.keys(rows) as RowName[]).filter((name) => Object.keys(figures[name] ?? {}).length === 0);
+  (Object.keys(rows) as RowName[]).filter((name) => {
+    const known = Object.keys(figures[name] ?? {});
+    return known.length === 0 || rows[name].shows?.some((what) => !known.includes(what));
+  });
 
 /**
  * Merges the figures of a run into those of earlier runs, so that a run of some tests keeps the figures of the others.
@@ -24,28 +27,24 @@ const formatted = (value: string | number): string =>
   typeof value === 'number' ? String(Number(value.toPrecision(3))) : value;
 const cell = (text: string): string => text.replaceAll('|', '\\|');
 
-/** The most figures of a row on the page; docs/reliability.json has all. */
-const mostFigures = 3;
-
 function table(part: Readonly<Record<string, Row>>, figures: Figures): string {
-  const lines = Object.entries(part).map(([name, { inject, sees, target, tests }]) => {
-    const all = Object.entries(figures[name as RowName] ?? {}).map(([what, value]) => `${what}: ${formatted(value)}`);
-    const own = all.length > mostFigures ? [...all.slice(0, mostFigures), '…'] : all;
-    const files = tests.map((file) => `\`${file}\``);
-    return `| ${[inject, sees, target, own.join('; '), files.join(' ')].map(cell).join(' | ')} |`;
+  const lines = Object.entries(part).map(([name, row]) => {
+    const known = figures[name as RowName] ?? {};
+    const shown = row.shows ?? Object.keys(known).slice(0, 2);
+    const measured = shown.map((what) => `${what}: ${formatted(known[what] ?? 'not measured')}`);
+    return `| ${[row.inject, `${row.sees}. *${row.target}*`, measured.join('; ')].map(cell).join(' | ')} |`;
   });
-  return ['| fault | result | target | measured | tests |', '| --- | --- | --- | --- | --- |', ...lines].join('\n');
+  return ['| fault | result and *target* | measured |', '|---|---|---|', ...lines].join('\n');
 }
 
 /** Returns the text of docs/reliability.md. */
 export function reliabilityPage(figures: Figures): string {
-  const manual = Object.values(rows).flatMap(({ inject, manual }) => (manual ? [`- ${inject}: ${manual}`] : []));
+  const manual = Object.values(rows).flatMap(({ manual }) => (manual ? [`- ${manual}`] : []));
   return `# Reliability
 
-Each row is a fault, a promise or an attack with the tests that measure it. \`npm run reliability\` writes this page from
-\`tests/reliability/rows.ts\`. [reliability.json](reliability.json) has all figures; a row shows ${mostFigures} at most.
-\`-- --unit\` runs what needs no browser, \`-- --long\` also twenty minutes of play. Durations are those of two cores with
-software rendering.
+Each row is a fault, a promise or an attack. [rows.ts](../tests/reliability/rows.ts) names the tests that measure it, from
+which \`npm run reliability\` writes this page: \`-- --unit\` without a browser, \`-- --long\` with twenty minutes of play.
+[reliability.json](reliability.json) has every figure. Durations are those of two cores with software rendering.
 
 ## Tracking and device
 

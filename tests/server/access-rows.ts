@@ -190,8 +190,13 @@ export const socketRows: Readonly<Record<ClientMessage['type'] | 'pose' | 'unkno
   unknown: { gives: 'nothing', outcome: all('ends') },
 };
 
-const table = (head: readonly string[], rows: readonly (readonly string[])[]): string =>
-  [head, head.map(() => '---'), ...rows].map((cells) => `| ${cells.join(' | ')} |`).join('\n');
+/** Returns a list of rows for each outcome, in the order of its first row. */
+function lists(rows: readonly { readonly name: string; readonly gives: string; readonly outcome: string }[]): string {
+  const groups = new Map<string, string[]>();
+  for (const { name, gives, outcome } of rows)
+    groups.set(outcome, [...(groups.get(outcome) ?? []), `- \`${name}\`: ${gives}`]);
+  return [...groups].map(([outcome, lines]) => `${outcome}\n\n${lines.join('\n')}`).join('\n\n');
+}
 
 /** Returns the roles by outcome. The most frequent outcome stands last, for “others” or “all”. */
 function byOutcome<Role extends string>(roles: readonly Role[], outcomeOf: (role: Role) => string): string {
@@ -214,22 +219,22 @@ function answers({ status, also }: HttpRow): string {
   return also ? `${also.who}: ${emphasised(also.status)}; ${others}` : others;
 }
 
-/** Returns the tables that docs/security.md has between its marks. */
-export function accessTables(): string {
-  const http = Object.entries(httpRows).map(([route, row]) => [`\`${route}\``, row.gives, answers(row)]);
-  const sockets = Object.entries(socketRows).map(([type, { gives, outcome }]) => [
-    `\`${type}\``,
+/** Returns the lists that docs/security.md has between its marks. */
+export function accessLists(): string {
+  const http = Object.entries(httpRows).map(([name, row]) => ({ name, gives: row.gives, outcome: answers(row) }));
+  const sockets = Object.entries(socketRows).map(([name, { gives, outcome }]) => ({
+    name,
     gives,
-    byOutcome(Object.keys(socketRoles) as SocketRole[], (role) => outcome[role]),
-  ]);
-  return [table(['request', 'gives', 'status'], http), '', table(['message', 'gives', 'outcome'], sockets)].join('\n');
+    outcome: byOutcome(Object.keys(socketRoles) as SocketRole[], (role) => outcome[role]),
+  }));
+  return `### Requests\n\n${lists(http)}\n\n### Messages\n\n${lists(sockets)}`;
 }
 
 export const marks = ['<!-- written by scripts/security-table.ts -->', '<!-- up to here -->'] as const;
 
-/** The page with its tables as they are now; throws where it has no marks. */
-export function withTables(page: string): string {
+/** The page with its lists as they are now; throws where it has no marks. */
+export function withLists(page: string): string {
   const [before, after] = [page.indexOf(marks[0]), page.indexOf(marks[1])];
-  if (before < 0 || after < before) throw new Error('docs/security.md lacks the marks between which its tables stand');
-  return `${page.slice(0, before)}${marks[0]}\n\n${accessTables()}\n\n${page.slice(after)}`;
+  if (before < 0 || after < before) throw new Error('docs/security.md lacks the marks between which its lists stand');
+  return `${page.slice(0, before)}${marks[0]}\n\n${accessLists()}\n\n${page.slice(after)}`;
 }

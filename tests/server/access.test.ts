@@ -32,7 +32,7 @@ import {
   type SocketRole,
   socketRoles,
   socketRows,
-  withTables,
+  withLists,
 } from './access-rows';
 
 const adminToken = 'admin-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
@@ -156,7 +156,7 @@ test('every route of the server has a row, and every row a route', async () => {
 
 test('docs/security.md has these rows (written by scripts/security-table.ts)', () => {
   const text = readFileSync(new URL('../../docs/security.md', import.meta.url), 'utf8');
-  expect(text).toBe(withTables(text));
+  expect(text).toBe(withLists(text));
 });
 
 const avatarFile = { bytes: new Uint8Array(mannequin()), hash: '' };

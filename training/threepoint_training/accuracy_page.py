@@ -45,7 +45,6 @@ def sections(
         "disturbed": f"Clips, a seeded choice of the people held out, {disturbed}",
         "loss": tables.loss(evaluation),
         "faults": tables.faults(evaluation),
-        "signals": tables.signals(evaluation),
         "laboratories": tables.laboratories(*measured) if measured else None,
     }
 

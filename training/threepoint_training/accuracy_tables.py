@@ -43,7 +43,6 @@ def signed(value: float, digits: int = 2) -> str:
 
 def summary(evaluation: Json) -> str:
     figures = held_out(evaluation)
-    ik = figures["ik"]["mpjpeCm"]["mean"]
 
     def row(label: str, cell: Callable[[Json], str]) -> list[str]:
         return [label, *(cell(figures[method]) for method in METHODS)]
@@ -53,7 +52,6 @@ def summary(evaluation: Json) -> str:
         [
             row("MPJPE, six joints: mean [cm]", lambda f: f"{f['mpjpeCm']['mean']:.2f}"),
             row("median / p95 [cm]", lambda f: f"{f['mpjpeCm']['median']:.2f} / {f['mpjpeCm']['p95']:.2f}"),
-            row("relative to IK", lambda f: f"{f['mpjpeCm']['mean'] / ik:.3f}"),
             row(
                 "network alone, before kinematics [cm]",
                 lambda f: f"{f['rawMpjpeCm']:.2f}" if "rawMpjpeCm" in f else "–",
@@ -85,44 +83,24 @@ def _losses(evaluation: Json) -> list[tuple[str, dict[str, Json]]]:
     return [*fixed, (f"as in hand tracking, {tracked['ik']['milliseconds']} ms on average", tracked)]
 
 
-def signals(evaluation: Json) -> str:
-    """Returns the table of error, jerk and trembling by the trackers' noise and rate."""
-    estimators = evaluation["robustness"]["estimators"]
-    noises = ("60 Hz, noise as measured", "60 Hz, white noise of 0.3 mm and 0.1°")
-
-    def cell(figures: Json) -> str:
-        return f"{figures['mpjpeCm']:.2f} / {figures['jerkRatio']:.2f}"
-
-    def noisy(figures: Json) -> str:
-        return f"{cell(figures)} / {figures['elbowTrembleMm']:.2f} / {figures['hipsTrembleMm']:.2f}"
-
-    rows = [
-        [name, *(noisy(estimators[method]["noises"][number]) for method in METHODS)]
-        for number, name in enumerate(noises)
-    ]
-    rows += [
-        [f"{entry['hz']} Hz", *(cell(estimators[method]["rates"][number]) for method in METHODS)]
-        for number, entry in enumerate(estimators["ik"]["rates"])
-    ]
-    return table(["MPJPE [cm] / jerk / trembling of elbow / hips [mm]", *METHODS.values()], rows)
-
-
 def loss(evaluation: Json) -> str:
-    def ratio(cm: float, seen: float) -> str:
-        return f"{cm:.2f} ({cm / seen:.2f} ×)"
+    """Returns the table of errors while a hand is lost, with the ratios to the same frames with the hand seen."""
+    methods = ("ik", "learned")
 
-    rows = [["0 ms", "all joints", *(f"{evaluation['robustness']['estimators'][m]['mpjpeCm']:.2f}" for m in METHODS)]]
-    for length, by_method in _losses(evaluation):
-        lines: list[tuple[str, Callable[[Json], str]]] = [
-            ("all joints", lambda f: ratio(f["during"]["allCm"], f["during"]["allSeenCm"])),
-            ("its elbow", lambda f: ratio(f["during"]["elbowCm"], f["during"]["elbowSeenCm"])),
-            ("longest excess of a step", lambda f: f"{max(f['atLoss']['excessCm'], f['atReturn']['excessCm']):.1f}"),
-        ]
-        for number, (label, cell) in enumerate(lines):
-            count = by_method["ik"]["losses"]
-            name = f"{length}, {count} losses" if number == 0 else ""
-            rows.append([name, label, *(cell(by_method[method]) for method in METHODS)])
-    return re.sub(r"(?m)^\| --- \| ---:", "| --- | ---", table(["hand lost for", "cm", *METHODS.values()], rows))
+    def ratio(figures: Json, joints: str) -> str:
+        cm = figures["during"][f"{joints}Cm"]
+        return f"{cm:.2f} ({cm / figures['during'][f'{joints}SeenCm']:.2f} ×)"
+
+    def step(figures: Json) -> str:
+        return f"{max(figures['atLoss']['excessCm'], figures['atReturn']['excessCm']):.1f}"
+
+    cells = (lambda f: ratio(f, "all"), lambda f: ratio(f, "elbow"), step)
+    rows = [
+        [f"{length}, {by_method['ik']['losses']} losses", *(cell(by_method[m]) for cell in cells for m in methods)]
+        for length, by_method in _losses(evaluation)
+    ]
+    head = [f"{what}: {METHODS[method]}" for what in ("all joints", "its elbow", "step") for method in methods]
+    return table(["hand lost for [cm]", *head], rows)
 
 
 def faults(evaluation: Json) -> str:
@@ -143,8 +121,9 @@ def faults(evaluation: Json) -> str:
         worst = max(entry["mpjpeCm"] for entry in estimators[method][key] if chosen(entry))
         return signed(worst - estimators[method]["mpjpeCm"])
 
-    rows = [[label, *(cell(method, key, chosen) for method in METHODS)] for label, key, chosen in kinds]
-    return table(["added to the MPJPE [cm], worst direction", *METHODS.values()], rows)
+    methods = ("ik", "learned")
+    rows = [[label, *(cell(method, key, chosen) for method in methods)] for label, key, chosen in kinds]
+    return table(["added to the MPJPE [cm], worst direction", *(METHODS[method] for method in methods)], rows)
 
 
 def laboratories(home: ByHands, elsewhere: ByHands) -> str:

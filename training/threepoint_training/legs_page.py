@@ -13,10 +13,8 @@ from .splits import evaluation_only, trainable
 Json = dict[str, Any]
 
 DRIVERS = {"truth": "the true pelvis", "ik": "IK", "learned": "learned"}
-_FIGURES = ("pelvisCm", "kneeCm", "footCm", "skateCmS", "slideCmS", "floatCm", "sinkCm", "agreed")
-_HEAD = (
-    "pelvis [cm]", "knee [cm]", "foot [cm]", "skate [cm/s]", "drawn skate [cm/s]", "floating [cm]", "sinking [cm]", "contact agreed",
-)  # fmt: skip
+_FIGURES = ("pelvisCm", "kneeCm", "footCm", "skateCmS", "floatCm", "agreed")
+_HEAD = ("pelvis [cm]", "knee [cm]", "foot [cm]", "skate [cm/s]", "floating [cm]", "contact agreed")
 
 
 def _mean(people: Iterable[Json], driver: str, figure: str) -> float:
@@ -31,7 +29,6 @@ def _cells(people: list[Json], driver: str) -> list[str]:
         "kneeCm": "{:.1f}",
         "footCm": "{:.1f}",
         "skateCmS": "{:.0f}",
-        "slideCmS": "{:.0f}",
     }
     return [
         digits.get(figure, "{:.2f}").format(_mean(people, driver, figure)).replace("%", " %") for figure in _FIGURES

@@ -45,8 +45,8 @@ const isFiniteAvatar = ({ head, leftHand, rightHand, body }: AvatarPose): boolea
 
 /**
  * Returns the packet's bytes, 64 at most; null if head, a hand or the body is not finite. The skeleton is the sender's
- * own; the body's head must be where the pose's head is, as with every estimator. Positions beyond the ranges in
- * src/rooms/README.md are clamped.
+ * own; the body's head must be where the pose's head is, as with every estimator. Positions beyond the ranges of
+ * `writePacket` are clamped.
  */
 export function encodePose(packet: PosePacket, skeleton: Skeleton): Uint8Array | null {
   const { head, leftHand, rightHand, body } = packet.pose;

@@ -44,7 +44,29 @@ const reader = createBitReader(new Uint8Array(0));
 const writeFlag = (set: boolean): void => writer.write(set ? 1 : 0, 1);
 const readFlag = (): boolean => reader.read(1) === 1;
 
-/** Returns the bytes of a packet. */
+/**
+ * Returns the bytes of a packet. Fields follow each other, most significant bit first; zeros fill the last byte. A
+ * signed step of b bits lies in ±m, m = 2^(b−1) − 1, and is written as step + m; the code beyond is an error.
+ *
+ * | bits | field |
+ * |---:|---|
+ * | 4, 1, 1, 1 | version; jump (the sender's space was re-anchored); has a body; head tracked, else emulated |
+ * | 3 + 3 | state of the left and right hand: the index in `handStates` |
+ * | 14 | time of the frame [ms] by the sender's clock, modulo 16,384 |
+ * | 16, 14, 16 | head x, y, z: 0.25 mm; x, z ±8.19 m, y −1 to 3.095 m |
+ * | 35 | head orientation: two bits name the largest of x, y, z, w (made positive), 11 bits for each other one |
+ * | 40 + 35 | each hand that has a place: `writeHandPlace`, orientation. A lost hand with a body: the body's wrist |
+ * | 33 | each hand with fingers: `fingerFields` |
+ * | 3 × 32 | with a body: hips, upper chest, neck against the floor, smallest three of 10 bits |
+ * | 7 + 7 | twist of the spine against the hips, of the chest against the upper chest, ±180° |
+ * | 9 + 9 | each arm: swing of the clavicle, 1.3 · s · (1 + abs(s)) / 2 rad, s the share of the most steps |
+ * | 11, 6 | swivel of the elbow from down and back, ±180°; twist of the forearm, ±90° |
+ * | 4 | stretch: the wrist is this far beyond the hand, ±1.4 mm; only if the arm is not free |
+ * | 19 + 7 + 20 | a free arm: direction of the wrist from the shoulder, flexion of the elbow, hand orientation |
+ *
+ * An arm is free while its wrist is not at its hand. With one free arm the trunk has 9 bits a component and the twists
+ * 6; with both it has 8 and 6, and the clavicles 8.
+ */
 export function writePacket(packet: PacketSteps): Uint8Array {
   const { head, hands, fingers, body, hasBody } = packet;
   writer.clear();

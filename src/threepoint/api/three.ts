@@ -126,6 +126,7 @@ export interface BodyTrackerOptions extends Omit<BodyOptions, 'events'> {
   readonly modelUrl?: string | URL;
 }
 
+/** The events of a `BodyTracker` with their data; `BodyEvents` describes each. */
 export interface BodyTrackerEvents {
   readonly calibrated: { readonly calibration: Calibration; readonly source: CalibrationSource };
   readonly heightmismatch: { readonly difference: number };

@@ -196,7 +196,7 @@ const bytesOf = (bits: readonly string[]): number[] =>
 const binary = (value: number, bits: number): string => value.toString(2).padStart(bits, '0');
 
 describe('bytes', () => {
-  test('are those of src/rooms/README.md, bit by bit', () => {
+  test('are those that writePacket documents, bit by bit', () => {
     const expected = bytesOf([
       '0100', // version 4
       '0', // no jump

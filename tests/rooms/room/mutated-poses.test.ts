@@ -66,7 +66,7 @@ async function mutations(chance: () => number) {
 }
 
 /**
- * Writes a time [ms] into a packet, from its bit 13 on (src/rooms/README.md), so that its age is not what keeps it from
+ * Writes a time [ms] into a packet, from its bit 13 on (`writePacket`), so that its age is not what keeps it from
  * the room.
  */
 function setTime(bytes: Uint8Array, timeMs: number): void {

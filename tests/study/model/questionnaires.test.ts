@@ -176,20 +176,12 @@ const file = (change: Partial<QuestionnaireFile> = {}): QuestionnaireFile => ({
 });
 
 describe('a questionnaire of one’s own', () => {
-  test('VEQ as docs/study.md tells to enter it: twelve statements, the mean of four for each factor', () => {
+  test('is the one that docs/study.md shows: a reversed question, a comment, the mean of two answers', () => {
     const docs = readFileSync(fileURLToPath(new URL('../../../docs/study.md', import.meta.url)), 'utf8');
-    const block = docs.split('```json\n').find((one) => one.includes('"id": "veq"')) ?? '';
-    const veq = resolvedQuestionnaire(JSON.parse(block.slice(0, block.indexOf('```'))) as QuestionnaireFile);
-    expect(veq.questions).toHaveLength(12);
-    const given = Object.fromEntries(
-      veq.questions.map(({ id, about }, index) => [id, about === 'agency' ? 7 : 1 + (index % 4)]),
-    );
-    const answers = checkedAnswers(veq, given);
-    expect(veq.scales.map((scale) => [scale.id, scaleScore(veq, scale, answers)])).toEqual([
-      ['ownership', 2.5],
-      ['agency', 7],
-      ['change', 2.5],
-    ]);
+    const block = docs.split('```json\n').find((one) => one.includes('"questions"')) ?? '';
+    const body = resolvedQuestionnaire(JSON.parse(block.slice(0, block.indexOf('```'))) as QuestionnaireFile);
+    const answers = checkedAnswers(body, { mine: 6, against: 4 });
+    expect(body.scales.map((scale) => [scale.id, scaleScore(body, scale, answers)])).toEqual([['embodiment', 5]]);
   });
 
   test('turns reversed answers round in scales, and records them as given', () => {

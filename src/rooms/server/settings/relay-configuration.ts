@@ -45,7 +45,7 @@ const shortestSecret = 32;
 
 type Environment = Readonly<Record<string, string | undefined>>;
 
-export const relayEnvironment = `Environment of the relay (server/README.md):
+export const relayEnvironment = `Environment of the relay:
   THREEPOINT_SECRET             signs room tokens; 128 bits or more (openssl rand -base64 32), the same in all processes
   THREEPOINT_ORIGINS            origins of pages that may connect, separated by commas; default: the server's own
   THREEPOINT_HOSTS              further names of the server, separated by commas; known are localhost, its addresses,
