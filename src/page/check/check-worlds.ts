@@ -139,8 +139,9 @@ export class CheckWorlds {
     });
   }
 
-  draw(camera: Camera): void {
-    this.#mirror.reflect(this.#renderer, this.#studio.scene, camera);
+  /** Draws the world at a time [s]. */
+  draw(camera: Camera, time: number): void {
+    this.#mirror.reflect(this.#renderer, this.#studio.scene, camera, time);
     this.#renderer.render(this.#studio.scene, camera);
   }
 }

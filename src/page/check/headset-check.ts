@@ -115,7 +115,7 @@ export class HeadsetCheck {
     if (tracked) worlds.update(time, tracked);
     this.#writeCaption(time);
     this.#caption.show(time, tracked?.head ?? null);
-    worlds.draw(this.#camera);
+    worlds.draw(this.#camera, time);
     this.#timing.mark('render');
     this.#timing.end();
     this.#views = Math.max(this.#views, renderer.xr.getCamera().cameras.length);
