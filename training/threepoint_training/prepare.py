@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from . import quaternion
 from .foreign_motion import SUFFIXES, read_foreign
+from .lockbox_log import LockboxAccess, permitted
 from .mocap_asf_amc import AsfSkeleton, parse_amc, parse_asf
 from .mocap_rules import RULES
 from .motion import MocapError, Motion
@@ -40,12 +41,15 @@ _LATERAL = {"leftHand": np.array([-1.0, 0.0, 0.0]), "rightHand": np.array([1.0, 
 
 @dataclass(frozen=True)
 class PrepareConfig:
-    """mocap: a folder searched for .asf, .amc, .bvh and .vrma files. people: only these (None: all)."""
+    """mocap: a folder searched for .asf, .amc, .bvh and .vrma files. people: only these (None: all outside the
+    lockbox). lockbox: needed where `people` has lockbox people.
+    """
 
     mocap: Path
     skeleton_map: Path | None = None
     people: tuple[str, ...] | None = None
     cache: Path | None = None
+    lockbox: LockboxAccess | None = None
 
 
 @dataclass(frozen=True)
@@ -319,7 +323,7 @@ class _Reader:
 def main(config: PrepareConfig, progress: Callable[[str], None] = lambda _: None) -> PreparedCorpus:
     """Prepares every clip it can; what it cannot is in `problems`, a sentence each. Nothing usable raises MocapError.
     """
-    sources = motion_files(config.mocap, config.people)
+    sources, left_out = permitted(motion_files(config.mocap, config.people), config.people, config.lockbox)
     hashed = [path for source in sources for path in (source.path, source.asf) if path is not None]
     given = read_skeleton_map(config.skeleton_map) if config.skeleton_map else None
     rest_file = given.rest_file if given else None
@@ -329,7 +333,7 @@ def main(config: PrepareConfig, progress: Callable[[str], None] = lambda _: None
         return PreparedCorpus.load(cached)
 
     reader = _Reader(config, sources)
-    problems: list[str] = []
+    problems: list[str] = [*left_out]
     by_person: dict[str, list[tuple[str, _Clip]]] = {}
     for source in sources:
         progress(source.path.name)
