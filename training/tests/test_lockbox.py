@@ -87,6 +87,7 @@ def test_the_command_evaluates_the_networks_in_out(models, tmp_path):
         TrainConfig(mocap=tmp_path / "mocap"), task="lockbox", out=models, lockbox_log=log, cache=tmp_path / "cache"
     )
     assert pipeline.main(config, Console(quiet=True)) == {}
-    (row,) = json.loads(log.read_text())
+    opened, row = json.loads(log.read_text())
+    assert (opened["people"], opened["purpose"]) == (["009"], "npm run train -- --lockbox")
     assert list(row["cm"]) == ["009"]
     assert np.isfinite(list(row["ratios"]["all"].values())).all()

@@ -107,6 +107,45 @@ def test_what_is_too_short_to_be_motion_is_left_out_and_reported(tmp_path: Path)
     )
 
 
+def with_head_upside_down(bvh: str, first: int, last: int) -> str:
+    """The motion with the head rolled by half a turn from frame `first` to before frame `last`."""
+    header, rows = bvh.split("Frame Time: ")
+    time, *frames = rows.splitlines()
+    # Six numbers of the hips, three of each joint: Spine, Spine1 and Neck precede the head.
+    roll = 6 + 3 * 3
+    for index in range(first, last):
+        numbers = frames[index].split()
+        numbers[roll] = "180"
+        frames[index] = " ".join(numbers)
+    return f"{header}Frame Time: {time}\n" + "\n".join(frames) + "\n"
+
+
+def test_frames_with_the_head_upside_down_are_left_out_and_reported(tmp_path: Path) -> None:
+    bvh = person_bvh([(float(i) / 10, 92.0, 0.0, 0.0) for i in range(150)])
+    corpus = corpus_of(tmp_path, p1_ends=with_head_upside_down(bvh, 40, 110), p1_walk=bvh)
+    assert corpus.clips == ("p1_ends#1", "p1_ends#2", "p1_walk")
+    assert corpus.clip_starts.tolist() == [0, 40, 80, 230]
+    assert joint(corpus, "hips", 40)[0] == pytest.approx(-0.11, abs=1e-6)
+    assert corpus.problems == ("p1_ends: the head is upside down in 70 of 150 frames; they are left out",)
+
+
+def test_a_clip_with_the_head_upside_down_throughout_is_left_out(tmp_path: Path) -> None:
+    bvh = person_bvh([(0.0, 92.0, 0.0, 0.0)] * 60)
+    wrong = with_head_upside_down(bvh, 0, 60)
+    corpus = corpus_of(tmp_path, p1_walk=bvh, p1_long=person_bvh(STANDING * 3), p1_wrong=wrong)
+    assert corpus.clips == ("p1_long", "p1_walk")
+    assert corpus.problems == ("p1_wrong: the head is upside down in 60 of 60 frames; they are left out",)
+
+
+def test_a_somersault_is_kept(tmp_path: Path) -> None:
+    """It turns head and trunk alike."""
+    rows = person_bvh(STANDING).splitlines()
+    at = next(index for index, row in enumerate(rows) if row.startswith("Frame Time")) + 1
+    turned = [" ".join([*row.split()[:3], "0", "180", *row.split()[5:]]) for row in rows[at:]]
+    corpus = corpus_of(tmp_path, p1_walk=person_bvh(STANDING * 3), p1_flip="\n".join([*rows[:at], *turned]) + "\n")
+    assert corpus.clips == ("p1_flip", "p1_walk")
+
+
 def test_a_broken_file_is_reported_and_the_rest_is_read(tmp_path: Path) -> None:
     good = person_bvh(STANDING)
     corpus = corpus_of(tmp_path, p1_walk=good, p2_walk=good.replace("MOTION", "MOTTION"))

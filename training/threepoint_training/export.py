@@ -3,7 +3,6 @@
 import hashlib
 import io
 import json
-import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 from .chest_features import CHEST_FEATURES
 from .features import FEATURES
 from .flat_weights import flat_file
+from .lockbox_log import git_commit
 from .quantise import quantise_weights, run
 from .residual import OUTPUTS
 from .splits import evaluation_only, in_lockbox
@@ -67,19 +67,6 @@ def to_onnx(
     model = onnx.load_from_string(stream.getvalue())
     onnx.checker.check_model(model)
     return model
-
-
-def git_commit() -> str:
-    """The commit of the code that trained, with a mark when it was changed since; 'unknown' outside a repository."""
-    folder = Path(__file__).parent
-    try:
-        commit = subprocess.run(
-            ["git", "rev-parse", "HEAD"], cwd=folder, capture_output=True, text=True, check=True
-        ).stdout.strip()
-        changed = subprocess.run(["git", "diff", "--quiet", "HEAD", "--", "."], cwd=folder, check=False).returncode
-    except (OSError, subprocess.CalledProcessError):
-        return "unknown"
-    return f"{commit}{'-modified' if changed else ''}"
 
 
 @dataclass(frozen=True)

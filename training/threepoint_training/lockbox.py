@@ -6,14 +6,13 @@ it.
 
 import json
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 import onnx
 
 from . import selection, splits, train_learned
-from .export import git_commit
+from .lockbox_log import append, stamp
 from .motion import MocapError
 from .prepared_corpus import PreparedCorpus
 from .quantise import run
@@ -44,8 +43,7 @@ def main(corpus: PreparedCorpus, config: LockboxConfig) -> dict[str, Any]:
     held_out = train_learned.held_out(corpus, people, tuple(contract["windowSeconds"]), hands_measured=False)
     errors = selection.errors_by_person(run(onnx.load(config.models / contract["file"]), held_out.inputs), held_out)
     row = {
-        "date": datetime.now(UTC).date().isoformat(),
-        "gitCommit": git_commit(),
+        **stamp(),
         "weightsSha256": contract["sha256"],
         "corpusHash": corpus.corpus_hash,
         "cm": {name: _of_person(person) for name, person in errors["all"].items()},
@@ -55,8 +53,7 @@ def main(corpus: PreparedCorpus, config: LockboxConfig) -> dict[str, Any]:
             if errors[frames]
         },
     }
-    rows = json.loads(config.log.read_text()) if config.log.exists() else []
-    config.log.write_text(json.dumps([*rows, row], indent=2) + "\n")
+    append(config.log, row)
     return row
 
 

@@ -5,6 +5,7 @@ A run is seeded: the same data and options write the same weights on the same ma
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import torch
@@ -22,11 +23,11 @@ from . import (
     train_learned,
     train_paper,
 )
-from .export import git_commit
 from .fit_networks import Destination, TrainingRun
 from .generated_motion import generate_corpus
+from .lockbox_log import LockboxAccess, git_commit
 from .prepared_corpus import PreparedCorpus
-from .splits import evaluation_only, trainable
+from .splits import LOCKBOX, evaluation_only, trainable
 from .training_config import REPOSITORY, Task, TrainConfig
 from .training_report import LABELS, TrainingReport
 
@@ -168,4 +169,8 @@ def _prepared(config: TrainConfig, mocap: Path, report: TrainingReport) -> Prepa
             done += 1
             advance(done, f"prepare {name}")
 
-        return prepare.main(prepare.PrepareConfig(mocap, config.skeleton_map, cache=config.cache), file)
+        prepared = prepare.PrepareConfig(mocap, config.skeleton_map, cache=config.cache)
+        if config.task == "lockbox":
+            access = LockboxAccess("npm run train -- --lockbox", config.lockbox_log)
+            prepared = replace(prepared, people=LOCKBOX, lockbox=access)
+        return prepare.main(prepared, file)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from . import quaternion
 from .foreign_motion import SUFFIXES, read_foreign
+from .lockbox_log import LockboxAccess, permitted
 from .mocap_asf_amc import AsfSkeleton, parse_amc, parse_asf
 from .mocap_rules import RULES
 from .motion import MocapError, Motion
@@ -40,12 +41,15 @@ _LATERAL = {"leftHand": np.array([-1.0, 0.0, 0.0]), "rightHand": np.array([1.0, 
 
 @dataclass(frozen=True)
 class PrepareConfig:
-    """mocap: a folder searched for .asf, .amc, .bvh and .vrma files. people: only these (None: all)."""
+    """mocap: a folder searched for .asf, .amc, .bvh and .vrma files. people: only these (None: all outside the
+    lockbox). lockbox: needed where `people` has lockbox people.
+    """
 
     mocap: Path
     skeleton_map: Path | None = None
     people: tuple[str, ...] | None = None
     cache: Path | None = None
+    lockbox: LockboxAccess | None = None
 
 
 @dataclass(frozen=True)
@@ -127,22 +131,47 @@ def _segments(clip: _Clip, name: str, report: Callable[[str], None]) -> Iterable
     """The clip cut where it teleports; pieces too short to be motion are left out. Both are reported."""
     speed = np.linalg.norm(np.diff(clip.positions, axis=0), axis=-1).max(axis=1) * clip.rate
     cuts = np.flatnonzero(speed > TELEPORT_SPEED) + 1
-    bounds = [0, *cuts.tolist(), len(clip.positions)]
-    shortest = max(4, round(SHORTEST_SEGMENT_SECONDS * clip.rate))
-    pieces = [(start, end) for start, end in zip(bounds[:-1], bounds[1:], strict=True) if end - start >= shortest]
     if len(cuts):
         report(f"{name}: teleports at frame {', '.join(str(cut + 1) for cut in cuts[:5])}; cut there")
-    if left_out := len(bounds) - 1 - len(pieces):
-        which = f"{left_out} of {len(bounds) - 1} pieces " if len(cuts) else ""
+    bounds = [0, *cuts.tolist(), len(clip.positions)]
+    return _pieces(clip, name, list(zip(bounds[:-1], bounds[1:], strict=True)), report)
+
+
+def _pieces(
+    clip: _Clip, name: str, bounds: Sequence[tuple[int, int]], report: Callable[[str], None]
+) -> Iterable[tuple[str, _Clip]]:
+    """The pieces of a clip between these frames, numbered where there are several; those too short are left out."""
+    shortest = max(4, round(SHORTEST_SEGMENT_SECONDS * clip.rate))
+    pieces = [(start, end) for start, end in bounds if end - start >= shortest]
+    if left_out := len(bounds) - len(pieces):
+        which = f"{left_out} of {len(bounds)} pieces " if len(bounds) > 1 else ""
         report(f"{name}: {which}shorter than {SHORTEST_SEGMENT_SECONDS} s; left out")
     for number, (start, end) in enumerate(pieces):
         piece = replace(
-            clip,
-            positions=clip.positions[start:end],
-            rotations=clip.rotations[start:end],
-            legs=clip.legs[start:end],
+            clip, positions=clip.positions[start:end], rotations=clip.rotations[start:end], legs=clip.legs[start:end]
         )
         yield (name if len(pieces) == 1 else f"{name}#{number + 1}"), piece
+
+
+def _with_head_turned(clip: _Clip, neutral: NDArray[np.float64]) -> _Clip:
+    """The clip with head rotations that are the identity where the person looks ahead; neutral: from `_neutral_head`."""
+    head = quaternion.multiply(clip.rotations[:, 0], np.broadcast_to(neutral, clip.rotations[:, 0].shape))
+    return replace(clip, rotations=np.concatenate([head[:, None], clip.rotations[:, 1:]], axis=1))
+
+
+def _with_head_on_neck(clip: _Clip, name: str, report: Callable[[str], None]) -> Iterable[tuple[str, _Clip]]:
+    """The clip without frames whose head is recorded upside down, and without pieces too short; both are reported.
+
+    There the head's up axis is more than 90° from the direction from the neck to the head, which no neck can do.
+    """
+    neck = clip.positions[:, JOINTS.index("head")] - clip.positions[:, JOINTS.index("neck")]
+    up = quaternion.rotate(clip.rotations[:, 0], np.broadcast_to([0.0, 1.0, 0.0], neck.shape))
+    wrong = np.sum(up * neck, axis=-1) < 0
+    if not wrong.any():
+        return [(name, clip)]
+    report(f"{name}: the head is upside down in {wrong.sum()} of {len(wrong)} frames; they are left out")
+    edges = np.flatnonzero(np.diff(np.concatenate([[True], wrong, [True]]).astype(np.int8)))
+    return _pieces(clip, name, list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)), report)
 
 
 def _resample(clip: _Clip) -> _Clip:
@@ -319,7 +348,7 @@ class _Reader:
 def main(config: PrepareConfig, progress: Callable[[str], None] = lambda _: None) -> PreparedCorpus:
     """Prepares every clip it can; what it cannot is in `problems`, a sentence each. Nothing usable raises MocapError.
     """
-    sources = motion_files(config.mocap, config.people)
+    sources, left_out = permitted(motion_files(config.mocap, config.people), config.people, config.lockbox)
     hashed = [path for source in sources for path in (source.path, source.asf) if path is not None]
     given = read_skeleton_map(config.skeleton_map) if config.skeleton_map else None
     rest_file = given.rest_file if given else None
@@ -329,7 +358,7 @@ def main(config: PrepareConfig, progress: Callable[[str], None] = lambda _: None
         return PreparedCorpus.load(cached)
 
     reader = _Reader(config, sources)
-    problems: list[str] = []
+    problems: list[str] = [*left_out]
     by_person: dict[str, list[tuple[str, _Clip]]] = {}
     for source in sources:
         progress(source.path.name)
@@ -348,17 +377,16 @@ def main(config: PrepareConfig, progress: Callable[[str], None] = lambda _: None
             continue
         people[person] = _person(person, clips)
         neutral = quaternion.conjugate(_neutral_head(clips))
-        floor = _floor_height(clips)
+        above_floor = np.array([0.0, _floor_height(clips), 0.0])
         for name, clip in clips:
-            even = _resample(clip)
-            above_floor = np.array([0.0, floor, 0.0])
-            head = quaternion.multiply(even.rotations[:, 0], np.broadcast_to(neutral, even.rotations[:, 0].shape))
-            positions.append((even.positions - above_floor).astype(np.float32))
-            legs.append((even.legs - above_floor).astype(np.float32))
-            rotations.append(np.concatenate([head[:, None], even.rotations[:, 1:]], axis=1).astype(np.float32))
-            names.append(name)
-            people_of_clips.append(person)
-            starts.append(starts[-1] + len(even.positions))
+            even = _with_head_turned(_resample(clip), neutral)
+            for piece_name, piece in _with_head_on_neck(even, name, problems.append):
+                positions.append((piece.positions - above_floor).astype(np.float32))
+                legs.append((piece.legs - above_floor).astype(np.float32))
+                rotations.append(piece.rotations.astype(np.float32))
+                names.append(piece_name)
+                people_of_clips.append(person)
+                starts.append(starts[-1] + len(piece.positions))
     if not positions:
         raise MocapError("nothing could be read:\n" + "\n".join(problems))
     corpus = PreparedCorpus(

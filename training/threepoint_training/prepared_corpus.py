@@ -66,7 +66,7 @@ class PreparedCorpus:
     8, 3] (LEG_JOINTS), NaN where a file has no such joint; None: motion without legs.
     """
 
-    VERSION: ClassVar[int] = 2
+    VERSION: ClassVar[int] = 3
 
     positions: NDArray[np.float32]
     rotations: NDArray[np.float32]

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import hand_tilt, prepare
+from .lockbox_log import LockboxAccess
 from .mocap_rules import RULES
 from .motion import MocapError
 from .normal_numbers import NormalNumbers
@@ -102,14 +103,18 @@ def _arguments() -> RecordingsConfig:
     parser = argparse.ArgumentParser(description="Mocap files to recordings with their truth, for the evaluation.")
     parser.add_argument("--mocap", type=Path, required=True)
     parser.add_argument("--skeleton", type=Path)
-    parser.add_argument("--people", help="only these people, separated by commas")
+    parser.add_argument("--people", help="only these people, separated by commas; people of the lockbox must be named, which is logged")
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--cache", type=Path)
     parser.add_argument("--seed", type=int, default=RecordingsConfig.seed)
     given = parser.parse_args()
     people = tuple(given.people.split(",")) if given.people else None
     return RecordingsConfig(
-        prepare=prepare.PrepareConfig(given.mocap, given.skeleton, people, given.cache), out=given.out, seed=given.seed
+        prepare=prepare.PrepareConfig(
+            given.mocap, given.skeleton, people, given.cache, LockboxAccess("npm run evaluate")
+        ),
+        out=given.out,
+        seed=given.seed,
     )
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
-from . import fit_ik, train_learned, train_paper
+from . import fit_ik, lockbox_log, train_learned, train_paper
 
 REPOSITORY = Path(__file__).parents[2]
 
@@ -33,7 +33,7 @@ class TrainConfig:
     # Errors of the recipes that were judged, by commit and steps.
     selections: Path = REPOSITORY / ".cache/selection"
     # Every evaluation of the lockbox.
-    lockbox_log: Path = REPOSITORY / "training/lockbox-log.json"
+    lockbox_log: Path = lockbox_log.LOG
     cache: Path = REPOSITORY / ".cache/mocap"
     skeleton_map: Path | None = None
     folds: tuple[str, ...] = ("A", "B")

@@ -14,13 +14,13 @@ const otherLaboratory: ReadonlySet<string> = new Set(['901', '902', '903']);
  */
 const extents = {
   full: {
-    groups: { unseen: 16, otherLaboratory: 4, trainedOn: 4 },
+    groups: { unseen: 16, otherLaboratory: 4, trainedOn: 16 },
     disturbed: 2.5,
     paperShare: 0.12,
     longestSeconds: 15,
   },
   quick: {
-    groups: { unseen: 0.8, otherLaboratory: 0.2, trainedOn: 0.4 },
+    groups: { unseen: 0.8, otherLaboratory: 0.2, trainedOn: 0.8 },
     disturbed: 0.4,
     paperShare: 0,
     longestSeconds: 6,
@@ -78,7 +78,7 @@ export function planGoldens(index: RecordingIndex, trainedOn: ReadonlySet<string
       .map((clip) => pieceOf(clip, longestSeconds * index.rateHz));
   const choose = (pieces: readonly ListedPiece[], minutes: number): ListedPiece[] =>
     pieces.length > 0 && minutes > 0 ? chooseClips(pieces, minutes * 60 * index.rateHz) : [];
-  const long = ({ frames }: ListedPiece): boolean => frames >= shortestDisturbedSeconds * index.rateHz;
+  const isLong = ({ frames }: ListedPiece): boolean => frames >= shortestDisturbedSeconds * index.rateHz;
 
   const jobs = measuredMethods.flatMap((method): GoldenJob[] => {
     const share = method === 'paper' ? paperShare : 1;
@@ -89,10 +89,8 @@ export function planGoldens(index: RecordingIndex, trainedOn: ReadonlySet<string
       situation: null,
       pieces: choose(of(group), groups[group] * share),
     }));
-    const pieces = names.flatMap((group) => {
-      const part = group === 'unseen' ? 0.5 : 0.25;
-      return choose(of(group).filter(long), disturbed * share * part);
-    });
+    const long = names.map((group) => of(group).filter(isLong)).filter((candidates) => candidates.length > 0);
+    const pieces = long.flatMap((candidates) => choose(candidates, (disturbed * share) / long.length));
     const disturbances = Object.keys(situations).map((situation) => ({
       row: `${method} · ${situation}`,
       method,

@@ -182,11 +182,11 @@ export class Pipeline implements PoseEstimator {
     const { head, leftHand, rightHand } = trackers;
     solved.time = time;
     solved.deviceBody = deviceBody ?? null;
-    floorFromHeading(head.pose, solved.floorFromHeading);
+    floorFromHeading(head.value, solved.floorFromHeading);
     invertTransform(solved.floorFromHeading, this.#headingFromFloor);
-    transformPose(this.#headingFromFloor, head.pose, solved.points.head);
-    transformPose(this.#headingFromFloor, leftHand.pose, solved.points.leftHand);
-    transformPose(this.#headingFromFloor, rightHand.pose, solved.points.rightHand);
+    transformPose(this.#headingFromFloor, head.value, solved.points.head);
+    transformPose(this.#headingFromFloor, leftHand.value, solved.points.leftHand);
+    transformPose(this.#headingFromFloor, rightHand.value, solved.points.rightHand);
     turnHands(solved.points, tilts.turns);
     solveIk(solved.points, tilts.turns, this.#body.chestSpace, solved.ik);
     rotate(solved.floorFromHeading.orientation, solved.ik.poles.left, this.#poles.left);

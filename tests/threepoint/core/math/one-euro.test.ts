@@ -1,24 +1,21 @@
-import {
-  halfLifeOfCutoff,
-  makeSteadyOrientation,
-  makeSteadyPoint,
-  steadyOrientation,
-  steadyPoint,
-} from 'threepoint/core/math/one-euro';
+import { halfLifeOfCutoff, makeSteadyPose, steadyPose } from 'threepoint/core/math/one-euro';
+import type { Pose } from 'threepoint/core/math/pose';
 import { angleBetween, fromAxisAngle, type Quat } from 'threepoint/core/math/quat';
 import { randomNumbers } from 'threepoint/core/math/random';
 import { copyVec3, distance, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { expect, test } from 'vitest';
 
-const tuning = { restCutoff: 1, cutoffPerSpeed: 15, velocityCutoff: 5 };
+const tuning = { restCutoff: 1, cutoffPerSpeed: 15 };
 const axis = normalise(vec3(1, 2, -1));
+const pose = (position: Vec3, angle = 0): Pose<'floor'> => ({ position, orientation: fromAxisAngle(axis, angle) });
 
 /** The filtered points of a path, sampled at a rate for some seconds. */
 function filtered(path: (time: number) => Vec3, seconds: number, rateHz: number): Vec3[] {
-  const state = makeSteadyPoint();
-  return Array.from({ length: Math.round(seconds * rateHz) + 1 }, (_, i) =>
-    copyVec3(steadyPoint(state, path(i / rateHz), tuning, i === 0 ? 0 : 1 / rateHz)),
-  );
+  const state = makeSteadyPose<'floor'>();
+  return Array.from({ length: Math.round(seconds * rateHz) + 1 }, (_, i) => {
+    steadyPose(state, pose(path(i / rateHz)), tuning, i === 0 ? 0 : 1 / rateHz);
+    return copyVec3(state.value.position);
+  });
 }
 
 test('the half-life of a cutoff is that of a first-order low-pass', () => {
@@ -27,19 +24,20 @@ test('the half-life of a cutoff is that of a first-order low-pass', () => {
 });
 
 test('the first sample passes unchanged, and a step of no time changes nothing', () => {
-  const state = makeSteadyPoint();
-  expect(steadyPoint(state, vec3(1, 2, 3), tuning, 0)).toEqual(vec3(1, 2, 3));
-  expect(steadyPoint(state, vec3(2, 2, 3), tuning, 0)).toEqual(vec3(1, 2, 3));
+  const state = makeSteadyPose<'floor'>();
+  steadyPose(state, pose(vec3(1, 2, 3), 0.3), tuning, 0);
+  expect(state.value).toEqual(pose(vec3(1, 2, 3), 0.3));
+  steadyPose(state, pose(vec3(2, 2, 3), 1), tuning, 0);
+  expect(state.value).toEqual(pose(vec3(1, 2, 3), 0.3));
 });
 
 test('an infinite step passes the sample unchanged', () => {
-  const state = makeSteadyPoint();
-  steadyPoint(state, vec3(1, 2, 3), tuning, 0);
-  expect(steadyPoint(state, vec3(4, 5, 6), tuning, Number.POSITIVE_INFINITY)).toEqual(vec3(4, 5, 6));
-  const turned = makeSteadyOrientation();
-  steadyOrientation(turned, fromAxisAngle(axis, 0.3), tuning, 0);
-  const sample = fromAxisAngle(axis, 2);
-  expect(steadyOrientation(turned, sample, tuning, Number.POSITIVE_INFINITY)).toBeSameRotationAs(sample, 1e-9);
+  const state = makeSteadyPose<'floor'>();
+  steadyPose(state, pose(vec3(1, 2, 3), 0.3), tuning, 0);
+  const sample = pose(vec3(4, 5, 6), 2);
+  steadyPose(state, sample, tuning, Number.POSITIVE_INFINITY);
+  expect(state.value.position).toEqual(sample.position);
+  expect(state.value.orientation).toBeSameRotationAs(sample.orientation, 1e-9);
 });
 
 test('a tenth of the noise at rest passes', () => {
@@ -58,6 +56,12 @@ test('a steady motion is followed by less than 12 mm at any speed', () => {
   }
 });
 
+test('a wave of 2 Hz keeps the filter open: it is less than 12 mm behind', () => {
+  const path = (time: number) => vec3(0.1 * Math.sin(4 * Math.PI * time), 0, 0);
+  const points = filtered(path, 3, 72).slice(72);
+  expect(Math.max(...points.map((point, i) => distance(point, path(1 + i / 72))))).toBeLessThan(0.012);
+});
+
 test('the same motion gives the same points at 60, 72, 90 and 120 Hz, to 3 mm', () => {
   const path = (time: number) => vec3(0.3 * Math.sin(4 * time), 0.2 * Math.cos(3 * time), 0);
   const reference = filtered(path, 2, 360).at(-1)!;
@@ -65,14 +69,28 @@ test('the same motion gives the same points at 60, 72, 90 and 120 Hz, to 3 mm', 
     expect(distance(filtered(path, 2, rateHz).at(-1)!, reference)).toBeLessThan(0.003);
 });
 
+/** The angle [rad] by which a filter lags that turns at 4 rad/s for a second while it moves at this speed [m/s]. */
+function lagOfTurn(speed: number): number {
+  const state = makeSteadyPose<'floor'>();
+  for (let i = 0; i <= 72; i++) steadyPose(state, pose(vec3((speed * i) / 72, 0, 0), (4 * i) / 72), tuning, 1 / 72);
+  return angleBetween(state.value.orientation, fromAxisAngle(axis, 4));
+}
+
+test('an orientation follows by less than 4° while its position moves, and slowly at rest', () => {
+  expect(lagOfTurn(1)).toBeLessThan(0.06);
+  expect(lagOfTurn(0)).toBeGreaterThan(0.3);
+});
+
 test('orientations are filtered alike with either sign', () => {
-  const [one, other] = [makeSteadyOrientation(), makeSteadyOrientation()];
+  const [one, other] = [makeSteadyPose<'floor'>(), makeSteadyPose<'floor'>()];
   for (let i = 0; i < 50; i++) {
+    const position = vec3(0.01 * i, 0, 0);
     const { x, y, z, w }: Quat = fromAxisAngle(axis, 0.02 * i);
     const sign = i % 2 ? -1 : 1;
-    steadyOrientation(one, { x, y, z, w }, tuning, 1 / 72);
-    steadyOrientation(other, { x: sign * x, y: sign * y, z: sign * z, w: sign * w }, tuning, 1 / 72);
-    expect(other.value).toBeSameRotationAs(one.value, 1e-9);
+    steadyPose(one, { position, orientation: { x, y, z, w } }, tuning, 1 / 72);
+    const orientation = { x: sign * x, y: sign * y, z: sign * z, w: sign * w };
+    steadyPose(other, { position, orientation }, tuning, 1 / 72);
+    expect(other.value.orientation).toBeSameRotationAs(one.value.orientation, 1e-9);
   }
-  expect(angleBetween(one.value, fromAxisAngle(axis, 0.98))).toBeLessThan(0.05);
+  expect(angleBetween(one.value.orientation, fromAxisAngle(axis, 0.98))).toBeLessThan(0.05);
 });
