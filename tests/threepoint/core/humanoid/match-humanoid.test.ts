@@ -121,6 +121,17 @@ describe('what is no humanoid is refused with what was found and what is missing
     expect(humanoidComplaint(matchHumanoid(joints))).toMatch(/none of its 16 joints/);
   });
 
+  test('a bird, whose wings are where a human has arms', () => {
+    const { joints } = rigs.find(({ name }) => name === 'LAFAN1')!;
+    const wings = ['Shoulder', 'Arm', 'ForeArm', 'Hand'];
+    const bird = renamed(joints, ({ name }) =>
+      name.replace(/(?<=^Left|^Right)(Shoulder|Arm|ForeArm|Hand)$/, (part) => `Wing${wings.indexOf(part)}`),
+    );
+    const match = matchHumanoid(bird);
+    expect(humanoidComplaint(match)).toMatch(/no leftUpperArm, no leftLowerArm, no leftHand/);
+    expect(match.map.leftFoot).toBeDefined();
+  });
+
   test('any tree of joints gets an answer within a second', () => {
     const joint = fc.record({
       name: fc.oneof(
