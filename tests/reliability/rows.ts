@@ -292,7 +292,7 @@ export const attackRows = {
     inject: '100,000 BVH files and as many VRM Animations with changes (8,000 and 2,000 by day)',
     sees: 'A sentence that names the file, or finite trackers',
     target: '0 other exceptions, 0 NaN, no file over 1 s or three times its memory',
-    shows: ['longest work on one bvh [ms]'],
+    shows: ['longest work on one bvh [ms of the processor]'],
     tests: ['tests/threepoint/core/mocap/mutated-motion.test.ts'],
   },
   crowd: {

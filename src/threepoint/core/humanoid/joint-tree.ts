@@ -50,10 +50,9 @@ export class JointTree {
     const heights = new Array<number>(joints.length).fill(0);
     const parts = new Array<number>(joints.length).fill(0);
     const weights = joints.map(({ weight }) => weight ?? 0);
-    const skinned = weights.some((weight) => weight > 0);
     // Ends of chains that move no skin may lie anywhere: some exporters scale them by 100.
     const isLooseEnd = (i: number): boolean =>
-      skinned && weights[i] === 0 && children[i]!.length === 0 && this.votes[i]!.auxiliary;
+      weights[i] === 0 && children[i]!.length === 0 && this.votes[i]!.auxiliary;
     for (const i of [...order].reverse()) {
       const { parent } = joints[i]!;
       const { auxiliary, parts: own } = this.votes[i]!;
@@ -67,6 +66,7 @@ export class JointTree {
     this.heights = heights;
     this.#parts = parts;
     this.size = heights.reduce((most, height) => Math.max(most, height), 0);
+    const skinned = weights.some((weight) => weight > 0);
     this.auxiliary = joints.map((_, i) => this.votes[i]!.auxiliary || (skinned && weights[i] === 0));
   }
 

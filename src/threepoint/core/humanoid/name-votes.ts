@@ -1,6 +1,9 @@
 import type { Side } from '../math/side';
 
-/** A part of a body that the name of a joint can mean. `finger` is a finger known by its number alone. */
+/**
+ * A part of a body that the name of a joint can mean. `finger` is a finger known by its number alone,
+ * `appendage` what humans lack or wear.
+ */
 export type Part =
   | 'hips'
   | 'spine'
@@ -22,7 +25,8 @@ export type Part =
   | 'middle'
   | 'ring'
   | 'little'
-  | 'finger';
+  | 'finger'
+  | 'appendage';
 
 /** What the name of a joint suggests. */
 export interface NameVotes {
@@ -47,14 +51,22 @@ const noise = new Set(
   ),
 );
 
-const auxiliaryWords = new Set(
+/** Words of what humans lack or wear. */
+const appendageWords = new Set(
   (
-    'twist roll ik pole ctrl control target helper end nub tip site effector hair skirt cape coat cloth tail wing ' +
-    'weapon prop socket slot attach breast boob bust ear jiggle dyn phys corrective muscle handle pack backpack bag hat ' +
-    'helmet sleeve ribbon dress gizmo mch vis tweak heel null offset ponytail bangs tongue teeth lip brow cheek nose ' +
-    'lid eyelid chin tassel belt scarf beard pocket holster share bend'
+    'hair skirt cape coat cloth tail wing weapon breast boob bust ear pack backpack bag hat helmet sleeve ribbon dress ' +
+    'ponytail bangs tassel belt scarf beard pocket holster'
   ).split(' '),
 );
+
+const auxiliaryWords = new Set([
+  ...appendageWords,
+  ...(
+    'twist roll ik pole ctrl control target helper end nub tip site effector prop socket slot attach jiggle dyn phys ' +
+    'corrective muscle handle gizmo mch vis tweak heel null offset tongue teeth lip brow cheek nose lid eyelid chin ' +
+    'share bend'
+  ).split(' '),
+]);
 
 type Votes = NameVotes['parts'];
 
@@ -132,6 +144,7 @@ export function readJointName(name: string): NameVotes {
     }
   }
   let parts = votesOf(words.join(''));
+  if (Object.keys(parts).length === 0 && words.some((word) => appendageWords.has(word))) parts = { appendage: 1 };
   // The hip of one side is the joint of its leg.
   if (side && parts.hips) parts = { upperLeg: parts.hips === 0.9 ? 0.8 : 0.2 };
   return { side, parts, auxiliary, numbers };

@@ -76,8 +76,13 @@ test('ends of chains that move no skin may lie anywhere', () => {
     const ends = joints.flatMap(({ name, position }, i): SkeletonJoint[] =>
       leaf(i) ? [{ name: `${name}_end`, parent: i, position: scale(position, 100), weight: 0 }] : [],
     );
-    const { map } = matchHumanoid([...skinned, ...ends]);
-    for (const [bone, joint] of Object.entries(bones)) expect(map[bone as keyof typeof map]?.joint, bone).toBe(joint);
+    for (const whole of [
+      [...skinned, ...ends],
+      [...joints, ...ends.map(({ weight: _, ...end }) => end)],
+    ]) {
+      const { map } = matchHumanoid(whole);
+      for (const [bone, joint] of Object.entries(bones)) expect(map[bone as keyof typeof map]?.joint, bone).toBe(joint);
+    }
   }
 });
 
@@ -119,6 +124,17 @@ describe('what is no humanoid is refused with what was found and what is missing
         for (const [i, y] of [58, 30, 3].entries())
           joints.push({ name: `e${joints.length}`, parent: i === 0 ? root : joints.length - 1, position: { x, y, z } });
     expect(humanoidComplaint(matchHumanoid(joints))).toMatch(/none of its 16 joints/);
+  });
+
+  test('a bird, whose wings are where a human has arms', () => {
+    const { joints } = rigs.find(({ name }) => name === 'LAFAN1')!;
+    const wings = ['Shoulder', 'Arm', 'ForeArm', 'Hand'];
+    const bird = renamed(joints, ({ name }) =>
+      name.replace(/(?<=^Left|^Right)(Shoulder|Arm|ForeArm|Hand)$/, (part) => `Wing${wings.indexOf(part)}`),
+    );
+    const match = matchHumanoid(bird);
+    expect(humanoidComplaint(match)).toMatch(/no leftUpperArm, no leftLowerArm, no leftHand/);
+    expect(match.map.leftFoot).toBeDefined();
   });
 
   test('any tree of joints gets an answer within a second', () => {
