@@ -1,3 +1,4 @@
+import { drawNothing } from '../draw-nothing';
 import { emulatedHeadset, frames } from '../emulated-headset';
 import { enterVr, expect, load, probe, freshTest as test } from '../page-fixture';
 
@@ -12,11 +13,7 @@ const budget = { drawCalls: 150, triangles: 400_000 };
 
 test('mirror, archery and the ball for three stay within the budget of a headset @full', async ({ page }) => {
   test.setTimeout(90_000);
-  // Nothing is drawn: at high quality a picture takes software a second.
-  await page.addInitScript(() => {
-    for (const name of ['clear', 'drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElementsInstanced'])
-      Object.assign(WebGL2RenderingContext.prototype, { [name]: () => undefined });
-  });
+  await drawNothing(page);
   for (const [world, query] of [
     ['mirror', ''],
     ['archery', '&play=archery&seed=7'],

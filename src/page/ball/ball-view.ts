@@ -67,6 +67,8 @@ export interface BallView {
   placed(floorFromArena: Transform<'floor', 'arena'>): Surroundings;
   /** The parts in the user's floor frame, to be added to the scene. */
   readonly own: Group;
+  /** Shows or hides the boards. A phone's window is covered by the bar, which has their figures. */
+  showBoards(visible: boolean): void;
   readonly lobby: Pick<LobbySheet, 'buttonAt' | 'setHovered'>;
   show(scene: BallScene): void;
   /** Plays, captions and writes on the board what happened since the last frame. After `show`. */
@@ -135,6 +137,10 @@ class CourtView implements BallView {
   placed(floorFromArena: Transform<'floor', 'arena'>): Surroundings {
     this.#floorFromArena = floorFromArena;
     return this.#court.placed(floorFromArena);
+  }
+
+  showBoards(visible: boolean): void {
+    this.#boards.object.visible = visible;
   }
 
   show(scene: BallScene): void {

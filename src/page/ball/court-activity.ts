@@ -62,6 +62,8 @@ export class CourtActivity implements OpenActivity {
   readonly #menu: BallMenu;
   readonly #input: CourtInput;
   readonly #clock = createMatchClock();
+  /** The width up to which the bar lies over the picture. */
+  readonly #phone = matchMedia('(max-width: 480px)');
   /** The user joined without a name, and reads “You” instead of the one that others see. */
   readonly #unnamed: boolean;
   /** The result of `#named`; the next call overwrites it. */
@@ -170,6 +172,7 @@ export class CourtActivity implements OpenActivity {
     this.#avatars.show(this.blocked.visible(bodies), time);
     if (!newest) return;
     const { pose } = this.#context.stage.view;
+    this.#view.showBoards(this.#context.headset.worn || !this.#phone.matches);
     this.#view.show({
       state: newest.state,
       time: newest.time,

@@ -100,6 +100,8 @@ export class MirrorStand {
   #seekUntil: number | null = null;
   #restoring = true;
   #grab: Grab | null = null;
+  /** A grab has moved the mirror, and nothing fixes it there yet. */
+  #loose = false;
   #disposed = false;
 
   constructor(options: MirrorStandOptions) {
@@ -134,6 +136,7 @@ export class MirrorStand {
     const floor = this.#options.floorSpace();
     if (!floor) return;
     if (this.#grab) this.#drag(this.#grab, frame, floor);
+    else if (this.#loose) this.#fix(frame, floor);
     else if (this.#fixed) this.#locate(this.#fixed, frame, floor);
     else if (!this.#restoring) this.#seek(frame, floor, time);
   }
@@ -221,27 +224,22 @@ export class MirrorStand {
     const { origin: head } = rayOf(viewer);
     const now = Math.hypot(hand.x - head.x, hand.z - head.z);
     this.#place = placeFacing(head, direction, distance + pull * (now - before), this.#place.y);
-    this.#fix(frame, floor, false);
+    this.#loose = true;
   }
 
   #end(source: XRInputSource): void {
-    if (this.#grab?.source !== source) return;
-    this.#grab = null;
-    // The next frame anchors the place where it was released.
-    this.#options.session.requestAnimationFrame((_, frame) => {
-      const floor = this.#options.floorSpace();
-      if (floor && !this.#disposed && !this.#grab) this.#fix(frame, floor);
-    });
+    // The next frame fixes the place where it was released.
+    if (this.#grab?.source === source) this.#grab = null;
   }
 
   /** Fixes the place to the room: by the session's own space at once, and by an anchor as soon as there is one. */
-  #fix(frame: XRFrame, floor: XRReferenceSpace, anchors = true): void {
+  #fix(frame: XRFrame, floor: XRReferenceSpace): void {
+    this.#loose = false;
     const { x, y, z, turned } = this.#place;
     const transform = new XRRigidTransform({ x, y, z, w: 1 }, fromAxisAngle(up, turned));
     this.#anchor?.delete();
     this.#anchor = null;
     this.#fixed = floor.getOffsetReferenceSpace(transform);
-    if (!anchors) return;
     const fixed = this.#fixed;
     void frame
       .createAnchor?.(transform, floor)

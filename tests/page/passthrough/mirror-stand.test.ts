@@ -40,11 +40,9 @@ function room({ floorHeight = 0.02, hitTest = true, anchors = true, handle = und
   const made: FakeAnchor[] = [];
   const deleted: string[] = [];
   const stored: Record<string, FakeAnchor> = { known: new FakeAnchor(at(2, floorHeight, 1, Math.PI / 2), 'known') };
-  const waiting: ((time: number, frame: XRFrame) => void)[] = [];
   let hit: Seen = at(0.1, floorHeight, -2.2);
   Object.assign(headset.session, {
     requestReferenceSpace: async () => ({}),
-    requestAnimationFrame: (next: (time: number, frame: XRFrame) => void) => waiting.push(next),
     restorePersistentAnchor: async (name: string) => {
       const found = stored[name];
       if (!found) throw new DOMException('unknown', 'InvalidStateError');
@@ -93,7 +91,6 @@ function room({ floorHeight = 0.02, hitTest = true, anchors = true, handle = und
     /** Draws frames for this long [s]. */
     async draw(seconds: number) {
       for (const end = time + seconds; time < end; time += 1 / 72) {
-        for (const next of waiting.splice(0)) next(time, frame);
         stand.update(frame, time);
         await Promise.resolve();
       }
@@ -166,14 +163,17 @@ describe('the mirror in the room of its user', () => {
   });
 
   test('is moved by a grip of a controller, keeps its height, and is anchored where it is released', async () => {
-    const { stand, draw, session, frame, made, deleted, kept } = room();
+    const { stand, draw, session, frame, floor, made, deleted, kept } = room();
     await draw(1);
     const ray = { at: at(0.2, 1.1, -0.3) as Seen };
     const source = { targetRaySpace: ray, targetRayMode: 'tracked-pointer' };
     fire(session, 'squeezestart', source, frame);
     // The hand turns to the left by a quarter.
     ray.at = at(-0.3, 1.1, 0, Math.PI / 2);
+    const spaces = vi.spyOn(Object.getPrototypeOf(floor), 'getOffsetReferenceSpace');
     await draw(0.2);
+    // A device keeps each space that is made: a drag makes none in its frames.
+    expect(spaces).not.toHaveBeenCalled();
     expect(stand.place.x).toBeLessThan(-1);
     expect(Math.abs(stand.place.z)).toBeLessThan(0.01);
     expect(stand.place.turned).toBeCloseTo(Math.PI / 2, 3);
@@ -181,6 +181,8 @@ describe('the mirror in the room of its user', () => {
     fire(session, 'squeezeend', source, frame);
     ray.at = at(0, 1.1, -0.3);
     await draw(0.2);
+    expect(spaces).toHaveBeenCalledTimes(1);
+    spaces.mockRestore();
     expect(stand.place.x).toBeLessThan(-1);
     expect(stand.place.y).toBe(y);
     expect(made[0]?.deleted).toBe(true);

@@ -26,12 +26,16 @@ export interface WindowLayoutOptions {
 export class WindowLayout {
   readonly #options: WindowLayoutOptions;
   readonly #enter = pageElement('enter', HTMLElement);
+  readonly #play = pageElement('play', HTMLElement);
 
   constructor(options: WindowLayoutOptions) {
     this.#options = options;
     const layOut = () => this.layOut();
     window.addEventListener('resize', layOut);
-    new ResizeObserver(layOut).observe(this.#enter);
+    const sizes = new ResizeObserver(layOut);
+    sizes.observe(this.#enter);
+    // It grows and shrinks with what is played.
+    sizes.observe(this.#play);
     options.panelRegion.addEventListener('toggle', layOut);
   }
 
@@ -43,9 +47,15 @@ export class WindowLayout {
     document.body.classList.toggle('panel-open', open);
     document.body.style.setProperty('--panel-inset', `${right}px`);
     const covered = card();
-    const left = narrow ? 0 : (covered?.right ?? 0);
+    const left = narrow ? this.#columnRight() : (covered?.right ?? 0);
     const below = narrow && covered?.height ? window.innerHeight - covered.top : this.#coveredBelow();
     stage.layOut({ left, right, bottom: narrow && open ? window.innerHeight * panelShare : below });
+  }
+
+  /** The right edge of what is played where a narrow window has it beside the picture [CSS pixels]; else 0. */
+  #columnRight(): number {
+    const { right, width } = this.#play.getBoundingClientRect();
+    return this.#play.querySelector('.round:not([hidden])') && 2 * width < window.innerWidth ? right : 0;
   }
 
   /** What the button that enters VR covers [CSS pixels]. */
