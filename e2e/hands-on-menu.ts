@@ -1,10 +1,10 @@
 import type { Page } from '@playwright/test';
 import { menuHeight, menuWidth } from 'threepoint-page/activity/activity-menu';
 import { playerHeight } from 'threepoint-page/ball/players-sheet';
-import { emulatedHeadset, frames } from './emulated-headset';
+import { emulatedHeadset, frames, type Point } from './emulated-headset';
 
 /** A text drawn on one of the headset's sheets, and its position on the canvas [pixels]. */
-interface Written {
+export interface Written {
   readonly text: string;
   readonly x: number;
   readonly y: number;
@@ -39,20 +39,25 @@ export const lookingAtMenu = {
   orientation: [0, Math.sin(menuYaw / 2), 0, Math.cos(menuYaw / 2)],
 } as const;
 
+/** Returns a position of the menu's sheet in the floor frame, `ahead` in front of it [m]. */
+export function menuPoint({ x, y }: Pick<Written, 'x' | 'y'>, ahead = 0): Point {
+  const { sine, cosine } = { sine: Math.sin(menuYaw), cosine: Math.cos(menuYaw) };
+  const right = (x - menuWidth / 2) / 1000;
+  return [
+    menuAt[0] + right * cosine + ahead * sine,
+    menuAt[1] + (menuHeight / 2 - y) / 1000,
+    menuAt[2] - right * sine + ahead * cosine,
+  ];
+}
+
 /**
  * Pulls the right trigger while the controller points at this position of the menu's sheet from 40 cm in front of it.
  */
-async function pullAt(page: Page, { x, y }: Written): Promise<void> {
+async function pullAt(page: Page, place: Written): Promise<void> {
   const headset = await emulatedHeadset(page);
-  const { sine, cosine } = { sine: Math.sin(menuYaw), cosine: Math.cos(menuYaw) };
-  const right = (x - menuWidth / 2) / 1000;
   await headset.place({
     right: {
-      position: [
-        menuAt[0] + right * cosine + 0.4 * sine,
-        menuAt[1] + (menuHeight / 2 - y) / 1000,
-        menuAt[2] - right * sine + 0.4 * cosine,
-      ],
+      position: menuPoint(place, 0.4),
       orientation: [0, Math.sin(menuYaw / 2), 0, Math.cos(menuYaw / 2)],
     },
   });

@@ -1,5 +1,6 @@
 import {
   BufferGeometry,
+  DoubleSide,
   Float32BufferAttribute,
   Group,
   Line,
@@ -24,12 +25,26 @@ const mostPointers = 5;
 /** A gaze that meets nothing shows its dot this far away [m]: the user must see where the head points. */
 const gazeDistance = 2;
 const dotRadius = 0.007;
-/** The ring of a gaze, as a share of its distance: 1.4° wide. */
-const ringShare = 0.024;
+/** The ring of a gaze, as a share of its distance: 4° wide. */
+const ringShare = 0.035;
 const ringSegments = 48;
 
 const seen = { fog: false, toneMapped: false } as const;
 const ahead = new Vector3(0, 0, -1);
+
+/** A ring that fills clockwise from the top, over everything. */
+function createRing(color: string, opacity: number): Mesh {
+  const look = {
+    color,
+    opacity,
+    depthTest: false,
+    transparent: true,
+    side: DoubleSide,
+    forceSinglePass: true,
+    ...seen,
+  } as const;
+  return new Mesh(new RingGeometry(0.74, 1, ringSegments, 1, Math.PI / 2, -2 * Math.PI), new MeshBasicMaterial(look));
+}
 
 class DrawnPointer {
   readonly object = new Group();
@@ -38,16 +53,16 @@ class DrawnPointer {
     new LineBasicMaterial({ color: '#ffb468', transparent: true, opacity: 0.7, ...seen }),
   );
   readonly #dot = new Mesh(new SphereGeometry(dotRadius, 12, 8), new MeshBasicMaterial({ color: '#ffe3c4', ...seen }));
-  readonly #ring = new Mesh(
-    new RingGeometry(0.78, 1, ringSegments, 1, Math.PI / 2, -2 * Math.PI),
-    // A ring that runs clockwise shows its back.
-    new MeshBasicMaterial({ color: '#ffb468', depthTest: false, transparent: true, side: 2, ...seen }),
-  );
+  readonly #ring = createRing('#ffb468', 1);
+  /** The part of the ring that is not filled yet. */
+  readonly #track = createRing('#0b1018', 0.6);
   readonly #direction = new Vector3();
 
   constructor() {
     this.#ring.name = 'dwell ring';
-    this.#ring.renderOrder = 10;
+    this.#ring.renderOrder = 11;
+    this.#track.renderOrder = 10;
+    this.#ring.add(this.#track);
     this.object.add(this.#line, this.#dot, this.#ring);
   }
 

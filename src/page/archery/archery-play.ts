@@ -136,6 +136,10 @@ export function createArcheryPlay(
   let newest: ArcheryFrame | null = null;
   /** The time of the newest frame on the page's clock [s]. */
   let followedAt = Number.NaN;
+  /** The target at which a pointer drew last; null: none, or the arrow was put back. */
+  let drawnAt: number | null = null;
+  /** The point that a pointer aimed at last, arena frame. */
+  let aimedAt: Vec3 | null = null;
   let signalled = false;
   let otherHands = false;
   const gestures = new ArcheryGestures(() => ({
@@ -192,16 +196,20 @@ export function createArcheryPlay(
     },
     act: (time) => archer.follow(time, match.state),
     steer(time, pointer, place = zero) {
-      const { arrowsLeft, targets } = match.state;
-      const aim = aimOf(pointer.origin, pointer.direction, targets);
-      if (aim.target !== null && isArmed(match.state) && !steered.recovers) {
-        const id = `target ${aim.target}, ${arrowsLeft} left`;
-        pointer.pointAt({ distance: aim.distance, owner, id, dwellSeconds });
-      }
+      const aim = aimOf(pointer.origin, pointer.direction, match.state.targets);
       const pressed = pointer.isHeldFor(owner);
       const { cancelled } = pointer;
+      if (pressed) drawnAt = aim.target;
+      else if (cancelled) drawnAt = null;
+      // Until the hands are back from a shot, a gaze can rest on no other target: its hold would not be heeded.
+      const heeded = !steered.recovers || aim.target === drawnAt;
+      if (aim.target !== null && isArmed(match.state) && heeded) {
+        pointer.pointAt({ distance: aim.distance, owner, id: `target ${aim.target}`, dwellSeconds });
+      }
+      // A gaze looks around, also at the menu, which a bow that followed it would cover.
+      if (pointer.releases || aim.target !== null) aimedAt = aim.point;
       // The simulated archer stands in the middle of the zone: what it sees and does moves to the place.
-      const input = steered.follow(time, { target: subtract(aim.point, place), pressed, cancelled });
+      const input = steered.follow(time, { target: subtract(aimedAt ?? aim.point, place), pressed, cancelled });
       return movedTo(place, input);
     },
     restart,

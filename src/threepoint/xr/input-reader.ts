@@ -38,14 +38,6 @@ export interface InputFrame {
   readonly head: Pose<'floor'> | null;
 }
 
-/** A bare hand that was just read. */
-interface SeenSource {
-  readonly pose: TrackedPose;
-  readonly pressed: HandButtons;
-  readonly ray: XRPose | null;
-  readonly head: Pose<'floor'> | null;
-}
-
 /** How a side is tracked. */
 export type InputKind = 'controller' | 'hand' | 'none';
 
@@ -110,8 +102,9 @@ export class InputReader {
    * While the session is `suspended` behind a menu of the device, no hand is read: it is busy there. `head`: in the
    * space; null: not seen.
    */
-  read({ frame, space, time, head }: InputFrame, suspended: boolean): Readonly<Record<Side, TrackedPose | null>> {
+  read(now: InputFrame, suspended: boolean): Readonly<Record<Side, TrackedPose | null>> {
     const { kinds, buttons, fingers } = this;
+    const { time } = now;
     if (suspended) this.commands.waitForRelease();
     else this.commands.watch(this.#session.inputSources);
     this.#pointers.begin();
@@ -122,8 +115,7 @@ export class InputReader {
       fingers[side] = null;
       this.#choices[side].begin(time);
     }
-    if (!suspended)
-      for (const source of this.#session.inputSources) this.#readSource(source, { frame, space, time, head });
+    if (!suspended) for (const source of this.#session.inputSources) this.#readSource(source, now);
     this.#pointers.finish(suspended);
     if (suspended) return hands;
     for (const side of sides) {
@@ -148,7 +140,7 @@ export class InputReader {
     const ray = frame.getPose(source.targetRaySpace, space) ?? null;
     const side = source.handedness;
     if (side === 'none' || this.#repeatsHand(source)) {
-      this.#pointers.read(source, ray, { taken: false, tip: null });
+      this.#pointers.read(source, ray, false, null);
       return;
     }
     const pose = this.#readHand(frame, space, source, time);
@@ -158,19 +150,23 @@ export class InputReader {
     if (kinds[side] === 'none') kinds[side] = kind;
     const device = buttons[side].device ?? this.#deviceOf(source);
     const pressed = this.#pressedBy(source, side);
-    const taken =
-      pose !== null && kind === 'hand' && this.#isTaken(source, side, { pose, pressed, ray, head: now.head });
+    const isHand = kind === 'hand' && source.targetRayMode === 'tracked-pointer';
+    const taken = isHand && pose !== null && this.#isTaken(source, side, pose, ray !== null, now.head);
     buttons[side] = { ...maximumOf(buttons[side], taken ? { ...allReleased, taken } : pressed), device };
     const tip = hasJoints(source) && pose ? this.#handReaders[side].indexTip : null;
-    this.#pointers.read(source, ray, { taken, tip });
+    this.#pointers.read(source, ray, taken, tip);
   }
 
   /** Returns whether a bare hand belongs to the device. */
-  #isTaken(source: XRInputSource, side: Side, seen: SeenSource): boolean {
-    if (source.targetRayMode !== 'tracked-pointer') return false;
-    const { pose, pressed, ray, head } = seen;
-    const pinch = hasJoints(source) ? this.#handReaders[side].pinch : pressed.pinch;
-    return this.#gestures[side].follow({ wrist: pose, pinch, hasRay: ray !== null, menu: isMenuPinch(source) }, head);
+  #isTaken(
+    source: XRInputSource,
+    side: Side,
+    wrist: Pose<'floor'>,
+    hasRay: boolean,
+    head: InputFrame['head'],
+  ): boolean {
+    const pinch = hasJoints(source) ? this.#handReaders[side].pinch : this.#selected(source);
+    return this.#gestures[side].follow({ wrist, pinch, hasRay, menu: isMenuPinch(source) }, head);
   }
 
   /**

@@ -45,7 +45,7 @@ export class PointerReader {
   }
 
   /** Reads a source. `taken`: it belongs to the device in this frame. `tip`: of its index finger; null: not seen. */
-  read(source: XRInputSource, ray: XRPose | null, { taken, tip }: { taken: boolean; tip: Vec3 | null }): void {
+  read(source: XRInputSource, ray: XRPose | null, taken: boolean, tip: Vec3 | null): void {
     if (!ray || taken || !isFinitePose(ray.transform)) return;
     const pointer = this.#pointerOf(source);
     pointer.begin();

@@ -129,9 +129,16 @@ describe('archery without hands', () => {
     lookAt(play.targets[2]!.centre);
     pass(3.5);
     expect(hits(play.newest!)).toEqual([2]);
-    // It goes on shooting at what it rests on, without looking away in between.
-    pass(3.5);
-    expect(play.newest?.state.arrowsLeft).toBe(3);
+    // A gaze that watches the arrow shoots no other one.
+    pass(4);
+    expect(play.newest?.state.arrowsLeft).toBe(4);
+    lookAt(play.targets[3]!.centre);
+    pass(4);
+    lookAt(play.targets[1]!.centre);
+    pass(0.5);
+    lookAt(play.targets[0]!.centre);
+    pass(4);
+    expect(hits(play.newest!)).toEqual([2, 3, 0]);
   });
 
   test('hands that come back play at once, and the arrow of the pointer is not shot by them', () => {

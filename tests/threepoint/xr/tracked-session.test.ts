@@ -295,6 +295,35 @@ describe('where the floor is', () => {
     expect(angleBetween(head.orientation, fromAxisAngle(up, yaw))).toBeLessThan(1e-6);
   });
 
+  test('is as far below the user as they ask, head and hands alike, through recentring, turns and the device’s own', () => {
+    const { read, setHead, setInputs, tracker, reset } = tracked();
+    setHead(at(0.2, 1.15, 0));
+    setInputs(controller('right', at(0.3, 0.8, -0.3)));
+    const before = read()!;
+    tracker.raise(0.45);
+    const seen = () => {
+      const { head, rightHand } = read()!;
+      return [head.position.y, rightHand!.position.y - head.position.y];
+    };
+    const arm = before.rightHand!.position.y - before.head.position.y;
+    const expectRaised = ([height, hand]: number[], by: number) => {
+      expect(height).toBeCloseTo(1.15 + by, 9);
+      expect(hand).toBeCloseTo(arm, 9);
+    };
+    expectRaised(seen(), 0.45);
+    tracker.recentre();
+    tracker.turn(0.5);
+    expectRaised(seen(), 0.45);
+    expect(read()?.head.position.x).toBeCloseTo(0, 9);
+    reset({ position: vec3(0, 0, 1), orientation: identity });
+    expectRaised(seen(), 0.45);
+    tracker.raise(0.5);
+    tracker.raise(Number.NaN);
+    expect(tracker.raised).toBe(0.5);
+    tracker.raise(0);
+    expectRaised(seen(), 0);
+  });
+
   test('turns about the head, which stays: thirty degrees a push, one turn for one push', () => {
     const { read, setHead, setInputs, tracker, inputs } = tracked();
     setHead({ position: vec3(1, 1.6, 2), orientation: fromAxisAngle(up, 0.4) });

@@ -180,7 +180,10 @@ export class HeadsetControls {
       setOverlay: (on) => writer.change({ vrOverlay: on }),
       setPassthrough: (passthrough) => writer.keep({ passthrough }),
       setBeside: (beside) => writer.change({ beside }),
-      goTo: (place) => void activities.goTo(place),
+      goTo: (place) => {
+        this.#menu.sendBack();
+        void activities.goTo(place);
+      },
       chooseBuiltInBody: (name) => actions.chooseBuiltInBody(name),
       chooseSkinTone: (tone) => actions.chooseSkinTone(tone),
       exit: () => actions.exitVr(),

@@ -25,11 +25,11 @@ export class GazeOffer {
       context.textAlign = 'center';
       context.textBaseline = 'middle';
       context.fillStyle = vrColors.inkSoft;
-      context.font = `500 34px ${vrFont}`;
-      context.fillText('No hand or controller is tracked.', width / 2, 68);
+      context.font = `500 32px ${vrFont}`;
+      context.fillText('No hand or controller is tracked.', width / 2, 68, width - 80);
       context.fillStyle = vrColors.ink;
-      context.font = `650 44px ${vrFont}`;
-      context.fillText('Look here to choose by gaze', width / 2, 130);
+      context.font = `650 42px ${vrFont}`;
+      context.fillText('Look here to choose by gaze', width / 2, 130, width - 80);
     });
   }
 
