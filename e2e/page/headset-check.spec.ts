@@ -122,6 +122,7 @@ test('a headset check measures the known noise and losses of the emulator, and w
   await keepPicture(page, 'headset-check-card');
   await page.setViewportSize({ width: 390, height: 1200 });
   await keepPicture(page, 'headset-check-card-narrow');
+  await expect(page.getByRole('button', { name: 'Check again' })).toBeEnabled();
   const download = page.waitForEvent('download');
   await card.getByRole('button', { name: 'Download the file' }).click();
   const file = testInfo.outputPath('headset-check.json');
