@@ -73,8 +73,8 @@ const studyPluginsInPages: Plugin = {
 };
 
 /**
- * The pages of a build. The headset check is a build of its own (scripts/build.mjs): a page that shares its chunks would
- * split those of the others.
+ * The pages of a build. The headset check is a build of its own (scripts/build.mjs): chunks that it shared with the
+ * other pages would be split for it.
  */
 const pages =
   process.env.THREEPOINT_BUILD_PAGES === 'check'

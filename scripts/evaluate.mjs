@@ -1,8 +1,8 @@
 // npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--robustness]
 // [--noise FILE] [--speed] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR] [--legs]: evaluates the
 // shipping code path on recorded motion. Python prepares the recordings with their ground truth; TypeScript runs the
-// estimators on them. npm run evaluate -- --recording FILE [--recording FILE] [--json FILE] [--models DIR]: evaluates on recordings
-// of the page, with the body that the device reported as ground truth.
+// estimators on them. npm run evaluate -- --recording FILE [--recording FILE] [--json FILE] [--models DIR]: evaluates
+// on recordings of the page, with the body that the device reported as ground truth.
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
