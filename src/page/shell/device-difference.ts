@@ -23,7 +23,7 @@ const labels: Readonly<Record<EstimatedJoint, string>> = {
 
 const place = vec3(0, 0, 0);
 
-/** How far the drawn joints are from where the device has them: a mean over the last moments, or as `shareOf` weighs. */
+/** How far the drawn joints are from where the device has them: a mean over the last moments, or as `shareOf` says. */
 export class DeviceDifference {
   readonly #shareOf: (elapsed: number) => number;
   readonly #joints = makeJointPoses();
