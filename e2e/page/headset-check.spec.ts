@@ -136,11 +136,11 @@ test('a headset check measures the known noise and losses of the emulator, and w
   const [head, left, right] = report.noise;
   const off = (measured: number, known: number) => Math.abs(measured / known - 1);
   expect(off(head!.rateHz, rateHz)).toBeLessThan(0.05);
-  expect(off(head!.positionMm.frame, noise.headMm)).toBeLessThan(0.2);
-  expect(off(head!.rotationDegrees.frame, noise.headDegrees)).toBeLessThan(0.2);
+  expect(off(head!.positionMm.frame, noise.headMm)).toBeLessThan(0.3);
+  expect(off(head!.rotationDegrees.frame, noise.headDegrees)).toBeLessThan(0.3);
   for (const hand of [left!, right!]) {
     expect(hand).toMatchObject({ source: 'controller', repeated: 0 });
-    expect(off(hand.positionMm.frame, noise.handsMm)).toBeLessThan(0.2);
+    expect(off(hand.positionMm.frame, noise.handsMm)).toBeLessThan(0.3);
     expect(hand.rotationDegrees.frame).toBeLessThan(0.001);
     // A sway of 5 mm, which is not counted.
     expect(hand.positionMm.sway).toBeGreaterThan(2);
