@@ -196,6 +196,13 @@ export default {
       to: { path: '^src/page/', pathNot: '^src/page/$1/' },
     },
     {
+      name: 'check-is-a-page',
+      comment: 'The headset check is a page and a build of its own: no other page imports it or pays for it.',
+      severity: 'error',
+      from: { path: '^src/', pathNot: '^src/page/check/' },
+      to: { path: '^src/page/check/' },
+    },
+    {
       name: 'three-draws',
       comment: "Three's vectors are live objects: they stay where things are drawn and are copied at the border.",
       severity: 'error',

@@ -1,3 +1,4 @@
+import { BodySolver } from 'threepoint/api/body-solver';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { describeXrSupport } from 'threepoint/xr/session';
 import { element, pageElement } from 'threepoint-ui/element';
@@ -6,6 +7,7 @@ import { allowOwnScripts } from 'threepoint-ui/own-scripts';
 import { installEmulator } from '../emulator/emulator';
 import { affordableQuality, createRenderer, fitToWindow } from '../scene/renderer';
 import { fetchBuiltInAvatar } from '../shell/avatar-loader';
+import { createFrameTiming } from '../shell/frame-timing';
 import { createNetworkLoader } from '../shell/network-loading';
 import type { CheckStep } from './check-steps';
 import { readCheckSwitches } from './check-switches';
@@ -13,12 +15,16 @@ import { CheckWorlds } from './check-worlds';
 import { HeadsetCheck } from './headset-check';
 import { showResultCard } from './result-card';
 
+/** The estimators whose networks are loaded before the session; the last one draws first. */
+const preloaded = ['paper', 'learned'] as const;
+
 const regions = () => ({
   enter: pageElement('enter', HTMLElement),
   progress: pageElement('progress', HTMLElement),
   caption: pageElement('caption', HTMLElement),
   steps: pageElement('steps', HTMLElement),
   result: pageElement('result', HTMLElement),
+  canvas: pageElement('stage', HTMLCanvasElement),
 });
 
 /** Lists the steps by title, each once, and marks the one that runs. */
@@ -48,69 +54,69 @@ async function prepareHeadset(
   return { emulated: true, sentence: `${reason}: its figures are no measurement of a device.` };
 }
 
+/** Creates the body of the user, which the avatar shows, and loads its networks. */
+async function createBody(worlds: CheckWorlds, onProblem: (sentence: string) => void) {
+  const timing = createFrameTiming(() => performance.now());
+  const body = new BodySolver({
+    estimator: 'ik',
+    networks: createNetworkLoader({
+      provider: 'wasm',
+      notices: { show: (_, text) => onProblem(text) },
+      loading: { report: () => undefined },
+    }),
+    profiler: timing,
+    events: {
+      calibrated: (calibration) => worlds.avatar.setCalibration(calibration),
+      // The report names the estimator that drew.
+      fallback: (name, reason) => onProblem(`The estimator “${name}” cannot be measured: ${firstLine(reason)}.`),
+    },
+  });
+  for (const name of preloaded) await body.setEstimator(name);
+  return { body, timing };
+}
+
 /** Builds the page; each click on the button is a check of its own. */
 async function start(): Promise<void> {
   allowOwnScripts();
   const parts = regions();
+  const { canvas, progress, result } = parts;
   const switches = readCheckSwitches(location.search);
-  const quality = switches.quality ?? affordableQuality();
-  const canvas = pageElement('stage', HTMLCanvasElement);
+  const { pace, emulate, quality = affordableQuality() } = switches;
   const renderer = createRenderer(canvas, quality);
-  let ready: Promise<HeadsetCheck>;
   const button = createEnterButton(parts.enter, () => void run());
   const show = (label: string, sentence: string | null, enabled: boolean) =>
     button.show({ label, passthroughLabel: null, sentence, enabled });
   show('Loading …', null, false);
-  const [{ emulated, sentence }, file] = await Promise.all([
-    prepareHeadset(switches.emulate),
-    fetchBuiltInAvatar('mannequin'),
-  ]);
-  const label = emulated ? 'Start in the emulated headset' : 'Start in the headset';
+  const [{ emulated, sentence }, file] = await Promise.all([prepareHeadset(emulate), fetchBuiltInAvatar('mannequin')]);
   const worlds = await CheckWorlds.create(renderer, quality, file);
-  const networks = createNetworkLoader({
-    provider: 'wasm',
-    notices: { show: (_, text) => show(label, text, true) },
-    loading: { report: () => undefined },
-  });
-  const told = [...switches.complaints, ...(sentence ? [sentence] : [])].join(' ') || null;
-
-  async function prepare(): Promise<HeadsetCheck> {
-    const check: HeadsetCheck = new HeadsetCheck({
-      renderer,
-      quality,
-      worlds,
-      networks,
-      emulated,
-      pace: switches.pace,
-      onStep: (step, steps) => showStep(parts, step, steps),
-      onReport(report) {
-        parts.progress.hidden = true;
-        canvas.hidden = true;
-        showResultCard(parts.result, report);
-        ready = check.dispose().then(prepare);
-        void ready.then(() => show('Check again', told, true));
-      },
-    });
-    await check.load();
-    return check;
-  }
+  const remarks: string[] = [...switches.complaints, ...(sentence ? [sentence] : [])];
+  const { body, timing } = await createBody(worlds, (problem) => remarks.push(problem));
+  const offer = (label: string) => show(label, remarks.join(' ') || null, true);
 
   async function run(): Promise<void> {
     show('Checking …', null, false);
-    parts.result.hidden = true;
+    result.hidden = true;
     canvas.hidden = false;
     fitToWindow(renderer, quality);
+    const check = new HeadsetCheck({
+      ...{ renderer, quality, worlds, body, timing, emulated, pace },
+      onStep: (step, steps) => showStep(parts, step, steps),
+      onReport(report) {
+        progress.hidden = true;
+        canvas.hidden = true;
+        showResultCard(result, report);
+        offer('Check again');
+      },
+    });
     try {
-      await (await ready).start();
+      await check.start();
     } catch (error) {
       canvas.hidden = true;
-      show(label, `The check could not start: ${firstLine(reasonOf(error))}. Try again.`, true);
+      show('Try again', `The check could not start: ${firstLine(reasonOf(error))}.`, true);
     }
   }
 
-  ready = prepare();
-  await ready;
-  show(label, told, true);
+  offer(emulated ? 'Start in the emulated headset' : 'Start in the headset');
 }
 
 start().catch((error: unknown) => {

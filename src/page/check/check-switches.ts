@@ -4,7 +4,8 @@ import type { Quality } from '../scene/renderer';
 export interface CheckSwitches {
   /** The emulated headset replaces the browser's WebXR. */
   readonly emulate: boolean;
-  readonly quality: Quality | null;
+  /** Absent: as the machine affords. */
+  readonly quality?: Quality;
   /** The factor of all durations. */
   readonly pace: number;
   /** What is wrong with the address, in sentences. */
@@ -25,7 +26,7 @@ export function readCheckSwitches(query: string): CheckSwitches {
   if (!known) complaints.push(`?pace=${given.get('pace')} is ignored: expected a number from ${quickest} to 1.`);
   return {
     emulate: given.has('emulate'),
-    quality: quality === 'high' || quality === 'low' ? quality : null,
+    ...((quality === 'high' || quality === 'low') && { quality }),
     pace: known ? pace : 1,
     complaints,
   };

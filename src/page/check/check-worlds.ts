@@ -95,7 +95,7 @@ export class CheckWorlds {
       this.#otherBodies.add(avatar.object);
       return { avatar, estimator: createEstimator('ik', defaultCalibration) };
     });
-    this.#studio.scene.add(own.object, this.#mirror.object, this.#archery.bow, this.#ball.own, this.#otherBodies);
+    this.#studio.scene.add(own.object, this.#mirror.object, this.#archery.bow, this.#otherBodies);
     own.setFirstPerson(true);
     this.show('mirror');
   }
@@ -119,7 +119,6 @@ export class CheckWorlds {
     const { x, z, turned } = world === 'archery' ? mirrorAside : mirrorAhead;
     this.#mirror.place(x, z, turned);
     this.#archery.bow.visible = world === 'archery';
-    this.#ball.own.visible = world === 'ball';
     this.#otherBodies.visible = world === 'ball';
   }
 

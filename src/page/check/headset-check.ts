@@ -1,7 +1,7 @@
 import type { WebGLRenderer } from 'three';
-import { BodySolver, type BodySolverOptions } from 'threepoint/api/body-solver';
+import type { BodySolver } from 'threepoint/api/body-solver';
 import { createHeadsetCamera, easeEmulatedPicture, type Quality } from '../scene/renderer';
-import { createFrameTiming } from '../shell/frame-timing';
+import type { FrameTiming } from '../shell/frame-timing';
 import { type CheckSession, enterSession, OfferedFeatures } from './check-session';
 import { type CheckStep, openingSteps, remainingSteps } from './check-steps';
 import type { CheckWorlds } from './check-worlds';
@@ -14,14 +14,14 @@ import { StepSequence } from './step-sequence';
 /** The rate [Hz] of an emulated headset, and of one that reports none. */
 const windowRateHz = 60;
 const usualRateHz = 72;
-/** The estimators whose networks are loaded before the session; the last one draws first. */
-const preloaded = ['paper', 'learned'] as const;
 
 export interface HeadsetCheckOptions {
   readonly renderer: WebGLRenderer;
   readonly quality: Quality;
   readonly worlds: CheckWorlds;
-  readonly networks: BodySolverOptions['networks'];
+  /** The body of the user, whose work `timing` measures. */
+  readonly body: BodySolver;
+  readonly timing: FrameTiming;
   /** Whether the headset is the emulated one. */
   readonly emulated: boolean;
   /** The factor of all durations. */
@@ -34,7 +34,7 @@ export interface HeadsetCheckOptions {
 /** One check, from entering the session to its report. */
 export class HeadsetCheck {
   readonly #options: HeadsetCheckOptions;
-  readonly #timing = createFrameTiming(() => performance.now());
+  readonly #timing: FrameTiming;
   readonly #body: BodySolver;
   readonly #measurements: Measurements;
   readonly #sequence: StepSequence;
@@ -50,12 +50,8 @@ export class HeadsetCheck {
 
   constructor(options: HeadsetCheckOptions) {
     this.#options = options;
-    this.#body = new BodySolver({
-      estimator: 'ik',
-      networks: options.networks,
-      profiler: this.#timing,
-      events: { calibrated: (calibration) => options.worlds.avatar.setCalibration(calibration) },
-    });
+    this.#timing = options.timing;
+    this.#body = options.body;
     this.#measurements = new Measurements(this.#body);
     this.#sequence = new StepSequence({
       first: openingSteps,
@@ -67,12 +63,6 @@ export class HeadsetCheck {
         end: (step) => this.#endStep(step),
       },
     });
-    options.worlds.scene.add(this.#caption.object);
-  }
-
-  /** Loads the networks; one that cannot be loaded is replaced by inverse kinematics, and the report says so. */
-  async load(): Promise<void> {
-    for (const name of preloaded) await this.#body.setEstimator(name);
   }
 
   /** Enters the session and starts. Rejects with a sentence. Needs a click. */
@@ -83,19 +73,13 @@ export class HeadsetCheck {
       onEnd: () => void this.#finish(),
     });
     if (emulated) easeEmulatedPicture(renderer, quality);
+    this.#options.worlds.scene.add(this.#caption.object);
     this.#session = session;
     this.#offered = new OfferedFeatures(session.xr);
     this.#body.startSession();
     renderer.setAnimationLoop((timestampMs, frame) => {
       if (frame) this.#frame(session, timestampMs, frame);
     });
-  }
-
-  /** Releases networks and the caption. */
-  async dispose(): Promise<void> {
-    this.#speaker.stop();
-    this.#caption.object.removeFromParent();
-    await this.#body.dispose();
   }
 
   #frame({ xr, tracking }: CheckSession, timestampMs: number, frame: XRFrame): void {
@@ -133,11 +117,8 @@ export class HeadsetCheck {
     const { measured, sentence } = step;
     if (sentence !== this.#spoken) this.#speaker.say(sentence);
     this.#spoken = sentence;
-    if (measured.kind === 'frames') {
-      this.#options.worlds.show(measured.world);
-      void this.#body.setEstimator(measured.estimator);
-    }
-    if (measured.kind === 'body') void this.#body.setEstimator('learned');
+    if (measured.kind === 'frames') this.#options.worlds.show(measured.world);
+    void this.#body.setEstimator(measured.kind === 'frames' ? measured.estimator : 'learned');
     this.#options.onStep(step, this.#sequence.steps);
   }
 
@@ -158,6 +139,8 @@ export class HeadsetCheck {
     const { renderer, emulated, onReport } = this.#options;
     renderer.setAnimationLoop(null);
     this.#speaker.stop();
+    this.#caption.dispose();
+    this.#options.worlds.show('mirror');
     this.#body.endSession();
     const [session, offered] = [this.#session, this.#offered];
     if (!session || !offered) return;

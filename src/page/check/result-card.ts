@@ -50,7 +50,7 @@ export function showResultCard(region: HTMLElement, report: HeadsetReport): void
               ...lines.flatMap(({ label, value }) => [element('dt', {}, label), element('dd', {}, value)]),
             )
           : element('p', {}, 'Not measured.'),
-        element('p', { class: 'soft' }, note),
+        ...(note ? [element('p', { class: 'soft' }, note)] : []),
       ),
     ),
   );

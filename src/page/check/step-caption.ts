@@ -6,6 +6,7 @@ import { rotate } from 'threepoint/core/math/quat';
 import { addScaled, forward, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { headingOf } from 'threepoint/core/tracking/heading';
 import { createVrPanel, fillRounded, vrColors, vrFont, wrap } from 'threepoint-ui/vr-panel';
+import { disposeTree } from '../scene/dispose-tree';
 
 const [width, height] = [900, 300];
 /** The distance of the caption, and how far it lies below the eyes [m]. */
@@ -51,6 +52,12 @@ export class StepCaption {
       fillRounded(context, [48, height - 34, width - 96, 10], 5, vrColors.liftMore);
       fillRounded(context, [48, height - 34, Math.max(10, (width - 96) * share), 10], 5, vrColors.accent);
     });
+  }
+
+  /** Removes the caption from its scene and from the graphics device. */
+  dispose(): void {
+    this.object.removeFromParent();
+    disposeTree(this.object);
   }
 
   /** Places the caption before these eyes, floor frame; null: no person wears the headset. */

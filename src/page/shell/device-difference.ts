@@ -23,7 +23,7 @@ const labels: Readonly<Record<EstimatedJoint, string>> = {
 
 const place = vec3(0, 0, 0);
 
-/** The distance of the drawn joints from the device's: a mean over the last moments, or as `shareOf` weighs. */
+/** The distance of the drawn joints from the device's: a mean over the last moments, or as `shareOf` says. */
 export class DeviceDifference {
   readonly #shareOf: (elapsed: number) => number;
   readonly #joints = makeJointPoses();

@@ -1,0 +1,27 @@
+import { readCheckSwitches } from 'threepoint-page/check/check-switches';
+import { expect, test } from 'vitest';
+
+test('an address without a query asks for a whole check in the headset', () => {
+  expect(readCheckSwitches('')).toEqual({ emulate: false, pace: 1, complaints: [] });
+});
+
+test('emulator, quality and pace are read', () => {
+  expect(readCheckSwitches('?emulate&quality=low&pace=0.2')).toEqual({
+    emulate: true,
+    quality: 'low',
+    pace: 0.2,
+    complaints: [],
+  });
+});
+
+test.each(['0', '1.5', '-1', 'fast', '', '0.01'])('a pace of “%s” is reported and ignored', (pace) => {
+  const { pace: used, complaints } = readCheckSwitches(`?pace=${pace}`);
+  expect(used).toBe(1);
+  expect(complaints).toEqual([`?pace=${pace} is ignored: expected a number from 0.05 to 1.`]);
+});
+
+test('an unknown quality is reported and ignored', () => {
+  expect(readCheckSwitches('?quality=best')).toMatchObject({
+    complaints: ['?quality=best is ignored: expected high or low.'],
+  });
+});

@@ -1,0 +1,101 @@
+import { BodySolver } from 'threepoint/api/body-solver';
+import { forwardKinematics, makeJointPoses } from 'threepoint/core/body/forward-kinematics';
+import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import { deviceBodySize, deviceJointNames } from 'threepoint/core/tracking/device-body';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { Measurements } from 'threepoint-page/check/measurements';
+import { expect, test } from 'vitest';
+
+const calibration = { eyeHeight: 1.6, armSpan: 1.5 };
+const kinds = { left: 'hand', right: 'controller' } as const;
+
+/** A body by inverse kinematics, and its frames. */
+function wornBody() {
+  const body = new BodySolver({
+    estimator: 'ik',
+    calibration,
+    networks: () => Promise.reject(new Error('there are no networks here')),
+    events: { fallback: () => undefined },
+  });
+  const measurements = new Measurements(body);
+  return { body, measurements };
+}
+
+/** Our joints by the names that a device gives them. */
+const deviceNames = {
+  'left-arm-lower': 'leftLowerArm',
+  'right-arm-lower': 'rightLowerArm',
+  'left-arm-upper': 'leftUpperArm',
+  'right-arm-upper': 'rightUpperArm',
+  'spine-upper': 'chest',
+  hips: 'hips',
+} as const;
+
+test('a device whose elbows lie 3 cm from ours differs by 3 cm there and by nothing elsewhere', () => {
+  const { body, measurements } = wornBody();
+  const joints = makeJointPoses();
+  for (let row = 0; row < 200; row++) {
+    const tracked: TrackingFrame = actorFrame(row / 60, calibration);
+    const pose = body.update(tracked)!;
+    forwardKinematics(skeletonFromCalibration(body.calibration), pose.body!, joints);
+    const deviceBody = new Float32Array(deviceBodySize);
+    for (const [name, joint] of Object.entries(deviceNames)) {
+      const { x, y, z } = joints[joint].position;
+      const off = name.endsWith('arm-lower') ? 0.03 : 0;
+      deviceBody.set([x, y + off, z], 3 * deviceJointNames.indexOf(name));
+    }
+    // Every fourth frame has no body of the device, as when it is lost.
+    const frame = row % 4 === 0 ? tracked : { ...tracked, deviceBody };
+    measurements.add({ time: tracked.time, tracked: frame, pose, kinds }, { kind: 'body' });
+  }
+  const { frames, joints: distances, complaint } = measurements.figures('lost').bodyTracking;
+  expect([frames, complaint]).toEqual([150, null]);
+  expect(distances!.leftLowerArm).toBeCloseTo(3, 3);
+  expect(distances!.rightLowerArm).toBeCloseTo(3, 3);
+  expect(distances!.hips).toBeCloseTo(0, 3);
+});
+
+test('a device without a body has a reason instead of figures', () => {
+  const { measurements } = wornBody();
+  expect(measurements.deviceBodySeen).toBe(false);
+  expect(measurements.figures('the device reports no body').bodyTracking).toEqual({
+    frames: 0,
+    complaint: 'the device reports no body',
+    joints: null,
+  });
+});
+
+test('guessed hands are lost hands, menus count for nothing, and no frame counts in the lead of a step', () => {
+  const { measurements } = wornBody();
+  const frame = (time: number, change: Partial<TrackingFrame>) => ({
+    time,
+    tracked: { ...actorFrame(0, calibration), time, ...change },
+    pose: null,
+    kinds,
+  });
+  const left = actorFrame(0, calibration).leftHand!;
+  const [guessed, gone, menu] = [
+    { leftHand: { ...left, tracking: 'emulated' as const } },
+    { rightHand: null },
+    { leftHand: null, rightHand: null, suspended: true as const },
+  ];
+  const frames = [{}, guessed, guessed, {}, gone, menu, menu, {}, {}];
+  frames.forEach((change, row) => {
+    measurements.add(frame(row / 10, guessed), null);
+    measurements.add(frame(row / 10, change), { kind: 'losses' });
+  });
+  expect(measurements.figures(null).losses).toEqual([
+    { hand: 'left', source: 'hand', observedSeconds: expect.closeTo(0.5, 9), lengthsMs: [200], openEnd: false },
+    { hand: 'right', source: 'controller', observedSeconds: expect.closeTo(0.5, 9), lengthsMs: [], openEnd: false },
+  ]);
+});
+
+test('latencies are median and 95th percentile; a browser without display times reports none', () => {
+  const { measurements } = wornBody();
+  expect(measurements.figures(null).latency).toEqual({ displayAhead: null, callbackDelay: null });
+  for (let ms = 1; ms <= 100; ms++) measurements.addLatency(undefined, ms);
+  expect(measurements.figures(null).latency).toEqual({ displayAhead: null, callbackDelay: { p50Ms: 51, p95Ms: 96 } });
+  measurements.addLatency(22, 1);
+  expect(measurements.figures(null).latency.displayAhead).toEqual({ p50Ms: 22, p95Ms: 22 });
+});
