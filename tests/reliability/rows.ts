@@ -281,7 +281,7 @@ export const attackRows = {
     inject: '100,000 mutated avatar files and as many FBX files (3,000 and 1,000 by day)',
     sees: 'A sentence that names the file, or a finite body',
     target: '0 other exceptions, 0 NaN, no file over 1 s; GLB in three times its memory',
-    shows: ['longest check of one [ms]'],
+    shows: ['longest work on one check [ms of the processor]'],
     tests: [
       'tests/threepoint/avatar/mutated-files.test.ts',
       'tests/threepoint/avatar/mutated-fbx.test.ts',
