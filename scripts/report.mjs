@@ -14,10 +14,10 @@ const usage =
   'npm run report -- --redraw [--models DIR]\n' +
   'npm run report -- --legs --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR]\n' +
   'DIR holds .asf and .amc or .bvh files. --people names the people of the tables (default: the varied ones outside ' +
-  'the lockbox if DIR has them all, else everyone outside the lockbox, as with --legs); to name people of the lockbox is ' +
-  'logged. Those that the networks were not trained on, and another laboratory (901, 902, 903) if DIR has it, are measured with and without calibrated ' +
-  'hands. --models names the folder of the networks (default: .cache/cross-validation, which npm run train writes), ' +
-  '--fp32 what npm run train -- --fp32 wrote. The command renews docs/accuracy.md.';
+  'the lockbox if DIR has them all, else everyone outside the lockbox, as with --legs); to name people of the ' +
+  'lockbox is logged. Those that the networks were not trained on, and another laboratory (901, 902, 903) if DIR has ' +
+  'it, are measured with and without calibrated hands. --models names the folder of the networks (default: ' +
+  '.cache/cross-validation, which npm run train writes), --fp32 what npm run train -- --fp32 wrote. The command renews docs/accuracy.md.';
 const sixHours = 6 * 3600;
 // Poses are motion data: they stay in the cache, and only figures of them go into docs.
 const measured = join(root, '.cache/report');

@@ -103,7 +103,7 @@ def _arguments() -> RecordingsConfig:
     parser = argparse.ArgumentParser(description="Mocap files to recordings with their truth, for the evaluation.")
     parser.add_argument("--mocap", type=Path, required=True)
     parser.add_argument("--skeleton", type=Path)
-    parser.add_argument("--people", help="only these people, separated by commas; people of the lockbox must be named, which is logged")
+    parser.add_argument("--people", help="only these, separated by commas; naming people of the lockbox is logged")
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--cache", type=Path)
     parser.add_argument("--seed", type=int, default=RecordingsConfig.seed)
