@@ -141,7 +141,7 @@ class StandingMirror implements Mirror {
     }
   }
 
-  /** Frees the memory of the textures: half a hundred megabytes for each eye. The next reflection allocates it again. */
+  /** Frees the memory of the textures, tens of megabytes for each eye. The next reflection allocates it again. */
   private release(): void {
     if (this.released) return;
     this.released = true;
