@@ -1,10 +1,10 @@
 // npm run bench [-- --json FILE] [visit counts frames archery ball crowd allocations networks avatar] [--rounds N]:
 // measures the time of a frame by estimator and by stage, in headless Chromium. Without names it measures every part,
-// which takes an hour on two cores without a GPU; "frames --rounds 3" takes minutes. npm run bench networks --
-// --device: uses WebGPU on the machine's GPU instead of in software. Each part prints its duration and is written to
-// FILE when it ends; ratios of frames have 95 % confidence intervals. npm run bench -- --allocations [ik paper learned
-// mirror archery ball3 ball8 hands stillScene]: measures only the garbage that frames allocate, and the functions that
-// allocate it.
+// which takes an hour on two cores without a GPU; "frames --rounds 3" takes minutes. "counts" counts what each world
+// draws, and fails where a budget is exceeded. npm run bench networks -- --device: uses WebGPU on the machine's GPU
+// instead of in software. Each part prints its duration and is written to FILE when it ends; ratios of frames have 95 %
+// confidence intervals. npm run bench -- --allocations [ik paper learned mirror archery ball3 ball8 hands stillScene]:
+// measures only the garbage that frames allocate, and the functions that allocate it.
 import { parseArgs } from 'node:util';
 import { buildWhenStale } from './build.mjs';
 import { ensureChromium } from './chromium.mjs';

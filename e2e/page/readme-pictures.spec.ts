@@ -1,13 +1,15 @@
 import type { ArcheryProbe } from 'threepoint-page/archery/archery-play';
+import type { CourtProbe } from 'threepoint-page/ball/court-activity';
 import { driveTime, holdAt, pass } from '../driven-time';
 import { card, choose, errors } from '../mocap-card';
-import { expect, joint, keepPicture, open, test } from '../page-fixture';
+import { expect, freshTest, joint, keepPicture, open, probe, test } from '../page-fixture';
 import { downloaded, recordTheActor } from '../recorded-actor';
+import { serveStudies } from '../study-server';
 
 // The pictures of README.md as the page shows them now: what is kept in artifacts/screenshots goes to docs/images as
-// JPEG when it was looked at. That of the ball game is taken from `npm start`: tests are served by a host without
-// rooms, and the page says so. That of our bodies is all.png of `npm run avatars:try -- public/avatars`.
+// JPEG when it was looked at. That of our bodies is all.png of `npm run avatars:try -- public/avatars`.
 test.use({ viewport: { width: 1280, height: 720 } });
+freshTest.use({ viewport: { width: 1280, height: 720 } });
 
 const patience = { timeout: 240_000, intervals: [0] };
 
@@ -38,6 +40,30 @@ test('archery: an archer at full draw, one target hit @nightly', async ({ page }
     }, patience)
     .toBe(true);
   await keepPicture(page, 'readme-archery');
+});
+
+// A page of its own, from a server with rooms: a host without them says so.
+freshTest('the ball game: a ball in flight between three players @nightly', async ({ page, complaints }) => {
+  freshTest.setTimeout(600_000);
+  const server = await serveStudies();
+  complaints.allow(new RegExp(`asked ${server.origin}:`));
+  try {
+    await page.goto(`${server.origin}/?play=ball&panel=off&quality=high&estimator=ik&seed=5`);
+    await page.waitForFunction(() => window.threepoint?.probe().game?.name === 'ball', undefined, { timeout: 120_000 });
+    await driveTime(page);
+    await holdAt<CourtProbe>(page, { phase: 'running', score: 2 });
+    await expect
+      .poll(async () => {
+        await pass(page, 4);
+        const { game } = await probe(page);
+        return game?.name === 'ball' && game.balls.air > 0;
+      }, patience)
+      .toBe(true);
+    await pass(page, 8);
+    await keepPicture(page, 'readme-ball');
+  } finally {
+    await server.close();
+  }
 });
 
 test('motion in: our own actor as a file, a moment of it by two methods with the truth in each @nightly', async ({

@@ -120,6 +120,7 @@ class StandingMirror implements Mirror {
       if (camera.parent === null) camera.updateMatrixWorld();
       for (let i = 1; i < this.glasses.length; i++) this.glasses[i]!.visible = false;
       this.glasses[0]!.layers.set(0);
+      this.fitTarget(0, Number.POSITIVE_INFINITY);
       this.released = false;
       this.pace.restart();
       this.reflectTo(0, renderer, scene, camera);
@@ -141,7 +142,7 @@ class StandingMirror implements Mirror {
     }
   }
 
-  /** Frees the memory of the textures: tens of megabytes for each eye. The next reflection allocates it again. */
+  /** Frees the memory of the textures, tens of megabytes for each eye. The next reflection allocates it again. */
   private release(): void {
     if (this.released) return;
     this.released = true;
@@ -149,7 +150,7 @@ class StandingMirror implements Mirror {
     for (const glass of this.glasses) glass.getRenderTarget().dispose();
   }
 
-  /** Gives a glass a texture for a picture of this many pixels. */
+  /** Gives a glass a texture for a picture of this many pixels; infinity: the largest texture. */
   private fitTarget(index: number, pixels: number): void {
     const { width, height } = reflectionSize(pixels, this.height / this.width, this.resolution);
     const target = this.glasses[index]!.getRenderTarget();

@@ -1,7 +1,7 @@
 /** A rate is held when fewer frames than this share are late over a window of this length [s]. */
 const lateShare = 0.01;
 const windowSeconds = 10;
-/** All savings are taken at once when more than this share of the frames is late. */
+/** All savings are taken at once if more than this share of the frames is late. */
 const veryLateShare = 0.05;
 /** A frame that takes more than this many intervals of the device is late. */
 const lateAfterIntervals = 1.5;

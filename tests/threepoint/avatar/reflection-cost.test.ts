@@ -18,7 +18,8 @@ describe('the reflection of a mirror', () => {
   });
 
   test('is no wider than it was asked to be, however large the eye is', () => {
-    expect(reflectionSize(4000 * 4000, standing, 1024)).toEqual({ width: 1024, height: 1467 });
+    for (const pixels of [4000 * 4000, Number.POSITIVE_INFINITY])
+      expect(reflectionSize(pixels, standing, 1024)).toEqual({ width: 1024, height: 1467 });
   });
 });
 
