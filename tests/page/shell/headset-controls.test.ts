@@ -285,7 +285,7 @@ describe('without a controller', () => {
     const { controls, menu, hands } = headset();
     controls.setWorn(true);
     controls.show();
-    const wrist = { position: vec3(0, 1.2, -0.3), orientation: turnedToFace, tracking: 'tracked' as const };
+    const wrist = { position: vec3(0, 1.5, -0.4), orientation: turnedToFace, tracking: 'tracked' as const };
     controls.point(wearing(1.6, wrist));
     const [button] = controls.objects[2].children;
     expect(button?.visible).toBe(true);
@@ -304,9 +304,14 @@ describe('without a controller', () => {
     expect(distance(), 'a hand does not touch its own wrist').toBeGreaterThan(1);
     poke('right');
     expect(distance()).toBeLessThan(0.6);
-    // The palm: no button.
-    controls.point(wearing(1.6, { ...wrist, orientation: identity, position: vec3(0, 1.9, -0.1) }));
-    expect(button?.visible).toBe(false);
+    const elsewhere = {
+      palm: { orientation: identity, position: vec3(0, 1.7, -0.4) },
+      hip: { position: vec3(-0.3, 1, -0.1) },
+    };
+    for (const place of [elsewhere.palm, elsewhere.hip]) {
+      controls.point(wearing(1.6, { ...wrist, ...place }));
+      expect(button?.visible).toBe(false);
+    }
   });
 
   test('the gaze is offered to who has no hands, acts on nothing else before, and then on the menu', () => {

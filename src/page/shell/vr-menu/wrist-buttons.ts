@@ -1,4 +1,4 @@
-import { Group, Matrix4, Vector3 } from 'three';
+import { Group, Matrix4, Quaternion, Vector3 } from 'three';
 import { sideSign } from 'threepoint/core/body/skeleton';
 import type { Pointer } from 'threepoint/core/input/pointer';
 import { type Side, sides } from 'threepoint/core/math/side';
@@ -7,11 +7,15 @@ import { createVrPanel, fillRounded, vrColors, vrFont } from 'threepoint-ui/vr-p
 import { createPanelTouch } from 'threepoint-ui/vr-touch';
 
 const [width, height] = [240, 120];
-/** The button lies this far above the skin, and this far up the forearm from the wrist [m], like a watch. */
-const above = 0.035;
-const upArm = 0.05;
-/** The button shows while the back of the wrist is turned to the eyes by less than 40°. */
-const turnedToEyes = Math.cos((40 * Math.PI) / 180);
+/**
+ * The button lies this far above the wrist, and this far from it to the knuckles [m]: there a bent wrist does not hide
+ * it.
+ */
+const above = 0.045;
+const toKnuckles = 0.02;
+/** The button shows while the back of the wrist is within 55° of facing the eyes, and within 32° of the gaze. */
+const turnedToEyes = Math.cos((55 * Math.PI) / 180);
+const lookedAt = Math.cos((32 * Math.PI) / 180);
 
 const button = { id: 'menu', at: [0, 0, width, height] } as const;
 
@@ -40,6 +44,7 @@ export class WristButtons {
   readonly #axes = { along: new Vector3(), back: new Vector3(), across: new Vector3() };
   readonly #toEyes = new Vector3();
   readonly #turned = new Matrix4();
+  readonly #head = new Quaternion();
 
   constructor() {
     this.object.add(...this.#buttons.map(({ panel }) => panel.mesh));
@@ -74,8 +79,11 @@ export class WristButtons {
     along.set(0, 0, sideSign(side) > 0 ? 1 : -1).applyQuaternion(mesh.quaternion);
     across.crossVectors(back, along);
     mesh.quaternion.setFromRotationMatrix(this.#turned.makeBasis(along, across, back));
-    const up = side === 'left' ? -upArm : upArm;
-    mesh.position.copy(wrist.position).addScaledVector(back, above).addScaledVector(along, up);
-    return this.#toEyes.copy(frame.head.position).sub(mesh.position).normalize().dot(back) > turnedToEyes;
+    const outward = side === 'left' ? toKnuckles : -toKnuckles;
+    mesh.position.copy(wrist.position).addScaledVector(back, above).addScaledVector(along, outward);
+    const toEyes = this.#toEyes.copy(frame.head.position).sub(mesh.position).normalize();
+    if (toEyes.dot(back) < turnedToEyes) return false;
+    // The axis is free from here on: a head looks along −Z.
+    return toEyes.dot(across.set(0, 0, 1).applyQuaternion(this.#head.copy(frame.head.orientation))) > lookedAt;
   }
 }
