@@ -27,13 +27,9 @@ export function createCourt(quality: Quality, balls: number): Court {
   const object = new Group();
   object.name = 'ball court';
   const noise = createNoiseTexture(quality);
-  object.add(
-    createSky(noise, towardsSun, quality),
-    createCourtGround(noise),
-    createLandscape(quality),
-    createCourtFurniture(balls),
-  );
-  mergeAlike(object);
+  const furniture = createCourtFurniture(balls);
+  mergeAlike(furniture);
+  object.add(createSky(noise, towardsSun, quality), createCourtGround(noise), createLandscape(quality), furniture);
   return {
     object,
     placed(floorFromArena) {

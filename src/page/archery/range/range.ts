@@ -45,15 +45,18 @@ export function createRange(
   object.quaternion.copy(floorFromArena.orientation);
   const noise = createNoiseTexture(quality);
   const zone = createZone();
+  // All of it gives way to the user's own room in passthrough.
+  const around = new Group();
+  around.name = 'landscape';
+  around.add(createLandscape(quality), createBackstop(quality));
+  mergeAlike(around);
   object.add(
     createSky(noise, towardsSun, quality),
     createGround(noise, distances),
-    createLandscape(quality),
-    createBackstop(quality),
+    around,
     createDistanceSigns(distances, quality),
     zone.object,
   );
-  mergeAlike(object);
   if (quality === 'high') object.add(createTufts());
   return {
     object,
