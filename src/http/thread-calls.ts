@@ -113,7 +113,13 @@ export class ThreadCalls<Api extends ThreadApi> {
     const id = this.#last;
     this.#bytes += bytes;
     return new Promise((resolve, reject) => {
-      const timer = patient ? undefined : setTimeout(() => reject(new ThreadUnavailable('late')), deadlineMs);
+      const until = patient ? null : clockMs() + deadlineMs;
+      // Timers count from the start of the event loop's turn: an early one would reject a call that the thread still runs.
+      const expire = (): void => {
+        if (until !== null && clockMs() <= until) timer = setTimeout(expire, 1);
+        else reject(new ThreadUnavailable('late'));
+      };
+      let timer = patient ? undefined : setTimeout(expire, deadlineMs);
       this.#waiting.set(id, {
         bytes,
         resolve(result) {
@@ -125,7 +131,7 @@ export class ThreadCalls<Api extends ThreadApi> {
           reject(error);
         },
       });
-      const question: CallMessage = { id, name, args, until: patient ? null : clockMs() + deadlineMs };
+      const question: CallMessage = { id, name, args, until };
       this.#worker.postMessage(question, buffersIn(args));
     });
   }
