@@ -114,7 +114,7 @@ export class ThreadCalls<Api extends ThreadApi> {
     this.#bytes += bytes;
     return new Promise((resolve, reject) => {
       const until = patient ? null : clockMs() + deadlineMs;
-      // Timers count from the start of the event loop's turn: an early one would reject a call that the thread still runs.
+      // Timers count from the start of the event loop's turn: an early one would reject a call that is still run.
       const expire = (): void => {
         if (until !== null && clockMs() <= until) timer = setTimeout(expire, 1);
         else reject(new ThreadUnavailable('late'));

@@ -4,6 +4,7 @@ import type { DeviceCommands } from 'threepoint/xr/device-commands';
 import { FrameRateControl, type Savings, unjudgedSavings } from 'threepoint/xr/frame-rate';
 import { giveFramesToEvents } from 'threepoint/xr/frameless-events';
 import { buzz, type Pulse } from 'threepoint/xr/haptics';
+import { Pointing } from 'threepoint/xr/pointing';
 import {
   describeXrSupport,
   isPassthroughOffered,
@@ -245,7 +246,7 @@ export class Headset {
 
   /** What the devices ask of the page besides pointing; null: no headset is worn. */
   get commands(): DeviceCommands | null {
-    return this.#session?.tracking.inputs.commands ?? null;
+    return this.#session?.tracking.inputs.pointing?.commands ?? null;
   }
 
   /** Turns the user where a stick, a thumb or the menu asked for it; returns whether one did. */
@@ -303,6 +304,7 @@ export class Headset {
       session: xr,
       drawing: renderer.xr,
       bodyReader: settings.deviceBody ? new DeviceBodyReader() : null,
+      pointing: new Pointing(xr),
       onDiscontinuity: () => this.#listener?.discontinuity(),
       onEnd: () => {
         this.#session = null;

@@ -54,10 +54,10 @@ export class Pointers {
     const { tracking } = headset;
     if (tracking !== this.#tracking) this.#restart(tracking, time);
     this.#all.length = 0;
-    if (!tracking) return;
-    const { inputs } = tracking;
-    for (const pointer of inputs.pointers) this.#all.push(pointer);
-    const without = time - Math.max(inputs.handsSeenAt, this.#began);
+    const pointing = tracking?.inputs.pointing;
+    if (!pointing) return;
+    for (const pointer of pointing.pointers) this.#all.push(pointer);
+    const without = time - Math.max(pointing.handsSeenAt, this.#began);
     const pinch = this.#all.find(({ source }) => source === 'transient') ?? null;
     this.#transient = pinch ?? this.#transient;
     this.#offers = head !== null && !settings.gaze && this.#transient === null && without > offerSeconds;

@@ -1,15 +1,12 @@
 import { type HandShape, makeHandShape, shapeOfClosing } from '../core/body/hand-shape';
 import { allReleased, type HandButtons } from '../core/input/button-presses';
-import type { Pointer } from '../core/input/pointer';
 import type { Pose, TrackedPose } from '../core/math/pose';
 import { type Side, sides } from '../core/math/side';
 import { ControllerFingers, squeezeButton, triggerButton } from './controller-fingers';
-import { DeviceCommands, isMenuPinch } from './device-commands';
 import { bareHandFit, handleFit, wristFromGrip } from './grip-offsets';
 import { HandReader } from './hand-reader';
-import { PointerReader } from './pointer-reader';
+import type { Pointing } from './pointing';
 import { SourceChoice } from './source-choice';
-import { SystemGesture } from './system-gesture';
 import { toTrackedPose } from './tracked-pose';
 
 const pressedButtons = (gamepad: Gamepad | undefined): HandButtons => ({
@@ -63,10 +60,8 @@ export class InputReader {
   readonly buttons: Record<Side, HandButtons> = { left: allReleased, right: allReleased };
   /** The finger bends of the newest frame, in memory that the next one overwrites. */
   readonly fingers: Record<Side, HandShape | null> = { left: null, right: null };
-  /** What devices ask of the page besides pointing. */
-  readonly commands = new DeviceCommands();
-  /** The time of the newest frame in which a hand or a controller was seen [s]; −∞: none was. */
-  handsSeenAt = Number.NEGATIVE_INFINITY;
+  /** Reads what the sources point at and press; null: it is not read. */
+  readonly pointing: Pointing | null;
   readonly #session: XRSession;
   readonly #held = { controller: false, hand: false };
   readonly #handReaders = { left: new HandReader('left'), right: new HandReader('right') };
@@ -74,15 +69,17 @@ export class InputReader {
   /** The fingers of hands without joints, which pinch or are open. */
   readonly #plainFingers = { left: makeHandShape(), right: makeHandShape() };
   readonly #choices = { left: new SourceChoice(), right: new SourceChoice() };
-  readonly #pointers: PointerReader;
-  readonly #gestures = { left: new SystemGesture(), right: new SystemGesture() };
+  /** The sources that select now: the pinches of hands without joints and without a gamepad. */
+  readonly #selecting = new WeakSet<XRInputSource>();
   /** Input sources, numbered in the order in which they appeared. */
   readonly #devices = new WeakMap<XRInputSource, number>();
   #deviceCount = 0;
 
-  constructor(session: XRSession) {
+  constructor(session: XRSession, pointing: Pointing | null = null) {
     this.#session = session;
-    this.#pointers = new PointerReader(session);
+    this.pointing = pointing;
+    session.addEventListener('selectstart', ({ inputSource }) => this.#selecting.add(inputSource));
+    session.addEventListener('selectend', ({ inputSource }) => this.#selecting.delete(inputSource));
   }
 
   /** The inputs used since the session began: 'mixed' where they changed or differed between the sides. */
@@ -92,22 +89,15 @@ export class InputReader {
     return hand ? 'hands' : 'controllers';
   }
 
-  /** The pointers of the newest frame; none while the session is suspended. */
-  get pointers(): readonly Pointer[] {
-    return this.#pointers.pointers;
-  }
-
   /**
    * Returns the wrists of this frame in the space, and updates kinds, buttons, fingers and pointers; null: not seen.
    * While the session is `suspended` behind a menu of the device, no hand is read: it is busy there. `head`: in the
    * space; null: not seen.
    */
   read(now: InputFrame, suspended: boolean): Readonly<Record<Side, TrackedPose | null>> {
-    const { kinds, buttons, fingers } = this;
+    const { kinds, buttons, fingers, pointing } = this;
     const { time } = now;
-    if (suspended) this.commands.waitForRelease();
-    else this.commands.watch(this.#session.inputSources);
-    this.#pointers.begin();
+    pointing?.begin(this.#session.inputSources, suspended);
     const hands: Record<Side, TrackedPose | null> = { left: null, right: null };
     for (const side of sides) {
       kinds[side] = 'none';
@@ -116,7 +106,7 @@ export class InputReader {
       this.#choices[side].begin(time);
     }
     if (!suspended) for (const source of this.#session.inputSources) this.#readSource(source, now);
-    this.#pointers.finish(suspended);
+    pointing?.finish(suspended);
     if (suspended) return hands;
     for (const side of sides) {
       const chosen = this.#choices[side].best;
@@ -135,38 +125,24 @@ export class InputReader {
   }
 
   #readSource(source: XRInputSource, now: InputFrame): void {
-    const { kinds, buttons } = this;
+    const { kinds, buttons, pointing } = this;
     const { frame, space, time } = now;
-    const ray = frame.getPose(source.targetRaySpace, space) ?? null;
     const side = source.handedness;
     if (side === 'none' || this.#repeatsHand(source)) {
-      this.#pointers.read(source, ray, false, null);
+      pointing?.read(source, now);
       return;
     }
     const pose = this.#readHand(frame, space, source, time);
     const kind = kindOf(source);
     if (pose) this.#choices[side].offer({ source, pose, isHand: kind === 'hand' });
-    if (pose && source.targetRayMode === 'tracked-pointer') this.handsSeenAt = time;
     if (kinds[side] === 'none') kinds[side] = kind;
     const device = buttons[side].device ?? this.#deviceOf(source);
     const pressed = this.#pressedBy(source, side);
-    const isHand = kind === 'hand' && source.targetRayMode === 'tracked-pointer';
-    const taken = isHand && pose !== null && this.#isTaken(source, side, pose, ray !== null, now.head);
-    buttons[side] = { ...maximumOf(buttons[side], taken ? { ...allReleased, taken } : pressed), device };
+    const isBare = kind === 'hand';
+    const pinch = isBare ? this.#pinchOf(source, side) : 0;
     const tip = hasJoints(source) && pose ? this.#handReaders[side].indexTip : null;
-    this.#pointers.read(source, ray, taken, tip);
-  }
-
-  /** Returns whether a bare hand belongs to the device. */
-  #isTaken(
-    source: XRInputSource,
-    side: Side,
-    wrist: Pose<'floor'>,
-    hasRay: boolean,
-    head: InputFrame['head'],
-  ): boolean {
-    const pinch = hasJoints(source) ? this.#handReaders[side].pinch : this.#selected(source);
-    return this.#gestures[side].follow({ wrist, pinch, hasRay, menu: isMenuPinch(source) }, head);
+    const taken = pointing?.readHand(source, now, { wrist: pose, isBare, pinch, tip });
+    buttons[side] = { ...maximumOf(buttons[side], taken ? { ...allReleased, taken } : pressed), device };
   }
 
   /**
@@ -197,12 +173,17 @@ export class InputReader {
    */
   #pressedBy(source: XRInputSource, side: Side): HandButtons {
     if (kindOf(source) !== 'hand') return pressedButtons(source.gamepad);
-    const pinch = hasJoints(source) ? this.#handReaders[side].pinch : this.#selected(source);
+    const pinch = this.#pinchOf(source, side);
     return Number.isNaN(pinch) ? allReleased : { ...allReleased, pinch };
   }
 
+  /** Returns the pinch of a bare hand, 0 to 1; NaN: its fingers are not seen. */
+  #pinchOf(source: XRInputSource, side: Side): number {
+    return hasJoints(source) ? this.#handReaders[side].pinch : this.#selected(source);
+  }
+
   #selected(source: XRInputSource): number {
-    return this.#pointers.selects(source) ? 1 : pressedButtons(source.gamepad).trigger;
+    return this.#selecting.has(source) ? 1 : pressedButtons(source.gamepad).trigger;
   }
 
   #shapeOf(source: XRInputSource, side: Side, time: number): HandShape {

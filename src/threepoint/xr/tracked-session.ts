@@ -6,6 +6,7 @@ import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { TrackingValidator } from '../core/tracking/tracking-validator';
 import type { DeviceBodyReader } from './device-body-reader';
 import { InputReader } from './input-reader';
+import type { Pointing } from './pointing';
 import { toTrackedPose } from './tracked-pose';
 
 /**
@@ -22,6 +23,8 @@ export interface TrackedSessionOptions {
   readonly drawing: DrawingSpace;
   /** Reads the device's own body into each frame; null: it is not read. */
   readonly bodyReader?: DeviceBodyReader | null;
+  /** Reads what the session's input sources point at and press; null: it is not read. */
+  readonly pointing?: Pointing | null;
   /** Called when the first frame is about to be read. */
   onStart?(): void;
   /** Called when the floor lies elsewhere from the next frame on: by the device, `recentre` or `turn`. */
@@ -67,7 +70,7 @@ export class TrackedSession {
     this.#session = options.session;
     this.#drawing = options.drawing;
     this.bodyReader = options.bodyReader ?? null;
-    this.inputs = new InputReader(options.session);
+    this.inputs = new InputReader(options.session, options.pointing);
     options.session.addEventListener('end', this.#onEnd);
   }
 

@@ -5,6 +5,7 @@ import { type Pose, transformPoint } from 'threepoint/core/math/pose';
 import { fromAxisAngle, identity, multiply } from 'threepoint/core/math/quat';
 import { right, subtract, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { Pointing } from 'threepoint/xr/pointing';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import type { PlayerInput } from 'threepoint-page/activity/activity';
@@ -34,7 +35,7 @@ function lookingAt(target: Vec3, from: Vec3 = eyes): Pose<'floor'> {
 /** A session of a headset that reports no hands, in which an activity acts. */
 function handless(act: (time: number) => PlayerInput | null, settings = { gaze: false }) {
   const headset = fakeHeadset();
-  const tracking = new TrackedSession(headset);
+  const tracking = new TrackedSession({ ...headset, pointing: new Pointing(headset.session) });
   const pointers = new Pointers({ headset: { tracking }, settings });
   const source = new TrackingSource({
     settings: { actor: false },

@@ -1,6 +1,7 @@
 import { type Pose, transformPose } from 'threepoint/core/math/pose';
 import { fromAxisAngle, identity } from 'threepoint/core/math/quat';
 import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { Pointing } from 'threepoint/xr/pointing';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { ArcheryGestures, defaultArcheryGestureSettings } from 'threepoint-games/archery/gestures';
 import { afterEach, describe, expect, test, vi } from 'vitest';
@@ -18,10 +19,12 @@ const closed = 0.005;
 
 function worn() {
   const headset = fakeHeadset();
-  const session = new TrackedSession(headset);
+  const pointing = new Pointing(headset.session);
+  const session = new TrackedSession({ ...headset, pointing });
   let time = 1;
   return {
     ...headset,
+    pointing,
     inputs: session.inputs,
     read() {
       time += 1 / 72;
@@ -41,11 +44,11 @@ afterEach(() => vi.unstubAllGlobals());
 
 describe('a pointer', () => {
   test('is the ray of a controller, presses once, and is held until the trigger opens', () => {
-    const { setInputs, select, read, inputs } = worn();
+    const { setInputs, select, read, pointing } = worn();
     const right = controller('right', at(0.2, 1.2, -0.3, turned(vec3(0, 1, 0), 90)));
     setInputs(right);
     read();
-    const [pointer] = inputs.pointers;
+    const [pointer] = pointing.pointers;
     expect(pointer).toMatchObject({ source: 'controller', side: 'right', pressed: false, held: false, tip: null });
     expect(pointer?.origin).toEqual(vec3(0.2, 1.2, -0.3));
     expect(pointer?.direction.x).toBeCloseTo(-1);
@@ -57,42 +60,42 @@ describe('a pointer', () => {
     select('selectend', right);
     read();
     expect(pointer).toMatchObject({ held: false, cancelled: false });
-    expect(inputs.pointers[0]).toBe(pointer);
+    expect(pointing.pointers[0]).toBe(pointer);
   });
 
   test('of a bare hand has the tip of its index finger', () => {
-    const { setInputs, read, inputs } = worn();
+    const { setInputs, read, pointing } = worn();
     setInputs(bareHand('left', at(-0.2, 1.2, -0.3), open));
     read();
-    expect(inputs.pointers).toMatchObject([{ source: 'hand', side: 'left', tip: vec3(-0.2, 1.2 + open, -0.3) }]);
+    expect(pointing.pointers).toMatchObject([{ source: 'hand', side: 'left', tip: vec3(-0.2, 1.2 + open, -0.3) }]);
   });
 
   test('of the eyes is there while its user pinches, beside the hand that pinches, and releases when it goes', () => {
-    const { setInputs, select, read, inputs } = worn();
+    const { setInputs, select, read, pointing } = worn();
     const hand = bareHand('right', at(0.2, 1.1, -0.3), closed);
     const pinch: Input = { ...controller('right', at(0, 1.6, 0)), targetRayMode: 'transient-pointer' };
     setInputs(hand, pinch);
     select('selectstart', pinch);
     read();
-    expect(inputs.pointers.map(({ source, pressed }) => [source, pressed])).toEqual([
+    expect(pointing.pointers.map(({ source, pressed }) => [source, pressed])).toEqual([
       ['hand', false],
       ['transient', true],
     ]);
-    const [, pointer] = inputs.pointers;
+    const [, pointer] = pointing.pointers;
     select('selectend', pinch);
     setInputs(hand);
     read();
-    expect(inputs.pointers).toHaveLength(1);
+    expect(pointing.pointers).toHaveLength(1);
     expect(pointer).toMatchObject({ held: false, cancelled: false });
   });
 
   test('is held for what it pointed at when the hold began, and for nothing else', () => {
-    const { setInputs, select, read, inputs } = worn();
+    const { setInputs, select, read, pointing } = worn();
     const right = controller('right', at(0.2, 1.2, -0.3));
     setInputs(right);
     select('selectstart', right);
     read();
-    const pointer = inputs.pointers[0]!;
+    const pointer = pointing.pointers[0]!;
     pointer.pointAt({ distance: 2, owner: 'game', id: 'target' });
     pointer.pointAt({ distance: 1, owner: 'menu', id: 'exit' });
     read();
@@ -101,19 +104,19 @@ describe('a pointer', () => {
   });
 
   test('that the device takes cancels what it held, and a session behind a menu has none', () => {
-    const { setInputs, select, read, inputs, setVisibility } = worn();
+    const { setInputs, select, read, pointing, setVisibility } = worn();
     const right = controller('right', at(0.2, 1.2, -0.3));
     setInputs(right);
     select('selectstart', right);
     read();
-    const pointer = inputs.pointers[0];
+    const pointer = pointing.pointers[0];
     setVisibility('visible-blurred');
     read();
     expect(pointer).toMatchObject({ held: false, cancelled: true });
-    expect(inputs.pointers).toEqual([]);
+    expect(pointing.pointers).toEqual([]);
     setVisibility('visible');
     read();
-    expect(inputs.pointers[0], 'a trigger that was never released').toMatchObject({ held: false, pressed: false });
+    expect(pointing.pointers[0], 'a trigger that was never released').toMatchObject({ held: false, pressed: false });
   });
 });
 
@@ -133,33 +136,33 @@ describe('a hand that belongs to the device neither points nor presses', () => {
     ['whose ray the browser takes away', (hand: Input) => Object.assign(hand.targetRaySpace, { at: null })],
     ['whose pinch is the menu button', (hand: Input) => Object.assign(hand.gamepad.buttons, { 4: { pressed: true } })],
   ])('%s', (_, change) => {
-    const { inputs } = gesture((hand) => {
+    const { inputs, pointing } = gesture((hand) => {
       change(hand);
       setGap(hand, closed);
     });
     expect(inputs.buttons.right).toMatchObject({ taken: true, pinch: 0, kind: 'hand' });
-    expect(inputs.pointers).toEqual([]);
+    expect(pointing.pointers).toEqual([]);
   });
 
   test('whose pinch begins with the palm towards the face, until it opens', () => {
-    const { inputs, read, hand, select } = gesture((it) => setGap(it, closed), palmToFace);
+    const { inputs, pointing, read, hand, select } = gesture((it) => setGap(it, closed), palmToFace);
     expect(inputs.buttons.right).toMatchObject({ taken: true, pinch: 0 });
-    expect(inputs.pointers).toEqual([]);
+    expect(pointing.pointers).toEqual([]);
     setGap(hand, open);
     select('selectend', hand);
     read();
     expect(inputs.buttons.right.taken).toBeUndefined();
-    expect(inputs.pointers).toMatchObject([{ pressed: false, held: false }]);
+    expect(pointing.pointers).toMatchObject([{ pressed: false, held: false }]);
   });
 
   test('but a pinch that began elsewhere stays the page’s when the palm turns to the face', () => {
-    const { inputs, read, hand } = gesture((it) => setGap(it, closed));
+    const { inputs, pointing, read, hand } = gesture((it) => setGap(it, closed));
     expect(inputs.buttons.right.pinch).toBe(1);
     const moved = bareHand('right', palmToFace, closed);
     for (const [name, joint] of moved.hand!) hand.hand!.get(name)!.at = joint.at;
     read();
     expect(inputs.buttons.right).toMatchObject({ pinch: 1 });
-    expect(inputs.pointers).toMatchObject([{ held: true }]);
+    expect(pointing.pointers).toMatchObject([{ held: true }]);
   });
 
   test('and a drawn bow waits for a string hand whose ray is gone: nothing is shot', () => {
@@ -195,11 +198,11 @@ describe('without a stick', () => {
   };
 
   test('a thumb that swipes along its finger turns once, to either side', () => {
-    const { setInputs, read, inputs } = worn();
+    const { setInputs, read, pointing } = worn();
     const turns = [[6], [6], [], [5], []].map((pressed) => {
       setInputs(reporting('right', ...pressed));
       read();
-      return inputs.commands.takeTurn();
+      return pointing.commands.takeTurn();
     });
     expect(turns).toEqual([-1, 0, 0, 1, 0]);
   });
@@ -209,11 +212,11 @@ describe('without a stick', () => {
     ['a thumb that taps its finger', reporting('right', 9)],
     ['the upper button of a controller', { ...reporting('left', 5), profiles: ['meta-quest-touch-plus'] }],
   ])('%s brings the menu, once', (_, source) => {
-    const { setInputs, read, inputs } = worn();
+    const { setInputs, read, pointing } = worn();
     setInputs(source);
     read();
     read();
-    expect([inputs.commands.menu.take(), inputs.commands.menu.take()]).toEqual([true, false]);
-    expect([inputs.commands.takeTurn(), inputs.commands.mute.take()]).toEqual([0, false]);
+    expect([pointing.commands.menu.take(), pointing.commands.menu.take()]).toEqual([true, false]);
+    expect([pointing.commands.takeTurn(), pointing.commands.mute.take()]).toEqual([0, false]);
   });
 });

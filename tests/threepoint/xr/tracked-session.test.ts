@@ -1,6 +1,7 @@
 import type { Pose } from 'threepoint/core/math/pose';
 import { angleBetween, fromAxisAngle, identity } from 'threepoint/core/math/quat';
 import { distance, up, vec3 } from 'threepoint/core/math/vec3';
+import { Pointing } from 'threepoint/xr/pointing';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { afterEach, describe, expect, test, vi } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
@@ -12,7 +13,7 @@ const right = at(0.25, 1.1, -0.35);
 
 function tracked() {
   const headset = fakeHeadset();
-  const tracker = new TrackedSession(headset);
+  const tracker = new TrackedSession({ ...headset, pointing: new Pointing(headset.session) });
   let time = 1;
   return {
     ...headset,
@@ -332,9 +333,9 @@ describe('where the floor is', () => {
     const before = read()!;
     source.gamepad.axes[2] = 0.9;
     read();
-    expect(inputs.commands.takeTurn()).toBe(-1);
+    expect(inputs.pointing?.commands.takeTurn()).toBe(-1);
     read();
-    expect(inputs.commands.takeTurn(), 'the stick is still there').toBe(0);
+    expect(inputs.pointing?.commands.takeTurn(), 'the stick is still there').toBe(0);
     tracker.turn(-Math.PI / 6);
     const after = read()!;
     const off = 1000 * distance(after.head.position, before.head.position);
@@ -344,7 +345,7 @@ describe('where the floor is', () => {
     read();
     source.gamepad.axes[2] = -0.9;
     read();
-    expect(inputs.commands.takeTurn()).toBe(1);
+    expect(inputs.pointing?.commands.takeTurn()).toBe(1);
     reportFigures('comfort', { 'a turn moves the head by': `${off.toFixed(3)} mm` });
   });
 

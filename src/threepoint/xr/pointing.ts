@@ -1,0 +1,77 @@
+import type { Pointer } from '../core/input/pointer';
+import type { Pose } from '../core/math/pose';
+import type { Side } from '../core/math/side';
+import type { Vec3 } from '../core/math/vec3';
+import { DeviceCommands, isMenuPinch } from './device-commands';
+import type { InputFrame } from './input-reader';
+import { PointerReader } from './pointer-reader';
+import { SystemGesture } from './system-gesture';
+
+/** What a frame shows of the hand of an input source. */
+export interface PointingHand {
+  /** Null: not seen. */
+  readonly wrist: Pose<'floor'> | null;
+  /** Whether it is a hand without a controller. */
+  readonly isBare: boolean;
+  /** The pinch of a bare hand, 0 to 1; NaN: its fingers are not seen. */
+  readonly pinch: number;
+  /** The tip of the index finger, floor frame; null: not seen. */
+  readonly tip: Vec3 | null;
+}
+
+/**
+ * Reads what the input sources of a session point at and press, what they ask of the page, and which hands belong to
+ * the device. A page without a menu in the headset does without it.
+ */
+export class Pointing {
+  /** What devices ask of the page besides pointing. */
+  readonly commands = new DeviceCommands();
+  /** The time of the newest frame in which a hand or a controller was seen [s]; −∞: none was. */
+  handsSeenAt = Number.NEGATIVE_INFINITY;
+  readonly #pointers: PointerReader;
+  readonly #gestures: Readonly<Record<Side, SystemGesture>> = {
+    left: new SystemGesture(),
+    right: new SystemGesture(),
+  };
+
+  constructor(session: XRSession) {
+    this.#pointers = new PointerReader(session);
+  }
+
+  /** The pointers of the newest frame; none while the session is suspended. */
+  get pointers(): readonly Pointer[] {
+    return this.#pointers.pointers;
+  }
+
+  /** Starts a frame. `suspended`: a menu of the device has the input. */
+  begin(sources: XRInputSourceArray, suspended: boolean): void {
+    if (suspended) this.commands.waitForRelease();
+    else this.commands.watch(sources);
+    this.#pointers.begin();
+  }
+
+  /** Reads a source without a hand. */
+  read(source: XRInputSource, { frame, space }: InputFrame): void {
+    this.#pointers.read(source, frame.getPose(source.targetRaySpace, space) ?? null, false, null);
+  }
+
+  /** Reads a source with its hand; returns whether the hand belongs to the device. */
+  readHand(source: XRInputSource, now: InputFrame, { wrist, isBare, pinch, tip }: PointingHand): boolean {
+    const ray = now.frame.getPose(source.targetRaySpace, now.space) ?? null;
+    const isTracked = source.targetRayMode === 'tracked-pointer';
+    if (wrist && isTracked) this.handsSeenAt = now.time;
+    const menu = isMenuPinch(source);
+    const taken =
+      wrist !== null &&
+      isBare &&
+      isTracked &&
+      this.#gestures[source.handedness as Side].follow({ wrist, pinch, hasRay: ray !== null, menu }, now.head);
+    this.#pointers.read(source, ray, taken, tip);
+    return taken;
+  }
+
+  /** Ends a frame. */
+  finish(suspended: boolean): void {
+    this.#pointers.finish(suspended);
+  }
+}
