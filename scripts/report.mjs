@@ -17,7 +17,8 @@ const usage =
   'the lockbox if DIR has them all, else everyone outside the lockbox, as with --legs); to name people of the ' +
   'lockbox is logged. Those that the networks were not trained on, and another laboratory (901, 902, 903) if DIR has ' +
   'it, are measured with and without calibrated hands. --models names the folder of the networks (default: ' +
-  '.cache/cross-validation, which npm run train writes), --fp32 what npm run train -- --fp32 wrote. The command renews docs/accuracy.md.';
+  '.cache/cross-validation, which npm run train writes), --fp32 what npm run train -- --fp32 wrote. The command ' +
+  'renews docs/accuracy.md.';
 const sixHours = 6 * 3600;
 // Poses are motion data: they stay in the cache, and only figures of them go into docs.
 const measured = join(root, '.cache/report');

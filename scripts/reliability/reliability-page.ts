@@ -42,8 +42,8 @@ export function reliabilityPage(figures: Figures): string {
   const manual = Object.values(rows).flatMap(({ manual }) => (manual ? [`- ${manual}`] : []));
   return `# Reliability
 
-Each row is a fault, a promise or an attack. [rows.ts](../tests/reliability/rows.ts) names the tests that measure it, from
-which \`npm run reliability\` writes this page: \`-- --unit\` without a browser, \`-- --long\` with twenty minutes of play.
+Each row is a fault, a promise or an attack. [rows.ts](../tests/reliability/rows.ts) names the tests that measure it.
+\`npm run reliability\` writes this page from them: \`-- --unit\` without a browser, \`-- --long\` with 20 minutes of play.
 [reliability.json](reliability.json) has every figure. Durations are those of two cores with software rendering.
 
 ## Tracking and device

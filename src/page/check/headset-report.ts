@@ -24,9 +24,11 @@ const unique = (values: readonly string[]): boolean => new Set(values).size === 
 const list = <Item extends v.GenericSchema>(item: Item, most: number) =>
   v.pipe(v.array(item), v.maxLength(most, `expected at most ${most} entries`));
 
+/** The noise by axis: from frame to frame, over 0.1 s, and the sway of the person. See `NoiseLevels`. */
 const levels = (most: number) =>
   v.strictObject({ frame: numberBetween(0, most), slow: numberBetween(0, most), sway: numberBetween(0, most) });
 
+/** The noise of one tracker at rest; a hand is its wrist. `repeated`: the share of frames that repeat a position. */
 const noise = v.strictObject({
   tracker: v.picklist(trackerNames),
   source: v.picklist(['headset', 'controller', 'hand']),
@@ -37,6 +39,7 @@ const noise = v.strictObject({
   rotationDegrees: levels(mostDegrees),
 });
 
+/** The losses of one hand, in ascending order; `openEnd`: it was lost at the end, for an unknown time. */
 const losses = v.strictObject({
   hand: v.picklist(['left', 'right']),
   source: v.picklist(['controller', 'hand']),
@@ -53,6 +56,10 @@ const quantiles = v.pipe(
   v.check(({ p50Ms, p95Ms }) => p50Ms <= p95Ms, 'expected a median (p50Ms) that is no greater than p95Ms'),
 );
 
+/**
+ * The work of the page's thread in each frame of a world and an estimator. `missed`: frames that begin more than 1.5
+ * intervals after the one before. `drawnBy` differs from `estimator` where that one could not be loaded.
+ */
 const frameTimes = v.pipe(
   v.strictObject({
     world: v.picklist(worldNames),
@@ -66,6 +73,10 @@ const frameTimes = v.pipe(
   v.check(({ frames, missed }) => missed <= frames, 'expected no more missed frames than frames'),
 );
 
+/**
+ * The mean distance of the learned body to the device's, by joint [cm]; neither is the truth. `complaint`: why there is
+ * none.
+ */
 const bodyTracking = v.pipe(
   v.strictObject({
     frames: count,
@@ -75,7 +86,14 @@ const bodyTracking = v.pipe(
   v.check(({ frames, joints }) => (joints !== null) === frames > 0, 'expected joints where frames were compared'),
 );
 
-/** The file that a headset check writes. */
+/**
+ * The file that a headset check writes, in version 1 of its format. Unknown fields and other versions are refused.
+ *
+ * A rate, a latency or granted features are null where the browser does not report them. `latency.displayAhead` is the
+ * predicted display time minus the frame's start; `callbackDelay` is the time from the frame's time stamp to its start.
+ * Neither is the time from a movement to its picture, because a page does not know the sensors' share. The emulator
+ * reports 0.
+ */
 const report = v.strictObject({
   format: v.literal(reportFormat, `expected "${reportFormat}"`),
   version: v.literal(reportVersion, `expected ${reportVersion}: this program reads no other version`),
