@@ -44,7 +44,7 @@ export const restBend = (finger: FingerName): FingerBend => (finger === 'thumb' 
  * Hip joints beside the pelvis, knees, ankles, and how far the foot reaches, as shares of the eye height: those of the
  * mannequin (tools/avatars/build/rig/rig.ts), which stands on them.
  */
-const legShares = { aside: 0.0566, hip: 0.5849, knee: 0.3176, ankle: 0.0516, foot: 0.13 };
+export const legShares = { aside: 0.0566, hip: 0.5849, knee: 0.3176, ankle: 0.0516, foot: 0.13 };
 
 /** A point of the frame of a left wrist, in T-pose's clip frame, from the wrist of this side. */
 function handPoint(side: Side, point: Vec3): Vec3 {
