@@ -1,4 +1,5 @@
 import type { Calibration } from '../body/calibration';
+import { legShares } from '../body/leg-shares';
 import { skeletonFromCalibration } from '../body/skeleton';
 import { isPlausibleOffset, type TrackerName, type TrackerOffset, trackerNames } from '../body/tracker-offsets';
 import {
@@ -12,7 +13,6 @@ import {
 } from '../math/pose';
 import { identity, normaliseQuat, type Quat, quat } from '../math/quat';
 import { add, distance, scale, subtract, type Vec3, vec3 } from '../math/vec3';
-import { legShares } from '../motion/skeleton';
 import type { TrackingFrame } from './tracking-frame';
 
 /** The trackers of one frame; null or absent: not seen. */
