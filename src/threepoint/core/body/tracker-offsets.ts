@@ -20,7 +20,11 @@ export const farthestTracker = 0.4;
 
 /** Returns whether an offset is finite and no longer than a tracker can be from its joint. */
 export const isPlausibleOffset = (offset: TrackerOffset): boolean =>
-  isFinitePose(offset) && length(offset.position) <= farthestTracker;
+  hasParts(offset) && isFinitePose(offset) && length(offset.position) <= farthestTracker;
+
+/** A page without types may leave parts of an offset out. */
+const hasParts = ({ position, orientation }: Partial<TrackerOffset>): boolean =>
+  position !== undefined && orientation !== undefined;
 
 const sameOffset = (a: TrackerOffset | undefined, b: TrackerOffset | undefined): boolean =>
   a === b ||

@@ -93,6 +93,12 @@ describe('what is a person’s body', () => {
     ['a headset’s tilt in degrees', { ...defaultCalibration, gazePitch: 12 }, /headset’s tilt of 12\.00 rad/],
     ['no number for it', { ...defaultCalibration, gazePitch: Number.NaN }, /headset’s tilt/],
     [
+      'an offset without a rotation',
+      // reason: a page without types
+      { ...defaultCalibration, trackerOffsets: { hips: { position: { x: 0, y: 0, z: 0 } } } } as Calibration,
+      /tracker “hips” is not a pose/,
+    ],
+    [
       'a tracker that is not worn',
       {
         ...defaultCalibration,
