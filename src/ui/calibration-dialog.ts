@@ -17,7 +17,8 @@ export type CalibrationStep =
   | { readonly kind: 'done'; readonly text: string }
   | { readonly kind: 'failed'; readonly fault: CalibrationFault; readonly text: string };
 
-export const calibrationInstruction = 'Stand straight, look ahead, stretch both arms forward, wrists straight.';
+export const calibrationInstruction =
+  'Stand straight, look ahead, stretch both arms forward, or down and out by 45°, wrists straight.';
 
 /** Returns the word or figure of a step, for the dialog and for the menu in the headset. */
 export function calibrationHeadline(step: CalibrationStep): string {

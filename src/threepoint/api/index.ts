@@ -1,5 +1,5 @@
 // "threepoint": a body from three tracked points, without three.js and without a DOM.
-export type { AvatarPose, UpperBodyPose } from '../core/body/avatar-pose';
+export type { AvatarPose, TrackedFeet, UpperBodyPose } from '../core/body/avatar-pose';
 export { copyAvatarPose } from '../core/body/avatar-pose';
 export type { Calibration } from '../core/body/calibration';
 export {
@@ -15,6 +15,8 @@ export type { FingerBend, FingerName, Fingers, HandShape } from '../core/body/ha
 export type { JointName } from '../core/body/joints';
 export { jointNames } from '../core/body/joints';
 export type { Skeleton } from '../core/body/skeleton';
+export type { TrackerName, TrackerOffset, TrackerOffsets } from '../core/body/tracker-offsets';
+export { trackerAtJoint } from '../core/body/tracker-offsets';
 export type { NetworkName } from '../core/estimation/estimators';
 export type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from '../core/estimation/pose-estimator';
 export { estimatorNames } from '../core/estimation/pose-estimator';
@@ -25,11 +27,13 @@ export type { Side } from '../core/math/side';
 export type { Vec3 } from '../core/math/vec3';
 export type { DeviceBody } from '../core/tracking/device-body';
 export { deviceJointNames } from '../core/tracking/device-body';
+export type { GuidedCalibration } from '../core/tracking/guided-calibration';
+export { startGuidedCalibration, stepGuidedCalibration } from '../core/tracking/guided-calibration';
 export type { PageClock } from '../core/tracking/page-clock';
 export { createPageClock } from '../core/tracking/page-clock';
 export type { Recording } from '../core/tracking/recording';
 export { parseRecording, writeRecording } from '../core/tracking/recording';
-export type { TrackingFrame } from '../core/tracking/tracking-frame';
+export type { BodyTrackers, TrackingFrame } from '../core/tracking/tracking-frame';
 export type { BodyOptions } from './body';
 export { Body } from './body';
 export type { BodyEvents, BodySolverOptions, CalibrationSource, TrackedPoint } from './body-solver';

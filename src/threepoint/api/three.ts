@@ -9,7 +9,7 @@ import type { Calibration } from '../core/body/calibration';
 import { reasonOf } from '../core/errors/reasons';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
 import type { BoneMap } from '../core/humanoid/bones';
-import type { TrackingFrame } from '../core/tracking/tracking-frame';
+import type { BodyTrackers, TrackingFrame } from '../core/tracking/tracking-frame';
 import { DeviceBodyReader } from '../xr/device-body-reader';
 import { TrackedSession } from '../xr/tracked-session';
 import { Body, type BodyOptions, warnOfFallback } from './body';
@@ -122,6 +122,11 @@ export interface BodyTrackerOptions extends Omit<BodyOptions, 'events'> {
    * Default: false. The page must request the session with the feature 'body-tracking'.
    */
   readonly deviceBody?: boolean;
+  /**
+   * Returns the trackers beyond head and hands, floor frame [m], in each frame of a session; null: none is seen. For
+   * those that another program sends. `trackerOffsets` of the calibration place them.
+   */
+  readonly trackers?: () => BodyTrackers | null;
   /** The address of another contract (.json) of the learned network, with its weights beside it. */
   readonly modelUrl?: string | URL;
 }
@@ -139,7 +144,13 @@ export interface BodyTrackerEvents {
   readonly sessionend: object;
 }
 
-const trackerOptions = ['avatar', 'deviceBody', 'modelUrl', ...solverOptions.filter((name) => name !== 'events')];
+const trackerOptions = [
+  'avatar',
+  'deviceBody',
+  'trackers',
+  'modelUrl',
+  ...solverOptions.filter((name) => name !== 'events'),
+];
 
 /** The avatars that trackers draw, or have disposed of. */
 const ownedAvatars = new WeakMap<Avatar, 'drawn' | 'disposed'>();
@@ -189,6 +200,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   readonly body: Body;
   readonly #renderer: WebGLRenderer;
   readonly #deviceBody: boolean;
+  readonly #trackers: (() => BodyTrackers | null) | undefined;
   readonly #object = new Group();
   /** The renderer's session and its tracking; null: there is none. */
   #session: XRSession | null = null;
@@ -206,11 +218,12 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   constructor(renderer: WebGLRenderer, options: BodyTrackerOptions) {
     super();
     demandOptions('BodyTracker', options, trackerOptions);
-    const { avatar, modelUrl, deviceBody = false, ...bodyOptions } = options;
+    const { avatar, modelUrl, deviceBody = false, trackers, ...bodyOptions } = options;
     demandRenderer(renderer);
     demandAvatar(avatar);
     this.avatar = avatar;
     this.#deviceBody = deviceBody;
+    this.#trackers = trackers;
     this.#renderer = renderer;
     const networks =
       modelUrl === undefined
@@ -311,7 +324,8 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     const { position, orientation } = session.floorPose;
     this.avatar.object.position.copy(position);
     this.avatar.object.quaternion.copy(orientation);
-    this.#apply(tracked, null);
+    const trackers = this.#trackers?.();
+    this.#apply(tracked && trackers ? { ...tracked, trackers } : tracked, null);
   }
 
   /**

@@ -198,7 +198,7 @@ class VrmAvatar implements Avatar {
     this.lastTime = time;
     const shown = pose.body ? 'body' : 'hands';
     if (this.meshes.show(shown)) this.rig.forgetJoints();
-    if (pose.body) this.applyBody(pose.head, pose.body, deltaSeconds);
+    if (pose.body) this.applyBody(pose, pose.body, deltaSeconds);
     else this.applyHands(pose);
     if (pose.fingers) {
       this.fingers.set('left', pose.fingers.left);
@@ -217,7 +217,7 @@ class VrmAvatar implements Avatar {
     for (const material of vrm.materials ?? []) (material as { update?(seconds: number): void }).update?.(deltaSeconds);
   }
 
-  private applyBody(head: AvatarPose['head'], body: UpperBodyPose, deltaSeconds: number): void {
+  private applyBody({ head, feet }: AvatarPose, body: UpperBodyPose, deltaSeconds: number): void {
     const joints = forwardKinematics(this.skeleton, body, this.joints);
     this.trunk.apply(joints);
     this.arms.untwist(joints);
@@ -232,7 +232,7 @@ class VrmAvatar implements Avatar {
     points.head = head;
     points.leftHand = joints.leftHand.position;
     points.rightHand = joints.rightHand.position;
-    this.legs.apply(points, deltaSeconds);
+    this.legs.apply(points, deltaSeconds, feet);
     this.rig.settle();
   }
 

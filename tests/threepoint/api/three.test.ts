@@ -3,11 +3,12 @@ import { BodyTracker, type BodyTrackerOptions, loadAvatar } from 'threepoint/api
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { trackerAtJoint } from 'threepoint/core/body/tracker-offsets';
 import { identity } from 'threepoint/core/math/quat';
-import { distance } from 'threepoint/core/math/vec3';
+import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { toXRBody } from 'threepoint/core/motion/xr-body';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { BodyTrackers, TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { afterEach, describe, expect, test, vi } from 'vitest';
 import { mannequin } from '../avatar/glb';
 import { controller } from '../xr/fake-headset';
@@ -56,6 +57,29 @@ describe('a body in a session of three.js', () => {
     run(1);
     expect(tracker.object.visible).toBe(false);
     expect(told).toEqual(['session start', 'found head', 'found left', 'found right', 'session end']);
+  });
+
+  test('stands on the trackers that the page supplies, and on its gait again without them', async () => {
+    let trackers: BodyTrackers | null = null;
+    const calibration = { ...defaultCalibration, trackerOffsets: { hips: trackerAtJoint, leftFoot: trackerAtJoint } };
+    const { headset, tracker, run } = await begin({ calibration, trackers: () => trackers });
+    headset.putOn();
+    run(40);
+    const { hips, leftFoot } = tracker.avatar.jointPositions();
+    const held = (joint: Vec3 | undefined) => ({
+      orientation: identity,
+      position: { ...joint!, x: joint!.x + 0.03 },
+      tracking: 'tracked' as const,
+    });
+    const free = { hips: held(hips), leftFoot: held(leftFoot) };
+    trackers = free;
+    run(40);
+    expect(distance(tracker.pose!.body!.hipsPosition, free.hips.position)).toBeLessThan(0.001);
+    expect(distance(tracker.avatar.jointPositions().leftFoot!, free.leftFoot.position)).toBeLessThan(0.001);
+    trackers = null;
+    run(40);
+    expect(distance(tracker.pose!.body!.hipsPosition, free.hips.position)).toBeGreaterThan(0.02);
+    expect(tracker.pose!.feet).toBeUndefined();
   });
 
   test('has no pose after its session, so that a page that sends it leaves no frozen body with others', async () => {

@@ -128,7 +128,9 @@ export const english = {
   'measuring.rightUnseen': calibrationFaults.rightUnseen,
   'measuring.handsMoved': calibrationFaults.handsMoved,
   'measuring.handsUnseen': calibrationFaults.handsUnseen,
-  'measuring.elsewhere': calibrationFaults.elsewhere,
+  // Participants of a study all take one pose: the others are not offered.
+  'measuring.elsewhere':
+    'Your arms pointed somewhere else. Stretch them straight forward, at the height of your shoulders.',
   'measuring.bent':
     'Your arms were not stretched. Stretch them straight forward. If they were stretched, the floor of the headset is too low: set it again in its settings.',
   'measuring.tooLong': calibrationFaults.tooLong,

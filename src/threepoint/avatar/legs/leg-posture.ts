@@ -1,17 +1,32 @@
+import type { TrackedFeet } from '../../core/body/avatar-pose';
 import { sideSign } from '../../core/body/skeleton';
 import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../../core/body/two-bone-ik';
 import { Gait } from '../../core/estimation/gait';
 import { type GaitPoints, yawOfHips } from '../../core/estimation/gait-features';
+import { followPin, handOverSeconds, makePin, type Pin } from '../../core/estimation/pin';
 import { wrapAngle } from '../../core/math/angle';
-import { fromAxes, fromAxisAngle, type MutableQuat, multiply, type Quat, quat, rotate } from '../../core/math/quat';
-import type { Side } from '../../core/math/side';
+import { makePose } from '../../core/math/pose';
+import {
+  copyQuat,
+  fromAxes,
+  fromAxisAngle,
+  type MutableQuat,
+  multiply,
+  type Quat,
+  quat,
+  rotate,
+  slerp,
+} from '../../core/math/quat';
+import { type Side, sides } from '../../core/math/side';
 import {
   add,
   addScaled,
   copyVec3,
   cross,
+  distance,
   forward,
   length,
+  lerp,
   type MutableVec3,
   normalise,
   right,
@@ -63,6 +78,8 @@ const longestWay = 0.5;
  */
 const fastestTurn = 14;
 const furthestTurn = Math.PI / 2;
+/** A tracked ankle that is this far [m] beyond the reach of its leg is wrong, and counts as lost. */
+const strayAnkle = 0.15;
 /** The shortest frame [s] that is assumed: jittering time stamps report shorter ones. */
 const shortestFrame = 1 / 60;
 
@@ -80,6 +97,8 @@ const level = quat(0, 0, 0, 1);
 const levelForward = vec3(0, 0, 0);
 const footTurn = quat(0, 0, 0, 1);
 const toes = vec3(0, 0, 0);
+const trackedToes = vec3(0, 0, 0);
+const estimated = makePose<'floor'>();
 const pole = vec3(0, 0, 0);
 const bend = vec3(0, 0, 0);
 const line = vec3(0, 0, 0);
@@ -98,11 +117,17 @@ function aimDown(direction: Vec3, towards: Vec3, target: MutableQuat): Quat {
   return fromAxes(axisX, axisY, cross(axisX, axisY, axisZ), target);
 }
 
-/** Two legs under a pelvis: feet stand and step as a gait network expects them to, knees follow. */
+/**
+ * Two legs under a pelvis: feet stand and step as a gait network expects them to, or are where trackers pin them; knees
+ * follow.
+ */
 export class LegPosture {
   /** The legs of the newest frame, in the same objects. */
   readonly legs: Readonly<Record<Side, LegPose>>;
   private readonly own = { left: makeLeg(), right: makeLeg() };
+  private readonly pins: Readonly<Record<Side, Pin>> = { left: makePin(), right: makePin() };
+  /** False before the first frame, in which a tracked foot is where its tracker is. */
+  private known = false;
   private readonly stance = { ankleHeight: 0, legLength: 0 };
   private readonly lastHips = vec3(0, 0, 0);
   private lastHipsYaw = 0;
@@ -126,8 +151,8 @@ export class LegPosture {
     this.standUp();
   }
 
-  /** Advances by one frame under the hips of a body, floor frame. */
-  update(points: GaitPoints, deltaSeconds: number): void {
+  /** Advances by one frame under the hips of a body, floor frame. feet: the ankles that trackers pin. */
+  update(points: GaitPoints, deltaSeconds: number, feet?: TrackedFeet): void {
     const { stance, proportions, gait } = this;
     const { hips } = points;
     const hipsYaw = yawOfHips(hips.orientation);
@@ -136,11 +161,15 @@ export class LegPosture {
     if (this.wasCarried(points, hipsYaw, deltaSeconds)) this.standUp();
     this.seconds += deltaSeconds;
     gait.update(points, this.eyeHeight, this.seconds);
-    const feet = this.stepping.update(gait.feet, stance, deltaSeconds);
+    const steps = this.stepping.update(gait.feet, stance, deltaSeconds);
     fromAxisAngle(up, hipsYaw, level);
     rotate(level, forward, levelForward);
-    this.place('left', hips.position, feet.left);
-    this.place('right', hips.position, feet.right);
+    const pinStep = this.known ? deltaSeconds / handOverSeconds : 1;
+    this.known = true;
+    for (const side of sides) {
+      const weight = this.pinFoot(side, hips.position, steps[side], feet?.[side] ?? null, pinStep);
+      this.place(side, steps[side], weight);
+    }
   }
 
   /**
@@ -165,26 +194,45 @@ export class LegPosture {
   private standUp(): void {
     this.gait.reset();
     this.stepping.reset();
+    this.pins.left.share = 0;
+    this.pins.right.share = 0;
+    this.known = false;
   }
 
-  private place(side: Side, hips: Vec3, foot: Foot): void {
+  /** Writes the hip joint, the ankle and the foot before the leg's reach counts; returns the weight of the tracker. */
+  private pinFoot(side: Side, hips: Vec3, step: Foot, tracked: TrackedFeet[Side], pinStep: number): number {
     const { hipOffset, upper, lower } = this.proportions;
-    const leg = this.own[side];
-    const { hip, knee, ankle } = leg;
+    const { hip, ankle, foot } = this.own[side];
+    const pin = this.pins[side];
     // Legs hang from a pelvis that tilts less than the lower back above it.
     setVec3(hip, sideSign(side) * hipOffset.x, hipOffset.y, hipOffset.z);
     add(hips, rotate(level, hip, hip), hip);
+    copyVec3(step.position, ankle);
+    multiply(fromAxisAngle(up, step.yaw, footTurn), fromAxisAngle(right, -step.pitch, nod), foot);
+    copyVec3(ankle, estimated.position);
+    copyQuat(foot, estimated.orientation);
+    const near = tracked && distance(tracked.position, hip) <= upper + lower + strayAnkle ? tracked : null;
+    const weight = followPin(pin, estimated, near, pinStep);
+    if (weight === 0) return 0;
+    lerp(ankle, pin.target.position, weight, ankle);
+    slerp(foot, pin.target.orientation, weight, foot);
+    return weight;
+  }
+
+  private place(side: Side, step: Foot, trackedWeight: number): void {
+    const { upper, lower } = this.proportions;
+    const leg = this.own[side];
+    const { hip, knee, ankle, foot } = leg;
     const reach = (upper + lower) * longestReach;
-    const far = length(subtract(foot.position, hip, line));
+    const far = length(subtract(ankle, hip, line));
     // A pelvis higher than its legs are long takes the feet off the floor.
     if (far > reach) addScaled(hip, line, reach / far, ankle);
-    else copyVec3(foot.position, ankle);
-    rotate(fromAxisAngle(up, foot.yaw, footTurn), forward, toes);
+    rotate(fromAxisAngle(up, step.yaw, footTurn), forward, toes);
+    if (trackedWeight > 0) lerp(toes, rotate(foot, forward, trackedToes), trackedWeight, toes);
     normalise(add(toes, levelForward, pole), levelForward, pole);
     const circle = elbowCircle(hip, ankle, this.proportions, levelForward, kneeCircle);
     elbowOnCircle(circle, poleAcross(circle.axis, pole, fallbacks, bend), knee);
     aimDown(subtract(knee, hip, line), pole, leg.thigh);
     aimDown(subtract(ankle, knee, line), pole, leg.shank);
-    multiply(footTurn, fromAxisAngle(right, -foot.pitch, nod), leg.foot);
   }
 }

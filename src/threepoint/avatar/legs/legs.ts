@@ -1,3 +1,4 @@
+import type { TrackedFeet } from '../../core/body/avatar-pose';
 import type { GaitPoints } from '../../core/estimation/gait-features';
 import { type Side, sides } from '../../core/math/side';
 import { vec3 } from '../../core/math/vec3';
@@ -56,10 +57,10 @@ export class Legs {
     return proportions;
   }
 
-  /** Advances by one frame under the hips of a body, floor frame. */
-  apply(points: GaitPoints, deltaSeconds: number): void {
+  /** Advances by one frame under the hips of a body, floor frame. feet: the ankles that trackers pin. */
+  apply(points: GaitPoints, deltaSeconds: number, feet?: TrackedFeet): void {
     if (!this.whole) return;
-    this.posture.update(points, deltaSeconds);
+    this.posture.update(points, deltaSeconds, feet);
     for (const side of sides) {
       const { hip, knee, ankle, thigh, shank, foot } = this.posture.legs[side];
       const bones = bonesOf[side];

@@ -1,4 +1,4 @@
-import type { TrackedPose } from '../math/pose';
+import { copyPose, type Pose, type TrackedPose } from '../math/pose';
 import { copyQuat, type MutableQuat, type Quat, quat } from '../math/quat';
 import { copyVec3, type MutableVec3, type Vec3, vec3 } from '../math/vec3';
 import { copyFingers, type Fingers } from './hand-shape';
@@ -26,6 +26,12 @@ export const makeUpperBodyPose = (): MutableUpperBodyPose => ({
   >,
 });
 
+/** The ankles that trackers pin, floor frame: at rest the toes point along −Z; null: the gait is estimated. */
+export interface TrackedFeet {
+  readonly left: Pose<'floor'> | null;
+  readonly right: Pose<'floor'> | null;
+}
+
 /**
  * What one frame shows: hands exactly as tracked in this frame, the head as its wearer holds it (as tracked, but for
  * how the headset sits on it), and the body between them. `body` is null for estimators that show no body (hands-only).
@@ -41,6 +47,8 @@ export interface AvatarPose {
    * buttons; a hand is null while its fingers are unknown. Absent: the source of the pose knows no fingers.
    */
   readonly fingers?: Fingers | undefined;
+  /** Absent: no foot is tracked. */
+  readonly feet?: TrackedFeet | undefined;
 }
 
 const copyTracked = <T extends TrackedPose | null>(pose: T): T =>
@@ -52,7 +60,7 @@ const copyTracked = <T extends TrackedPose | null>(pose: T): T =>
  * @example
  * if (tracker.pose) history.push(copyAvatarPose(tracker.pose));
  */
-export const copyAvatarPose = ({ head, leftHand, rightHand, body, fingers }: AvatarPose): AvatarPose => ({
+export const copyAvatarPose = ({ head, leftHand, rightHand, body, fingers, feet }: AvatarPose): AvatarPose => ({
   head: copyTracked(head),
   leftHand: copyTracked(leftHand),
   rightHand: copyTracked(rightHand),
@@ -63,4 +71,5 @@ export const copyAvatarPose = ({ head, leftHand, rightHand, body, fingers }: Ava
     ) as Record<JointName, Quat>,
   },
   ...(fingers && { fingers: copyFingers(fingers) }),
+  ...(feet && { feet: { left: feet.left && copyPose(feet.left), right: feet.right && copyPose(feet.right) } }),
 });

@@ -1,5 +1,6 @@
 import { sides } from '../math/side';
 import { type HandTilts, isBelievableTilt as isPlausibleTilt, sameTilts, steepestHandTilt } from './hand-tilt';
+import { farthestTracker, isPlausibleOffset, sameOffsets, type TrackerOffsets, trackerNames } from './tracker-offsets';
 
 /** The measures of a body, entered by the user or measured while they stand still for two seconds. */
 export interface Calibration {
@@ -16,6 +17,8 @@ export interface Calibration {
   readonly gazePitch?: number | undefined;
   /** The tilt of each hand to its forearm. Absent: not measured, and the device's hand frame is used unchanged. */
   readonly handTilts?: HandTilts | undefined;
+  /** Each joint in the frame of its tracker. A tracker without an offset is ignored. */
+  readonly trackerOffsets?: TrackerOffsets | undefined;
 }
 
 /** The steepest plausible tilt of a headset [rad]; at a steeper one the wearer was not looking ahead. */
@@ -74,9 +77,12 @@ export const defaultCalibration: Calibration = {
 export const sameMeasures = (a: Calibration, b: Calibration): boolean =>
   a.eyeHeight === b.eyeHeight && a.armSpan === b.armSpan && a.forearm === b.forearm;
 
-/** Returns whether two calibrations are equal, including the tilts of headset and hands. */
+/** Returns whether two calibrations are equal, including the tilts of headset and hands and the trackers' offsets. */
 export const sameCalibration = (a: Calibration, b: Calibration): boolean =>
-  sameMeasures(a, b) && a.gazePitch === b.gazePitch && sameTilts(a.handTilts, b.handTilts);
+  sameMeasures(a, b) &&
+  a.gazePitch === b.gazePitch &&
+  sameTilts(a.handTilts, b.handTilts) &&
+  sameOffsets(a.trackerOffsets, b.trackerOffsets);
 
 /** Returns a sentence about the implausible measure of a calibration; null: it is plausible. */
 export const calibrationComplaint = (calibration: Calibration): string | null =>
@@ -134,8 +140,8 @@ function bodyComplaint({ eyeHeight, armSpan, forearm = armSpan * ORDINARY_FOREAR
   return `A forearm of ${metres(forearm)} does not match an arm span of ${metres(armSpan)} from wrist to wrist.${unitHint(forearm)}`;
 }
 
-/** Returns why the tilts of headset or hands are implausible; null: they are plausible. */
-function wornComplaint({ gazePitch = 0, handTilts }: Calibration): string | null {
+/** Returns why the tilts of headset or hands, or a tracker's offset, are implausible; null: they are plausible. */
+function wornComplaint({ gazePitch = 0, handTilts, trackerOffsets }: Calibration): string | null {
   const radians = (value: number) => `${value.toFixed(2)} rad`;
   if (!(Math.abs(gazePitch) <= steepestGazePitch)) {
     return `A headset’s tilt of ${radians(gazePitch)} exceeds ${radians(steepestGazePitch)}.`;
@@ -144,6 +150,12 @@ function wornComplaint({ gazePitch = 0, handTilts }: Calibration): string | null
     const tilt = handTilts?.[side];
     if (tilt && !isPlausibleTilt(tilt)) {
       return `A ${side} hand’s tilt of ${radians(Math.hypot(tilt.pitch, tilt.yaw))} exceeds ${radians(steepestHandTilt)}.`;
+    }
+  }
+  for (const name of trackerNames) {
+    const offset = trackerOffsets?.[name];
+    if (offset && !isPlausibleOffset(offset)) {
+      return `The offset of the tracker “${name}” is not a pose within ${metres(farthestTracker)} of it.`;
     }
   }
   return null;

@@ -102,7 +102,7 @@ export const makeFitTorsoState = (): FitTorsoState => ({
 });
 
 /** What the fitting of the torso needs of a skeleton, measured once. */
-interface TorsoBones {
+export interface TorsoBones {
   readonly skeleton: Skeleton;
   /**
    * From chest joint to neck, from hips to chest joint, and from the neck to the head, at rest; their side is the
@@ -344,7 +344,7 @@ function leanDirection(direction: Vec3, boneLength: number, offset: Vec3, target
 }
 
 /** A shoulder on its clavicle, which swings towards its target. */
-function placeShoulder(
+export function placeShoulder(
   side: Side,
   { neck, rotations, clavicles, shoulders }: TorsoPose,
   { skeleton }: TorsoBones,

@@ -1,4 +1,4 @@
-import { type MutableUpperBodyPose, makeUpperBodyPose } from '../body/avatar-pose';
+import { type MutableUpperBodyPose, makeUpperBodyPose, type TrackedFeet } from '../body/avatar-pose';
 import { type Calibration, isSpanMeasured } from '../body/calibration';
 import { type Fingers, unknownFingers } from '../body/hand-shape';
 import { chestSpaceBody, skeletonFromCalibration } from '../body/skeleton';
@@ -18,9 +18,11 @@ import type { JointSource, SolvedFrame } from './joint-source';
 import { limitJoints, makeLimitJointsState, resetLimitJoints } from './limit-joints';
 import { makeHandTiltsState, noticeHandTilts, resetHandTilts } from './notice-hand-tilts';
 import { makeHeadsetRiseState, noticeHeadsetRise, resetHeadsetRise } from './notice-headset-rise';
+import { makePinTrunkState, pinTrunk, resetPinTrunk } from './pin-trunk';
 import type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from './pose-estimator';
 import { makeIkSolution, makeThreePoints, solveIk, turnHands } from './solve-ik';
 import { makeSteadyTrackersState, resetSteadyTrackers, steadyTrackers } from './steady-trackers';
+import { makeTrackedJointsState, placeTrackedJoints, type TrackedJoints } from './tracked-joints';
 
 /** The longest gap between frames [s] that counts as motion; after a longer one filters and memories are reset. */
 const longestGapSeconds = 0.5;
@@ -33,6 +35,7 @@ function measure(calibration: Calibration) {
     torso: torsoBones(skeleton),
     arm: armBones(skeleton),
     spanMeasured: isSpanMeasured(calibration),
+    trackerOffsets: calibration.trackerOffsets,
   };
 }
 
@@ -58,6 +61,8 @@ function makeEstimatorState({ handTilts }: Calibration) {
     joints: makeJoints(),
     limited: makeLimitJointsState(),
     torso: makeFitTorsoState(),
+    tracked: makeTrackedJointsState(),
+    pins: makePinTrunkState(),
     arms: makeFitArmsState(),
   };
 }
@@ -74,11 +79,12 @@ interface OwnedPose {
   rightHand: TrackedPose | null;
   readonly body: MutableUpperBodyPose;
   fingers: Fingers;
+  feet: TrackedFeet | undefined;
 }
 
 /**
- * An estimator with a body: complete hands → solve IK → correct (the source) → filter joints → fit torso, fit arms. A
- * method is its source; every other stage is the same for all.
+ * An estimator with a body: complete hands → solve IK → correct (the source) → filter joints → fit torso, pin trunk,
+ * fit arms. A method is its source; every other stage is the same for all.
  */
 export class Pipeline implements PoseEstimator {
   readonly name: EstimatorName;
@@ -91,6 +97,7 @@ export class Pipeline implements PoseEstimator {
   readonly #estimate: { readonly pose: OwnedPose; request: InferenceRequest | null };
   readonly #request: InferenceRequest;
   readonly #headset: HeadsetMountCorrection;
+  readonly #feet: { -readonly [Side in keyof TrackedFeet]: TrackedFeet[Side] } = { left: null, right: null };
   #body: ReturnType<typeof measure>;
   #lastTime = Number.NaN;
 
@@ -106,7 +113,14 @@ export class Pipeline implements PoseEstimator {
     this.#body = measure(calibration);
     this.#request = { ask: () => source.network?.ask(this.state.solved) ?? Promise.resolve() };
     this.#estimate = {
-      pose: { head: noHead, leftHand: null, rightHand: null, body: makeUpperBodyPose(), fingers: unknownFingers },
+      pose: {
+        head: noHead,
+        leftHand: null,
+        rightHand: null,
+        body: makeUpperBodyPose(),
+        fingers: unknownFingers,
+        feet: undefined,
+      },
       request: null,
     };
   }
@@ -120,12 +134,13 @@ export class Pipeline implements PoseEstimator {
   }
 
   reset(): void {
-    const { hands, trackers, limited, torso, arms } = this.state;
+    const { hands, trackers, limited, torso, pins, arms } = this.state;
     resetCompleteHands(hands);
     resetSteadyTrackers(trackers);
     this.source.reset();
     resetLimitJoints(limited);
     resetFitTorso(torso);
+    resetPinTrunk(pins);
     resetFitArms(arms);
     this.#lastTime = Number.NaN;
   }
@@ -151,6 +166,8 @@ export class Pipeline implements PoseEstimator {
     this.source.joints(solved, step, state.joints);
     const joints = limitJoints(state.limited, state.joints, completed, step);
     const torso = fitTorso(state.torso, joints, completed, body.torso, step);
+    const tracked = placeTrackedJoints(state.tracked, frame.trackers, body.trackerOffsets);
+    pinTrunk(state.pins, torso, tracked, completed, body.torso, step);
     const armsInput = { frame: completed, joints, torso, bones: body.arm, poles: this.#poles };
     const arms = fitArms(state.arms, armsInput, step);
 
@@ -160,6 +177,7 @@ export class Pipeline implements PoseEstimator {
     pose.leftHand = frame.leftHand;
     pose.rightHand = frame.rightHand;
     pose.fingers = frame.fingers ?? unknownFingers;
+    pose.feet = this.#trackedFeet(tracked);
     composeBody(torso, arms, head.orientation, pose.body);
     return this.#estimate;
   }
@@ -174,6 +192,13 @@ export class Pipeline implements PoseEstimator {
     if (!continues) this.reset();
     this.#lastTime = time;
     return continues ? elapsed : 0;
+  }
+
+  /** Returns the ankles that trackers pin; undefined: none is. */
+  #trackedFeet({ leftFoot, rightFoot }: TrackedJoints): TrackedFeet | undefined {
+    this.#feet.left = leftFoot;
+    this.#feet.right = rightFoot;
+    return leftFoot || rightFoot ? this.#feet : undefined;
   }
 
   /** Stage 2 in the heading frame. */

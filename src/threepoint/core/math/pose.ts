@@ -4,9 +4,10 @@ import { add, copyVec3, type MutableVec3, scale, subtract, type Vec3, vec3 } fro
 /**
  * The coordinate frames of the project, all right-handed, +Y up, −Z forward, metres (threepoint/README.md, Frames).
  * floor: WebXR `local-floor`. heading: origin on the floor under the headset, yaw of the head. body: origin on the
- * floor under the head joint, yaw of the body (tracking/body-heading). arena: shared by players.
+ * floor under the head joint, yaw of the body (tracking/body-heading). arena: shared by players. tracker: a tracker's
+ * own. joint: a joint's own.
  */
-export type Frame = 'floor' | 'heading' | 'body' | 'arena';
+export type Frame = 'floor' | 'heading' | 'body' | 'arena' | 'tracker' | 'joint';
 
 declare const frame: unique symbol;
 

@@ -3,6 +3,7 @@ import { fingerBonesOf } from '../body/finger-bones';
 import { averageHand, fingerPoints, type HandGeometry, makeFingerPoints, mirrorPoint } from '../body/hand-geometry';
 import { type FingerBend, type FingerName, fingerNames } from '../body/hand-shape';
 import { type JointName, jointNames, parentOf } from '../body/joints';
+import { legShares } from '../body/leg-shares';
 import { type Skeleton, sideSign, skeletonFromCalibration, wristFromHandBone } from '../body/skeleton';
 import { type MutableQuat, type Quat, rotateInverse, setQuat } from '../math/quat';
 import { type Side, sides } from '../math/side';
@@ -39,12 +40,6 @@ const thumbAside: FingerBend = { ...straight, spread: Math.PI / 4 };
  * front.
  */
 export const restBend = (finger: FingerName): FingerBend => (finger === 'thumb' ? thumbAside : straight);
-
-/**
- * Hip joints beside the pelvis, knees, ankles, and how far the foot reaches, as shares of the eye height: those of the
- * mannequin (tools/avatars/build/rig/rig.ts), which stands on them.
- */
-const legShares = { aside: 0.0566, hip: 0.5849, knee: 0.3176, ankle: 0.0516, foot: 0.13 };
 
 /** A point of the frame of a left wrist, in T-pose's clip frame, from the wrist of this side. */
 function handPoint(side: Side, point: Vec3): Vec3 {

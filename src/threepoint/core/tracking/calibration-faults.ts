@@ -7,7 +7,8 @@ export const calibrationFaults = {
   rightUnseen: 'Your right hand was not seen all the time. Hold it where you can see it.',
   handsMoved: 'Your hands moved. Hold them still for two seconds.',
   handsUnseen: 'Your hands were not seen. Hold them where you can see them.',
-  elsewhere: 'Your arms pointed somewhere else. Stretch them straight forward, at the height of your shoulders.',
+  elsewhere:
+    'Your arms pointed somewhere else. Stretch them straight forward at shoulder height, or down and out by 45°.',
   bent: 'Your arms were not stretched. Stretch them straight forward; if they were, the floor is too low: type your height instead.',
   tooLong: 'Your arms are too long for the height of your head. Stand up straight, and check the floor’s height.',
   uneven: 'One arm was stretched further than the other. Stretch both straight forward.',

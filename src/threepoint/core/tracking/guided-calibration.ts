@@ -8,9 +8,13 @@ import { type Side, sides } from '../math/side';
 import { add, addScaled, distance, forward, length, normalise, scale, subtract, type Vec3, vec3 } from '../math/vec3';
 import { type CalibrationFault, calibrationFaults } from './calibration-faults';
 import { headingFromFloor } from './heading';
+import { measureTrackers, sampleTrackers, type TrackerSample } from './measure-trackers';
 import type { TrackingFrame } from './tracking-frame';
 
-/** The person stands straight, looks ahead and stretches both arms forward (or sideways) for this long. */
+/**
+ * The person stands straight, looks ahead and stretches both arms for this long: forward, sideways, or down and out by
+ * about 45° (A-pose).
+ */
 export const measuringSeconds = 2;
 /** The longest measuring time [s], for pages with a low frame rate. */
 const longestMeasuringSeconds = 6;
@@ -23,6 +27,7 @@ interface Sample {
   /** Wrists; null: not seen. */
   readonly left: Pose<'heading'> | null;
   readonly right: Pose<'heading'> | null;
+  readonly trackers: TrackerSample | null;
 }
 
 /** Samples, newest first: a state grows by a sample without a copy of the ones before, which earlier states share. */
@@ -77,13 +82,14 @@ export function stepGuidedCalibration(state: GuidedCalibration, frame: TrackingF
   return { kind: 'measuring', part: Math.min(1, seconds / measuringSeconds), startTime, samples };
 }
 
-function sampleOf({ head, leftHand, rightHand }: TrackingFrame): Sample {
+function sampleOf({ head, leftHand, rightHand, trackers }: TrackingFrame): Sample {
   const fromFloor = headingFromFloor(head);
   return {
     head: head.position,
     gaze: rotate(head.orientation, forward).y,
     left: transformTracked(fromFloor, leftHand),
     right: transformTracked(fromFloor, rightHand),
+    trackers: sampleTrackers(fromFloor, trackers),
   };
 }
 
@@ -202,12 +208,14 @@ function measure(samples: readonly Sample[]): GuidedCalibration {
   if (typeof body === 'string') return failed(body);
   const { eyeHeight, arm } = body;
   const gazePitch = looksAhead(wrists.map(({ position }) => position)) ? Math.asin(head.gaze) : null;
-  const calibration: Calibration = {
+  const measured: Calibration = {
     eyeHeight,
     armSpan: 2 * (arm + restShoulder('right', eyeHeight).x),
     ...(gazePitch !== null && { gazePitch: clamp(gazePitch, -steepestGazePitch, steepestGazePitch) }),
     ...tiltsOf(wrists, head.height, eyeHeight),
   };
+  const trackers = samples.map((sample) => sample.trackers);
+  const calibration = { ...measured, ...measureTrackers(trackers, measured, head.height) };
   const complaint = calibrationComplaint(calibration);
   return complaint === null
     ? { kind: 'done', calibration }
@@ -215,7 +223,7 @@ function measure(samples: readonly Sample[]): GuidedCalibration {
 }
 
 /**
- * Shoulder to wrist [m] of an arm stretched forward or sideways; null: it points elsewhere. Wrist in the heading frame,
+ * Shoulder to wrist [m] of an arm stretched in one of the poses; null: it points elsewhere. Wrist in the heading frame,
  * the eyes this high now, which for a seated wearer is less than their eye height.
  */
 function reachOf(side: Side, wrist: Vec3, headHeight: number, eyeHeight: number): number | null {
@@ -228,7 +236,10 @@ function armTo(side: Side, wrist: Vec3, headHeight: number, eyeHeight: number): 
   const shoulder = add(restShoulder(side, eyeHeight), vec3(0, headHeight - eyeHeight, 0));
   const arm = subtract(wrist, shoulder);
   const reach = length(arm);
-  if (reach < 1e-6 || sideSign(side) * arm.x > 0.8 * reach) return arm;
+  const outward = sideSign(side) * arm.x;
+  if (reach < 1e-6 || outward > 0.8 * reach) return arm;
+  const isDownAndOut = -arm.y > 0.5 * reach && outward > 0.4 * reach && Math.abs(arm.z) < 0.4 * reach;
+  if (isDownAndOut) return arm;
   if (-arm.z < 0.7 * reach) return null;
   return subtract(wrist, addScaled(shoulder, forward, PROTRACTION * eyeHeight));
 }
@@ -250,16 +261,17 @@ function tiltsOf(wrists: readonly MeasuredWrist[], headHeight: number, eyeHeight
   return Object.keys(handTilts).length > 0 ? { handTilts } : {};
 }
 
-/** Returns whether both arms point forward, or both sideways; wrists in the heading frame. */
+/** Returns whether both arms point forward, or both to the sides, as seen from above; wrists in the heading frame. */
 function looksAhead(wrists: readonly Vec3[]): boolean {
   const [first, second] = wrists;
   if (!first || !second) return false;
   const between = subtract(second, first);
   const middle = add(first, second);
-  // Stretched forward, both hands are ahead; sideways, the line between them is square to the gaze.
+  // Stretched forward, both hands are ahead; to the sides, the line between them is square to the gaze.
   const forwards = Math.abs(Math.atan2(middle.x, -middle.z)) < LOOKING_AHEAD;
   const sideways = Math.abs(Math.atan2(between.z, Math.abs(between.x))) < LOOKING_AHEAD;
-  return length(between) > length(middle) ? sideways : forwards && sideways;
+  const isWide = Math.hypot(between.x, between.z) > Math.hypot(middle.x, middle.z);
+  return isWide ? sideways : forwards && sideways;
 }
 
 /**

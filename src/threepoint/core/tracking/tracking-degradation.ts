@@ -84,7 +84,7 @@ function mixPose(a: TrackedPose, b: TrackedPose, t: number, target: MutableTrack
 
 /**
  * Degrades tracking: head and hands are delayed and noisy, and hands are lost. The device's own body is only delayed,
- * because it does not come from these trackers. Makes no garbage.
+ * because it does not come from these trackers. Further trackers are left out. Makes no garbage.
  */
 export class TrackingDegradation {
   #impairments: TrackingImpairments | null = null;
@@ -105,7 +105,7 @@ export class TrackingDegradation {
   readonly #deviceBody = new Float32Array(deviceBodySize);
   readonly #written: WrittenFrame = {
     ...{ time: 0, head: this.#head, leftHand: null, rightHand: null },
-    ...{ fingers: undefined, deviceBody: undefined },
+    ...{ fingers: undefined, deviceBody: undefined, trackers: undefined },
   };
 
   /**

@@ -1,6 +1,10 @@
 import type { Fingers } from '../body/hand-shape';
+import type { TrackerName } from '../body/tracker-offsets';
 import type { TrackedPose } from '../math/pose';
 import type { DeviceBody } from './device-body';
+
+/** Trackers worn at further joints, as tracked; null or absent: not seen, or not worn. */
+export type BodyTrackers = { readonly [Name in TrackerName]?: TrackedPose | null | undefined };
 
 /**
  * One frame of the three tracked points. Head: the viewer pose (origin between the eyes, −Z is the gaze). Hands: the
@@ -17,6 +21,8 @@ export interface TrackingFrame {
   readonly fingers?: Fingers | undefined;
   /** The device's own body; absent: not reported in this frame. The next frame overwrites the array. */
   readonly deviceBody?: DeviceBody | undefined;
+  /** Trackers beyond head and hands, each placed by its `trackerOffsets` of the calibration; absent: there are none. */
+  readonly trackers?: BodyTrackers | undefined;
   /**
    * Set while the device shows a menu in front of the page: hands are not for the page, and players keep what they
    * hold.

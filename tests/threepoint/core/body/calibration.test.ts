@@ -13,6 +13,7 @@ import {
   steepestGazePitch,
   withForearm,
 } from 'threepoint/core/body/calibration';
+import { trackerAtJoint } from 'threepoint/core/body/tracker-offsets';
 import { describe, expect, test } from 'vitest';
 import { number, seed } from '../arbitraries';
 
@@ -92,6 +93,20 @@ describe('what is a person’s body', () => {
     ['a headset’s tilt in degrees', { ...defaultCalibration, gazePitch: 12 }, /headset’s tilt of 12\.00 rad/],
     ['no number for it', { ...defaultCalibration, gazePitch: Number.NaN }, /headset’s tilt/],
     [
+      'an offset without a rotation',
+      // reason: a page without types
+      { ...defaultCalibration, trackerOffsets: { hips: { position: { x: 0, y: 0, z: 0 } } } } as Calibration,
+      /tracker “hips” is not a pose/,
+    ],
+    [
+      'a tracker that is not worn',
+      {
+        ...defaultCalibration,
+        trackerOffsets: { chest: { ...trackerAtJoint, position: { x: 0, y: 0.5, z: 0 } } },
+      },
+      /tracker “chest” is not a pose within 0\.40 m/,
+    ],
+    [
       'a bent wrist',
       { ...defaultCalibration, handTilts: { left: { pitch: 0.9, yaw: 0.9 } } },
       /left hand’s tilt of 1\.27 rad/,
@@ -122,6 +137,11 @@ test('two calibrations are the same where all they say is', () => {
   };
   expect(sameCalibration(told, structuredClone(told))).toBe(true);
   expect(sameCalibration(defaultCalibration, { ...defaultCalibration, handTilts: {} })).toBe(true);
+  const worn = { ...defaultCalibration, trackerOffsets: { hips: trackerAtJoint } };
+  const turned = { position: trackerAtJoint.position, orientation: { x: 0, y: 1, z: 0, w: 0 } };
+  expect(sameCalibration(worn, defaultCalibration)).toBe(false);
+  expect(sameCalibration(worn, { ...worn, trackerOffsets: { hips: turned } })).toBe(false);
+  expect(sameCalibration(worn, { ...worn, trackerOffsets: { hips: { ...trackerAtJoint } } })).toBe(true);
   const { forearm, gazePitch, handTilts } = told;
   const others: readonly Partial<Calibration>[] = [
     ...[{ eyeHeight: 1.6 }, { armSpan: 1.5 }, { forearm: forearm! + 0.01 }, { gazePitch: undefined }],

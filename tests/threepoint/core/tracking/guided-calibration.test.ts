@@ -2,18 +2,22 @@ import fc from 'fast-check';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { jointNames } from 'threepoint/core/body/joints';
+import { legShares } from 'threepoint/core/body/leg-shares';
 import { armLength, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { trackerNames } from 'threepoint/core/body/tracker-offsets';
+import { createIk } from 'threepoint/core/estimation/estimators';
 import { type Frame, type Pose, type TrackedPose, transformPose } from 'threepoint/core/math/pose';
 import { fromAxisAngle, identity, multiply, type Quat, rotate } from 'threepoint/core/math/quat';
-import { add, right, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { add, distance, right, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import {
   type GuidedCalibration,
   startGuidedCalibration,
   stepGuidedCalibration,
 } from 'threepoint/core/tracking/guided-calibration';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { BodyTrackers, TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { describe, expect, test } from 'vitest';
 import { evenly, seed, standpoint } from '../arbitraries';
+import { trackersOn, wornOffsets } from '../estimation/tracked-body';
 
 const pose = (position: Vec3, orientation: Quat = identity): TrackedPose => ({
   position,
@@ -27,7 +31,7 @@ const pose = (position: Vec3, orientation: Quat = identity): TrackedPose => ({
  */
 function stretched(
   calibration: Calibration,
-  direction: 'forward' | 'sideways',
+  direction: 'forward' | 'sideways' | 'down and out',
   bentTo = 1,
 ): Omit<TrackingFrame, 'time'> {
   const skeleton = skeletonFromCalibration(calibration);
@@ -42,7 +46,12 @@ function stretched(
   const wrist = (side: 'left' | 'right'): TrackedPose => {
     const sigma = side === 'left' ? -1 : 1;
     const shoulder = add(joints[`${side}UpperArm`].position, moved);
-    return pose(add(shoulder, direction === 'forward' ? vec3(0, 0, -arm) : vec3(sigma * arm, 0, 0)));
+    const along = {
+      forward: vec3(0, 0, -arm),
+      sideways: vec3(sigma * arm, 0, 0),
+      'down and out': vec3(sigma * arm * Math.SQRT1_2, -arm * Math.SQRT1_2, 0),
+    };
+    return pose(add(shoulder, along[direction]));
   };
   return {
     head: pose(vec3(0, calibration.eyeHeight, 0)),
@@ -68,31 +77,34 @@ const refused = (state: GuidedCalibration): string => {
 };
 
 describe('the guided calibration', () => {
-  test.each(['forward', 'sideways'] as const)('finds height and span of who stretches both arms %s', (direction) => {
-    const bodies = fc
-      .tuple(evenly(1, 2.1), evenly(0.88, 1.02))
-      .map(([eyeHeight, ratio]) => ({ eyeHeight, armSpan: eyeHeight * ratio }));
-    fc.assert(
-      fc.property(bodies, standpoint, (calibration, { x, z, yaw }) => {
-        const there = { position: vec3(x, 0, z), orientation: fromAxisAngle(up, yaw) };
-        const still = stretched(calibration, direction);
-        const moved = (p: TrackedPose): TrackedPose => {
-          const { position, orientation } = transformPose(there, p as Pose<Frame>);
-          return pose(position, orientation);
-        };
-        const state = guide(() => ({
-          head: moved(still.head),
-          leftHand: moved(still.leftHand!),
-          rightHand: moved(still.rightHand!),
-        }));
-        if (state.kind !== 'done') throw new Error(JSON.stringify(state));
-        expect(Math.abs(state.calibration.eyeHeight - calibration.eyeHeight)).toBeLessThan(1e-9);
-        // Forward, the shoulders come along by a few centimetres, and bodies differ in how far.
-        expect(Math.abs(state.calibration.armSpan - calibration.armSpan)).toBeLessThan(0.05 * calibration.eyeHeight);
-      }),
-      { seed },
-    );
-  });
+  test.each(['forward', 'sideways', 'down and out'] as const)(
+    'finds height and span of who stretches both arms %s',
+    (direction) => {
+      const bodies = fc
+        .tuple(evenly(1, 2.1), evenly(0.88, 1.02))
+        .map(([eyeHeight, ratio]) => ({ eyeHeight, armSpan: eyeHeight * ratio }));
+      fc.assert(
+        fc.property(bodies, standpoint, (calibration, { x, z, yaw }) => {
+          const there = { position: vec3(x, 0, z), orientation: fromAxisAngle(up, yaw) };
+          const still = stretched(calibration, direction);
+          const moved = (p: TrackedPose): TrackedPose => {
+            const { position, orientation } = transformPose(there, p as Pose<Frame>);
+            return pose(position, orientation);
+          };
+          const state = guide(() => ({
+            head: moved(still.head),
+            leftHand: moved(still.leftHand!),
+            rightHand: moved(still.rightHand!),
+          }));
+          if (state.kind !== 'done') throw new Error(JSON.stringify(state));
+          expect(Math.abs(state.calibration.eyeHeight - calibration.eyeHeight)).toBeLessThan(1e-9);
+          // Forward, the shoulders come along by a few centimetres, and bodies differ in how far.
+          expect(Math.abs(state.calibration.armSpan - calibration.armSpan)).toBeLessThan(0.05 * calibration.eyeHeight);
+        }),
+        { seed },
+      );
+    },
+  );
 
   test('a wild frame or two does not move the result', () => {
     const still = stretched(person, 'forward');
@@ -215,8 +227,8 @@ describe('the guided calibration', () => {
   });
 
   describe('the tilt of the headset', () => {
-    const worn = (pitch: number, yaw = 0) => {
-      const still = stretched(person, 'forward');
+    const worn = (pitch: number, yaw = 0, direction: 'forward' | 'sideways' | 'down and out' = 'forward') => {
+      const still = stretched(person, direction);
       const turn = multiply(fromAxisAngle(up, yaw), fromAxisAngle(right, pitch));
       return guide(() => ({ ...still, head: { ...still.head, orientation: turn } }));
     };
@@ -226,6 +238,18 @@ describe('the guided calibration', () => {
         const state = worn(pitch);
         if (state.kind !== 'done') throw new Error('not measured');
         expect(state.calibration.gazePitch).toBeCloseTo(pitch, 6);
+      }
+    });
+
+    test.each(['sideways', 'down and out'] as const)('is measured with the arms %s', (direction) => {
+      for (const [yaw, pitch] of [
+        [0.1, 0.1],
+        [-0.3, undefined],
+      ] as const) {
+        const state = worn(0.1, yaw, direction);
+        if (state.kind !== 'done') throw new Error(JSON.stringify(state));
+        if (pitch === undefined) expect(state.calibration).not.toHaveProperty('gazePitch');
+        else expect(state.calibration.gazePitch).toBeCloseTo(pitch, 6);
       }
     });
 
@@ -239,6 +263,89 @@ describe('the guided calibration', () => {
       const state = worn(-0.2, -0.2);
       if (state.kind !== 'done') throw new Error('not measured');
       expect(state.calibration).not.toHaveProperty('gazePitch');
+    });
+  });
+
+  describe('the offsets of trackers', () => {
+    const skeleton = skeletonFromCalibration(person);
+    const upright = Object.fromEntries(jointNames.map((joint) => [joint, identity])) as Record<
+      (typeof jointNames)[number],
+      Quat
+    >;
+    const rest = forwardKinematics(skeleton, { hipsPosition: skeleton.restOffsets.hips, localRotations: upright });
+    const eyes = add(rest.head.position, skeleton.eyesInHead);
+    const underHead = ({ x, y, z }: Vec3) => vec3(x - eyes.x, y + person.eyeHeight - eyes.y, z - eyes.z);
+    const hips = underHead(rest.hips.position);
+    const ankle = (x: number) => ({
+      position: vec3(x, legShares.ankle * person.eyeHeight, hips.z),
+      orientation: identity,
+    });
+    const joints = {
+      hips: { position: hips, orientation: identity },
+      chest: { position: underHead(rest.chest.position), orientation: identity },
+      leftFoot: ankle(-0.15),
+      rightFoot: ankle(0.11),
+    };
+    const there = { position: vec3(0.7, 0, -1.2), orientation: fromAxisAngle(up, 2.2) };
+    const place = ({ position, orientation }: Pose<Frame>): TrackedPose => {
+      const moved = transformPose(there, { position, orientation });
+      return pose(moved.position, moved.orientation);
+    };
+    const still = stretched(person, 'down and out');
+    const moved = { head: place(still.head), leftHand: place(still.leftHand!), rightHand: place(still.rightHand!) };
+    const worn = trackersOn(joints);
+    const placed = Object.fromEntries(
+      Object.entries(worn).map(([name, tracker]) => [name, place(tracker!)]),
+    ) as Required<BodyTrackers>;
+
+    const offsetsOf = (state: GuidedCalibration) => {
+      if (state.kind !== 'done') throw new Error(JSON.stringify(state));
+      return state.calibration.trackerOffsets;
+    };
+
+    test('come back as they were worn, wherever the person stands', () => {
+      const offsets = offsetsOf(guide(() => ({ ...moved, trackers: placed })));
+      for (const name of trackerNames) {
+        const offset = offsets?.[name];
+        expect(offset!.orientation).toBeSameRotationAs(wornOffsets[name].orientation);
+        const joint = transformPose<'floor', 'tracker'>(worn[name]!, offset!);
+        // An ankle is assumed as far aside as its tracker.
+        const foot = name === 'leftFoot' || name === 'rightFoot';
+        const wanted = foot ? { ...joints[name].position, x: worn[name]!.position.x } : joints[name].position;
+        expect(distance(joint.position, wanted)).toBeLessThan(1e-6);
+      }
+    });
+
+    test('lead an estimator to the joints of the person who calibrated', () => {
+      const state = guide(() => ({ ...moved, trackers: placed }));
+      if (state.kind !== 'done') throw new Error(JSON.stringify(state));
+      const estimator = createIk(state.calibration);
+      const { body } = estimator.update({ ...moved, time: 0, trackers: placed }).pose;
+      expect(distance(body!.hipsPosition, place(joints.hips).position)).toBeLessThan(1e-3);
+    });
+
+    test('of a tracker that moves, is lost or belongs elsewhere stay unknown', () => {
+      const offsets = offsetsOf(
+        guide((seconds) => ({
+          ...moved,
+          trackers: {
+            hips: { ...placed.hips!, position: add(placed.hips!.position, vec3(0, 0.1 * Math.sin(9 * seconds), 0)) },
+            chest: seconds < 1 ? placed.chest : null,
+            leftFoot: placed.rightFoot,
+            rightFoot: { ...placed.rightFoot!, position: add(placed.rightFoot!.position, vec3(0, 0.6, 0)) },
+          },
+        })),
+      );
+      expect(Object.keys(offsets!)).toEqual(['leftFoot']);
+    });
+
+    test('of feet stay unknown where the person sits', () => {
+      const sunk = (p: TrackedPose) => pose(add(p.position, vec3(0, -0.5, 0)), p.orientation);
+      const sitting = { head: sunk(moved.head), leftHand: sunk(moved.leftHand), rightHand: sunk(moved.rightHand) };
+      const hipsTracker = sunk(placed.hips!);
+      const offsets = offsetsOf(guide(() => ({ ...sitting, trackers: { ...placed, hips: hipsTracker } })));
+      expect(offsets).not.toHaveProperty('leftFoot');
+      expect(offsets).toHaveProperty('hips');
     });
   });
 

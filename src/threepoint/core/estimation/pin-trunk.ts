@@ -1,0 +1,312 @@
+import limbLimits from '../body/limb-limits.json';
+import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../body/two-bone-ik';
+import { clamp } from '../math/damper';
+import { type MutablePose, makePose, type Pose } from '../math/pose';
+import {
+  conjugate,
+  copyQuat,
+  type MutableQuat,
+  multiply,
+  type Quat,
+  quat,
+  rotate,
+  rotateInverse,
+  rotationBetween,
+  slerp,
+} from '../math/quat';
+import type { Side } from '../math/side';
+import {
+  add,
+  addScaled,
+  backward,
+  copyVec3,
+  cross,
+  distance,
+  dot,
+  down,
+  length,
+  lerp,
+  type MutableVec3,
+  reject,
+  right,
+  scale,
+  setVec3,
+  subtract,
+  type Vec3,
+  vec3,
+} from '../math/vec3';
+import type { CompletedFrame, CompletedHand } from './complete-hands';
+import { placeShoulder, type TorsoBones, type TorsoPose } from './fit-torso';
+import limits from './kinematic-limits.json';
+import { followPin, handOverSeconds, makePin, type Pin } from './pin';
+import type { TrackedJoints } from './tracked-joints';
+
+/** A tracked joint that is this far [m] beyond the reach of its bones from the head is wrong, and counts as lost. */
+const strayTracker = 0.15;
+const trunkBones = ['hips', 'spine', 'chest', 'upperChest', 'neck'] as const;
+/** The fastest turn [rad/s] of the side to which the trunk bends: near straight it is ill-defined. */
+const bendSpeed = 8;
+/** The share of the pelvis's turn against its estimate that the spine joint takes; the chest joint takes the rest. */
+const spineShare = 0.5;
+
+/** A pinned joint of the trunk, and the side to which the joint above it bends the trunk. */
+interface TrunkPin extends Pin {
+  /** Unit, frame of the pinned joint; zero: not known. */
+  readonly bend: MutableVec3;
+}
+
+export interface PinTrunkState {
+  /** False before the first frame. */
+  known: boolean;
+  readonly hips: TrunkPin;
+  readonly chest: TrunkPin;
+}
+
+export const makePinTrunkState = (): PinTrunkState => ({
+  known: false,
+  hips: { ...makePin(), bend: vec3(0, 0, 0) },
+  chest: { ...makePin(), bend: vec3(0, 0, 0) },
+});
+
+/** A trunk before a pin moves it; floor frame. */
+interface TrunkBefore extends Pick<TorsoPose, 'neck' | 'chest' | 'hips' | 'rotations'> {}
+
+const makeTrunkBefore = (): TrunkBefore => ({
+  neck: vec3(0, 0, 0),
+  chest: vec3(0, 0, 0),
+  hips: vec3(0, 0, 0),
+  rotations: {
+    hips: quat(0, 0, 0, 1),
+    spine: quat(0, 0, 0, 1),
+    chest: quat(0, 0, 0, 1),
+    upperChest: quat(0, 0, 0, 1),
+    neck: quat(0, 0, 0, 1),
+  },
+});
+
+/** The trunk as it was fitted, and as the current pin found it. */
+const fitted = makeTrunkBefore();
+const before = makeTrunkBefore();
+const jointBefore: MutablePose<'floor'> = makePose();
+// Scratch of one bone.
+const circle = makeElbowCircle();
+const limb = { upper: Number.NaN, lower: Number.NaN };
+const fallbackPoles: readonly [MutableVec3, MutableVec3] = [vec3(0, 0, 0), vec3(0, 0, 0)];
+const pole = vec3(0, 0, 0);
+const poleBefore = vec3(0, 0, 0);
+const across = vec3(0, 0, 0);
+const bone = vec3(0, 0, 0);
+const boneBefore = vec3(0, 0, 0);
+const spine = vec3(0, 0, 0);
+const shoulder = vec3(0, 0, 0);
+const swing = quat(0, 0, 0, 1);
+const relative = quat(0, 0, 0, 1);
+const inverse = quat(0, 0, 0, 1);
+
+/**
+ * Stage 5, between trunk and arms: moves the trunk onto the joints that trackers pin. Bones keep their lengths and the
+ * head its place. The chest joint is where its tracker says; the thorax turns with it and leads to a neck on its bone.
+ * The hips are where their tracker says and turned like it; the lower back bends to meet the thorax. Where both cannot
+ * hold, the chest's tracker gives way, then the turn of the hips, then their place. Changes nothing without trackers.
+ */
+export function pinTrunk(
+  state: PinTrunkState,
+  torso: TorsoPose,
+  tracked: TrackedJoints,
+  frame: CompletedFrame,
+  bones: TorsoBones,
+  deltaSeconds: number,
+): void {
+  const step = state.known ? Math.max(deltaSeconds, 0) / handOverSeconds : 1;
+  state.known = true;
+  if (!tracked.hips && !tracked.chest && state.hips.share === 0 && state.chest.share === 0) return;
+  copyTrunk(torso, fitted);
+  const { headJoint } = frame;
+  const most = bendSpeed * Math.max(deltaSeconds, 0);
+  const chestReach = bones.neckLength + bones.thoraxLength;
+  const chest = nearEnough(tracked.chest, headJoint, chestReach);
+  const chestWeight = followPin(state.chest, jointOf(torso, 'chest'), chest, step);
+  if (chestWeight > 0) {
+    copyTrunk(torso, before);
+    moveChest(torso, state.chest, headJoint, bones, most);
+    mixTrunk(torso, headJoint, bones, chestWeight);
+  }
+  const hips = nearEnough(tracked.hips, headJoint, chestReach + bones.lowerBackLength);
+  const hipsWeight = followPin(state.hips, jointOf(torso, 'hips'), hips, step);
+  if (hipsWeight > 0) {
+    copyTrunk(torso, before);
+    moveHips(torso, state.hips, headJoint, bones, most);
+    mixTrunk(torso, headJoint, bones, hipsWeight);
+  }
+  if (chestWeight === 0 && hipsWeight === 0) return;
+  carryShoulder('left', torso, frame.leftHand, bones);
+  carryShoulder('right', torso, frame.rightHand, bones);
+}
+
+/** Forgets the past: the next frame is the first. */
+export function resetPinTrunk(state: PinTrunkState): void {
+  state.known = false;
+  for (const pin of [state.hips, state.chest]) {
+    pin.share = 0;
+    setVec3(pin.bend, 0, 0, 0);
+  }
+}
+
+const nearEnough = (joint: Pose<'floor'> | null, headJoint: Vec3, reach: number): Pose<'floor'> | null =>
+  joint && distance(joint.position, headJoint) <= reach + strayTracker ? joint : null;
+
+function copyTrunk({ neck, chest, hips, rotations }: TrunkBefore, target: TrunkBefore): void {
+  copyVec3(neck, target.neck);
+  copyVec3(chest, target.chest);
+  copyVec3(hips, target.hips);
+  for (const bone of trunkBones) copyQuat(rotations[bone], target.rotations[bone]);
+}
+
+function jointOf(torso: TorsoPose, joint: 'hips' | 'chest'): Pose<'floor'> {
+  copyVec3(torso[joint], jointBefore.position);
+  copyQuat(torso.rotations[joint], jointBefore.orientation);
+  return jointBefore;
+}
+
+/** Turns the bones only a part of the way from where the pin found them, and hangs them from the head. */
+function mixTrunk(
+  { neck, chest, hips, rotations }: TorsoPose,
+  headJoint: Vec3,
+  bones: TorsoBones,
+  weight: number,
+): void {
+  if (weight === 1) return;
+  const { restOffsets } = bones.skeleton;
+  for (const name of trunkBones) slerp(before.rotations[name], rotations[name], weight, rotations[name]);
+  subtract(headJoint, rotate(rotations.neck, restOffsets.head, bone), neck);
+  subtract(neck, rotate(rotations.upperChest, restOffsets.neck, bone), chest);
+  subtract(chest, rotate(rotations.chest, restOffsets.upperChest, bone), chest);
+  subtract(chest, rotate(rotations.spine, restOffsets.chest, bone), hips);
+  subtract(hips, rotate(rotations.hips, restOffsets.spine, bone), hips);
+}
+
+/** The chest joint at its target, as nearly as neck and thorax reach; the lower back is carried along. */
+function moveChest(torso: TorsoPose, pin: TrunkPin, headJoint: Vec3, bones: TorsoBones, most: number): void {
+  const { target } = pin;
+  const { neck, chest, hips, rotations } = torso;
+  limb.upper = bones.neckLength;
+  limb.lower = bones.thoraxLength;
+  elbowCircle(headJoint, target.position, limb, down, circle);
+  add(target.position, rotate(target.orientation, bones.thorax.main, bone), neck);
+  bendTowards(neck, pin, most);
+  addScaled(headJoint, circle.axis, circle.span, chest);
+  add(hips, subtract(chest, before.chest, bone), hips);
+
+  multiply(conjugate(before.rotations.chest, inverse), before.rotations.upperChest, relative);
+  rotate(target.orientation, bones.thorax.main, boneBefore);
+  copyQuat(target.orientation, rotations.chest);
+  swingBone(rotations.chest, boneBefore, subtract(neck, chest, bone));
+  multiply(rotations.chest, relative, rotations.upperChest);
+  turnNeck(torso, headJoint);
+}
+
+/** The hips at their target, as nearly as the trunk reaches; chest joint and neck move no further than they must. */
+function moveHips(torso: TorsoPose, pin: TrunkPin, headJoint: Vec3, bones: TorsoBones, most: number): void {
+  const { target } = pin;
+  const { neck, chest, hips, rotations } = torso;
+  const { restOffsets } = bones.skeleton;
+  const pelvisLength = length(restOffsets.spine);
+  limb.upper = bones.thoraxLength;
+  limb.lower = length(restOffsets.chest);
+  const backReach = limb.upper + limb.lower;
+  const spineReach = bones.neckLength + backReach;
+
+  const far = distance(target.position, headJoint);
+  const furthest = (spineReach + pelvisLength) * limbLimits.straightest;
+  lerp(headJoint, target.position, Math.min(1, furthest / Math.max(far, 1e-9)), hips);
+  rotate(target.orientation, restOffsets.spine, boneBefore);
+  add(hips, boneBefore, spine);
+  bringWithin(spine, hips, pelvisLength, headJoint, spineReach, target.orientation);
+  bringWithin(neck, headJoint, bones.neckLength, spine, backReach, target.orientation);
+  subtract(spine, hips, bone);
+  swingBone(copyQuat(target.orientation, rotations.hips), boneBefore, bone);
+
+  limb.upper = bones.thoraxLength;
+  limb.lower = backReach - limb.upper;
+  elbowCircle(neck, spine, limb, down, circle);
+  bendTowards(chest, pin, most);
+  addScaled(neck, circle.axis, circle.span, spine);
+  subtract(spine, bone, hips);
+
+  // The spine joint as it was turned against the hips, and as it was turned: between both.
+  multiply(conjugate(before.rotations.hips, inverse), before.rotations.spine, relative);
+  multiply(rotations.hips, relative, relative);
+  slerp(before.rotations.spine, relative, spineShare, rotations.spine);
+  rotate(rotations.spine, restOffsets.chest, boneBefore);
+  swingBone(rotations.spine, boneBefore, subtract(chest, spine, bone));
+  subtract(before.neck, before.chest, boneBefore);
+  subtract(neck, chest, bone);
+  swingBone(rotations.chest, boneBefore, bone);
+  swingBone(rotations.upperChest, boneBefore, bone);
+  turnNeck(torso, headJoint);
+}
+
+/** Moves a joint along its sphere about `root` until `goal` is within `reach` [m] of it. */
+function bringWithin(
+  joint: MutableVec3,
+  root: Vec3,
+  boneLength: number,
+  goal: Vec3,
+  reach: number,
+  facing: Quat,
+): void {
+  if (distance(joint, goal) <= reach) return;
+  limb.upper = boneLength;
+  limb.lower = reach;
+  elbowCircle(root, goal, limb, down, circle);
+  placeOnCircle(joint, facing);
+}
+
+/** Moves a joint to the nearest point of the circle. */
+function placeOnCircle(joint: MutableVec3, facing: Quat): void {
+  rotate(facing, backward, fallbackPoles[0]);
+  rotate(facing, right, fallbackPoles[1]);
+  subtract(joint, circle.centre, pole);
+  elbowOnCircle(circle, poleAcross(circle.axis, pole, fallbackPoles, pole), joint);
+}
+
+/**
+ * Moves the joint above a pinned one onto the circle, turned no further than `most` [rad] from its side before. A joint
+ * inside the circle is drawn to the back, because near the axis its side is undefined: a trunk that folds gets round.
+ */
+function bendTowards(joint: MutableVec3, { target, bend }: TrunkPin, most: number): void {
+  const { axis, centre, radius } = circle;
+  rotate(target.orientation, backward, fallbackPoles[0]);
+  rotate(target.orientation, right, fallbackPoles[1]);
+  reject(subtract(joint, centre, pole), axis, pole);
+  addScaled(pole, fallbackPoles[0], Math.max(radius - length(pole), 0), pole);
+  poleAcross(axis, pole, fallbackPoles, pole);
+  if (dot(bend, bend) > 0) {
+    poleAcross(axis, rotate(target.orientation, bend, poleBefore), fallbackPoles, poleBefore);
+    cross(axis, poleBefore, across);
+    const turn = clamp(Math.atan2(dot(across, pole), dot(poleBefore, pole)), -most, most);
+    addScaled(scale(poleBefore, Math.cos(turn), pole), across, Math.sin(turn), pole);
+  }
+  rotateInverse(target.orientation, pole, bend);
+  elbowOnCircle(circle, pole, joint);
+}
+
+/** Turns a bone by the smallest rotation from one direction to the other. */
+const swingBone = (rotation: MutableQuat, from: Vec3, to: Vec3): MutableQuat =>
+  multiply(rotationBetween(from, to, swing), rotation, rotation);
+
+/** Turns the neck's bone from where its base was to where it is. */
+function turnNeck({ neck, rotations }: TorsoPose, headJoint: Vec3): void {
+  swingBone(rotations.neck, subtract(headJoint, before.neck, boneBefore), subtract(headJoint, neck, bone));
+}
+
+/** Carries a shoulder along with the thorax; the clavicle swings after a hand that is then out of reach. */
+function carryShoulder(side: Side, torso: TorsoPose, hand: CompletedHand, bones: TorsoBones): void {
+  multiply(torso.rotations.upperChest, conjugate(fitted.rotations.upperChest, inverse), relative);
+  subtract(torso.shoulders[side], fitted.neck, shoulder);
+  add(torso.neck, rotate(relative, shoulder, shoulder), shoulder);
+  const far = distance(shoulder, hand.goal.position);
+  const missing = hand.source === 'tracked' ? Math.max(far - bones.reach, 0) : 0;
+  lerp(shoulder, hand.goal.position, missing / Math.max(far, 1e-9), shoulder);
+  placeShoulder(side, torso, bones, shoulder, limits.torsoExtreme.clavicleSwing);
+}

@@ -1,0 +1,229 @@
+import fc from 'fast-check';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { headJointOf } from 'threepoint/core/body/head-joint';
+import { type JointName, jointNames, parentOf } from 'threepoint/core/body/joints';
+import { chestSpaceBody, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { createEstimator } from 'threepoint/core/estimation/estimators';
+import { type Pose, transformPoint } from 'threepoint/core/math/pose';
+import { multiply, rotate } from 'threepoint/core/math/quat';
+import { add, addScaled, distance, length, normalise, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { describe, expect, test } from 'vitest';
+import { cases } from '../../../nightly';
+import { evenly, seed, standpoint } from '../arbitraries';
+import { fromEulerYxz } from '../euler-angles';
+import { bodies, jointsOf, openSubject, person, rate, times } from './contract-subjects';
+import { type Joints, poseOf, show } from './drawn';
+import { movingPerson } from './moving-person';
+import { at, calibration } from './posed-body';
+import { type TrueJoints, trackersOn, withOffsets } from './tracked-body';
+
+type Place = { readonly x: number; readonly y: number; readonly z: number };
+const aside = fc.record({ x: evenly(-1, 1), y: evenly(-1, 1), z: evenly(-1, 1) });
+const turn = fc.record({ x: evenly(-0.3, 0.3), y: evenly(-0.5, 0.5), z: evenly(-0.3, 0.3) });
+
+const headJointIn = (frame: TrackingFrame, body: Calibration): Vec3 =>
+  headJointOf(frame.head, skeletonFromCalibration(body).eyesInHead, vec3(0, 0, 0));
+
+/** The point moved towards the head, no further from it than `most` [m]. */
+function within(point: Vec3, headJoint: Vec3, most: number): Vec3 {
+  const way = subtract(point, headJoint);
+  return addScaled(headJoint, normalise(way), Math.min(length(way), most));
+}
+
+/**
+ * The pose of a joint that a body drawn without trackers could have had instead: up to 7 cm aside, turned, and within
+ * the bones' reach.
+ */
+function elsewhere(joint: Pose<'floor'>, to: Place, about: Place, headJoint: Vec3, most: number): Pose<'floor'> {
+  const position = within(addScaled(joint.position, to, 0.04), headJoint, most);
+  return { position, orientation: multiply(joint.orientation, fromEulerYxz(about)) };
+}
+
+const reaches = (body: Calibration) => {
+  const { neckToHead, thorax, lowerBack } = chestSpaceBody(body);
+  const chest = length(neckToHead) + thorax;
+  return { chest: chest - 0.002, hips: chest + lowerBack - 0.002 };
+};
+
+function expectWhole(joints: Joints, body: Calibration): void {
+  const { restOffsets } = skeletonFromCalibration(body);
+  for (const joint of jointNames) {
+    const parent = parentOf[joint];
+    if (parent === null) continue;
+    const bone = distance(at(joints, joint), at(joints, parent));
+    expect(Math.abs(bone - length(restOffsets[joint]))).toBeLessThan(1e-6);
+    expect(distance(transformPoint(joints[parent], restOffsets[joint]), at(joints, joint))).toBeLessThan(1e-6);
+  }
+}
+
+describe.each(bodies)('$label with trackers', (subject) => {
+  const { create, runs } = openSubject(subject);
+
+  test.each([['hips'], ['chest']] as const)('draws a moving person’s %s within 1 mm of the tracker', async (name) => {
+    await fc.assert(
+      fc.asyncProperty(person, aside, turn, async ({ at: frameAt, calibration: body, start }, to, about) => {
+        const [plain, pinned] = [create(body), create(withOffsets(body))];
+        for (const time of times(start, 4)) {
+          const frame = frameAt(time);
+          const headJoint = headJointIn(frame, body);
+          const free = jointsOf(await show(plain, frame), body);
+          const goal = elsewhere(free[name], to, about, headJoint, reaches(body)[name]);
+          const trackers = trackersOn({ [name]: goal });
+          const pose = await show(pinned, { ...frame, trackers });
+          const joints = jointsOf(pose, body);
+          expect(distance(at(joints, name), goal.position)).toBeLessThan(1e-3);
+          expectWhole(joints, body);
+          const eyes = add(
+            at(joints, 'head'),
+            rotate(joints.head.orientation, skeletonFromCalibration(body).eyesInHead),
+          );
+          expect(distance(eyes, frame.head.position)).toBeLessThan(1e-6);
+        }
+      }),
+      runs(50),
+    );
+  });
+});
+
+describe('a pinned trunk', () => {
+  const draw = (estimator: ReturnType<typeof createEstimator>, frame: TrackingFrame): Joints =>
+    jointsOf(poseOf(estimator, frame), calibration);
+
+  test('turns the hips like their tracker where the back reaches so far', () => {
+    fc.assert(
+      fc.property(fc.integer(), standpoint, turn, (motion, place, about) => {
+        const frame = movingPerson(motion, calibration, place)(0);
+        const free = draw(createEstimator('ik', calibration), frame);
+        const headJoint = headJointIn(frame, calibration);
+        const goal = elsewhere(free.hips, vec3(0, 0, 0), about, headJoint, reaches(calibration).hips - 0.06);
+        const joints = draw(createEstimator('ik', withOffsets(calibration)), {
+          ...frame,
+          trackers: trackersOn({ hips: goal }),
+        });
+        expect(distance(at(joints, 'hips'), goal.position)).toBeLessThan(1e-3);
+        expect(joints.hips.orientation).toBeSameRotationAs(goal.orientation);
+      }),
+      { seed, numRuns: cases(50) },
+    );
+  });
+
+  test('holds hips and chest where both are possible, and the hips where they are not', () => {
+    fc.assert(
+      fc.property(fc.integer(), standpoint, evenly(-0.08, 0.08), (motion, place, apart) => {
+        const frame = movingPerson(motion, calibration, place)(0);
+        const free = draw(createEstimator('ik', calibration), frame);
+        const chest = { ...free.chest, position: add(at(free, 'chest'), vec3(0, apart, 0)) };
+        const joints = draw(createEstimator('ik', withOffsets(calibration)), {
+          ...frame,
+          trackers: trackersOn({ hips: free.hips, chest }),
+        });
+        expect(distance(at(joints, 'hips'), at(free, 'hips'))).toBeLessThan(1e-3);
+        if (apart === 0) expect(distance(at(joints, 'chest'), at(free, 'chest'))).toBeLessThan(1e-3);
+        expectWhole(joints, calibration);
+      }),
+      { seed, numRuns: cases(50), examples: [[3, { x: 0, z: 0, yaw: 1 }, 0]] },
+    );
+  });
+
+  test('keeps the hands that it reaches on their controllers', () => {
+    fc.assert(
+      fc.property(fc.integer(), standpoint, aside, (motion, place, to) => {
+        const frame = movingPerson(motion, calibration, place)(0);
+        const free = draw(createEstimator('ik', calibration), frame);
+        const headJoint = headJointIn(frame, calibration);
+        const goal = elsewhere(free.hips, to, vec3(0, 0, 0), headJoint, reaches(calibration).hips);
+        const joints = draw(createEstimator('ik', withOffsets(calibration)), {
+          ...frame,
+          trackers: trackersOn({ hips: goal }),
+        });
+        expect(distance(at(joints, 'leftHand'), frame.leftHand!.position)).toBeLessThan(2e-3);
+        expect(distance(at(joints, 'rightHand'), frame.rightHand!.position)).toBeLessThan(2e-3);
+      }),
+      { seed, numRuns: cases(50) },
+    );
+  });
+
+  test('ignores a tracker without an offset, one that is only guessed, and one beside another person', () => {
+    const frame = movingPerson(4, calibration, { x: 1, z: 2, yaw: 0.4 })(3);
+    const free = poseOf(createEstimator('ik', calibration), frame);
+    const hips = jointsOf(free, calibration).hips;
+    const { hips: seen } = trackersOn({ hips });
+    const drawn = (body: Calibration, trackers: TrackingFrame['trackers']) =>
+      poseOf(createEstimator('ik', body), { ...frame, trackers }).body;
+    expect(drawn(calibration, { hips: seen })).toEqual(free.body);
+    expect(drawn(withOffsets(calibration), { hips: { ...seen!, tracking: 'emulated' } })).toEqual(free.body);
+    const far = trackersOn({ hips: { ...hips, position: add(hips.position, vec3(0.9, 0, 0)) } });
+    expect(drawn(withOffsets(calibration), far)).toEqual(free.body);
+    expect(drawn(withOffsets(calibration), { hips: null })).toEqual(free.body);
+  });
+
+  test('moves no joint by a jump when its trackers are lost and found, in any motion meanwhile', () => {
+    fc.assert(
+      fc.property(
+        fc.integer(),
+        standpoint,
+        aside,
+        turn,
+        evenly(0, 60),
+        fc.constantFrom<JointName[]>(['hips'], ['chest'], ['hips', 'chest']),
+        (motion, place, to, about, start, names) => {
+          const person = movingPerson(motion, calibration, place);
+          const [plain, pinned] = [createEstimator('ik', calibration), createEstimator('ik', withOffsets(calibration))];
+          // Two trackers that are turned alike, each about its own joint, contradict each other.
+          const turned = names.length > 1 ? vec3(0, 0, 0) : about;
+          let before: { readonly free: Joints; readonly drawn: Joints } | null = null;
+          let furthest = 0;
+          for (let i = 0; i < 150; i++) {
+            const frame = person(start + i * rate);
+            const free = draw(plain, frame);
+            const headJoint = headJointIn(frame, calibration);
+            const goals = Object.fromEntries(
+              names.map((name) => [
+                name,
+                elsewhere(free[name], to, turned, headJoint, reaches(calibration)[name as 'hips']),
+              ]),
+            ) as TrueJoints;
+            const lost = (i >= 40 && i < 80) || (i >= 110 && i < 116);
+            const drawn = draw(pinned, lost ? frame : { ...frame, trackers: trackersOn(goals) });
+            const joints = ['hips', 'chest', 'neck', 'leftUpperArm', 'rightUpperArm', 'rightLowerArm'] as const;
+            for (const joint of before ? joints : []) {
+              const own = distance(at(free, joint), at(before!.free, joint));
+              const jump = distance(at(drawn, joint), at(before!.drawn, joint)) - own;
+              // Near full stretch an elbow goes further than the trunk that it hangs from.
+              furthest = Math.max(furthest, joint === 'rightLowerArm' ? jump - 0.01 : jump);
+            }
+            before = { free, drawn };
+          }
+          expect(furthest).toBeLessThan(0.05);
+        },
+      ),
+      { seed, numRuns: cases(30), endOnFailure: true },
+    );
+  });
+
+  test('is the estimate again when its trackers have been lost for 0.3 s', () => {
+    const person = movingPerson(11, calibration, { x: 0, z: 0, yaw: 0 });
+    const [plain, pinned] = [createEstimator('ik', calibration), createEstimator('ik', withOffsets(calibration))];
+    for (let i = 0; i < 60; i++) {
+      const frame = person(i * rate);
+      const free = poseOf(plain, frame);
+      const { hips } = forwardKinematics(skeletonFromCalibration(calibration), free.body!);
+      const goal = { ...hips, position: add(hips.position, vec3(0.03, 0.02, 0)) };
+      const drawn = poseOf(pinned, i < 30 ? { ...frame, trackers: trackersOn({ hips: goal }) } : frame);
+      if (i >= 30 + 19) expect(drawn.body).toEqual(free.body);
+    }
+  });
+
+  test('reports the ankles of tracked feet, and none without', () => {
+    const frame = movingPerson(2, calibration, { x: 0, z: 0, yaw: 0 })(1);
+    const left = { position: vec3(-0.1, 0.09, 0), orientation: fromEulerYxz(vec3(0, 0.2, 0)) };
+    const estimator = createEstimator('ik', withOffsets(calibration));
+    const { feet } = poseOf(estimator, { ...frame, trackers: trackersOn({ leftFoot: left }) });
+    expect(distance(feet!.left!.position, left.position)).toBeLessThan(1e-9);
+    expect(feet!.left!.orientation).toBeSameRotationAs(left.orientation);
+    expect(feet!.right).toBeNull();
+    expect(poseOf(estimator, { ...frame, time: frame.time + rate }).feet).toBeUndefined();
+  });
+});
