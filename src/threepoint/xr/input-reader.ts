@@ -1,11 +1,11 @@
 import { type HandShape, makeHandShape, shapeOfClosing } from '../core/body/hand-shape';
 import { allReleased, type HandButtons } from '../core/input/button-presses';
-import type { Pose, TrackedPose } from '../core/math/pose';
+import type { TrackedPose } from '../core/math/pose';
 import { type Side, sides } from '../core/math/side';
 import { ControllerFingers, squeezeButton, triggerButton } from './controller-fingers';
 import { bareHandFit, handleFit, wristFromGrip } from './grip-offsets';
 import { HandReader } from './hand-reader';
-import type { Pointing } from './pointing';
+import type { InputFrame, Pointing } from './pointing';
 import { SourceChoice } from './source-choice';
 import { toTrackedPose } from './tracked-pose';
 
@@ -24,16 +24,6 @@ const maximumOf = (a: HandButtons, b: HandButtons): HandButtons => ({
   pinch: Math.max(a.pinch, b.pinch),
   ...((a.taken || b.taken) && { taken: true }),
 });
-
-/** One frame of a session, to be read in a space. */
-export interface InputFrame {
-  readonly frame: XRFrame;
-  readonly space: XRReferenceSpace;
-  /** [s] */
-  readonly time: number;
-  /** The head in the space; null: not seen. */
-  readonly head: Pose<'floor'> | null;
-}
 
 /** How a side is tracked. */
 export type InputKind = 'controller' | 'hand' | 'none';

@@ -3,9 +3,18 @@ import type { Pose } from '../core/math/pose';
 import type { Side } from '../core/math/side';
 import type { Vec3 } from '../core/math/vec3';
 import { DeviceCommands, isMenuPinch } from './device-commands';
-import type { InputFrame } from './input-reader';
 import { PointerReader } from './pointer-reader';
 import { SystemGesture } from './system-gesture';
+
+/** One frame of a session, to be read in a space. */
+export interface InputFrame {
+  readonly frame: XRFrame;
+  readonly space: XRReferenceSpace;
+  /** [s] */
+  readonly time: number;
+  /** The head in the space; null: not seen. */
+  readonly head: Pose<'floor'> | null;
+}
 
 /** What a frame shows of the hand of an input source. */
 export interface PointingHand {
