@@ -296,7 +296,7 @@ export const attackRows = {
     tests: ['tests/threepoint/core/mocap/mutated-motion.test.ts'],
   },
   crowd: {
-    inject: '200 rooms of three play for ten minutes and leave, three times (20 for 5 s by day)',
+    inject: '200 rooms of three play for ten minutes and leave, three times (20 for 5 s, twice, by day)',
     sees: 'Ticks are on time; nothing remains afterwards',
     target: 'event loop p99 20 ms on an idle machine; memory within 5 %',
     shows: ['poses delivered [%]', 'event loop p99 [ms]'],
