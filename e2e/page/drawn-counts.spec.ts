@@ -28,7 +28,7 @@ test('mirror, archery and the ball for three stay within the budget of a headset
     await frames(page, 5);
     const { scene, mirror } = (await probe(page)).drawing;
     test.info().annotations.push({ type: world, description: JSON.stringify({ scene, mirror }) });
-    // The own body and its shadow, twice the floor and the sky: whoever counts nothing has not drawn.
+    // The own body and its shadow, twice the floor and the sky: a count of nothing is a picture not drawn.
     expect(scene.drawCalls, world).toBeGreaterThan(10);
     expect(mirror.drawCalls > 0, `${world}: reflections`).toBe(world === 'mirror');
     expect(scene.drawCalls + mirror.drawCalls, world).toBeLessThanOrEqual(budget.drawCalls);

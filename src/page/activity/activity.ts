@@ -75,7 +75,7 @@ export interface OpenActivity {
   readonly mouth?: number;
   /** Receives from the network and advances simulated players. */
   begin?(time: number): void;
-  /** Returns the input of the simulated player, or of the one that a pointer steers; null: nobody plays. */
+  /** Returns the input of the simulated player, or of the one that a pointer steers; null: no player is moved. */
   act(time: number): PlayerInput | null;
   /** Advances the game by a tracked frame. Returns haptic pulses for the hands; null: the game is paused. */
   update(frame: TrackingFrame, buttons: Buttons): readonly Pulse[] | null;

@@ -1,7 +1,7 @@
 import type { WebGLRenderer } from 'three';
 import { bodyFeature, DeviceBodyReader } from 'threepoint/xr/device-body-reader';
 import { giveFramesToEvents } from 'threepoint/xr/frameless-events';
-import { requestSession, usualFeatures } from 'threepoint/xr/session';
+import { isSessionOffered, requestSession, usualFeatures } from 'threepoint/xr/session';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import type { HeadsetReport } from './headset-report';
 
@@ -60,16 +60,11 @@ export class OfferedFeatures {
   }
 
   async features(): Promise<HeadsetReport['features']> {
-    const offered = await Promise.all(modes.map(isOffered));
+    const offered = await Promise.all(modes.map(isSessionOffered));
     return {
       modes: modes.filter((_, index) => offered[index]),
       asked: ['local-floor', ...usualFeatures, ...askedFeatures],
       granted: this.#xr.enabledFeatures ? [...this.#xr.enabledFeatures] : null,
     };
   }
-}
-
-async function isOffered(mode: XRSessionMode): Promise<boolean> {
-  // reason: a mode that the browser may not be asked for is not offered
-  return (await navigator.xr?.isSessionSupported(mode).catch(() => false)) ?? false;
 }

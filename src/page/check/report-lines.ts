@@ -1,4 +1,5 @@
-import { type EstimatedJoint, estimatedJoints } from 'threepoint/core/body/joints';
+import { estimatedJoints } from 'threepoint/core/body/joints';
+import { jointLabels } from '../shell/device-difference';
 import type { HeadsetReport } from './headset-report';
 import { histogramEdgesMs, histogramOf } from './loss-lengths';
 
@@ -12,16 +13,9 @@ export interface ReportSection {
 
 const trackers = { head: 'Head', left: 'Left hand', right: 'Right hand' } as const;
 const worlds = { mirror: 'Mirror', archery: 'Archery', ball: 'Ball court' } as const;
-const joints: Readonly<Record<EstimatedJoint, string>> = {
-  leftLowerArm: 'Left elbow',
-  rightLowerArm: 'Right elbow',
-  leftUpperArm: 'Left shoulder',
-  rightUpperArm: 'Right shoulder',
-  chest: 'Spine',
-  hips: 'Pelvis',
-};
 
 const percent = (share: number): string => `${(100 * share).toFixed(1)} %`;
+const capitalised = (label: string): string => label.charAt(0).toUpperCase() + label.slice(1);
 const listed = (names: readonly string[]): string => names.join(', ') || 'none';
 const times = (quantiles: { readonly p50Ms: number; readonly p95Ms: number } | null): string =>
   quantiles ? `${quantiles.p50Ms.toFixed(1)} ms, p95 ${quantiles.p95Ms.toFixed(1)} ms` : 'not reported by this browser';
@@ -131,7 +125,10 @@ function bodySection({ bodyTracking }: HeadsetReport): ReportSection {
   return {
     title: 'Body tracking against our body',
     lines: distances
-      ? estimatedJoints.map((joint) => ({ label: joints[joint], value: `${distances[joint].toFixed(1)} cm` }))
+      ? estimatedJoints.map((joint) => ({
+          label: capitalised(jointLabels[joint]),
+          value: `${distances[joint].toFixed(1)} cm`,
+        }))
       : [{ label: 'Not compared', value: complaint ?? 'the device reports no body' }],
     note: distances ? `Mean distance over ${frames} frames of the learned body. Neither of the two is the truth.` : '',
   };

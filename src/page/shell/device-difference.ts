@@ -12,7 +12,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 const halfLife = 0.5;
 
 /** What the joints are called on the page. */
-const labels: Readonly<Record<EstimatedJoint, string>> = {
+export const jointLabels: Readonly<Record<EstimatedJoint, string>> = {
   leftLowerArm: 'left elbow',
   rightLowerArm: 'right elbow',
   leftUpperArm: 'left shoulder',
@@ -59,6 +59,6 @@ export class DeviceDifference {
   /** By joint [cm]; null: the device reports no body now. */
   report(): readonly { readonly name: string; readonly cm: number }[] | null {
     if (Number.isNaN(this.#time)) return null;
-    return estimatedJoints.map((joint, index) => ({ name: labels[joint], cm: 100 * this.#means[index]! }));
+    return estimatedJoints.map((joint, index) => ({ name: jointLabels[joint], cm: 100 * this.#means[index]! }));
   }
 }

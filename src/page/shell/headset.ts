@@ -7,7 +7,7 @@ import { buzz, type Pulse } from 'threepoint/xr/haptics';
 import { Pointing } from 'threepoint/xr/pointing';
 import {
   describeXrSupport,
-  isPassthroughOffered,
+  isSessionOffered,
   type PlayRoom,
   requestPassthroughSession,
   requestVrSession,
@@ -180,7 +180,7 @@ export class Headset {
     this.#fault = support.kind === 'device' || switches.emulate ? null : support.fault;
     if (switches.emulate || !settings.actor) await this.ensureEmulator();
     // An emulator that takes the place of a missing headset has no camera: only who asks for it gets this from it.
-    if (switches.emulate) this.#passthroughOffered = await isPassthroughOffered();
+    if (switches.emulate) this.#passthroughOffered = await isSessionOffered('immersive-ar');
     else this.#passthroughOffered = support.kind === 'device' && support.passthrough;
     return {
       real: this.#real,

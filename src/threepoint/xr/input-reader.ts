@@ -5,7 +5,7 @@ import { type Side, sides } from '../core/math/side';
 import { ControllerFingers, squeezeButton, triggerButton } from './controller-fingers';
 import { bareHandFit, handleFit, wristFromGrip } from './grip-offsets';
 import { HandReader } from './hand-reader';
-import type { InputFrame, Pointing } from './pointing';
+import type { InputFrame, Pointing, PointingHand } from './pointing';
 import { SourceChoice } from './source-choice';
 import { toTrackedPose } from './tracked-pose';
 
@@ -61,6 +61,8 @@ export class InputReader {
   readonly #choices = { left: new SourceChoice(), right: new SourceChoice() };
   /** The sources that select now: the pinches of hands without joints and without a gamepad. */
   readonly #selecting = new WeakSet<XRInputSource>();
+  /** The hand of the source that is read, so that a frame makes no object for each. */
+  readonly #hand: PointingHand = { wrist: null, isBare: false, pinch: 0, tip: null };
   /** Input sources, numbered in the order in which they appeared. */
   readonly #devices = new WeakMap<XRInputSource, number>();
   #deviceCount = 0;
@@ -128,10 +130,12 @@ export class InputReader {
     if (kinds[side] === 'none') kinds[side] = kind;
     const device = buttons[side].device ?? this.#deviceOf(source);
     const pressed = this.#pressedBy(source, side);
-    const isBare = kind === 'hand';
-    const pinch = isBare ? this.#pinchOf(source, side) : 0;
-    const tip = hasJoints(source) && pose ? this.#handReaders[side].indexTip : null;
-    const taken = pointing?.readHand(source, now, { wrist: pose, isBare, pinch, tip });
+    const hand = this.#hand;
+    hand.wrist = pose;
+    hand.isBare = kind === 'hand';
+    hand.pinch = hand.isBare ? this.#pinchOf(source, side) : 0;
+    hand.tip = hasJoints(source) && pose ? this.#handReaders[side].indexTip : null;
+    const taken = pointing?.readHand(source, now, hand);
     buttons[side] = { ...maximumOf(buttons[side], taken ? { ...allReleased, taken } : pressed), device };
   }
 

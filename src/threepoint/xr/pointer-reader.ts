@@ -31,11 +31,6 @@ export class PointerReader {
     return this.#now;
   }
 
-  /** Returns whether a source selects now. */
-  selects(source: XRInputSource): boolean {
-    return this.#selecting.has(source);
-  }
-
   /** Starts a frame. */
   begin(): void {
     const before = this.#before;

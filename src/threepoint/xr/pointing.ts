@@ -16,16 +16,16 @@ export interface InputFrame {
   readonly head: Pose<'floor'> | null;
 }
 
-/** What a frame shows of the hand of an input source. */
+/** What a frame shows of the hand of an input source; the next source may overwrite it. */
 export interface PointingHand {
   /** Null: not seen. */
-  readonly wrist: Pose<'floor'> | null;
+  wrist: Pose<'floor'> | null;
   /** Whether it is a hand without a controller. */
-  readonly isBare: boolean;
+  isBare: boolean;
   /** The pinch of a bare hand, 0 to 1; NaN: its fingers are not seen. */
-  readonly pinch: number;
+  pinch: number;
   /** The tip of the index finger, floor frame; null: not seen. */
-  readonly tip: Vec3 | null;
+  tip: Vec3 | null;
 }
 
 /**

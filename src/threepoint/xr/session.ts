@@ -27,7 +27,7 @@ export async function describeXrSupport(): Promise<XrSupport> {
   try {
     const [supported, passthrough] = await Promise.all([
       navigator.xr.isSessionSupported('immersive-vr'),
-      isPassthroughOffered(),
+      isSessionOffered('immersive-ar'),
     ]);
     return supported
       ? { kind: 'device', sentence: null, passthrough }
@@ -38,10 +38,10 @@ export async function describeXrSupport(): Promise<XrSupport> {
   }
 }
 
-/** Returns whether the browser offers sessions that show the room around the user; never rejects. */
-export async function isPassthroughOffered(): Promise<boolean> {
+/** Returns whether the browser offers sessions of a mode; never rejects. */
+export async function isSessionOffered(mode: XRSessionMode): Promise<boolean> {
   // reason: a browser that may not be asked offers none
-  return (await navigator.xr?.isSessionSupported('immersive-ar').catch(() => false)) ?? false;
+  return (await navigator.xr?.isSessionSupported(mode).catch(() => false)) ?? false;
 }
 
 /** The session features of passthrough: each is optional, and the page works without it. */

@@ -9,7 +9,7 @@ class Wearing {
   supportedFrameRates: Float32Array | null = Float32Array.of(120, 72, 90, 80);
   frameRate: number;
   fastest = 120;
-  /** Draws every frame in time with these savings, whatever the rate. */
+  /** Draws every frame in time with these savings, at any rate. */
   helps: (savings: Savings) => boolean = () => false;
   /** The share of frames that are late where they are: one in this many. */
   lateOneIn = 10;
