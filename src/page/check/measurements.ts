@@ -7,7 +7,7 @@ import { type Side, sides } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { InputKind } from 'threepoint/xr/input-reader';
 import { DeviceDifference } from '../shell/device-difference';
-import type { FrameSummary } from '../shell/frame-timing';
+import { type FrameSummary, quantilesIn } from '../shell/frame-timing';
 import type { Measured } from './check-steps';
 import type { HeadsetReport, WorldName } from './headset-report';
 import { LossLengths } from './loss-lengths';
@@ -145,7 +145,5 @@ export class Measurements {
 /** Returns median and 95th percentile; null: there is no value. */
 function quantilesOf(values: readonly number[]): HeadsetReport['latency']['displayAhead'] {
   if (values.length === 0) return null;
-  const sorted = Float64Array.from(values).sort();
-  const at = (share: number) => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))]!;
-  return { p50Ms: at(0.5), p95Ms: at(0.95) };
+  return quantilesIn(Float64Array.from(values).sort(), values.length);
 }

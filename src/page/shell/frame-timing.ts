@@ -27,8 +27,15 @@ function quantilesOf(ring: Ring): { readonly p50Ms: number; readonly p95Ms: numb
   // Behind what is held the buffer is full of what sorts last.
   sorted.set(ring.values);
   sorted.fill(Number.POSITIVE_INFINITY, count);
-  sorted.sort();
-  const at = (q: number): number => sorted[Math.min(count - 1, Math.floor(q * count))]!;
+  return quantilesIn(sorted.sort(), count);
+}
+
+/** Returns median and 95th percentile of the first `count` of ascending times [ms], of which there is at least one. */
+export function quantilesIn(
+  ascending: ArrayLike<number>,
+  count: number,
+): { readonly p50Ms: number; readonly p95Ms: number } {
+  const at = (q: number): number => ascending[Math.min(count - 1, Math.floor(q * count))]!;
   return { p50Ms: at(0.5), p95Ms: at(0.95) };
 }
 
