@@ -9,7 +9,7 @@ import { createPageClock } from 'threepoint/core/tracking/page-clock';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import { createArcheryPlay, probeOf } from 'threepoint-page/archery/archery-play';
-import { createBallPlay } from 'threepoint-page/ball/ball-play';
+import { createBallPlay } from 'threepoint-page/ball/match/ball-play';
 import { createFrameLoop } from 'threepoint-page/shell/frame-loop';
 import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
 import { Recorder } from 'threepoint-page/studio/recorder';

@@ -1,12 +1,12 @@
 import type { BallState } from 'threepoint-games/ball/ball-state';
 import { ballsLeft } from 'threepoint-games/ball/state-readings';
 import { bannerText, connectionText } from 'threepoint-rooms/client/banner';
-import type { BallFrame } from './ball-frame';
-import type { BallPlay } from './ball-play';
-import { nameOf, waitingFor } from './board-drawing';
-import { roleTexts } from './court-plan';
+import { roleTexts } from '../court/court-plan';
+import type { BallFrame } from '../match/ball-frame';
+import type { BallPlay } from '../match/ball-play';
+import { nameOf, waitingFor } from '../view/board-drawing';
+import type { PersonVoice, VoicesState } from '../voices/voices-state';
 import type { Seated } from './other-players';
-import type { PersonVoice, VoicesState } from './voices-state';
 
 /** A match as panels and menus show it. */
 export interface BallRound {

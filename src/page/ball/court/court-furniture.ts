@@ -10,10 +10,10 @@ import {
   MeshLambertMaterial,
 } from 'three';
 import { ballRadius } from 'threepoint-games/ball/flight';
-import { createContactShadows } from '../scene/outdoors/contact-shadows';
-import { createScatter } from '../scene/outdoors/scatter';
-import { woodColor } from '../scene/outdoors/wood';
-import { merged, painted } from '../scene/painted-geometry';
+import { createContactShadows } from '../../scene/outdoors/contact-shadows';
+import { createScatter } from '../../scene/outdoors/scatter';
+import { woodColor } from '../../scene/outdoors/wood';
+import { merged, painted } from '../../scene/painted-geometry';
 import { court, seatLooks, trayOf } from './court-plan';
 
 /** Width, height, depth, or where the middle is [m]. */

@@ -2,7 +2,7 @@ import { smoothstep } from 'threepoint/core/math/damper';
 import { transformPoint } from 'threepoint/core/math/pose';
 import { vec3 } from 'threepoint/core/math/vec3';
 import type { BallRoomView } from 'threepoint-games/ball/ball-client';
-import type { BodyFrame } from './ball-frame';
+import type { BodyFrame } from '../match/ball-frame';
 import type { BlockList } from './block-list';
 import type { VoiceCall } from './voice-call';
 import type { PersonVoice, VoicesProbe } from './voices-state';

@@ -3,7 +3,7 @@ import type { VoiceChannel } from 'threepoint-rooms/client/connection';
 import { IceServerCache } from 'threepoint-rooms/voices/ice-server-cache';
 import { Microphone } from 'threepoint-rooms/voices/microphone';
 import { hasRelay, type VoiceSettings } from 'threepoint-rooms/voices/voice-settings';
-import type { BallPlay } from './ball-play';
+import type { BallPlay } from '../match/ball-play';
 import type { BlockList } from './block-list';
 import { SeatVoices } from './seat-voices';
 import { VoiceCall } from './voice-call';

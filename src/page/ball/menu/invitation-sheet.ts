@@ -1,7 +1,7 @@
 import type { RoomLink } from 'threepoint-ui/invitation';
 import { drawQrCode, type QrCode } from 'threepoint-ui/qr-code';
 import { vrColors, vrFont, wrap } from 'threepoint-ui/vr-panel';
-import { bottomButton, fullWidth, type MenuSheet, menuMargin } from '../activity/activity-menu';
+import { bottomButton, fullWidth, type MenuSheet, menuMargin } from '../../activity/activity-menu';
 
 /** The link to a room with its QR code. */
 export interface ShownInvitation extends RoomLink {

@@ -12,8 +12,8 @@ import {
 } from 'three';
 import type { Opening } from 'threepoint-games/ball/basket';
 import { basketDepth, basketRadius, rimTube } from 'threepoint-games/ball/flight';
-import { disposeTree } from '../scene/dispose-tree';
-import { merged, painted } from '../scene/painted-geometry';
+import { disposeTree } from '../../scene/dispose-tree';
+import { merged, painted } from '../../scene/painted-geometry';
 
 /** The basket; its origin is the middle of the opening, which looks along +Y. */
 export interface WickerBasket {

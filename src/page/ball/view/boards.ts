@@ -1,10 +1,10 @@
 import { Group } from 'three';
-import { createWoodenBoard } from '../scene/boards/wooden-board';
-import { disposeTree } from '../scene/dispose-tree';
-import { createDrawnTexture } from '../scene/drawn-texture';
-import type { Quality } from '../scene/renderer';
+import { createWoodenBoard } from '../../scene/boards/wooden-board';
+import { disposeTree } from '../../scene/dispose-tree';
+import { createDrawnTexture } from '../../scene/drawn-texture';
+import type { Quality } from '../../scene/renderer';
+import { court } from '../court/court-plan';
 import { boardSize, paintBoard, type Standing } from './board-drawing';
-import { court } from './court-plan';
 
 /**
  * Two equal boards: one behind the holder, for the throwers, and one behind the throwers, for the holder; arena frame.

@@ -1,12 +1,12 @@
 import { createInvitation, type Invitation } from 'threepoint-ui/invitation';
-import type { ActivityPanel } from '../activity/activity';
-import type { ActivityContext } from '../activity/activity-context';
+import type { ActivityPanel } from '../../activity/activity';
+import type { ActivityContext } from '../../activity/activity-context';
+import type { CourtCamera } from '../court-camera';
+import type { BallPlay } from '../match/ball-play';
+import type { BlockList } from '../voices/block-list';
+import type { Voices } from '../voices/voices';
 import { type BallBarActions, type BallBarState, createBallBar } from './ball-bar';
-import type { BallPlay } from './ball-play';
 import type { BallRound } from './ball-round';
-import type { BlockList } from './block-list';
-import type { CourtCamera } from './court-camera';
-import type { Voices } from './voices';
 
 /** What the panel shows and acts on. */
 export interface CourtControls {

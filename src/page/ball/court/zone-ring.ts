@@ -2,7 +2,7 @@ import { Mesh, MeshBasicMaterial, RingGeometry } from 'three';
 import { clamp } from 'threepoint/core/math/damper';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import { zoneRadius } from 'threepoint-games/ball/stations';
-import { bothSides } from '../scene/both-sides';
+import { bothSides } from '../../scene/both-sides';
 
 /** The edge of the zone in which throws and catches count, visible only to a player close to it; arena frame. */
 export interface ZoneRing {

@@ -1,8 +1,8 @@
 import { Group } from 'three';
 import { copyVec3, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { ink } from '../scene/boards/lettering';
-import type { Quality } from '../scene/renderer';
-import { RisingWord } from '../scene/rising-word';
+import { ink } from '../../scene/boards/lettering';
+import type { Quality } from '../../scene/renderer';
+import { RisingWord } from '../../scene/rising-word';
 
 const seconds = 1.3;
 const atOnce = 2;

@@ -1,10 +1,10 @@
 import type { BallEvent, BallState } from 'threepoint-games/ball/ball-state';
 import { ballsLeft } from 'threepoint-games/ball/state-readings';
 import { rotationForRound } from 'threepoint-games/ball/stations';
-import { ink, paintCard, paintGround, signFont } from '../scene/boards/lettering';
-import { paintScoreHeading } from '../scene/boards/score-heading';
-import { paintButton, type SheetButton } from '../scene/boards/sheet';
-import { roleTexts, seatLooks } from './court-plan';
+import { ink, paintCard, paintGround, signFont } from '../../scene/boards/lettering';
+import { paintScoreHeading } from '../../scene/boards/score-heading';
+import { paintButton, type SheetButton } from '../../scene/boards/sheet';
+import { roleTexts, seatLooks } from '../court/court-plan';
 
 /** A player on a seat, as boards and labels write of them. */
 export interface Person {

@@ -1,11 +1,11 @@
 import { type CanvasTexture, Group, type Matrix4, Sprite, SpriteMaterial, Vector3 } from 'three';
 import { clamp } from 'threepoint/core/math/damper';
 import type { Vec3 } from 'threepoint/core/math/vec3';
-import { ink, signFont } from '../scene/boards/lettering';
-import { createDrawnTexture } from '../scene/drawn-texture';
-import type { Quality } from '../scene/renderer';
+import { ink, signFont } from '../../scene/boards/lettering';
+import { createDrawnTexture } from '../../scene/drawn-texture';
+import type { Quality } from '../../scene/renderer';
+import { roleTexts, seatLooks } from '../court/court-plan';
 import { nameOf, type Person } from './board-drawing';
-import { roleTexts, seatLooks } from './court-plan';
 
 /** Names and roles over heads; arena frame. */
 export interface NameLabels {

@@ -2,8 +2,8 @@ import type { Pose } from 'threepoint/core/math/pose';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { BallEvent, Refusal } from 'threepoint-games/ball/ball-state';
 import type { BallCue } from 'threepoint-games/ball/gestures';
-import { directionOf } from '../scene/directions';
-import { nameOf, type Person } from './board-drawing';
+import { directionOf } from '../../scene/directions';
+import { nameOf, type Person } from '../view/board-drawing';
 
 /** The listener, and the positions of the other players. */
 export interface Listener {

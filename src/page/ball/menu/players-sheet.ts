@@ -7,8 +7,8 @@ import {
   type MenuButton,
   type MenuSheet,
   menuMargin,
-} from '../activity/activity-menu';
-import { hideLabel, muteLabel, type OtherPlayer } from './other-players';
+} from '../../activity/activity-menu';
+import { hideLabel, muteLabel, type OtherPlayer } from '../panel/other-players';
 
 /** The top of the first player [pixels]. */
 const playersTop = 124;

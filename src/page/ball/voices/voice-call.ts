@@ -1,7 +1,7 @@
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { SignalBody } from 'threepoint-rooms/protocol/voice-messages';
 import { VoiceMesh } from 'threepoint-rooms/voices/voice-mesh';
-import { VoiceSound } from '../scene/sound/voice-sound';
+import { VoiceSound } from '../../scene/sound/voice-sound';
 
 export interface VoiceCallOptions {
   /** The audio that the game's own sounds play in. */

@@ -13,11 +13,11 @@ import {
   type Recipe,
   type Recipes,
   type SoundStage,
-} from '../scene/sound/sound-stage';
-import { bell, chime, click, warning, whoosh } from '../scene/sound/sound-synthesis';
+} from '../../scene/sound/sound-stage';
+import { bell, chime, click, warning, whoosh } from '../../scene/sound/sound-synthesis';
+import type { Person } from '../view/board-drawing';
 import { cueCaption, eventCaption, type Listener } from './ball-captions';
 import { bounce, caughtInWicker, knock, tick, whistle } from './ball-synthesis';
-import type { Person } from './board-drawing';
 
 /** Plays the sounds of the ball game from where they happen, with captions. */
 export interface BallSounds {

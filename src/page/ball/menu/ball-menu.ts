@@ -1,15 +1,15 @@
 import { linkTo } from 'threepoint-ui/invitation';
 import { qrCode } from 'threepoint-ui/qr-code';
-import type { ActivityContext } from '../activity/activity-context';
-import type { ActivityMenu, MenuEntry } from '../activity/activity-menu';
-import type { BallPlay } from './ball-play';
-import type { BallRound } from './ball-round';
-import type { BlockList } from './block-list';
+import type { ActivityContext } from '../../activity/activity-context';
+import type { ActivityMenu, MenuEntry } from '../../activity/activity-menu';
+import type { BallPlay } from '../match/ball-play';
+import type { BallRound } from '../panel/ball-round';
+import { type OtherPlayer, otherPlayers } from '../panel/other-players';
+import type { BlockList } from '../voices/block-list';
+import type { Voices } from '../voices/voices';
+import { consentText, type VoicesState } from '../voices/voices-state';
 import { invitationSheet, type ShownInvitation } from './invitation-sheet';
-import { type OtherPlayer, otherPlayers } from './other-players';
 import { playersSheet } from './players-sheet';
-import type { Voices } from './voices';
-import { consentText, type VoicesState } from './voices-state';
 
 export interface BallMenuState {
   /** Before and after a match, whether the user is ready; null: the user is not asked. */

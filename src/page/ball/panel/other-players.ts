@@ -1,4 +1,4 @@
-import type { PersonVoice } from './voices-state';
+import type { PersonVoice } from '../voices/voices-state';
 
 /** A seat of the room, and the voice of its player. */
 export interface Seated extends PersonVoice {

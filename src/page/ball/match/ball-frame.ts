@@ -22,7 +22,7 @@ import type { Launch } from 'threepoint-games/ballistics';
 import { ballInPalm } from 'threepoint-games/fist';
 import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
 import type { RemotePerson } from 'threepoint-rooms/client/room-client';
-import { seatLooks } from './court-plan';
+import { seatLooks } from '../court/court-plan';
 import { proximityFade } from './proximity-fade';
 
 /**

@@ -28,9 +28,9 @@ import type { Opening } from 'threepoint-games/ball/basket';
 import { ballRadius, basketDepth, basketRadius } from 'threepoint-games/ball/flight';
 import { ballPosition } from 'threepoint-games/ball/state-readings';
 import { ballsPerRack } from 'threepoint-games/ball/stations';
-import { disposeTree } from '../scene/dispose-tree';
-import { painted } from '../scene/painted-geometry';
-import type { Quality } from '../scene/renderer';
+import { disposeTree } from '../../scene/dispose-tree';
+import { painted } from '../../scene/painted-geometry';
+import type { Quality } from '../../scene/renderer';
 import { createShadowDiscs, type ShadowDiscs } from './shadow-discs';
 
 /** Returns the position of a ball in a hand, or null if the hand is not tracked. */

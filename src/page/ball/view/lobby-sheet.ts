@@ -1,7 +1,7 @@
 import { Group } from 'three';
-import { createSheet, type Sheet, type SheetSize } from '../scene/boards/sheet';
-import { disposeTree } from '../scene/dispose-tree';
-import type { Quality } from '../scene/renderer';
+import { createSheet, type Sheet, type SheetSize } from '../../scene/boards/sheet';
+import { disposeTree } from '../../scene/dispose-tree';
+import type { Quality } from '../../scene/renderer';
 import { type LobbyButton, lobbyButtons, lobbySize, paintLobby, type Standing } from './board-drawing';
 
 /** The sheet in front of the player before and after a match, floor frame of the user. */

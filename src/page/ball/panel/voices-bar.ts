@@ -1,7 +1,7 @@
 import { button, element } from 'threepoint-ui/element';
 import { toggle } from 'threepoint-ui/toggle';
+import { consentText, type VoicesState } from '../voices/voices-state';
 import { hideLabel, muteLabel, type OtherPlayer, otherPlayers, type Seated } from './other-players';
-import { consentText, type VoicesState } from './voices-state';
 
 /** The people in the room, for this part of the bar. */
 export interface ListedPeople {

@@ -1,13 +1,13 @@
 import { Group, Vector3 } from 'three';
 import type { Transform } from 'threepoint/core/math/pose';
-import { disposeTree } from '../scene/dispose-tree';
-import { mergeAlike } from '../scene/merge-alike';
-import { daylight } from '../scene/outdoors/daylight';
-import { createLandscape } from '../scene/outdoors/landscape';
-import { createNoiseTexture } from '../scene/outdoors/noise-texture';
-import { createSky } from '../scene/outdoors/sky';
-import type { Quality } from '../scene/renderer';
-import type { Surroundings } from '../scene/surroundings';
+import { disposeTree } from '../../scene/dispose-tree';
+import { mergeAlike } from '../../scene/merge-alike';
+import { daylight } from '../../scene/outdoors/daylight';
+import { createLandscape } from '../../scene/outdoors/landscape';
+import { createNoiseTexture } from '../../scene/outdoors/noise-texture';
+import { createSky } from '../../scene/outdoors/sky';
+import type { Quality } from '../../scene/renderer';
+import type { Surroundings } from '../../scene/surroundings';
 import { createCourtFurniture } from './court-furniture';
 import { createCourtGround } from './court-ground';
 

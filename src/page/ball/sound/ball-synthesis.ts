@@ -1,5 +1,5 @@
 import { clamp } from 'threepoint/core/math/damper';
-import { finished, lowPass, noiseFrom, render, resonator, type Samples, tau } from '../scene/sound/sound-synthesis';
+import { finished, lowPass, noiseFrom, render, resonator, type Samples, tau } from '../../scene/sound/sound-synthesis';
 
 /** A ball on the floor: a short boom, the lower and louder the harder; strength in [0, 1]. */
 export function bounce(rate: number, strength: number): Samples {

@@ -1,7 +1,7 @@
 import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { RoomBodies } from 'threepoint-rooms/drawing/room-bodies';
-import type { PlayerProbe } from '../activity/activity';
+import type { PlayerProbe } from '../../activity/activity';
 import type { BallPlay } from './ball-play';
 
 const triple = ({ x, y, z }: Vec3): readonly [number, number, number] => [x, y, z];

@@ -12,8 +12,8 @@ import {
 import { landsIn, type Opening } from 'threepoint-games/ball/basket';
 import { basketRadius } from 'threepoint-games/ball/flight';
 import { fallsTo, type Launch, positionAt } from 'threepoint-games/ballistics';
-import { bothSides } from '../scene/both-sides';
-import { disposeTree } from '../scene/dispose-tree';
+import { bothSides } from '../../scene/both-sides';
+import { disposeTree } from '../../scene/dispose-tree';
 
 /** The way that a ball would go if it were thrown now, and where it would come down; arena frame. */
 export interface AimArc {
