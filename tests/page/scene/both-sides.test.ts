@@ -1,7 +1,7 @@
 import { DoubleSide, type Material, Mesh, type Object3D } from 'three';
+import { createTrails } from 'threepoint-page/archery/bow/trails';
 import { createBackstop } from 'threepoint-page/archery/range/backstop';
 import { createZone } from 'threepoint-page/archery/range/zone';
-import { createTrails } from 'threepoint-page/archery/trails';
 import { createZoneRing } from 'threepoint-page/ball/court/zone-ring';
 import { createAimArc } from 'threepoint-page/ball/view/aim-arc';
 import { expect, test } from 'vitest';

@@ -1,5 +1,5 @@
 import { clamp } from 'threepoint/core/math/damper';
-import { finished, lowPass, noiseFrom, render, resonator, type Samples, tau } from '../scene/sound/sound-synthesis';
+import { finished, lowPass, noiseFrom, render, resonator, type Samples, tau } from '../../scene/sound/sound-synthesis';
 
 /**
  * Wood under strain: stick and slip, higher, denser and louder the further it is drawn; draw as a share of the most, in

@@ -1,8 +1,8 @@
 import { Group } from 'three';
 import type { ArcheryState } from 'threepoint-games/archery/archery-state';
-import { buttonUnder, createSheet, type SheetContent, type SheetSize } from '../scene/boards/sheet';
-import { disposeTree } from '../scene/dispose-tree';
-import type { Quality } from '../scene/renderer';
+import { buttonUnder, createSheet, type SheetContent, type SheetSize } from '../../scene/boards/sheet';
+import { disposeTree } from '../../scene/dispose-tree';
+import type { Quality } from '../../scene/renderer';
 import { paintResult, restartButton, resultSize } from './scoreboard-drawing';
 
 interface Point {

@@ -15,8 +15,8 @@ import {
 import { conjugate, quat, rotate } from 'threepoint/core/math/quat';
 import { add, distance, lerp, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { BowView } from 'threepoint-games/archery/archery-state';
-import { disposeTree } from '../scene/dispose-tree';
-import type { Quality } from '../scene/renderer';
+import { disposeTree } from '../../scene/dispose-tree';
+import type { Quality } from '../../scene/renderer';
 import { bendLimb, limbPoints, limbRoot, type MutableLimbPoint, makeLimb, stringBow } from './limb-shape';
 
 /** The bow in the archer's hand, in the frame of its BowView (floor). */

@@ -5,8 +5,14 @@ import type { ArcheryEvent, ArcheryState, Arrow } from 'threepoint-games/archery
 import { maximumDraw } from 'threepoint-games/archery/bow';
 import type { BowCue } from 'threepoint-games/archery/gestures';
 import { positionAt } from 'threepoint-games/ballistics';
-import { createSoundStage, type Player, type Recipe, type Recipes, type SoundStage } from '../scene/sound/sound-stage';
-import { bell, chime, click, warning, whoosh } from '../scene/sound/sound-synthesis';
+import {
+  createSoundStage,
+  type Player,
+  type Recipe,
+  type Recipes,
+  type SoundStage,
+} from '../../scene/sound/sound-stage';
+import { bell, chime, click, warning, whoosh } from '../../scene/sound/sound-synthesis';
 import { cueCaption, eventCaption } from './archery-captions';
 import { creak, earth, rattle, thud, twang } from './archery-synthesis';
 

@@ -1,8 +1,8 @@
 import type { ArcheryState } from 'threepoint-games/archery/archery-state';
 import { fullScore, secondsLeft } from 'threepoint-games/archery/rules';
-import { ink, paintCard, paintGround, signFont } from '../scene/boards/lettering';
-import { paintScoreHeading } from '../scene/boards/score-heading';
-import { paintButton } from '../scene/boards/sheet';
+import { ink, paintCard, paintGround, signFont } from '../../scene/boards/lettering';
+import { paintScoreHeading } from '../../scene/boards/score-heading';
+import { paintButton } from '../../scene/boards/sheet';
 
 /** The texts of the board; equal boards are drawn once. */
 export interface BoardText {

@@ -1,9 +1,9 @@
 import { Group } from 'three';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { ArcheryState } from 'threepoint-games/archery/archery-state';
-import { ink } from '../scene/boards/lettering';
-import type { Quality } from '../scene/renderer';
-import { RisingWord } from '../scene/rising-word';
+import { ink } from '../../scene/boards/lettering';
+import type { Quality } from '../../scene/renderer';
+import { RisingWord } from '../../scene/rising-word';
 
 const seconds = 1.5;
 const atOnce = 2;

@@ -1,7 +1,7 @@
 import type { Pose } from 'threepoint/core/math/pose';
 import type { ArcheryEvent, Landing, Target } from 'threepoint-games/archery/archery-state';
 import type { BowCue } from 'threepoint-games/archery/gestures';
-import { directionOf } from '../scene/directions';
+import { directionOf } from '../../scene/directions';
 
 /** Targets have numbers, from the nearest. */
 const nameOf = (index: number): string => `target ${index + 1}`;

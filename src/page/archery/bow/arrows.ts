@@ -11,8 +11,8 @@ import {
   Vector3,
 } from 'three';
 import type { Arrow } from 'threepoint-games/archery/archery-state';
-import { disposeTree } from '../scene/dispose-tree';
-import { merged, painted } from '../scene/painted-geometry';
+import { disposeTree } from '../../scene/dispose-tree';
+import { merged, painted } from '../../scene/painted-geometry';
 import { type ArrowPose, arrowPose, makeArrowPose } from './arrow-pose';
 
 /** All arrows that can be seen, drawn in one call; arena frame. */

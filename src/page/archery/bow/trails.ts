@@ -13,8 +13,8 @@ import {
   vec3,
 } from 'threepoint/core/math/vec3';
 import type { Arrow } from 'threepoint-games/archery/archery-state';
-import { bothSides } from '../scene/both-sides';
-import { disposeTree } from '../scene/dispose-tree';
+import { bothSides } from '../../scene/both-sides';
+import { disposeTree } from '../../scene/dispose-tree';
 import { arrowPose, makeArrowPose } from './arrow-pose';
 
 /** Bright ribbons behind arrows in flight; arena frame. */

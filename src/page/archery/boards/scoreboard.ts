@@ -1,9 +1,9 @@
 import { Group } from 'three';
 import type { ArcheryState } from 'threepoint-games/archery/archery-state';
-import { createWoodenBoard } from '../scene/boards/wooden-board';
-import { disposeTree } from '../scene/dispose-tree';
-import { createDrawnTexture } from '../scene/drawn-texture';
-import type { Quality } from '../scene/renderer';
+import { createWoodenBoard } from '../../scene/boards/wooden-board';
+import { disposeTree } from '../../scene/dispose-tree';
+import { createDrawnTexture } from '../../scene/drawn-texture';
+import type { Quality } from '../../scene/renderer';
 import { boardSize, boardText, paintBoard } from './scoreboard-drawing';
 
 /** A board on two posts next to the field: score, arrows, time, the last hit; arena frame. */
