@@ -10,7 +10,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import { createArcheryPlay, probeOf } from 'threepoint-page/archery/archery-play';
 import { createBallPlay } from 'threepoint-page/ball/match/ball-play';
-import { createFrameLoop } from 'threepoint-page/shell/frame-loop';
+import { createFrameLoop } from 'threepoint-page/shell/frame/frame-loop';
 import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
 import { Recorder } from 'threepoint-page/studio/recorder';
 import { type PlayedStep, PlayedTrial } from 'threepoint-study/participant/trial/study-trial';

@@ -13,8 +13,8 @@ import { type BallMenuActions, type BallMenuState, ballEntries } from 'threepoin
 import type { OtherPlayer } from 'threepoint-page/ball/panel/other-players';
 import { activities as registered } from 'threepoint-page/shell/activity-registry';
 import { HeadsetControls } from 'threepoint-page/shell/controls/headset-controls';
-import { PageStudy } from 'threepoint-page/shell/page-study';
 import { createSettings, SettingsWriter } from 'threepoint-page/shell/settings';
+import { PageStudy } from 'threepoint-page/shell/study/page-study';
 import { readSwitches } from 'threepoint-page/shell/switches';
 import { type ComfortActions, type ComfortState, comfortSheet } from 'threepoint-page/shell/vr-menu/comfort-sheet';
 import {

@@ -13,8 +13,8 @@ import { type ArcheryFrame, createArcheryPlay } from 'threepoint-page/archery/ar
 import { CourtInput } from 'threepoint-page/ball/court-input';
 import { createBallPlay } from 'threepoint-page/ball/match/ball-play';
 import { createActor } from 'threepoint-page/emulator/actor';
-import { Pointers } from 'threepoint-page/shell/pointers';
-import { TrackingSource } from 'threepoint-page/shell/tracking-source';
+import { Pointers } from 'threepoint-page/shell/frame/pointers';
+import { TrackingSource } from 'threepoint-page/shell/frame/tracking-source';
 import { Recorder } from 'threepoint-page/studio/recorder';
 import { afterEach, describe, expect, test, vi } from 'vitest';
 import { poseOf } from '../../threepoint/core/estimation/drawn';

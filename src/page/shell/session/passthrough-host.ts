@@ -1,9 +1,9 @@
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import type { PassthroughOptions, PassthroughRoom } from '../passthrough/passthrough-room';
-import type { Activities } from './activities';
-import type { Headset } from './headset';
-import type { PreferenceStore } from './preferences';
-import type { Stage } from './stage';
+import type { PassthroughOptions, PassthroughRoom } from '../../passthrough/passthrough-room';
+import type { Activities } from '../activities/activities';
+import type { Headset } from '../headset';
+import type { PreferenceStore } from '../preferences';
+import type { Stage } from '../stage';
 
 export interface PassthroughHostOptions extends Pick<PassthroughOptions, 'quality' | 'notices' | 'isCovered'> {
   readonly headset: Pick<Headset, 'passthrough' | 'room' | 'tracking'>;
@@ -33,7 +33,7 @@ export class PassthroughHost {
     this.#leave();
     if (!session) return;
     try {
-      const { PassthroughRoom } = await import('../passthrough/passthrough-room');
+      const { PassthroughRoom } = await import('../../passthrough/passthrough-room');
       if (headset.passthrough === session) this.#room = new PassthroughRoom(this.#roomOptions(session));
     } catch (error) {
       notices.show('error', `Your room could not be shown: ${firstLine(reasonOf(error))}. The usual world is shown.`);

@@ -1,9 +1,9 @@
 import type { Side } from 'threepoint/core/math/side';
 import type { MouseAim } from 'threepoint-ui/mouse-aim';
-import type { OpenActivity } from '../activity/activity';
-import type { ActivityServices } from '../activity/activity-context';
-import { type CameraScene, studioScene } from '../scene/desktop-view';
-import type { Stage } from './stage';
+import type { OpenActivity } from '../../activity/activity';
+import type { ActivityServices } from '../../activity/activity-context';
+import { type CameraScene, studioScene } from '../../scene/desktop-view';
+import type { Stage } from '../stage';
 
 export interface StagingOptions {
   readonly services: Pick<ActivityServices, 'settings' | 'headset'>;

@@ -1,11 +1,11 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
-import type { DesktopView } from '../scene/desktop-view';
-import type { Recorder } from '../studio/recorder';
-import type { Activities } from './activities';
-import type { Controls } from './controls/controls';
-import type { FrameTiming } from './frame-timing';
-import type { Headset, HeadsetListener } from './headset';
-import type { PageStudy } from './page-study';
+import type { DesktopView } from '../../scene/desktop-view';
+import type { Recorder } from '../../studio/recorder';
+import type { Activities } from '../activities/activities';
+import type { Controls } from '../controls/controls';
+import type { FrameTiming } from '../frame-timing';
+import type { Headset, HeadsetListener } from '../headset';
+import type { PageStudy } from '../study/page-study';
 import type { PassthroughHost } from './passthrough-host';
 
 export interface SessionChangesOptions {

@@ -1,6 +1,6 @@
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { Notices } from 'threepoint-ui/notices';
-import type { ActivitySound } from '../activity/activity';
+import type { ActivitySound } from '../../activity/activity';
 
 /** By which a user may touch the page. */
 const touches = ['pointerdown', 'pointerup', 'keydown'];

@@ -3,14 +3,14 @@ import type { Calibration } from 'threepoint/core/body/calibration';
 import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { TrackedSession } from 'threepoint/xr/tracked-session';
-import type { PlayerInput } from '../activity/activity';
-import type { Actor } from '../emulator/actor';
-import type { Recorder } from '../studio/recorder';
-import type { Activities } from './activities';
-import type { Headset } from './headset';
-import type { PageStudy } from './page-study';
+import type { PlayerInput } from '../../activity/activity';
+import type { Actor } from '../../emulator/actor';
+import type { Recorder } from '../../studio/recorder';
+import type { Activities } from '../activities/activities';
+import type { Headset } from '../headset';
+import type { Settings } from '../settings';
+import type { PageStudy } from '../study/page-study';
 import type { Pointers } from './pointers';
-import type { Settings } from './settings';
 
 /** What is read of a session. */
 type SessionTracking = Pick<TrackedSession, 'read'> & { readonly inputs: Pick<TrackedSession['inputs'], 'buttons'> };

@@ -1,7 +1,7 @@
-import type { DesktopView } from '../scene/desktop-view';
-import type { Activities } from './activities';
-import type { Headset } from './headset';
-import type { PageStudy } from './page-study';
+import type { DesktopView } from '../../scene/desktop-view';
+import type { Activities } from '../activities/activities';
+import type { Headset } from '../headset';
+import type { PageStudy } from '../study/page-study';
 
 export interface SheetPointingOptions {
   readonly canvas: HTMLCanvasElement;

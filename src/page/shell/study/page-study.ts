@@ -1,5 +1,5 @@
 import type { StudyRun } from 'threepoint-study/participant/study-run';
-import type { ActivityRunner } from '../activity/activity';
+import type { ActivityRunner } from '../../activity/activity';
 
 /** A study that this page has joined, and the activities that it runs as tasks, by name. */
 export interface JoinedStudy {

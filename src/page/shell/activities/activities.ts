@@ -9,13 +9,13 @@ import type { Side } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Pulse } from 'threepoint/xr/haptics';
 import type { TaskPlace } from 'threepoint-study/participant/trial/task-runner';
-import type { Activity, OpenActivity, PlayerInput } from '../activity/activity';
-import type { ActivityContext, ActivityServices, InputSource } from '../activity/activity-context';
-import type { Recorder } from '../studio/recorder';
-import { home } from './activity-registry';
+import type { Activity, OpenActivity, PlayerInput } from '../../activity/activity';
+import type { ActivityContext, ActivityServices, InputSource } from '../../activity/activity-context';
+import type { Recorder } from '../../studio/recorder';
+import { home } from '../activity-registry';
+import type { Shot, Stage } from '../stage';
+import type { PageStudy } from '../study/page-study';
 import { ActivityStaging, type StagingOptions } from './activity-staging';
-import type { PageStudy } from './page-study';
-import type { Shot, Stage } from './stage';
 import { wakeSound } from './wake-sound';
 
 export interface ActivitiesOptions extends StagingOptions {

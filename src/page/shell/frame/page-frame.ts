@@ -9,19 +9,19 @@ import type { TrackingDegradation } from 'threepoint/core/tracking/tracking-degr
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { unjudgedSavings } from 'threepoint/xr/frame-rate';
 import type { Notices } from 'threepoint-ui/notices';
-import type { Recorder } from '../studio/recorder';
-import type { Activities } from './activities';
-import type { Controls } from './controls/controls';
+import type { Recorder } from '../../studio/recorder';
+import type { Activities } from '../activities/activities';
+import type { Controls } from '../controls/controls';
+import type { FrameTiming } from '../frame-timing';
+import type { Headset } from '../headset';
+import type { PageMocap } from '../page-mocap';
+import type { PassthroughHost } from '../session/passthrough-host';
+import type { Settings } from '../settings';
+import type { ShownAvatar } from '../shown-avatar';
+import type { Shot, Stage } from '../stage';
+import type { PageStudy } from '../study/page-study';
 import type { DeviceDifference } from './device-difference';
 import type { FrameParts } from './frame-loop';
-import type { FrameTiming } from './frame-timing';
-import type { Headset } from './headset';
-import type { PageMocap } from './page-mocap';
-import type { PageStudy } from './page-study';
-import type { PassthroughHost } from './passthrough-host';
-import type { Settings } from './settings';
-import type { ShownAvatar } from './shown-avatar';
-import type { Shot, Stage } from './stage';
 import type { TrackingSource } from './tracking-source';
 
 export interface PageFrameOptions {

@@ -1,7 +1,7 @@
 import { button, element } from 'threepoint-ui/element';
-import type { ActivityPanel, OpenActivity } from '../activity/activity';
+import type { ActivityPanel, OpenActivity } from '../../activity/activity';
+import { home } from '../activity-registry';
 import type { Activities } from './activities';
-import { home } from './activity-registry';
 
 export interface PlayBar {
   /** Updates the bar to the current activity. */

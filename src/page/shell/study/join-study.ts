@@ -1,14 +1,14 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
-import type { ActivityRunner } from '../activity/activity';
-import type { Activities } from './activities';
-import { home } from './activity-registry';
+import type { ActivityRunner } from '../../activity/activity';
+import type { Activities } from '../activities/activities';
+import { home } from '../activity-registry';
+import type { FrameTiming } from '../frame-timing';
+import type { Headset } from '../headset';
+import type { Settings, SettingsWriter } from '../settings';
+import type { Switches } from '../switches';
+import type { UserCalibration } from '../user-calibration';
 import { type EmbodyingParts, embody } from './embody';
-import type { FrameTiming } from './frame-timing';
-import type { Headset } from './headset';
 import type { JoinedStudy } from './page-study';
-import type { Settings, SettingsWriter } from './settings';
-import type { Switches } from './switches';
-import type { UserCalibration } from './user-calibration';
 
 /** Characters of the device's name that a record keeps. */
 const longestDeviceName = 160;

@@ -2,8 +2,8 @@ import type { BodySolver } from 'threepoint/api/body-solver';
 import type { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
 import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
 import type { Embodiment } from 'threepoint-study/model/plan/embodiment';
-import type { SettingsWriter } from './settings';
-import type { ShownAvatar } from './shown-avatar';
+import type { SettingsWriter } from '../settings';
+import type { ShownAvatar } from '../shown-avatar';
 
 /** The parts of the page that a study's condition changes. */
 export interface EmbodyingParts {
