@@ -16,7 +16,7 @@ import { loadRegressor } from 'threepoint/onnx/load-regressor';
 import { parseContract, tensorsOf } from 'threepoint/onnx/model-contract';
 import { createSession } from 'threepoint/onnx/session';
 import { createRenderer } from 'threepoint-page/scene/renderer';
-import { createFrameLoop } from 'threepoint-page/shell/frame-loop';
+import { createFrameLoop } from 'threepoint-page/shell/frame/frame-loop';
 import { createFrameTiming, type FrameTiming, type StageName, stageNames } from 'threepoint-page/shell/frame-timing';
 import { createStudio } from 'threepoint-page/studio/studio';
 import { measureArchery, type RoundTimes } from './archery';

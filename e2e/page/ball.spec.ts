@@ -1,8 +1,8 @@
 import { spawn } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import type { Browser } from '@playwright/test';
-import type { BallProbe } from 'threepoint-page/ball/ball-frame';
 import type { CourtProbe } from 'threepoint-page/ball/court-activity';
+import type { BallProbe } from 'threepoint-page/ball/match/ball-frame';
 import { driveTime, goOn, holdAt } from '../driven-time';
 import { emulatedHeadset } from '../emulated-headset';
 import { freePort } from '../free-port';

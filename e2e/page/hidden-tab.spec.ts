@@ -1,5 +1,5 @@
 import type { Page } from '@playwright/test';
-import type { BallProbe } from 'threepoint-page/ball/ball-frame';
+import type { BallProbe } from 'threepoint-page/ball/match/ball-frame';
 import { reportFigures } from '../../tests/reliability/report-figures';
 import { startTabbedBrowser } from '../background-tab';
 import { countsOf, megabytes } from '../memory-usage';

@@ -3,12 +3,12 @@ import { createEnterButton, type EnterButton } from 'threepoint-ui/enter-button'
 import { createNotices } from 'threepoint-ui/notices';
 import { allowOwnScripts } from 'threepoint-ui/own-scripts';
 import { createPage, type Page } from './shell/create-page';
-import { createFrameLoop } from './shell/frame-loop';
+import { createFrameLoop } from './shell/frame/frame-loop';
 import type { Headset } from './shell/headset';
-import { joinStudy } from './shell/join-study';
 import { type PageContext, readPageContext } from './shell/page-context';
 import { reportFaults, showStartFailure } from './shell/page-faults';
 import { PageLoading } from './shell/page-loading';
+import { joinStudy } from './shell/study/join-study';
 
 /** What entering would mean: a real headset, or why not and the emulated one. */
 async function offerSessions(headset: Headset, button: EnterButton, study: boolean): Promise<void> {

@@ -8,8 +8,8 @@ import { ServerPresence } from 'threepoint-http/server-presence';
 import type { ActivityServices } from 'threepoint-page/activity/activity-context';
 import type { Surroundings } from 'threepoint-page/scene/surroundings';
 import { fetchBuiltInAvatar } from 'threepoint-page/shell/avatar-loader';
-import { PageStudy } from 'threepoint-page/shell/page-study';
 import { createSettings, type LastingSettings, SettingsWriter } from 'threepoint-page/shell/settings';
+import { PageStudy } from 'threepoint-page/shell/study/page-study';
 import { readSwitches } from 'threepoint-page/shell/switches';
 import type { Notice } from 'threepoint-ui/notices';
 

@@ -2,7 +2,7 @@
 // own, because the records of property tests have x, y and z too (see `Vec3`).
 import { Session } from 'node:inspector/promises';
 import 'threepoint-page/archery/archery-play';
-import 'threepoint-page/ball/ball-play';
+import 'threepoint-page/ball/match/ball-play';
 import 'threepoint-page/studio/recorder';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createEstimator } from 'threepoint/core/estimation/estimators';

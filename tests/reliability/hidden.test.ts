@@ -3,7 +3,7 @@ import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { allReleased } from 'threepoint/core/input/button-presses';
 import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
-import { createBallPlay } from 'threepoint-page/ball/ball-play';
+import { createBallPlay } from 'threepoint-page/ball/match/ball-play';
 import { expect, test } from 'vitest';
 import { poseOf } from '../threepoint/core/estimation/drawn';
 import { reportFigures } from './report-figures';

@@ -13,11 +13,11 @@ import type { ActivityPanel, OpenActivity, PlayerInput } from '../activity/activ
 import type { ActivityContext } from '../activity/activity-context';
 import type { ActivityMenu, MenuEntry } from '../activity/activity-menu';
 import type { CameraScene } from '../scene/desktop-view';
-import { eventHaptics } from './archery-haptics';
 import { type ArcheryRound, type ArcheryRules, createArcheryPanel } from './archery-panel';
 import { type ArcheryPlay, type ArcheryProbe, createArcheryPlay, probeOf, roundOf } from './archery-play';
 import { type ArcheryView, createArcheryView } from './archery-view';
-import { lineOf } from './scoreboard-drawing';
+import { lineOf } from './boards/scoreboard-drawing';
+import { eventHaptics } from './sound/archery-haptics';
 
 /** The floor frame of the user is the arena frame of the range: the zone lies around the origin, the targets ahead. */
 const floorFromArena = { position: zero, orientation: identity };

@@ -7,16 +7,16 @@ import { arrowLength, braceHeight } from 'threepoint-games/archery/bow';
 import type { BowCue } from 'threepoint-games/archery/gestures';
 import type { Quality } from '../scene/renderer';
 import type { AudibleStage } from '../scene/sound/sound-stage';
-import { Sounds } from './archery-sounds';
-import { makeArrowPose } from './arrow-pose';
-import { createArrows } from './arrows';
-import { createBow } from './bow-model';
+import { createResultPanel, type ResultPanel } from './boards/result-panel';
+import { ScorePops } from './boards/score-pops';
+import { createScoreboard } from './boards/scoreboard';
+import { makeArrowPose } from './bow/arrow-pose';
+import { createArrows } from './bow/arrows';
+import { createBow } from './bow/bow-model';
+import { createTrails } from './bow/trails';
 import { createRange, type Range } from './range/range';
 import { TargetStands } from './range/target-stands';
-import { createResultPanel, type ResultPanel } from './result-panel';
-import { ScorePops } from './score-pops';
-import { createScoreboard } from './scoreboard';
-import { createTrails } from './trails';
+import { Sounds } from './sound/archery-sounds';
 
 /** Everything that is seen of archery. */
 export interface ArcheryView {

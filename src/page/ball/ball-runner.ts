@@ -1,8 +1,8 @@
 import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
 import type { TaskEnd, TaskEvent, TaskPlace } from 'threepoint-study/participant/trial/task-runner';
 import type { ActivityRunner, StudyHost } from '../activity/activity';
-import type { BallFrame } from './ball-frame';
-import type { BallPlay } from './ball-play';
+import type { BallFrame } from './match/ball-frame';
+import type { BallPlay } from './match/ball-play';
 
 /** The part of the ball game that a study uses. */
 export interface StudiedBall {

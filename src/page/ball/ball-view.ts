@@ -9,18 +9,18 @@ import type { Launch } from 'threepoint-games/ballistics';
 import type { Quality } from '../scene/renderer';
 import type { AudibleStage } from '../scene/sound/sound-stage';
 import type { Surroundings } from '../scene/surroundings';
-import { createAimArc } from './aim-arc';
-import { type BallSounds, createBallSounds } from './ball-sounds';
-import { type Balls, createBalls } from './balls';
-import { lineOfEvent, type Person, type Standing, waitingLine } from './board-drawing';
-import { type Boards, createBoards } from './boards';
-import { CatchPops } from './catch-pops';
-import { type Court, createCourt } from './court';
-import { createLobbySheet, type LobbySheet } from './lobby-sheet';
-import { createNameLabels, type NameLabels } from './name-labels';
-import type { SeatVoices } from './seat-voices';
-import { createWickerBasket } from './wicker-basket';
-import { createZoneRing } from './zone-ring';
+import { type Court, createCourt } from './court/court';
+import { createZoneRing } from './court/zone-ring';
+import { type BallSounds, createBallSounds } from './sound/ball-sounds';
+import { createAimArc } from './view/aim-arc';
+import { type Balls, createBalls } from './view/balls';
+import { lineOfEvent, type Person, type Standing, waitingLine } from './view/board-drawing';
+import { type Boards, createBoards } from './view/boards';
+import { CatchPops } from './view/catch-pops';
+import { createLobbySheet, type LobbySheet } from './view/lobby-sheet';
+import { createNameLabels, type NameLabels } from './view/name-labels';
+import { createWickerBasket } from './view/wicker-basket';
+import type { SeatVoices } from './voices/seat-voices';
 
 /** A player at the court as they are drawn in this frame. */
 export interface Attendant extends Person {

@@ -7,8 +7,8 @@ import { type BuiltInBody, plainAvatar } from 'threepoint/core/body/avatar-ref';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
 import { RoomBodies } from 'threepoint-rooms/drawing/room-bodies';
 import type { ActivityContext } from '../activity/activity-context';
-import type { BallPlay } from './ball-play';
-import type { Voices } from './voices';
+import type { BallPlay } from './match/ball-play';
+import type { Voices } from './voices/voices';
 
 export interface CourtAvatarsOptions {
   readonly context: Pick<ActivityContext, 'settings' | 'avatar' | 'notices' | 'fetchBuiltInAvatar'>;

@@ -3,7 +3,7 @@ import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { Watched } from '../activity/activity';
 import type { ActivityContext } from '../activity/activity-context';
 import type { CameraScene } from '../scene/desktop-view';
-import type { BallPlay } from './ball-play';
+import type { BallPlay } from './match/ball-play';
 
 /** The middle of the court, which a spectator's camera looks at first, floor frame [m]. */
 const courtMiddle: Vec3 = { x: 0, y: 1, z: -2.4 };

@@ -6,7 +6,7 @@ import type { Side } from 'threepoint/core/math/side';
 import { vec3 } from 'threepoint/core/math/vec3';
 import { ballRadius, basketRadius, rimTube } from 'threepoint-games/ball/flight';
 import { ballInPalm } from 'threepoint-games/fist';
-import type { BallPlay } from './ball-play';
+import type { BallPlay } from './match/ball-play';
 
 /** The basket's rim, floor frame. */
 const rim = { at: vec3(0, 0, 0), normal: vec3(0, 1, 0), radius: basketRadius, tube: rimTube };

@@ -4,8 +4,8 @@ import { addScaled, distance, dot, subtract, type Vec3, vec3 } from 'threepoint/
 import { landsIn } from 'threepoint-games/ball/basket';
 import type { BallSteering } from 'threepoint-games/ball/steered-players';
 import type { ActivityContext } from '../activity/activity-context';
-import type { BallFrame } from './ball-frame';
-import type { BallPlay } from './ball-play';
+import type { BallFrame } from './match/ball-frame';
+import type { BallPlay } from './match/ball-play';
 
 /** The owner of what a pointer holds here. */
 const owner = 'ball';

@@ -1,7 +1,7 @@
 import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import type { ActivityContext } from '../activity/activity-context';
-import { assignedSeat, type BallPlace, connectionsFor } from './ball-connections';
 import { CourtActivity } from './court-activity';
+import { assignedSeat, type BallPlace, connectionsFor } from './match/ball-connections';
 
 /** Returns the room to play in: the one that a study assigned, the one in the address, or one in this page. */
 async function roomFor({ place, switches, clock, server, layout }: ActivityContext): Promise<BallPlace> {

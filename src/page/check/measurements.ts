@@ -6,7 +6,7 @@ import { isTracked } from 'threepoint/core/math/pose';
 import { type Side, sides } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { InputKind } from 'threepoint/xr/input-reader';
-import { DeviceDifference } from '../shell/device-difference';
+import { DeviceDifference } from '../shell/frame/device-difference';
 import { type FrameSummary, quantilesIn } from '../shell/frame-timing';
 import type { Measured } from './check-steps';
 import type { HeadsetReport, WorldName } from './headset-report';

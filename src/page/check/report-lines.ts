@@ -1,5 +1,5 @@
 import { estimatedJoints } from 'threepoint/core/body/joints';
-import { jointLabels } from '../shell/device-difference';
+import { jointLabels } from '../shell/frame/device-difference';
 import type { HeadsetReport } from './headset-report';
 import { histogramEdgesMs, histogramOf } from './loss-lengths';
 

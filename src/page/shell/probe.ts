@@ -11,17 +11,17 @@ import type { Notices } from 'threepoint-ui/notices';
 import type { PlayerProbe } from '../activity/activity';
 import type { OfflineCopy, OfflineCopyState } from '../offline/offline-copy';
 import type { Recorder } from '../studio/recorder';
-import type { Activities } from './activities';
+import type { Activities } from './activities/activities';
 import type { GameProbe } from './activity-registry';
+import type { TrackingSource } from './frame/tracking-source';
 import type { FrameSummary, FrameTiming } from './frame-timing';
 import type { Headset } from './headset';
 import type { PageLoading } from './page-loading';
-import type { PageStudy } from './page-study';
-import type { PassthroughHost } from './passthrough-host';
+import type { PassthroughHost } from './session/passthrough-host';
 import type { Settings } from './settings';
 import type { ShownAvatar } from './shown-avatar';
 import type { DrawnCounts, Stage } from './stage';
-import type { TrackingSource } from './tracking-source';
+import type { PageStudy } from './study/page-study';
 
 type Triple = readonly [number, number, number];
 

@@ -2,8 +2,8 @@ import { fromAxisAngle, identity } from 'threepoint/core/math/quat';
 import { up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { Arrow, Landing, Target } from 'threepoint-games/archery/archery-state';
 import { archeryRules } from 'threepoint-games/archery/rules';
-import { eventCaption } from 'threepoint-page/archery/archery-captions';
-import { Sounds } from 'threepoint-page/archery/archery-sounds';
+import { eventCaption } from 'threepoint-page/archery/sound/archery-captions';
+import { Sounds } from 'threepoint-page/archery/sound/archery-sounds';
 import { directionOf } from 'threepoint-page/scene/directions';
 import { describe, expect, it } from 'vitest';
 

@@ -1,6 +1,6 @@
 import { vec3 } from 'threepoint/core/math/vec3';
 import type { Arrow, Landing } from 'threepoint-games/archery/archery-state';
-import { eventHaptics } from 'threepoint-page/archery/archery-haptics';
+import { eventHaptics } from 'threepoint-page/archery/sound/archery-haptics';
 import { describe, expect, it } from 'vitest';
 
 const hit = (points: number, target: number | null = 1) => {

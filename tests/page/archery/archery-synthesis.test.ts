@@ -1,4 +1,4 @@
-import { creak, earth, rattle, thud, twang } from 'threepoint-page/archery/archery-synthesis';
+import { creak, earth, rattle, thud, twang } from 'threepoint-page/archery/sound/archery-synthesis';
 import { bell, chime, click, warning, whoosh } from 'threepoint-page/scene/sound/sound-synthesis';
 import { describe, expect, it } from 'vitest';
 

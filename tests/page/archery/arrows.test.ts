@@ -2,9 +2,9 @@ import { addScaled, distance, dot, normalise, reject, subtract, vec3 } from 'thr
 import type { Arrow, Landing } from 'threepoint-games/archery/archery-state';
 import { arrowLength } from 'threepoint-games/archery/bow';
 import { positionAt, velocityAt } from 'threepoint-games/ballistics';
-import { arrowPose } from 'threepoint-page/archery/arrow-pose';
-import { arrowGeometry, createArrows } from 'threepoint-page/archery/arrows';
-import { createTrails } from 'threepoint-page/archery/trails';
+import { arrowPose } from 'threepoint-page/archery/bow/arrow-pose';
+import { arrowGeometry, createArrows } from 'threepoint-page/archery/bow/arrows';
+import { createTrails } from 'threepoint-page/archery/bow/trails';
 import { describe, expect, it } from 'vitest';
 
 const release = { time: 2, position: vec3(0, 1.5, -0.8), velocity: vec3(1, 3, -30) };

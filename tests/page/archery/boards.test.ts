@@ -2,10 +2,10 @@ import { Color } from 'three';
 import { vec3 } from 'threepoint/core/math/vec3';
 import type { ArcheryState, Arrow, Landing } from 'threepoint-games/archery/archery-state';
 import { archeryRules } from 'threepoint-games/archery/rules';
+import { onRestartButton } from 'threepoint-page/archery/boards/result-panel';
+import { arrowResult, boardText } from 'threepoint-page/archery/boards/scoreboard-drawing';
 import { ringColor, rings } from 'threepoint-page/archery/range/target-rings';
 import { scoredBy } from 'threepoint-page/archery/range/target-stands';
-import { onRestartButton } from 'threepoint-page/archery/result-panel';
-import { arrowResult, boardText } from 'threepoint-page/archery/scoreboard-drawing';
 import { describe, expect, it } from 'vitest';
 
 const shot = (id: number, landing: Partial<Landing> | null): Arrow => ({

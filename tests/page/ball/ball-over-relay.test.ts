@@ -8,7 +8,7 @@ import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { allReleased, type Buttons } from 'threepoint/core/input/button-presses';
 import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { ballClientPolicy } from 'threepoint-games/ball/ball-client';
-import { type BallPlay, createBallPlay } from 'threepoint-page/ball/ball-play';
+import { type BallPlay, createBallPlay } from 'threepoint-page/ball/match/ball-play';
 import { createRoomPass } from 'threepoint-rooms/client/room-pass';
 import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
 import { afterAll, expect, test } from 'vitest';

@@ -6,7 +6,7 @@ import { distance } from 'threepoint/core/math/vec3';
 import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import type { BallEvent, BallOptions } from 'threepoint-games/ball/ball-state';
 import type { BallSteering } from 'threepoint-games/ball/steered-players';
-import { type BallPlay, createBallPlay } from 'threepoint-page/ball/ball-play';
+import { type BallPlay, createBallPlay } from 'threepoint-page/ball/match/ball-play';
 import { describe, expect, it } from 'vitest';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 

@@ -2,7 +2,7 @@ import { InstancedMesh, Matrix4, Vector3 } from 'three';
 import { distance, vec3 } from 'threepoint/core/math/vec3';
 import { ballInAir, touchesFloor } from 'threepoint-games/ball/flight';
 import { ballRules, defaultBallOptions } from 'threepoint-games/ball/rules';
-import { createBalls } from 'threepoint-page/ball/balls';
+import { createBalls } from 'threepoint-page/ball/view/balls';
 import { describe, expect, test } from 'vitest';
 import { velocityTo } from '../../rooms/client/people';
 

@@ -1,4 +1,4 @@
-import { BlockList } from 'threepoint-page/ball/block-list';
+import { BlockList } from 'threepoint-page/ball/voices/block-list';
 import { describe, expect, it } from 'vitest';
 
 const person = (name: string) => ({ name, bot: false });

@@ -3,7 +3,7 @@ import type { Pose, TrackedPose } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
 import { add, distance, vec3 } from 'threepoint/core/math/vec3';
 import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
-import { createBallPlay } from 'threepoint-page/ball/ball-play';
+import { createBallPlay } from 'threepoint-page/ball/match/ball-play';
 import { expect, test } from 'vitest';
 import { holding, opening, shownAt, visitor } from '../../rooms/client/people';
 

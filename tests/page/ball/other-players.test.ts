@@ -1,4 +1,4 @@
-import { hideLabel, muteLabel, otherPlayers, type Seated } from 'threepoint-page/ball/other-players';
+import { hideLabel, muteLabel, otherPlayers, type Seated } from 'threepoint-page/ball/panel/other-players';
 import { describe, expect, it } from 'vitest';
 
 const seated = (seat: number, change: Partial<Seated> = {}): Seated => ({

@@ -1,7 +1,7 @@
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { identity } from 'threepoint/core/math/quat';
 import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { proximityFade } from 'threepoint-page/ball/proximity-fade';
+import { proximityFade } from 'threepoint-page/ball/match/proximity-fade';
 import { describe, expect, test } from 'vitest';
 
 const tracked = (position: Vec3) => ({ position, orientation: identity, tracking: 'tracked' as const });

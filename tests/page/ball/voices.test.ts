@@ -1,6 +1,6 @@
 import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
-import { BlockList } from 'threepoint-page/ball/block-list';
-import { Voices } from 'threepoint-page/ball/voices';
+import { BlockList } from 'threepoint-page/ball/voices/block-list';
+import { Voices } from 'threepoint-page/ball/voices/voices';
 import type { VoiceSettings } from 'threepoint-rooms/voices/voice-settings';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
 import { visitor } from '../../rooms/client/people';

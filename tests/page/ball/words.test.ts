@@ -2,8 +2,9 @@ import { identity } from 'threepoint/core/math/quat';
 import { vec3 } from 'threepoint/core/math/vec3';
 import type { BallEvent, BallPlace, BallState } from 'threepoint-games/ball/ball-state';
 import { ballRules } from 'threepoint-games/ball/rules';
-import { cueCaption, eventCaption } from 'threepoint-page/ball/ball-captions';
-import { eventHaptics } from 'threepoint-page/ball/ball-haptics';
+import { createMatchClock } from 'threepoint-page/ball/match/displayed-clock';
+import { cueCaption, eventCaption } from 'threepoint-page/ball/sound/ball-captions';
+import { eventHaptics } from 'threepoint-page/ball/sound/ball-haptics';
 import {
   catchesOf,
   lineOfEvent,
@@ -14,9 +15,8 @@ import {
   seatOfButton,
   waitingFor,
   waitingLine,
-} from 'threepoint-page/ball/board-drawing';
-import { createMatchClock } from 'threepoint-page/ball/displayed-clock';
-import { labelScale } from 'threepoint-page/ball/name-labels';
+} from 'threepoint-page/ball/view/board-drawing';
+import { labelScale } from 'threepoint-page/ball/view/name-labels';
 import { createSettling, settlingSeconds } from 'threepoint-page/scene/boards/sheet';
 import { describe, expect, it } from 'vitest';
 

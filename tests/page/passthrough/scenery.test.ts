@@ -1,6 +1,6 @@
 import { Box3, type Object3D } from 'three';
 import { createRange } from 'threepoint-page/archery/range/range';
-import { createCourt } from 'threepoint-page/ball/court';
+import { createCourt } from 'threepoint-page/ball/court/court';
 import { scenery } from 'threepoint-page/passthrough/passthrough-room';
 import { expect, test } from 'vitest';
 import { drawNowhere } from '../shell/drawing-in-node';

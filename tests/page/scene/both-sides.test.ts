@@ -1,9 +1,9 @@
 import { DoubleSide, type Material, Mesh, type Object3D } from 'three';
+import { createTrails } from 'threepoint-page/archery/bow/trails';
 import { createBackstop } from 'threepoint-page/archery/range/backstop';
 import { createZone } from 'threepoint-page/archery/range/zone';
-import { createTrails } from 'threepoint-page/archery/trails';
-import { createAimArc } from 'threepoint-page/ball/aim-arc';
-import { createZoneRing } from 'threepoint-page/ball/zone-ring';
+import { createZoneRing } from 'threepoint-page/ball/court/zone-ring';
+import { createAimArc } from 'threepoint-page/ball/view/aim-arc';
 import { expect, test } from 'vitest';
 
 test('what is transparent and seen from both sides is drawn in one pass, so that its program is not looked up anew in every frame', () => {

@@ -10,12 +10,12 @@ import { type ArcheryActivity, rangeScene } from 'threepoint-page/archery/archer
 import { createArcheryRunner } from 'threepoint-page/archery/archery-runner';
 import { createActor } from 'threepoint-page/emulator/actor';
 import { type CameraScene, studioScene } from 'threepoint-page/scene/desktop-view';
-import { Activities } from 'threepoint-page/shell/activities';
+import { Activities } from 'threepoint-page/shell/activities/activities';
 import { activities as registered } from 'threepoint-page/shell/activity-registry';
+import { TrackingSource } from 'threepoint-page/shell/frame/tracking-source';
 import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
-import { createRunners } from 'threepoint-page/shell/join-study';
-import { SessionChanges, type SessionChangesOptions } from 'threepoint-page/shell/session-changes';
-import { TrackingSource } from 'threepoint-page/shell/tracking-source';
+import { SessionChanges, type SessionChangesOptions } from 'threepoint-page/shell/session/session-changes';
+import { createRunners } from 'threepoint-page/shell/study/join-study';
 import { menuButtons, type VrMenuActions } from 'threepoint-page/shell/vr-menu/menu-buttons';
 import { menuStateOf } from 'threepoint-page/shell/vr-menu/menu-state';
 import { Recorder } from 'threepoint-page/studio/recorder';

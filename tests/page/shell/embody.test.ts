@@ -1,8 +1,8 @@
 import type { BuiltInBody } from 'threepoint/core/body/avatar-ref';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
-import { type EmbodyingParts, embody } from 'threepoint-page/shell/embody';
 import type { Settings } from 'threepoint-page/shell/settings';
+import { type EmbodyingParts, embody } from 'threepoint-page/shell/study/embody';
 import { describe, expect, test } from 'vitest';
 
 const head = {

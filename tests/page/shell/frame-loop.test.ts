@@ -1,7 +1,7 @@
 import { Body } from 'threepoint/api/body';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { createFrameLoop, type FrameParts } from 'threepoint-page/shell/frame-loop';
+import { createFrameLoop, type FrameParts } from 'threepoint-page/shell/frame/frame-loop';
 import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
 import { describe, expect, test } from 'vitest';
 

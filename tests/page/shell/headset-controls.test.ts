@@ -9,12 +9,12 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { DeviceCommands } from 'threepoint/xr/device-commands';
 import type { OpenActivity } from 'threepoint-page/activity/activity';
 import { menuHeight } from 'threepoint-page/activity/activity-menu';
-import { type BallMenuActions, type BallMenuState, ballEntries } from 'threepoint-page/ball/ball-menu';
-import type { OtherPlayer } from 'threepoint-page/ball/other-players';
+import { type BallMenuActions, type BallMenuState, ballEntries } from 'threepoint-page/ball/menu/ball-menu';
+import type { OtherPlayer } from 'threepoint-page/ball/panel/other-players';
 import { activities as registered } from 'threepoint-page/shell/activity-registry';
 import { HeadsetControls } from 'threepoint-page/shell/controls/headset-controls';
-import { PageStudy } from 'threepoint-page/shell/page-study';
 import { createSettings, SettingsWriter } from 'threepoint-page/shell/settings';
+import { PageStudy } from 'threepoint-page/shell/study/page-study';
 import { readSwitches } from 'threepoint-page/shell/switches';
 import { type ComfortActions, type ComfortState, comfortSheet } from 'threepoint-page/shell/vr-menu/comfort-sheet';
 import {

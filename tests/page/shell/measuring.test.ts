@@ -5,7 +5,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { createActor } from 'threepoint-page/emulator/actor';
 import type { Emulator } from 'threepoint-page/emulator/emulator';
 import { Measuring } from 'threepoint-page/shell/controls/measuring';
-import { TrackingSource } from 'threepoint-page/shell/tracking-source';
+import { TrackingSource } from 'threepoint-page/shell/frame/tracking-source';
 import { Recorder } from 'threepoint-page/studio/recorder';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
 import { noPointers } from '../activity-services';

@@ -1,5 +1,5 @@
 import { menuHeight, menuMargin, menuWidth } from 'threepoint-page/activity/activity-menu';
-import { invitationSheet, type ShownInvitation } from 'threepoint-page/ball/invitation-sheet';
+import { invitationSheet, type ShownInvitation } from 'threepoint-page/ball/menu/invitation-sheet';
 import { menuButtons, type VrMenuActions, type VrMenuState } from 'threepoint-page/shell/vr-menu/menu-buttons';
 import { drawMenu } from 'threepoint-page/shell/vr-menu/menu-drawing';
 import { qrCode } from 'threepoint-ui/qr-code';

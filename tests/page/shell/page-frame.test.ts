@@ -1,4 +1,4 @@
-import { PageFrame, type PageFrameOptions } from 'threepoint-page/shell/page-frame';
+import { PageFrame, type PageFrameOptions } from 'threepoint-page/shell/frame/page-frame';
 import { expect, test } from 'vitest';
 
 /**

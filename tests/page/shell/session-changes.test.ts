@@ -4,7 +4,7 @@ import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { OpenActivity } from 'threepoint-page/activity/activity';
 import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
 import type { Headset } from 'threepoint-page/shell/headset';
-import { SessionChanges, type SessionChangesOptions } from 'threepoint-page/shell/session-changes';
+import { SessionChanges, type SessionChangesOptions } from 'threepoint-page/shell/session/session-changes';
 import { Recorder } from 'threepoint-page/studio/recorder';
 import { afterEach, expect, test, vi } from 'vitest';
 

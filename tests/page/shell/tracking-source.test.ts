@@ -6,7 +6,7 @@ import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { nothingPressed } from 'threepoint/core/input/button-presses';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { createActor } from 'threepoint-page/emulator/actor';
-import { TrackingSource } from 'threepoint-page/shell/tracking-source';
+import { TrackingSource } from 'threepoint-page/shell/frame/tracking-source';
 import { Recorder } from 'threepoint-page/studio/recorder';
 import { expect, test } from 'vitest';
 import { noPointers } from '../activity-services';

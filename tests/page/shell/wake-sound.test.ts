@@ -1,4 +1,4 @@
-import { wakeSound } from 'threepoint-page/shell/wake-sound';
+import { wakeSound } from 'threepoint-page/shell/activities/wake-sound';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
 
 let page = new EventTarget();

@@ -1,5 +1,5 @@
 import { plainAvatar } from 'threepoint/core/body/avatar-ref';
-import { assignedSeat } from 'threepoint-page/ball/ball-connections';
+import { assignedSeat } from 'threepoint-page/ball/match/ball-connections';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { createExperimenterClient, createParticipantClient } from 'threepoint-study/client/study-client';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';

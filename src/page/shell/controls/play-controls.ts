@@ -1,5 +1,5 @@
 import { pageElement } from 'threepoint-ui/element';
-import { createPlayBar, type PlayBar } from '../play-bar';
+import { createPlayBar, type PlayBar } from '../activities/play-bar';
 import type { ControlledParts } from './controlled-parts';
 
 export type PlayControlsOptions = Pick<ControlledParts, 'activities'>;

@@ -1,6 +1,6 @@
 import { button, element } from 'threepoint-ui/element';
 import { createTabs } from 'threepoint-ui/tabs';
-import { exitLabel } from '../exit-label';
+import { exitLabel } from '../session/exit-label';
 import { createAvatarPage, type PaletteChoice } from './avatar-page';
 import { createBodyPage, type MeasureRanges } from './body-page';
 import type { AvatarActions, BodyActions, PanelState, RecordingActions, ViewActions } from './panel-state';

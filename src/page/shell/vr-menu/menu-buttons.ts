@@ -21,7 +21,7 @@ import {
 } from '../../activity/activity-menu';
 import { home } from '../activity-registry';
 import { estimatorOrder, estimatorTexts } from '../estimator-texts';
-import { exitLabel } from '../exit-label';
+import { exitLabel } from '../session/exit-label';
 
 /** What the menu in the headset shows. */
 export interface VrMenuState {

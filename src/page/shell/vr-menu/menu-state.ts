@@ -1,7 +1,7 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
 import type { Notices } from 'threepoint-ui/notices';
 import type { ActivityMenu, MenuSheet } from '../../activity/activity-menu';
-import type { Activities } from '../activities';
+import type { Activities } from '../activities/activities';
 import type { Measuring } from '../controls/measuring';
 import type { Headset } from '../headset';
 import type { Settings } from '../settings';

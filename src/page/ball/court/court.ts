@@ -1,0 +1,59 @@
+import { Group, Vector3 } from 'three';
+import type { Transform } from 'threepoint/core/math/pose';
+import { disposeTree } from '../../scene/dispose-tree';
+import { mergeAlike } from '../../scene/merge-alike';
+import { daylight } from '../../scene/outdoors/daylight';
+import { createLandscape } from '../../scene/outdoors/landscape';
+import { createNoiseTexture } from '../../scene/outdoors/noise-texture';
+import { createSky } from '../../scene/outdoors/sky';
+import type { Quality } from '../../scene/renderer';
+import type { Surroundings } from '../../scene/surroundings';
+import { createCourtFurniture } from './court-furniture';
+import { createCourtGround } from './court-ground';
+
+/** The place where the ball game is played; its object holds everything that is given in the arena frame. */
+export interface Court {
+  readonly object: Group;
+  /** Returns the court for a user's floor frame. */
+  placed(floorFromArena: Transform<'floor', 'arena'>): Surroundings;
+  dispose(): void;
+}
+
+/** Towards the sun, arena frame: from the side, so that neither throwers nor holder look into it. */
+const towardsSun = new Vector3(9, 11, 1.5);
+
+/** Builds the court for this many balls. */
+export function createCourt(quality: Quality, balls: number): Court {
+  const object = new Group();
+  object.name = 'ball court';
+  const noise = createNoiseTexture(quality);
+  const furniture = createCourtFurniture(balls);
+  mergeAlike(furniture);
+  object.add(createSky(noise, towardsSun, quality), createCourtGround(noise), createLandscape(quality), furniture);
+  return {
+    object,
+    placed(floorFromArena) {
+      object.position.copy(floorFromArena.position);
+      object.quaternion.copy(floorFromArena.orientation);
+      return {
+        object,
+        lighting: daylight(
+          {
+            quality,
+            towardsSun,
+            sunIntensity: 2.6,
+            skyIntensity: 0.9,
+            groundColor: '#8a7a5a',
+            shadows: { middle: new Vector3(0, 0, -2.5), halfSize: 6.2 },
+          },
+          floorFromArena,
+        ),
+      };
+    },
+    dispose() {
+      object.removeFromParent();
+      disposeTree(object);
+      noise.dispose();
+    },
+  };
+}

@@ -1,0 +1,79 @@
+import {
+  Group,
+  InstancedMesh,
+  Matrix4,
+  Mesh,
+  MeshBasicMaterial,
+  Quaternion,
+  RingGeometry,
+  SphereGeometry,
+  Vector3,
+} from 'three';
+import { landsIn, type Opening } from 'threepoint-games/ball/basket';
+import { basketRadius } from 'threepoint-games/ball/flight';
+import { fallsTo, type Launch, positionAt } from 'threepoint-games/ballistics';
+import { bothSides } from '../../scene/both-sides';
+import { disposeTree } from '../../scene/dispose-tree';
+
+/** The way that a ball would go if it were thrown now, and where it would come down; arena frame. */
+export interface AimArc {
+  readonly object: Group;
+  /**
+   * null: nothing is aimed. The ring is as high and as wide as the basket's opening; green: the ball's middle goes in.
+   */
+  show(launch: Launch | null, opening: Pick<Opening, 'position'>): void;
+  dispose(): void;
+}
+
+const dots = 36;
+/** The radius of the first dot [m]; the last is half as large. */
+const dotRadius = 0.035;
+/** Between two dots [s]. */
+const apart = 0.045;
+const beside = '#ffb02e';
+const inside = '#3ddc84';
+
+export function createAimArc(): AimArc {
+  const object = new Group();
+  object.name = 'aim';
+  object.visible = false;
+  // Over everything: from behind a thrower the way is hidden by the thrower.
+  const seen = { transparent: true, opacity: 0.9, depthWrite: false, depthTest: false, fog: false, toneMapped: false };
+  const material = new MeshBasicMaterial({ color: beside, ...seen });
+  const path = new InstancedMesh(new SphereGeometry(1, 10, 8), material, dots);
+  const ringMaterial = new MeshBasicMaterial({ color: beside, ...bothSides, ...seen });
+  const ring = new Mesh(new RingGeometry(basketRadius - 0.06, basketRadius, 40).rotateX(-Math.PI / 2), ringMaterial);
+  for (const part of [path, ring]) {
+    part.frustumCulled = false;
+    part.renderOrder = 5;
+  }
+  object.add(path, ring);
+  const matrix = new Matrix4();
+  const at = new Vector3();
+  const size = new Vector3();
+  const upright = new Quaternion();
+  return {
+    object,
+    show(launch, { position: basket }) {
+      object.visible = launch !== null;
+      if (!launch) return;
+      const seconds = fallsTo(launch, basket.y);
+      const lands = positionAt(launch, seconds);
+      const shown = Math.min(dots, Math.floor(seconds / apart));
+      for (let i = 0; i < shown; i++) {
+        const radius = dotRadius * (1 - (0.5 * i) / dots);
+        matrix.compose(at.copy(positionAt(launch, (i + 1) * apart)), upright, size.setScalar(radius));
+        path.setMatrixAt(i, matrix);
+      }
+      path.count = shown;
+      path.instanceMatrix.needsUpdate = true;
+      ring.position.copy(lands);
+      ringMaterial.color.set(landsIn(launch, basket) ? inside : beside);
+    },
+    dispose() {
+      object.removeFromParent();
+      path.dispose();
+      disposeTree(object);
+    },
+  };
+}

@@ -1,0 +1,285 @@
+import type { BallEvent, BallState } from 'threepoint-games/ball/ball-state';
+import { ballsLeft } from 'threepoint-games/ball/state-readings';
+import { rotationForRound } from 'threepoint-games/ball/stations';
+import { ink, paintCard, paintGround, signFont } from '../../scene/boards/lettering';
+import { paintScoreHeading } from '../../scene/boards/score-heading';
+import { paintButton, type SheetButton } from '../../scene/boards/sheet';
+import { roleTexts, seatLooks } from '../court/court-plan';
+
+/** A player on a seat, as boards and labels write of them. */
+export interface Person {
+  readonly name: string;
+  readonly bot: boolean;
+  readonly presence: 'here' | 'away' | 'gone';
+  readonly me: boolean;
+}
+
+/** A match as boards show it: the state of this frame and the person on each seat. */
+export interface Standing {
+  readonly state: BallState;
+  /** Whole seconds until the bell, rounded up. */
+  readonly seconds: number;
+  readonly people: readonly (Person | null)[];
+  /** The user's player; null: a spectator. */
+  readonly me: number | null;
+  /** Roles move on with every match. */
+  readonly rotate: boolean;
+  /** A simulated player has the user's seat, and is ready without being asked. */
+  readonly acting: boolean;
+}
+
+/** What a player reads in place of a name that they have not given. */
+export const ownName = 'You';
+
+/** Returns a name that marks bots as such. */
+export const nameOf = ({ name, bot }: Pick<Person, 'name' | 'bot'>): string =>
+  bot && !/\bbot\b/i.test(name) ? `${name} (bot)` : name;
+
+/** Balls that each player's throws have brought into the basket. */
+export const catchesOf = (state: BallState, player: number): number =>
+  state.balls.filter((place) => place.on === 'basket' && place.thrower === player).length;
+
+/** What the last thing that happened reads like on the board; null: nothing to say. */
+export function lineOfEvent(event: BallEvent, people: readonly (Person | null)[]): string | null {
+  const who = 'player' in event ? people[event.player] : null;
+  const name = who?.me ? 'you' : (who?.name ?? 'A player');
+  switch (event.type) {
+    case 'started':
+      return 'Go!';
+    case 'caught':
+      return `In! Thrown by ${name}`;
+    case 'missed':
+      return who?.me ? 'Your ball is on the floor' : `${name}’s ball is on the floor`;
+    case 'bounced':
+      return event.off === 'basket' ? 'Off the rim' : null;
+    case 'left':
+      return who?.me ? null : `${name} has left`;
+    case 'joined':
+      return who?.me ? null : `${name} has joined`;
+    default:
+      return null;
+  }
+}
+
+/** Returns the line of the board while nothing happens. */
+export function waitingLine({ state, people }: Standing): string {
+  if (state.phase === 'running') return 'Catch them in the basket';
+  if (state.phase === 'over') return state.end === 'time' ? 'Time is up' : 'All balls thrown';
+  const there = people.flatMap((person, player) => (person ? [player] : []));
+  const roles = new Set(there.map((player) => state.players[player]?.role));
+  if (!roles.has('thrower')) return 'Waiting for a thrower';
+  if (!roles.has('holder')) return 'Waiting for a basket holder';
+  const waiting = there.filter((player) => !state.players[player]?.ready).length;
+  return waiting === 1 ? 'Waiting for one player' : `Waiting for ${waiting} players`;
+}
+
+const listed = (names: readonly string[]): string =>
+  names.length < 2 ? (names[0] ?? '') : `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
+
+/** Describes what a match waits for; null: it is running. */
+export function waitingFor(standing: Standing): string | null {
+  const { state, people, me, rotate, acting } = standing;
+  if (state.phase === 'running') return null;
+  const there = people.flatMap((person, player) => (person ? [player] : []));
+  const taken = there.flatMap((player) => state.players[player]?.station ?? []);
+  // Roles move on between two matches alone.
+  const canPlay = rotationForRound(taken, rotate && state.phase === 'over') !== null;
+  if (!canPlay) return `${waitingLine({ ...standing, state: { ...state, phase: 'ready' } })}.`;
+  const idle = there.filter((player) => !state.players[player]?.ready);
+  const names = idle.flatMap((player) => (player !== me && people[player] ? [nameOf(people[player])] : []));
+  const press = state.phase === 'over' ? 'Play again' : 'Ready';
+  if (me !== null && !acting && idle.includes(me)) return `Waiting for ${listed(['you', ...names])}: press ${press}.`;
+  return names.length > 0 ? `Waiting for ${listed(names)}.` : 'The match starts in a moment.';
+}
+
+export const boardSize = { width: 1024, height: 588 } as const;
+
+/** Score, clock, balls left and the last sentence. */
+export function paintBoard(context: CanvasRenderingContext2D, standing: Standing, line: string): void {
+  const { state, seconds } = standing;
+  const { width, height } = boardSize;
+  paintGround(context, width, height);
+  paintScoreHeading(context, {
+    score: state.score,
+    of: state.options.balls,
+    seconds,
+    running: state.phase === 'running',
+  });
+
+  const left = ballsLeft(state);
+  context.fillStyle = ink.soft;
+  context.font = `700 54px ${signFont}`;
+  context.fillText('BALLS', 64, 430);
+  const total = state.options.balls;
+  const step = Math.min(34, 480 / total);
+  for (let i = 0; i < total; i++) {
+    context.beginPath();
+    context.arc(286 + i * step, 411, Math.min(13, step * 0.38), 0, 2 * Math.PI);
+    context.fillStyle = i < left ? ink.accent : 'transparent';
+    context.strokeStyle = i < left ? ink.accent : ink.line;
+    context.lineWidth = 4;
+    context.fill();
+    context.stroke();
+  }
+  context.textAlign = 'right';
+  context.fillStyle = ink.text;
+  context.font = `800 64px ${signFont}`;
+  context.fillText(String(left), width - 54, 434);
+  context.textAlign = 'left';
+  context.font = `700 60px ${signFont}`;
+  context.fillText(line, 64, 536, width - 128);
+}
+
+export type LobbyButton = 'ready' | 'rotate' | 'seat0' | 'seat1' | 'seat2';
+
+export const lobbySize = { width: 1024, height: 900 } as const;
+
+const rowTop = 330;
+const rowHeight = 112;
+const readyButton: SheetButton<LobbyButton> = { id: 'ready', x: 512, y: 740, width: 448, height: 112 };
+const rotateButton: SheetButton<LobbyButton> = { id: 'rotate', x: 64, y: 740, width: 424, height: 112 };
+const seatIds = ['seat0', 'seat1', 'seat2'] as const;
+
+/** Returns the seat of a button, or null if it has none. */
+export const seatOfButton = (id: LobbyButton): number | null => {
+  const seat = (seatIds as readonly string[]).indexOf(id);
+  return seat < 0 ? null : seat;
+};
+
+/** Players in the order of their stations. */
+const byStation = ({ state }: Standing): readonly number[] =>
+  state.players
+    .map((_, player) => player)
+    .sort((a, b) => (state.players[a]?.station ?? 0) - (state.players[b]?.station ?? 0));
+
+/** The buttons that its reader may press: a place for each seat that is free or a bot's, and ready. */
+export function lobbyButtons(standing: Standing): readonly SheetButton<LobbyButton>[] {
+  const { people, me } = standing;
+  const places = byStation(standing).flatMap((player, row): SheetButton<LobbyButton>[] => {
+    const person = people[player];
+    const id = seatIds[player];
+    if (!id || player === me || (person && !person.bot)) return [];
+    return [{ id, x: 690, y: rowTop + row * rowHeight + 10, width: 270, height: rowHeight - 24 }];
+  });
+  return me === null ? places : [...places, rotateButton, readyButton];
+}
+
+/** Paints the sheet before and after a match: players, who is ready, the result. */
+export function paintLobby(context: CanvasRenderingContext2D, standing: Standing, hovered: LobbyButton | null): void {
+  const { state, people, me, rotate } = standing;
+  const { width, height } = lobbySize;
+  paintCard(context, width, height);
+  context.textBaseline = 'alphabetic';
+  context.textAlign = 'center';
+  const over = state.phase === 'over';
+  context.fillStyle = ink.soft;
+  context.font = `700 44px ${signFont}`;
+  context.fillText(over ? (state.end === 'time' ? 'Time is up' : 'All balls thrown') : 'Ball game', width / 2, 88);
+  if (over) {
+    context.fillStyle = ink.text;
+    context.font = `800 170px ${signFont}`;
+    const score = String(state.score);
+    const scoreWidth = context.measureText(score).width;
+    context.font = `700 64px ${signFont}`;
+    const rest = `of ${state.options.balls} caught`;
+    const whole = scoreWidth + 24 + context.measureText(rest).width;
+    context.textAlign = 'left';
+    context.font = `800 170px ${signFont}`;
+    context.fillText(score, (width - whole) / 2, 250);
+    context.fillStyle = ink.soft;
+    context.font = `700 64px ${signFont}`;
+    context.fillText(rest, (width - whole) / 2 + scoreWidth + 24, 250);
+  } else {
+    context.fillStyle = ink.text;
+    context.font = `600 46px ${signFont}`;
+    context.fillText('Two players throw, one catches with the basket.', width / 2, 172, width - 128);
+    context.fillStyle = ink.soft;
+    context.font = `600 42px ${signFont}`;
+    context.fillText(
+      `${state.options.balls} balls, ${Math.round(state.options.seconds)} seconds, a point per catch`,
+      width / 2,
+      240,
+    );
+  }
+  for (const [row, player] of byStation(standing).entries()) {
+    paintRow(context, standing, player, rowTop + row * rowHeight);
+  }
+  const waiting = waitingFor(standing);
+  if (waiting) {
+    context.textAlign = 'center';
+    context.textBaseline = 'middle';
+    context.fillStyle = ink.accent;
+    context.font = `700 38px ${signFont}`;
+    context.fillText(waiting, width / 2, 702, width - 96);
+  }
+  const buttons = lobbyButtons(standing);
+  for (const button of buttons) {
+    const hover = hovered === button.id;
+    if (button.id === 'ready') {
+      const ready = state.players[me ?? -1]?.ready ?? false;
+      const label = ready ? 'Wait for me' : over ? 'Play again' : 'Ready';
+      const look = ready
+        ? { fill: hover ? '#4a6275' : '#34495a', ink: ink.text, ring: ink.text, hovered: hover }
+        : { fill: hover ? ink.accentLift : ink.accent, ink: ink.accentInk, ring: ink.text, hovered: hover };
+      paintButton(context, button, label, look, `800 54px ${signFont}`);
+    } else {
+      const label = button.id === 'rotate' ? `Swap roles: ${rotate ? 'on' : 'off'}` : 'Play here';
+      const look = { fill: hover ? '#4a6275' : '#34495a', ink: ink.text, ring: ink.text, hovered: hover };
+      paintButton(context, button, label, look, `700 ${button.id === 'rotate' ? 42 : 38}px ${signFont}`);
+    }
+  }
+  if (me === null) {
+    context.textAlign = 'center';
+    context.textBaseline = 'middle';
+    context.fillStyle = ink.soft;
+    context.font = `600 42px ${signFont}`;
+    context.fillText(
+      people.some((person) => person === null || person.bot)
+        ? 'You are watching. Take a place to play.'
+        : 'You are watching.',
+      width / 2,
+      796,
+    );
+  }
+}
+
+function paintRow(context: CanvasRenderingContext2D, standing: Standing, player: number, top: number): void {
+  const { state, people, me } = standing;
+  const { width } = lobbySize;
+  const station = state.players[player]?.station ?? 0;
+  const look = seatLooks[station];
+  const person = people[player] ?? null;
+  context.fillStyle = player === me ? 'rgba(255, 200, 97, 0.13)' : 'rgba(200, 216, 236, 0.07)';
+  context.beginPath();
+  context.roundRect(48, top, width - 96, rowHeight - 8, 24);
+  context.fill();
+  const middle = top + (rowHeight - 8) / 2;
+  context.fillStyle = look?.color ?? ink.soft;
+  context.beginPath();
+  context.arc(108, middle, 34, 0, 2 * Math.PI);
+  context.fill();
+  context.textAlign = 'center';
+  context.textBaseline = 'middle';
+  context.fillStyle = look?.ink ?? ink.text;
+  context.font = `800 40px ${signFont}`;
+  context.fillText(look?.mark ?? '', 108, middle + 3);
+  context.textAlign = 'left';
+  context.fillStyle = person ? ink.text : ink.soft;
+  context.font = `700 42px ${signFont}`;
+  const name = person ? (person.me && person.name !== ownName ? `${nameOf(person)} · you` : nameOf(person)) : 'Free';
+  const taken = person !== null && (!person.bot || player === me);
+  context.fillText(name, 164, middle - 20, taken ? 520 : 500);
+  context.fillStyle = ink.soft;
+  context.font = `600 32px ${signFont}`;
+  const catches = catchesOf(state, player);
+  const role = roleTexts[station] ?? '';
+  const scored = state.phase === 'over' && state.players[player]?.role === 'thrower';
+  context.fillText(scored ? `${role}: ${catches} caught` : role, 164, middle + 26, 500);
+  if (!taken) return;
+  const here = person?.presence === 'here';
+  const ready = state.players[player]?.ready;
+  context.textAlign = 'right';
+  context.fillStyle = !here ? ink.warning : ready ? ink.good : ink.soft;
+  context.font = `700 38px ${signFont}`;
+  context.fillText(!here ? 'Away' : ready ? '✓ Ready' : 'Not ready', width - 80, middle + 2);
+}

@@ -1,0 +1,45 @@
+import { Group } from 'three';
+import { createWoodenBoard } from '../../scene/boards/wooden-board';
+import { disposeTree } from '../../scene/dispose-tree';
+import { createDrawnTexture } from '../../scene/drawn-texture';
+import type { Quality } from '../../scene/renderer';
+import { court } from '../court/court-plan';
+import { boardSize, paintBoard, type Standing } from './board-drawing';
+
+/**
+ * Two equal boards: one behind the holder, for the throwers, and one behind the throwers, for the holder; arena frame.
+ */
+export interface Boards {
+  readonly object: Group;
+  show(standing: Standing, line: string): void;
+  dispose(): void;
+}
+
+export function createBoards(quality: Quality): Boards {
+  const object = new Group();
+  object.name = 'boards';
+  const { texture, draw } = createDrawnTexture(boardSize.width, boardSize.height, quality);
+  for (const { z, turned, width, middle } of court.boards) {
+    const height = (width * boardSize.height) / boardSize.width;
+    const board = createWoodenBoard({ width, height, middle }, texture);
+    board.position.z = z;
+    board.rotation.y = turned;
+    object.add(board);
+  }
+  let shown = '';
+  return {
+    object,
+    show(standing, line) {
+      const { state, seconds } = standing;
+      const left = state.balls.map((place) => place.on + (place.on === 'air' && place.missed ? 'x' : ''));
+      const key = JSON.stringify([state.score, seconds, state.phase, state.end, state.options, left, line]);
+      if (key === shown) return;
+      shown = key;
+      draw((context) => paintBoard(context, standing, line));
+    },
+    dispose() {
+      object.removeFromParent();
+      disposeTree(object);
+    },
+  };
+}

@@ -1,0 +1,48 @@
+import { Group } from 'three';
+import { copyVec3, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { ink } from '../../scene/boards/lettering';
+import type { Quality } from '../../scene/renderer';
+import { RisingWord } from '../../scene/rising-word';
+
+const seconds = 1.3;
+const atOnce = 2;
+
+/** "+1" that rises from the basket for a moment at each catch; arena frame. */
+export class CatchPops {
+  readonly object = new Group();
+  readonly #catches: readonly { readonly word: RisingWord; readonly at: MutableVec3; from: number }[];
+  #next = 0;
+
+  constructor(quality: Quality) {
+    this.object.name = 'catches';
+    this.#catches = Array.from({ length: atOnce }, () => ({
+      word: new RisingWord({ quality, seconds, lift: 1.2 }),
+      at: vec3(0, 0, 0),
+      from: Number.NEGATIVE_INFINITY,
+    }));
+    for (const { word } of this.#catches) {
+      word.write('+1', ink.accent);
+      this.object.add(word.object);
+    }
+  }
+
+  /**
+   * Shows a catch at a position, at a time on the page's clock [s]: the clock of a match restarts with the next one.
+   */
+  add(at: Vec3, time: number): void {
+    const caught = this.#catches[this.#next % this.#catches.length]!;
+    this.#next += 1;
+    copyVec3(at, caught.at);
+    caught.from = time;
+  }
+
+  /** At a time of the page [s]. */
+  show(time: number, eyes: Vec3): void {
+    for (const { word, at, from } of this.#catches) word.show(at, time - from, eyes);
+  }
+
+  dispose(): void {
+    this.object.removeFromParent();
+    for (const { word } of this.#catches) word.dispose();
+  }
+}

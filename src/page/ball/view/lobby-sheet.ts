@@ -1,0 +1,56 @@
+import { Group } from 'three';
+import { createSheet, type Sheet, type SheetSize } from '../../scene/boards/sheet';
+import { disposeTree } from '../../scene/dispose-tree';
+import type { Quality } from '../../scene/renderer';
+import { type LobbyButton, lobbyButtons, lobbySize, paintLobby, type Standing } from './board-drawing';
+
+/** The sheet in front of the player before and after a match, floor frame of the user. */
+export interface LobbySheet extends Pick<Sheet<LobbyButton>, 'buttonAt' | 'setHovered'> {
+  readonly object: Group;
+  /** eyeHeight [m]: of the reader; `time` [s]: the page's. Hides itself during a match, and where `inRoom` is false. */
+  show(standing: Standing, eyeHeight: number, time: number, inRoom: boolean): void;
+  dispose(): void;
+}
+
+const size: SheetSize = { ...lobbySize, metres: 1.3 };
+
+export function createLobbySheet(quality: Quality): LobbySheet {
+  const object = new Group();
+  object.name = 'lobby';
+  object.position.z = -1.9;
+  const sheet = createSheet<LobbyButton>(size, quality);
+  object.add(sheet.mesh);
+  return {
+    object,
+    show(standing, eyeHeight, time, inRoom) {
+      const { state, people, me, rotate, acting } = standing;
+      object.position.y = Math.max(0.75, eyeHeight - 0.16);
+      if (state.phase === 'running' || !inRoom) return sheet.show(null, time);
+      const { phase, end, score, options, players } = state;
+      sheet.show(
+        {
+          key: JSON.stringify([
+            phase,
+            end,
+            score,
+            options,
+            players.map(({ ready, role }) => [ready, role]),
+            people,
+            me,
+            rotate,
+            acting,
+          ]),
+          buttons: lobbyButtons(standing),
+          paint: (context, hovered) => paintLobby(context, standing, hovered),
+        },
+        time,
+      );
+    },
+    buttonAt: sheet.buttonAt,
+    setHovered: sheet.setHovered,
+    dispose() {
+      object.removeFromParent();
+      disposeTree(object);
+    },
+  };
+}

@@ -1,0 +1,211 @@
+import type { BodySolver } from 'threepoint/api/body-solver';
+import { Holding } from 'threepoint/avatar/hands/holding';
+import type { HandGeometry } from 'threepoint/core/body/hand-geometry';
+import type { MutableHandShape } from 'threepoint/core/body/hand-shape';
+import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import type { Buttons } from 'threepoint/core/input/button-presses';
+import type { Pose } from 'threepoint/core/math/pose';
+import type { Side } from 'threepoint/core/math/side';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { Pulse } from 'threepoint/xr/haptics';
+import type { TaskPlace } from 'threepoint-study/participant/trial/task-runner';
+import type { Activity, OpenActivity, PlayerInput } from '../../activity/activity';
+import type { ActivityContext, ActivityServices, InputSource } from '../../activity/activity-context';
+import type { Recorder } from '../../studio/recorder';
+import { home } from '../activity-registry';
+import type { Shot, Stage } from '../stage';
+import type { PageStudy } from '../study/page-study';
+import { ActivityStaging, type StagingOptions } from './activity-staging';
+import { wakeSound } from './wake-sound';
+
+export interface ActivitiesOptions extends StagingOptions {
+  readonly activities: readonly Activity[];
+  readonly services: ActivityServices;
+  /** The seed of the first layout. */
+  readonly seed: number;
+  readonly stage: StagingOptions['stage'] & { readonly studio: Pick<Stage['studio'], 'setMarkVisible'> };
+  readonly recorder: Pick<Recorder, 'mode' | 'giveWay'>;
+  readonly body: Pick<BodySolver, 'calibration'>;
+  readonly study: Pick<PageStudy, 'idle' | 'runnerOf'>;
+  /** The user is somewhere else now: filters and clocks restart. */
+  onArrival(): void;
+}
+
+/** The activity that the user is in, and the way from one to another. Knows activities by their interface only. */
+export class Activities {
+  readonly #options: ActivitiesOptions;
+  readonly #holding = new Holding();
+  readonly #layout: { seed: number };
+  readonly #staging: ActivityStaging;
+  #name = home as string;
+  #current: OpenActivity | null = null;
+  #arriving = false;
+  /** The seat that a study assigned; null: none. */
+  #place: TaskPlace | null = null;
+  /** Cancels the wait for the user's first touch, which lets the browser play sound. */
+  #cancelSound: () => void = () => undefined;
+
+  constructor(options: ActivitiesOptions) {
+    this.#options = options;
+    this.#staging = new ActivityStaging(options);
+    this.#layout = { seed: options.seed };
+  }
+
+  get all(): readonly Activity[] {
+    return this.#options.activities;
+  }
+
+  /** The name of the current activity, or that of the mirror. */
+  get name(): string {
+    return this.#name;
+  }
+
+  /** null: the user is at the mirror. */
+  get current(): OpenActivity | null {
+    return this.#current;
+  }
+
+  /** An activity is loading. */
+  get arriving(): boolean {
+    return this.#arriving;
+  }
+
+  get inputSource(): InputSource {
+    const { recorder, services } = this.#options;
+    const { headset, settings } = services;
+    if (!headset.worn && recorder.mode === 'replaying') return 'recording';
+    if (headset.worn || !settings.actor) return 'headset';
+    return settings.mouse ? 'mouse' : 'actor';
+  }
+
+  /** Goes to an activity by its name. If it cannot be opened, the user sees a notice and is at the mirror. */
+  async goTo(name: string): Promise<void> {
+    if (this.#arriving || name === this.#name) return;
+    this.#leave();
+    const next = this.all.find((activity) => activity.name === name);
+    if (next) await this.#open(next);
+    this.#options.services.writer.change({ following: null });
+    this.#staging.arrange(this.#current, true);
+    this.#options.stage.studio.setMarkVisible(this.#current === null);
+    this.#options.services.onCaption('');
+    this.#options.onArrival();
+  }
+
+  /** Leaves the current activity and enters it again. */
+  async reopen(): Promise<void> {
+    const name = this.#name;
+    if (this.#arriving || name === home) return;
+    this.#leave();
+    await this.goTo(name);
+  }
+
+  /** Enters an activity at the place that a study assigned. Returns null if it could not be opened. */
+  async openAt(name: string, place: TaskPlace): Promise<OpenActivity | null> {
+    if (name === this.#name) await this.goTo(home);
+    this.#place = place;
+    await this.goTo(name);
+    return this.openedOf(name);
+  }
+
+  /** The activity of this name if the user is there, else null. */
+  openedOf(name: string): OpenActivity | null {
+    return name === this.#name ? this.#current : null;
+  }
+
+  setSound(on: boolean): void {
+    const { writer, notices } = this.#options.services;
+    writer.keep({ sound: on });
+    const sound = this.#current?.sound;
+    this.#cancelSound();
+    if (sound) this.#cancelSound = wakeSound(sound, on, notices);
+  }
+
+  /**
+   * Lets the mouse or the simulated player play while no headset is worn. Ends a replay, which would move the same
+   * body.
+   */
+  chooseInput(source: 'mouse' | 'actor'): void {
+    this.#options.recorder.giveWay();
+    this.#options.services.writer.change({ actor: true, mouse: source === 'mouse' });
+    this.#staging.arrange(this.#current);
+  }
+
+  sessionChanged(): void {
+    this.#current?.sessionChanged?.();
+    this.#staging.arrange(this.#current);
+  }
+
+  /** When the mirror is visible, if the user has not turned it off. */
+  get mirror(): Shot['mirror'] {
+    if (!this.#current) return 'unless-behind';
+    return this.#current.mirrorSide === null ? 'never' : 'always';
+  }
+
+  act(time: number): PlayerInput | null {
+    if (this.#options.study.idle) return null;
+    return this.#current?.act(time) ?? null;
+  }
+
+  /** Advances the activity by a tracked frame; returns haptic pulses. */
+  play(frame: TrackingFrame, buttons: Buttons): readonly Pulse[] {
+    const pulses = this.#current?.update(frame, buttons) ?? null;
+    if (pulses === null) return [];
+    this.#options.study.runnerOf(this.#name)?.played();
+    return pulses;
+  }
+
+  /**
+   * Closes a hand around the object that it holds. `hand`: the geometry of the avatar's hand; null: unknown. Returns
+   * false if it holds nothing.
+   */
+  grasp(side: Side, wrist: Pose<'floor'>, hand: HandGeometry | null, target: MutableHandShape): boolean {
+    this.#holding.fitTo(side, hand, this.#options.body.calibration.eyeHeight);
+    return this.#current?.grasp?.(side, wrist, this.#holding, target) ?? false;
+  }
+
+  /** Draws the newest frame of play. `frame`: null if the head is not tracked. */
+  show(time: number, frame: TrackingFrame | null): void {
+    this.#current?.show(time, frame);
+    this.#staging.arrange(this.#current);
+  }
+
+  async #open(activity: Activity): Promise<void> {
+    const { settings, notices, onChange } = this.#options.services;
+    this.#arriving = true;
+    onChange();
+    try {
+      this.#current = await activity.load(this.#context());
+      this.#name = activity.name;
+      const { sound } = this.#current;
+      if (sound) this.#cancelSound = wakeSound(sound, settings.sound, notices);
+    } catch (error) {
+      notices.show('error', `${activity.place} could not be opened: ${firstLine(reasonOf(error))}`);
+    }
+    this.#arriving = false;
+  }
+
+  #leave(): void {
+    // The next round has another layout.
+    if (this.#current) this.#layout.seed += 1;
+    this.#cancelSound();
+    this.#current?.dispose();
+    this.#current = null;
+    this.#name = home;
+  }
+
+  #context(): ActivityContext {
+    const inputSource = () => this.inputSource;
+    return {
+      ...this.#options.services,
+      layout: this.#layout,
+      place: this.#place,
+      get inputSource() {
+        return inputSource();
+      },
+      chooseInput: (source) => this.chooseInput(source),
+      setSound: (on) => this.setSound(on),
+      reopen: () => void this.reopen(),
+      placeCamera: () => this.#staging.arrange(this.#current, true),
+    };
+  }
+}

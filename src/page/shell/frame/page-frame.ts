@@ -1,0 +1,198 @@
+import type { BodySolver } from 'threepoint/api/body-solver';
+import { type MovingReplay, ReplayedBody } from 'threepoint/api/replayed-body';
+import { shapeOfButtons } from 'threepoint/avatar/hands/pressed-fingers';
+import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import { type HandShape, makeHandShape } from 'threepoint/core/body/hand-shape';
+import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import type { Side } from 'threepoint/core/math/side';
+import type { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { unjudgedSavings } from 'threepoint/xr/frame-rate';
+import type { Notices } from 'threepoint-ui/notices';
+import type { Recorder } from '../../studio/recorder';
+import type { Activities } from '../activities/activities';
+import type { Controls } from '../controls/controls';
+import type { FrameTiming } from '../frame-timing';
+import type { Headset } from '../headset';
+import type { PageMocap } from '../page-mocap';
+import type { PassthroughHost } from '../session/passthrough-host';
+import type { Settings } from '../settings';
+import type { ShownAvatar } from '../shown-avatar';
+import type { Shot, Stage } from '../stage';
+import type { PageStudy } from '../study/page-study';
+import type { DeviceDifference } from './device-difference';
+import type { FrameParts } from './frame-loop';
+import type { TrackingSource } from './tracking-source';
+
+export interface PageFrameOptions {
+  readonly settings: Pick<Settings, 'mirror' | 'beside'>;
+  readonly notices: Pick<Notices, 'show'>;
+  readonly timing: Pick<FrameTiming, 'lastMs'>;
+  readonly source: TrackingSource;
+  /** Between what is tracked and the body, where a study wants the body worse than it could be. */
+  readonly impaired: Pick<TrackingDegradation, 'apply' | 'reset'>;
+  readonly body: Pick<BodySolver, 'update' | 'warmUp' | 'pose' | 'estimator' | 'discontinuity' | 'calibration'>;
+  readonly recorder: Pick<Recorder, 'observe'> & MovingReplay;
+  readonly difference: Pick<DeviceDifference, 'observe'>;
+  readonly avatar: Pick<ShownAvatar, 'current'>;
+  readonly headset: Headset;
+  readonly activities: Activities;
+  readonly controls: Pick<Controls, 'observe' | 'point'>;
+  readonly study: Pick<PageStudy, 'run'>;
+  readonly stage: Pick<Stage, 'look' | 'draw' | 'vignette'>;
+  readonly mocap: Pick<PageMocap, 'frame' | 'aside'>;
+  readonly passthrough: Pick<PassthroughHost, 'update'>;
+}
+
+/** How far to the right of its user the avatar stands that is seen from beside [m]. */
+const besideDistance = 1.2;
+
+/** One frame of this page, part by part. */
+export class PageFrame implements FrameParts<XRFrame> {
+  readonly #options: PageFrameOptions;
+  readonly #replayed: ReplayedBody;
+  readonly #fingers: Record<Side, HandShape | null> = { left: null, right: null };
+  readonly #drawn: { -readonly [Key in keyof AvatarPose]?: AvatarPose[Key] } = { fingers: this.#fingers };
+  readonly #shapes = { left: makeHandShape(), right: makeHandShape() };
+  /** The newest tracked frame as the body has it. */
+  #embodied: TrackingFrame | null = null;
+  #count = 0;
+  #lastFault = '';
+  /** Callbacks that wait for the next picture. */
+  #waiting: (() => void)[] = [];
+
+  constructor(options: PageFrameOptions) {
+    this.#options = options;
+    this.#replayed = new ReplayedBody(options.body, options.recorder);
+  }
+
+  /** Frames drawn since the page opened. */
+  get count(): number {
+    return this.#count;
+  }
+
+  /**
+   * Resolves when the next picture has been drawn, in the window or in a session: while one lasts, headsets let their
+   * windows rest.
+   */
+  nextPicture(): Promise<void> {
+    return new Promise((resolve) => this.#waiting.push(resolve));
+  }
+
+  track(time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
+    const { source, study, headset, timing, passthrough } = this.#options;
+    // A study measures all of its rounds at one rate.
+    if (deviceFrame && !study.run) headset.observeFrame(time, timing.lastMs / 1000);
+    const frame = source.read(time, deviceFrame);
+    passthrough.update(deviceFrame, time);
+    return frame;
+  }
+
+  observe(frame: TrackingFrame): void {
+    const { recorder, controls, headset, activities, source, impaired } = this.#options;
+    recorder.observe(frame);
+    controls.observe(frame);
+    this.#embodied = impaired.apply(frame);
+    headset.buzz(activities.play(this.#embodied, source.buttons));
+  }
+
+  estimate(frame: TrackingFrame | null): AvatarPose | null {
+    const { source, impaired, headset, body } = this.#options;
+    if (!frame) impaired.reset();
+    const embodied = frame && this.#embodied;
+    if (!headset.worn) return this.#replayed.update(embodied, source.standIn);
+    this.#replayed.stop();
+    return body.update(embodied);
+  }
+
+  skin(pose: AvatarPose): void {
+    const { avatar, activities, mocap, difference, body } = this.#options;
+    const frame = this.#embodied;
+    if (!frame) return;
+    difference.observe(frame, pose, body.calibration);
+    this.#bendFingers('left', frame);
+    this.#bendFingers('right', frame);
+    avatar.current?.setMouth(activities.current?.mouth ?? 0);
+    avatar.current?.setPose(this.#withFingers(pose), frame.time);
+    activities.current?.send?.(frame, pose, this.#fingers);
+    mocap.frame(frame, pose);
+  }
+
+  render(time: number, frame: TrackingFrame | null): void {
+    const { study, stage, activities } = this.#options;
+    this.#count += 1;
+    if (this.#waiting.length > 0) for (const tell of this.#waiting.splice(0)) tell();
+    study.run?.frame(time, frame);
+    this.#point(frame);
+    this.#turn(time);
+    const shot = this.#shot(time, frame);
+    stage.look(shot);
+    activities.show(time, frame);
+    stage.draw(shot);
+  }
+
+  fail(error: unknown): void {
+    const text = firstLine(reasonOf(error));
+    if (text !== this.#lastFault) this.#options.notices.show('error', `A frame could not be drawn: ${text}`);
+    this.#lastFault = text;
+  }
+
+  /**
+   * What a hand holds closes it; else its fingers are as tracked, or as the buttons of a hand say whose fingers no
+   * device sees.
+   */
+  #bendFingers(side: Side, { fingers, leftHand, rightHand }: TrackingFrame): void {
+    const { activities, source, avatar } = this.#options;
+    const target = this.#shapes[side];
+    const wrist = side === 'left' ? leftHand : rightHand;
+    const hand = avatar.current?.handGeometry(side) ?? null;
+    const held = wrist && activities.grasp(side, wrist, hand, target) ? target : null;
+    const shape = held ?? (fingers ? fingers[side] : shapeOfButtons(source.buttons[side], target));
+    this.#fingers[side] = shape;
+  }
+
+  /** Returns the pose with the drawn fingers, in an object that the next frame overwrites. */
+  #withFingers({ head, leftHand, rightHand, body }: AvatarPose): AvatarPose {
+    const drawn = this.#drawn;
+    drawn.head = head;
+    drawn.leftHand = leftHand;
+    drawn.rightHand = rightHand;
+    drawn.body = body;
+    return drawn as AvatarPose;
+  }
+
+  /** Hands behind a menu of the device point at nothing. */
+  #point(frame: TrackingFrame | null): void {
+    const { headset, controls } = this.#options;
+    if (headset.visibility === 'visible') controls.point(frame);
+  }
+
+  #turn(time: number): void {
+    const { headset, stage, activities } = this.#options;
+    if (headset.commands?.mute.take()) activities.current?.toggleMuted?.();
+    // A room that is seen cannot be turned.
+    if (!headset.passthrough && headset.turnIfAsked()) stage.vignette.close(time);
+  }
+
+  #shot(time: number, frame: TrackingFrame | null): Shot {
+    const { avatar, headset, activities, mocap, settings, study } = this.#options;
+    const besideUser = settings.beside && headset.passthrough !== null && activities.current === null;
+    return {
+      time,
+      beside: besideUser ? besideDistance : 0,
+      aside: mocap.aside,
+      frame,
+      avatar: avatar.current,
+      inSession: headset.worn,
+      watched: activities.current?.watched ?? null,
+      mirror: this.#mirror(),
+      // All pictures of a study are alike.
+      savings: study.run ? unjudgedSavings : headset.savings,
+    };
+  }
+
+  #mirror(): Shot['mirror'] {
+    const { settings, activities } = this.#options;
+    return settings.mirror ? activities.mirror : 'never';
+  }
+}

@@ -1,0 +1,120 @@
+import type { BodySolver } from 'threepoint/api/body-solver';
+import type { Calibration } from 'threepoint/core/body/calibration';
+import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { TrackedSession } from 'threepoint/xr/tracked-session';
+import type { PlayerInput } from '../../activity/activity';
+import type { Actor } from '../../emulator/actor';
+import type { Recorder } from '../../studio/recorder';
+import type { Activities } from '../activities/activities';
+import type { Headset } from '../headset';
+import type { Settings } from '../settings';
+import type { PageStudy } from '../study/page-study';
+import type { Pointers } from './pointers';
+
+/** What is read of a session. */
+type SessionTracking = Pick<TrackedSession, 'read'> & { readonly inputs: Pick<TrackedSession['inputs'], 'buttons'> };
+
+export interface TrackingSourceOptions {
+  readonly settings: Pick<Settings, 'actor'>;
+  readonly headset: Pick<Headset, 'emulator'> & { readonly tracking: SessionTracking | null };
+  readonly recorder: Pick<Recorder, 'sample' | 'person' | 'giveWay'>;
+  readonly body: Pick<BodySolver, 'wearerCalibration'>;
+  readonly actor: Pick<Actor, 'frameAt' | 'standAt'>;
+  readonly activities: Pick<Activities, 'current' | 'act'>;
+  readonly study: Pick<PageStudy, 'idle'>;
+  readonly pointers: Pick<Pointers, 'follow' | 'steering'>;
+}
+
+/**
+ * Who moves the body: a session, a replay, a built-in player, the actor, or the emulator outside of a session; or no
+ * one.
+ */
+export class TrackingSource {
+  readonly #options: TrackingSourceOptions;
+  #buttons: Buttons = nothingPressed;
+  #newest: TrackingFrame | null = null;
+  /** A pointer steered the player in the last frame. */
+  #steered = false;
+
+  constructor(options: TrackingSourceOptions) {
+    this.#options = options;
+  }
+
+  /** What the hands of the newest frame press. */
+  get buttons(): Buttons {
+    return this.#buttons;
+  }
+
+  /**
+   * The measures of who moves the body where that is no wearer of a headset: of the person in a recording, else the
+   * user's. null: a wearer does.
+   */
+  get standIn(): Calibration | null {
+    const { headset, recorder, body } = this.#options;
+    return headset.tracking ? null : (recorder.person ?? body.wearerCalibration);
+  }
+
+  /** The newest tracked frame; null: none yet. */
+  get newest(): TrackingFrame | null {
+    return this.#newest;
+  }
+
+  /** Head and hands at this time [s], floor frame; null: the head is not seen. */
+  read(time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
+    this.#buttons = nothingPressed;
+    this.#options.activities.current?.begin?.(time);
+    const { tracking } = this.#options.headset;
+    const frame = tracking ? this.#readSession(tracking, time, deviceFrame) : this.#readDesktop(time);
+    this.#newest = frame ?? this.#newest;
+    return frame;
+  }
+
+  #readSession(tracking: SessionTracking, time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
+    const { headset, settings, study, recorder, pointers } = this.#options;
+    // A file may arrive in a session: the wearer's body neither follows its replay nor stands still with it.
+    recorder.giveWay();
+    if (headset.emulator && settings.actor && !study.idle) {
+      // What the actor does now is seen with the next frame: the device froze this one before it called.
+      const performed = this.#perform(time);
+      headset.emulator.drive(performed.frame, performed.buttons);
+    }
+    const tracked = deviceFrame ? tracking.read(deviceFrame, time) : null;
+    this.#buttons = tracking.inputs.buttons;
+    pointers.follow(time, tracked?.suspended ? null : (tracked?.head ?? null));
+    return tracked && this.#steer(tracked);
+  }
+
+  /** Gives the user the hands of a player that a pointer steers, where no hand is tracked. */
+  #steer(tracked: TrackingFrame): TrackingFrame {
+    const { pointers, activities } = this.#options;
+    const performed = pointers.steering && activities.act(tracked.time);
+    const changed = this.#steered !== Boolean(performed);
+    this.#steered = Boolean(performed);
+    // The move from one player's hands to the other's is no gesture.
+    const suspended = changed ? ({ suspended: true } as const) : {};
+    if (!performed) return changed ? { ...tracked, ...suspended } : tracked;
+    this.#buttons = performed.buttons;
+    const { leftHand, rightHand } = performed.frame;
+    const { fingers: _, ...seen } = tracked;
+    return { ...seen, leftHand, rightHand, ...suspended };
+  }
+
+  #readDesktop(time: number): TrackingFrame | null {
+    const { recorder, activities, settings, headset, actor } = this.#options;
+    const replayed = recorder.sample(time);
+    if (replayed) return replayed;
+    if (activities.current?.watched) return null;
+    // Before a real headset is put on, and while the emulated one loads, no one moves: the body stands there.
+    if (!settings.actor) return headset.emulator?.read(time) ?? actor.standAt(time);
+    const performed = this.#perform(time);
+    this.#buttons = performed.buttons;
+    return performed.frame;
+  }
+
+  /** Needs no person: the players built into the games, else the actor. */
+  #perform(time: number): PlayerInput {
+    const { activities, actor } = this.#options;
+    return activities.act(time) ?? { frame: actor.frameAt(time), buttons: nothingPressed };
+  }
+}

@@ -1,0 +1,33 @@
+import type { BodySolver } from 'threepoint/api/body-solver';
+import type { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
+import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
+import type { Embodiment } from 'threepoint-study/model/plan/embodiment';
+import type { SettingsWriter } from '../settings';
+import type { ShownAvatar } from '../shown-avatar';
+
+/** The parts of the page that a study's condition changes. */
+export interface EmbodyingParts {
+  readonly writer: Pick<SettingsWriter, 'change'>;
+  readonly avatar: Pick<ShownAvatar, 'openBuiltIn' | 'builtInBody'>;
+  readonly body: Pick<BodySolver, 'setEstimator' | 'estimator'>;
+  readonly impaired: Pick<TrackingDegradation, 'configure'>;
+}
+
+/**
+ * Gives the participant the body of a round for this visit; resolves when it is drawn. Rejects with a sentence where it
+ * cannot be. What the embodiment does not say stays, but for impairments: there are none then. `seed`: of what is
+ * random in them.
+ */
+export async function embody(parts: EmbodyingParts, embodiment: Embodiment, seed: number): Promise<void> {
+  const { writer, avatar, body, impaired } = parts;
+  const { estimator, avatar: builtInBody, mirror, upperBodyOnly, ...impairments } = embodiment;
+  writer.change({
+    ...(mirror !== undefined && { mirror }),
+    ...(upperBodyOnly !== undefined && { upperBodyOnly }),
+    ...(builtInBody !== undefined && { builtInBody }),
+  });
+  impaired.configure(impairments, seed);
+  const wears = builtInBody === undefined || builtInBody === avatar.builtInBody || avatar.openBuiltIn();
+  const [worn] = await Promise.all([wears, body.setEstimator(estimator)]);
+  if (!worn || body.estimator !== estimator) throw new PhrasedError('round.body');
+}

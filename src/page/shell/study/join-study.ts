@@ -1,0 +1,79 @@
+import type { BodySolver } from 'threepoint/api/body-solver';
+import type { ActivityRunner } from '../../activity/activity';
+import type { Activities } from '../activities/activities';
+import { home } from '../activity-registry';
+import type { FrameTiming } from '../frame-timing';
+import type { Headset } from '../headset';
+import type { Settings, SettingsWriter } from '../settings';
+import type { Switches } from '../switches';
+import type { UserCalibration } from '../user-calibration';
+import { type EmbodyingParts, embody } from './embody';
+import type { JoinedStudy } from './page-study';
+
+/** Characters of the device's name that a record keeps. */
+const longestDeviceName = 160;
+
+export interface JoinStudyOptions extends EmbodyingParts {
+  readonly asked: NonNullable<Switches['study']>;
+  readonly switches: Pick<Switches, 'actor'>;
+  readonly settings: Settings;
+  readonly writer: SettingsWriter;
+  readonly headset: Headset;
+  readonly activities: Activities;
+  readonly timing: FrameTiming;
+  readonly body: EmbodyingParts['body'] & Pick<BodySolver, 'wearerCalibration'>;
+  readonly userCalibration: Pick<UserCalibration, 'calibrate' | 'forget'>;
+}
+
+/** Makes the tasks that studies run, by the names of their activities. */
+export async function createRunners({
+  activities,
+  settings,
+  writer,
+}: Pick<JoinStudyOptions, 'activities' | 'settings' | 'writer'>): Promise<JoinedStudy['runners']> {
+  const runners: Record<string, ActivityRunner> = {};
+  for (const { name, createRunner } of activities.all) {
+    const runner = await createRunner?.({
+      settings,
+      writer,
+      opened: () => activities.openedOf(name),
+      open: (place) => activities.openAt(name, place),
+      leave: () => void activities.goTo(home),
+    });
+    if (runner) runners[name] = runner;
+  }
+  return runners;
+}
+
+/** Joins a study, which decides from then on what is played and with which body. */
+export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy> {
+  const { asked, switches, settings, writer, headset, timing, body, userCalibration } = options;
+  const { createStudyRun } = await import('threepoint-study/participant/study-run');
+  writer.change({ startSignal: true });
+  const runners = await createRunners(options);
+  const run = createStudyRun(asked, {
+    runners,
+    enterVr: () => headset.enter(),
+    inSession: () => headset.worn,
+    deviceFault: () => headset.fault,
+    room: () => headset.room,
+    calibration: () => body.wearerCalibration,
+    setCalibration(calibration) {
+      if (calibration) userCalibration.calibrate(calibration, 'measured');
+      else userCalibration.forget();
+    },
+    embody: (embodiment, seed) => embody(options, embodiment, seed),
+    estimator: () => body.estimator,
+    setActor(on) {
+      writer.change({ actor: on && switches.actor });
+    },
+    setBowSide: (bowSide) => writer.change({ bowSide }),
+    device: () => ({
+      name: `${headset.emulator ? 'emulated headset in ' : ''}${navigator.userAgent}`.slice(0, longestDeviceName),
+      refreshRateHz: headset.rateHz,
+      input: settings.actor ? 'simulated' : headset.emulator ? 'emulated' : (headset.input ?? 'controllers'),
+    }),
+    listenToFrames: timing.listen,
+  });
+  return { run, runners };
+}
