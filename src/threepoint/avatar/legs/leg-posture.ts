@@ -1,8 +1,8 @@
 import type { TrackedFeet } from '../../core/body/avatar-pose';
 import { sideSign } from '../../core/body/skeleton';
 import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../../core/body/two-bone-ik';
-import { Gait } from '../../core/estimation/gait';
-import { type GaitPoints, yawOfHips } from '../../core/estimation/gait-features';
+import { Gait } from '../../core/estimation/gait/gait';
+import { type GaitPoints, yawOfHips } from '../../core/estimation/gait/gait-features';
 import { followPin, handOverSeconds, makePin, type Pin } from '../../core/estimation/pin';
 import { wrapAngle } from '../../core/math/angle';
 import { makePose } from '../../core/math/pose';

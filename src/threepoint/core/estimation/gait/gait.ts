@@ -1,9 +1,9 @@
-import type { Pose } from '../math/pose';
-import type { Side } from '../math/side';
+import type { Pose } from '../../math/pose';
+import type { Side } from '../../math/side';
 import { GaitFeatures, type GaitPoints, gaitFeatureCount, yawOfHips } from './gait-features';
 import shipped from './gait-network.json';
-import type { Tensor } from './model-weights';
-import { Perceptron } from './perceptron';
+import type { Tensor } from '../networks/model-weights';
+import { Perceptron } from '../networks/perceptron';
 
 /**
  * The contents of a file of gait weights: its training data, and each tensor's shape and numbers
