@@ -38,7 +38,7 @@ import {
   vec3,
 } from '../../core/math/vec3';
 import { yawOf } from '../../core/tracking/heading';
-import { createStepping, type Foot, type Stepping } from './stepping';
+import { type Foot, Stepping } from './stepping';
 
 /** The proportions of the legs of a body that stands facing −Z [m]. */
 export interface LegProportions {
@@ -128,6 +128,7 @@ export class LegPosture {
   private readonly pins: Readonly<Record<Side, Pin>> = { left: makePin(), right: makePin() };
   /** False before the first frame, in which a tracked foot is where its tracker is. */
   private known = false;
+  private readonly stepping = new Stepping();
   private readonly stance = { ankleHeight: 0, legLength: 0 };
   private readonly lastHips = vec3(0, 0, 0);
   private lastHipsYaw = 0;
@@ -139,7 +140,6 @@ export class LegPosture {
     private proportions: LegProportions,
     private eyeHeight: number,
     private readonly gait: Gait = new Gait(),
-    private readonly stepping: Stepping = createStepping(),
   ) {
     this.legs = this.own;
   }
