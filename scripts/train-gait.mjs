@@ -1,7 +1,7 @@
 // npm run train:gait -- --mocap DIR [--skeleton MAP.json] [--people 001,002] [--steps N] [--seed N]: trains the network
 // that predicts footsteps. Python prepares the motion, the page's own code computes the inputs, Python trains. It
 // trains without each of four groups of people (.cache/gait, for npm run report -- --legs), then on all people
-// (src/threepoint/core/estimation/gait-network.json).
+// (src/threepoint/core/estimation/gait/gait-network.json).
 import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';

@@ -1,4 +1,4 @@
-import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
 import { vec3 } from 'threepoint/core/math/vec3';
 import { deviceJoint } from 'threepoint/core/tracking/device-body';
 import type { Recording } from 'threepoint/core/tracking/recording';

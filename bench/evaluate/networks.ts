@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { needsRegressor } from 'threepoint/core/estimation/estimators';
-import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
 import { startRegressor } from 'threepoint/onnx/load-regressor';
 import { parseContract } from 'threepoint/onnx/model-contract';
 import { type MeasuredMethod, measuredMethods } from './drive';

@@ -1,5 +1,5 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
-import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
 import { nextRandom } from 'threepoint/core/math/random';
 import { vec3 } from 'threepoint/core/math/vec3';
 import {

@@ -1,6 +1,6 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { estimatedJoints } from 'threepoint/core/body/joints';
-import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
 import { angleBetween } from 'threepoint/core/math/quat';
 import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { createDriver, type MeasuredMethod } from './drive';

@@ -3,7 +3,7 @@
 import { createAfterFrame } from 'threepoint/api/after-frame';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createWithNetwork } from 'threepoint/core/estimation/estimators';
-import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { NetworkCost, NetworkWay } from '../networks';
 

@@ -1,5 +1,5 @@
 import { type LegPose, LegPosture } from 'threepoint/avatar/legs/leg-posture';
-import type { GaitPoints } from 'threepoint/core/estimation/gait-features';
+import type { GaitPoints } from 'threepoint/core/estimation/gait/gait-features';
 import { rotate } from 'threepoint/core/math/quat';
 import { add, vec3 } from 'threepoint/core/math/vec3';
 import { expect, test } from 'vitest';

@@ -3,7 +3,7 @@ import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { jointNames } from 'threepoint/core/body/joints';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
-import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { expect, test } from 'vitest';
 import { show } from '../threepoint/core/estimation/drawn';

@@ -1,6 +1,6 @@
 """The newest frame in the frame of IK's chest, where an arm looks the same however its body turns and leans.
 
-The twin of src/threepoint/core/estimation/chest-features.ts.
+The twin of src/threepoint/core/estimation/networks/chest-features.ts.
 """
 
 import numpy as np

@@ -1,6 +1,6 @@
 """Torso and arm fitting as a layer that gradients pass: where joints come to lie on bones of constant length.
 
-The twin of src/threepoint/core/estimation/fit-torso.ts and fit-arms.ts for a frame that none came before. All in the
+The twin of src/threepoint/core/estimation/trunk/fit-torso.ts and fit-arms.ts for a frame that none came before. All in the
 frame of IK's chest, in eye heights, from the headset. What is left out moves no estimated joint of a person who stands
 or sits: the floor under hips, and the rotations of vertebrae, forearms and hands.
 """

@@ -1,4 +1,4 @@
-"""The input of the paper's network; the twin of src/threepoint/core/estimation/paper-features.ts."""
+"""The input of the paper's network; the twin of src/threepoint/core/estimation/networks/paper-features.ts."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -1,4 +1,4 @@
-"""The learned network's input and target; the twin of src/threepoint/core/estimation/residual.ts."""
+"""The learned network's input and target; the twin of src/threepoint/core/estimation/methods/residual.ts."""
 
 import numpy as np
 from numpy.typing import NDArray

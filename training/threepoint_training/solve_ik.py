@@ -1,5 +1,5 @@
 """Inverse kinematics as docs/estimation.md states it, vectorised over frames; the twin of
-src/threepoint/core/estimation/solve-ik.ts.
+src/threepoint/core/estimation/ik/solve-ik.ts.
 """
 
 import json
@@ -17,7 +17,7 @@ from .skeleton import Body
 
 Array = NDArray[np.float64]
 
-PARAMETERS_FILE = Path(__file__).parents[2] / "src/threepoint/core/estimation/ik-parameters.json"
+PARAMETERS_FILE = Path(__file__).parents[2] / "src/threepoint/core/estimation/ik/ik-parameters.json"
 
 
 def load_parameters() -> dict[str, Any]:

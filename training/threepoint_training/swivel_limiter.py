@@ -1,4 +1,4 @@
-"""Keeps elbows out of the trunk: the twin of src/threepoint/core/estimation/swivel-limiter.ts for one frame without a
+"""Keeps elbows out of the trunk: the twin of src/threepoint/core/estimation/arms/swivel-limiter.ts for one frame without a
 frame before it.
 
 Vectorised over bodies [N] and their two arms; any frame and unit of length that the trunk shares. No gradients go

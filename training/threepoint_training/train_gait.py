@@ -37,7 +37,7 @@ class GaitConfig:
     """
 
     frames: Path
-    out: Path = REPOSITORY / "src/threepoint/core/estimation/gait-network.json"
+    out: Path = REPOSITORY / "src/threepoint/core/estimation/gait/gait-network.json"
     held_out: Path | None = None
     groups: int = 4
     steps: int = 2000

@@ -1,5 +1,5 @@
 import type { LegPose, LegPosture, LegProportions } from 'threepoint/avatar/legs/leg-posture';
-import type { GaitPoints } from 'threepoint/core/estimation/gait-features';
+import type { GaitPoints } from 'threepoint/core/estimation/gait/gait-features';
 import { rotate } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { add, copyVec3, distance, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';

@@ -3,7 +3,7 @@ import { join } from 'node:path';
 import { parseArgs } from 'node:util';
 import { LegPosture } from 'threepoint/avatar/legs/leg-posture';
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import { Gait, type GaitNetwork, shippedGait } from 'threepoint/core/estimation/gait';
+import { Gait, type GaitNetwork, shippedGait } from 'threepoint/core/estimation/gait/gait';
 import { mannequinLegs } from '../leg-proportions';
 import { loadRegressors } from '../networks';
 import { readIndex } from '../recordings';

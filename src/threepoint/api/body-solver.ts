@@ -1,8 +1,8 @@
 import type { AvatarPose } from '../core/body/avatar-pose';
 import { type Calibration, defaultCalibration, demandPerson, sameCalibration } from '../core/body/calibration';
 import { createEstimator, type NetworkName } from '../core/estimation/estimators';
+import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import type { EstimatorName, InferenceRequest } from '../core/estimation/pose-estimator';
-import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { type TrackedPoint, TrackingValidator, validFrames } from '../core/tracking/tracking-validator';

@@ -1,6 +1,6 @@
 import type { NetworkName } from '../core/estimation/estimators';
+import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
-import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import { BodySolver, type BodySolverOptions } from './body-solver';
 import { learnedAlone } from './load-learned';
 

@@ -1,8 +1,8 @@
 import { type Calibration, demandPerson } from '../core/body/calibration';
 import * as bodies from '../core/body/skeleton';
 import * as estimators from '../core/estimation/estimators';
+import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import type { EstimatorName, PoseEstimator } from '../core/estimation/pose-estimator';
-import type { PoseRegressor } from '../core/estimation/pose-regressor';
 
 // The functions of core that a page calls with measures of its own: measures in centimetres would give a giant.
 

@@ -2,8 +2,8 @@ import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
 import { reasonOf } from '../core/errors/reasons';
 import { type NetworkName, needsRegressor, networkOf } from '../core/estimation/estimators';
+import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import type { EstimatorName, PoseEstimator } from '../core/estimation/pose-estimator';
-import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 
 export interface EstimatorChoiceOptions {

@@ -1,4 +1,4 @@
-import type { PoseRegressor } from '../core/estimation/pose-regressor';
+import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 
 /**
  * Measures what a body does on this thread after a frame. Each part is the time since the mark before it, or since

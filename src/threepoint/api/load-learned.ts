@@ -1,7 +1,7 @@
 import contract from '../../../public/models/learned.json';
 import type { NetworkName } from '../core/estimation/estimators';
-import { createPlainRegressor, weightsOf } from '../core/estimation/learned-network';
-import type { ModelContract, PoseRegressor } from '../core/estimation/pose-regressor';
+import { createPlainRegressor, weightsOf } from '../core/estimation/networks/learned-network';
+import type { ModelContract, PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import { demandOptions } from './demand-options';
 import { readOwnWeights } from './own-weights';
 

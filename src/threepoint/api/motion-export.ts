@@ -1,7 +1,7 @@
 import { type Calibration, demandPerson, provisionalCalibration } from '../core/body/calibration';
 import { createEstimator, type NetworkName, networkOf } from '../core/estimation/estimators';
+import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
-import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import type { Motion } from '../core/motion/motion';
 import { estimateMotion } from '../core/motion/take-motion';
 import { scaleProgressAsync, type Work } from '../core/motion/work';

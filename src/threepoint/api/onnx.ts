@@ -1,6 +1,6 @@
 // "threepoint/onnx": the networks by onnxruntime-web, on WebAssembly or WebGPU, in a worker where one is given.
 import type { NetworkName } from '../core/estimation/estimators';
-import type { PoseRegressor } from '../core/estimation/pose-regressor';
+import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import { loadRegressor } from '../onnx/load-regressor';
 import type { ExecutionProvider, WasmPaths } from '../onnx/session';
 import { demandOptions, optionNames } from './demand-options';

@@ -1,5 +1,5 @@
-import { createPlainRegressor, weightsOf } from '../core/estimation/learned-network';
-import type { PoseRegressor } from '../core/estimation/pose-regressor';
+import { createPlainRegressor, weightsOf } from '../core/estimation/networks/learned-network';
+import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import { fetchContract, fetchStated, named } from './model-files';
 
 export interface PlainLoadOptions {

@@ -1,5 +1,5 @@
 import { reasonOf } from '../core/errors/reasons';
-import type { ModelContract, PoseRegressor } from '../core/estimation/pose-regressor';
+import type { ModelContract, PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import { outputNumbers, tensorsOf } from './model-contract';
 import { fetchContract, fetchStated, named } from './model-files';
 import {

@@ -1,7 +1,7 @@
 import * as v from 'valibot';
 import { reasonOf } from '../core/errors/reasons';
-import type { ModelContract } from '../core/estimation/pose-regressor';
-import { learnedInputCount } from '../core/estimation/residual';
+import { learnedInputCount } from '../core/estimation/methods/residual';
+import type { ModelContract } from '../core/estimation/networks/pose-regressor';
 import type { ModelTensors } from './session';
 
 const statedFile = {

@@ -1,5 +1,5 @@
 import { reasonOf } from '../core/errors/reasons';
-import type { ModelContract } from '../core/estimation/pose-regressor';
+import type { ModelContract } from '../core/estimation/networks/pose-regressor';
 import { parseContract } from './model-contract';
 
 /** The entry of a contract for a file beside it. */

@@ -1,5 +1,5 @@
 import { reasonOf } from '../core/errors/reasons';
-import type { ModelContract, PoseRegressor } from '../core/estimation/pose-regressor';
+import type { ModelContract, PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import { named } from './model-files';
 import type { InferenceSession } from './session';
 

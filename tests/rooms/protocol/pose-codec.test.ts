@@ -5,7 +5,7 @@ import { flatHand, relaxedHand, unknownFingers } from 'threepoint/core/body/hand
 import { jointNames, parentOf } from 'threepoint/core/body/joints';
 import { skeletonFromCalibration, wristFromHandBone } from 'threepoint/core/body/skeleton';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
-import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
 import { angleBetween, identity, multiply } from 'threepoint/core/math/quat';
 import { nextRandom } from 'threepoint/core/math/random';
 import { distance, vec3 } from 'threepoint/core/math/vec3';

@@ -1,5 +1,5 @@
 import { Body } from 'threepoint/api/body';
-import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
 import { describe, expect, test, vi } from 'vitest';
 import { openPlainModel } from '../core/estimation/shipped-models';
 import { at, calibration, observed } from './observed-body';

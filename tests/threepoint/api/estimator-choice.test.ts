@@ -1,8 +1,8 @@
 import { EstimatorChoice } from 'threepoint/api/estimator-choice';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createEstimator, networkOf } from 'threepoint/core/estimation/estimators';
+import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
 import { type EstimatorName, estimatorNames, type PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
-import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
 import { describe, expect, test } from 'vitest';
 import { openPlainModel } from '../core/estimation/shipped-models';
 

@@ -4,7 +4,7 @@ import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { closedHand } from 'threepoint/core/body/hand-shape';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { createEstimator, needsRegressor } from 'threepoint/core/estimation/estimators';
-import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
 import { distance } from 'threepoint/core/math/vec3';
 import { makeJointPoses } from 'threepoint/core/motion/file-motion';
 import { poseBvh, readBvh } from 'threepoint/core/motion/read-bvh';

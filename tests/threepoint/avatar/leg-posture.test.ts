@@ -1,5 +1,5 @@
 import { LegPosture } from 'threepoint/avatar/legs/leg-posture';
-import type { GaitPoints } from 'threepoint/core/estimation/gait-features';
+import type { GaitPoints } from 'threepoint/core/estimation/gait/gait-features';
 import { wrapAngle } from 'threepoint/core/math/angle';
 import { fromAxisAngle, multiply, rotate } from 'threepoint/core/math/quat';
 import { add, distance, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';

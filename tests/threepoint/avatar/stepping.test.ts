@@ -1,10 +1,11 @@
-import { createStepping, type Feet, type FootGoal, type Stance } from 'threepoint/avatar/legs/stepping';
+import { type Feet, type Stance, Stepping } from 'threepoint/avatar/legs/stepping';
+import type { ExpectedFoot } from 'threepoint/core/estimation/gait/gait';
 import type { Side } from 'threepoint/core/math/side';
 import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
 
 const stance: Stance = { ankleHeight: 0.08, legLength: 0.85 };
-type Goals = Record<Side, FootGoal>;
+type Goals = Record<Side, ExpectedFoot>;
 
 /** Feet beside a place, both standing. */
 const beside = (x: number, z: number, yaw = 0): Goals => ({
@@ -17,7 +18,7 @@ const beside = (x: number, z: number, yaw = 0): Goals => ({
  * as the walker.
  */
 function walking(time: number): Goals {
-  const foot = (x: number, phase: number): FootGoal => {
+  const foot = (x: number, phase: number): ExpectedFoot => {
     const cycle = time + phase;
     const share = cycle - Math.floor(cycle);
     const way = (Math.floor(cycle) + Math.min(1, Math.max(0, 2 * share - 1)) - phase) * 1.1;
@@ -33,7 +34,7 @@ function step(
   rateHz: number,
   look: (feet: Feet, time: number) => void,
 ) {
-  const stepping = createStepping();
+  const stepping = new Stepping();
   for (let frame = 0; frame <= seconds * rateHz; frame++) {
     const time = frame / rateHz;
     // A copy: the feet are the same object in every frame.
@@ -143,7 +144,7 @@ describe('feet', () => {
   });
 
   test('stand where they are expected after a reset', () => {
-    const stepping = createStepping();
+    const stepping = new Stepping();
     stepping.update(beside(0, 0), stance, 1 / 60);
     stepping.reset();
     const places: Vec3[] = [stepping.update(beside(3, 2), stance, 1 / 60).left.position];

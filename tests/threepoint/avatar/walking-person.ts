@@ -1,5 +1,5 @@
 import type { LegProportions } from 'threepoint/avatar/legs/leg-posture';
-import type { GaitPoints } from 'threepoint/core/estimation/gait-features';
+import type { GaitPoints } from 'threepoint/core/estimation/gait/gait-features';
 import { fromAxisAngle, identity } from 'threepoint/core/math/quat';
 import { up, vec3 } from 'threepoint/core/math/vec3';
 

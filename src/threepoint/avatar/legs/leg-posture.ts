@@ -1,8 +1,8 @@
 import type { TrackedFeet } from '../../core/body/avatar-pose';
 import { sideSign } from '../../core/body/skeleton';
 import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../../core/body/two-bone-ik';
-import { Gait } from '../../core/estimation/gait';
-import { type GaitPoints, yawOfHips } from '../../core/estimation/gait-features';
+import { Gait } from '../../core/estimation/gait/gait';
+import { type GaitPoints, yawOfHips } from '../../core/estimation/gait/gait-features';
 import { followPin, handOverSeconds, makePin, type Pin } from '../../core/estimation/pin';
 import { wrapAngle } from '../../core/math/angle';
 import { makePose } from '../../core/math/pose';
@@ -38,7 +38,7 @@ import {
   vec3,
 } from '../../core/math/vec3';
 import { yawOf } from '../../core/tracking/heading';
-import { createStepping, type Foot, type Stepping } from './stepping';
+import { type Foot, Stepping } from './stepping';
 
 /** The proportions of the legs of a body that stands facing −Z [m]. */
 export interface LegProportions {
@@ -128,6 +128,7 @@ export class LegPosture {
   private readonly pins: Readonly<Record<Side, Pin>> = { left: makePin(), right: makePin() };
   /** False before the first frame, in which a tracked foot is where its tracker is. */
   private known = false;
+  private readonly stepping = new Stepping();
   private readonly stance = { ankleHeight: 0, legLength: 0 };
   private readonly lastHips = vec3(0, 0, 0);
   private lastHipsYaw = 0;
@@ -139,7 +140,6 @@ export class LegPosture {
     private proportions: LegProportions,
     private eyeHeight: number,
     private readonly gait: Gait = new Gait(),
-    private readonly stepping: Stepping = createStepping(),
   ) {
     this.legs = this.own;
   }

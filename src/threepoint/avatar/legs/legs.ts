@@ -1,5 +1,5 @@
 import type { TrackedFeet } from '../../core/body/avatar-pose';
-import type { GaitPoints } from '../../core/estimation/gait-features';
+import type { GaitPoints } from '../../core/estimation/gait/gait-features';
 import { type Side, sides } from '../../core/math/side';
 import { vec3 } from '../../core/math/vec3';
 import type { AvatarJoint, Rig } from '../rig/rig';

@@ -1,5 +1,7 @@
+import type { ExpectedFoot } from '../../core/estimation/gait/gait';
 import { wrapAngle } from '../../core/math/angle';
 import { clamp, damp, smoothingFactor } from '../../core/math/damper';
+import type { Mutable } from '../../core/math/mutable';
 import type { Side } from '../../core/math/side';
 import { type MutableVec3, setVec3, type Vec3, vec3 } from '../../core/math/vec3';
 
@@ -14,16 +16,7 @@ export interface Foot {
   readonly planted: boolean;
 }
 
-/**
- * The expected foot, on average (`Gait`): place on the floor [m], yaw of the toes [rad], probability of standing [0,
- * 1].
- */
-export interface FootGoal {
-  readonly x: number;
-  readonly z: number;
-  readonly yaw: number;
-  readonly standing: number;
-}
+export type Feet = Readonly<Record<Side, Foot>>;
 
 /** Measures of the legs [m]. */
 export interface Stance {
@@ -31,16 +24,8 @@ export interface Stance {
   readonly legLength: number;
 }
 
-export interface Feet {
-  readonly left: Foot;
-  readonly right: Foot;
-}
-
-interface FootState {
+interface FootState extends Mutable<Foot> {
   readonly position: MutableVec3;
-  yaw: number;
-  pitch: number;
-  planted: boolean;
   /** The height of the sole [m]. */
   height: number;
   /** The smoothed probability of standing. */
@@ -55,56 +40,31 @@ interface FootState {
   velocityZ: number;
 }
 
-export interface Stepping {
-  /** Advances the feet by `deltaSeconds` with these goals; returns the same object in every frame. */
-  update(goals: Readonly<Record<Side, FootGoal>>, stance: Stance, deltaSeconds: number): Feet;
-  /** Moves the feet to their goals in the next frame. */
-  reset(): void;
-}
-
-/** The parameters of a step. Half-lives and durations in seconds. */
-export interface SteppingParameters {
-  /** The probability of standing below which a foot is lifted, and above which it is put down. */
-  readonly liftBelow: number;
-  readonly plantAbove: number;
-  /** The shortest time of a foot in the air, or on the floor. */
-  readonly shortestSwing: number;
-  readonly shortestStance: number;
-  /** The longest time of a foot in the air: with arms held high the estimate is a jump that never ends. */
-  readonly longestSwing: number;
-  /** The distance of a goal [leg lengths] below which a foot takes no step. */
-  readonly leastWay: number;
-  /**
-   * The distance of a goal [leg lengths], or its turn [rad], beyond which a foot is left behind, and the duration of
-   * its step.
-   */
-  readonly farthest: number;
-  readonly turnLimit: number;
-  readonly ownStep: number;
-  /** The time ahead at which a foot in the air aims for its goal. */
-  readonly lead: number;
-  readonly followHalfLife: number;
-  readonly standingHalfLife: number;
-  /** The largest lift of the sole [leg lengths]. */
-  readonly liftShare: number;
-}
-
-/** The parameters found by coordinate descent on 26 people that the gait network was not trained on. */
-export const standardStepping: SteppingParameters = {
-  liftBelow: 0.52,
-  plantAbove: 0.58,
-  shortestSwing: 0.11,
-  shortestStance: 0.04,
-  longestSwing: 0.8,
-  leastWay: 0.05,
-  farthest: 0.42,
-  turnLimit: 0.8,
-  ownStep: 0.22,
-  lead: 0.1,
-  followHalfLife: 0.06,
-  standingHalfLife: 0.01,
-  liftShare: 0.09,
-};
+// The parameters of a step, found by coordinate descent on 26 people that the gait network was not trained on. Half-lives
+// and durations in seconds.
+/** The probability of standing below which a foot is lifted, and above which it is put down. */
+const liftBelow = 0.52;
+const plantAbove = 0.58;
+/** The shortest time of a foot in the air, or on the floor. */
+const shortestSwing = 0.11;
+const shortestStance = 0.04;
+/** The longest time of a foot in the air: with arms held high the estimate is a jump that never ends. */
+const longestSwing = 0.8;
+/** The distance of a goal [leg lengths] below which a foot takes no step. */
+const leastWay = 0.05;
+/**
+ * The distance of a goal [leg lengths], or its turn [rad], beyond which a foot is left behind, and the duration of its
+ * step.
+ */
+const farthest = 0.42;
+const turnLimit = 0.8;
+const ownStep = 0.22;
+/** The time ahead at which a foot in the air aims for its goal. */
+const lead = 0.1;
+const followHalfLife = 0.06;
+const standingHalfLife = 0.01;
+/** The largest lift of the sole [leg lengths]. */
+const liftShare = 0.09;
 
 /** The time [s] in which a lifted foot reaches its full speed. */
 const takeOff = 0.12;
@@ -138,86 +98,82 @@ const makeFoot = (): FootState => ({
  * Feet stand where they were put until they are expected to lift, or are left behind; in the air they follow their
  * goals.
  */
-class TwoFeet implements Stepping {
+export class Stepping {
   private readonly feet: Readonly<Record<Side, FootState>> = { left: makeFoot(), right: makeFoot() };
   private standing = false;
 
-  constructor(private readonly parameters: SteppingParameters) {}
-
-  update(goals: Readonly<Record<Side, FootGoal>>, stance: Stance, deltaSeconds: number): Feet {
+  /** Advances the feet by `deltaSeconds` with these goals; returns the same object in every frame. */
+  update(goals: Readonly<Record<Side, ExpectedFoot>>, stance: Stance, deltaSeconds: number): Feet {
     const { feet } = this;
     if (!this.standing) {
       plant(feet.left, goals.left, stance);
       plant(feet.right, goals.right, stance);
       this.standing = true;
     }
-    this.advance(feet.left, goals.left, stance, deltaSeconds);
-    this.advance(feet.right, goals.right, stance, deltaSeconds);
+    advance(feet.left, goals.left, stance, deltaSeconds);
+    advance(feet.right, goals.right, stance, deltaSeconds);
     return feet;
   }
 
+  /** Moves the feet to their goals in the next frame. */
   reset(): void {
     this.standing = false;
   }
-
-  private advance(foot: FootState, goal: FootGoal, stance: Stance, deltaSeconds: number): void {
-    if (deltaSeconds <= 0) return;
-    followGoal(foot, goal, this.parameters, deltaSeconds);
-    if (foot.planted) this.liftWhereDue(foot, goal, stance);
-    else this.plantWhereDue(foot);
-    const before = foot.height;
-    foot.height = damp(before, foot.planted ? 0 : this.liftOf(foot, stance), liftHalfLife, deltaSeconds);
-    if (!foot.planted) this.swing(foot, goal, deltaSeconds);
-    foot.position.y = stance.ankleHeight + foot.height;
-    // Toes hang while the foot rises and are drawn up before it lands.
-    const tilt = clamp((foot.height - before) / deltaSeconds, -0.4, 0.8) * 0.6;
-    const free = (0.5 * foot.height) / (ballAhead * stance.ankleHeight);
-    foot.pitch = Math.min(damp(foot.pitch, clamp(tilt, -mostTilt, mostTilt), velocityHalfLife, deltaSeconds), free);
-    if (foot.planted) foot.pitch = Math.max(foot.pitch, -free);
-  }
-
-  private liftWhereDue(foot: FootState, goal: FootGoal, { legLength }: Stance): void {
-    const { liftBelow, shortestStance, leastWay, farthest, turnLimit } = this.parameters;
-    const x = goal.x - foot.position.x;
-    const z = goal.z - foot.position.z;
-    const way = Math.sqrt(x * x + z * z) / legLength;
-    const lifts = foot.standing < liftBelow && foot.seconds > shortestStance && way > leastWay;
-    const far = way > farthest || Math.abs(wrapAngle(goal.yaw - foot.yaw)) > turnLimit;
-    if (!lifts && !far) return;
-    foot.planted = false;
-    foot.leftBehind = !lifts;
-    foot.seconds = 0;
-  }
-
-  private plantWhereDue(foot: FootState): void {
-    const { plantAbove, shortestSwing, longestSwing, ownStep } = this.parameters;
-    const stands = foot.standing > plantAbove && foot.seconds > shortestSwing;
-    const lands = foot.leftBehind ? foot.seconds > ownStep : stands || foot.seconds > longestSwing;
-    if (!lands) return;
-    foot.planted = true;
-    foot.seconds = 0;
-  }
-
-  private liftOf(foot: FootState, { legLength }: Stance): number {
-    const { plantAbove, ownStep, liftShare } = this.parameters;
-    const highest = liftShare * legLength;
-    if (foot.leftBehind) return 0.6 * highest * Math.sin(Math.PI * Math.min(1, foot.seconds / ownStep));
-    return highest * clamp((1.5 * (plantAbove - foot.standing)) / plantAbove, leastLift, 1);
-  }
-
-  private swing(foot: FootState, goal: FootGoal, deltaSeconds: number): void {
-    const { lead, followHalfLife } = this.parameters;
-    const share = smoothingFactor(followHalfLife, deltaSeconds) * Math.min(1, foot.seconds / takeOff);
-    const { position } = foot;
-    position.x += (goal.x + foot.velocityX * lead - position.x) * share;
-    position.z += (goal.z + foot.velocityZ * lead - position.z) * share;
-    foot.yaw += wrapAngle(goal.yaw - foot.yaw) * share;
-  }
 }
 
-function followGoal(foot: FootState, goal: FootGoal, parameters: SteppingParameters, deltaSeconds: number): void {
+function advance(foot: FootState, goal: ExpectedFoot, stance: Stance, deltaSeconds: number): void {
+  if (deltaSeconds <= 0) return;
+  followGoal(foot, goal, deltaSeconds);
+  if (foot.planted) liftWhereDue(foot, goal, stance);
+  else plantWhereDue(foot);
+  const before = foot.height;
+  foot.height = damp(before, foot.planted ? 0 : liftOf(foot, stance), liftHalfLife, deltaSeconds);
+  if (!foot.planted) swing(foot, goal, deltaSeconds);
+  foot.position.y = stance.ankleHeight + foot.height;
+  // Toes hang while the foot rises and are drawn up before it lands.
+  const tilt = clamp((foot.height - before) / deltaSeconds, -0.4, 0.8) * 0.6;
+  const free = (0.5 * foot.height) / (ballAhead * stance.ankleHeight);
+  foot.pitch = Math.min(damp(foot.pitch, clamp(tilt, -mostTilt, mostTilt), velocityHalfLife, deltaSeconds), free);
+  if (foot.planted) foot.pitch = Math.max(foot.pitch, -free);
+}
+
+function liftWhereDue(foot: FootState, goal: ExpectedFoot, { legLength }: Stance): void {
+  const x = goal.x - foot.position.x;
+  const z = goal.z - foot.position.z;
+  const way = Math.sqrt(x * x + z * z) / legLength;
+  const lifts = foot.standing < liftBelow && foot.seconds > shortestStance && way > leastWay;
+  const far = way > farthest || Math.abs(wrapAngle(goal.yaw - foot.yaw)) > turnLimit;
+  if (!lifts && !far) return;
+  foot.planted = false;
+  foot.leftBehind = !lifts;
+  foot.seconds = 0;
+}
+
+function plantWhereDue(foot: FootState): void {
+  const stands = foot.standing > plantAbove && foot.seconds > shortestSwing;
+  const lands = foot.leftBehind ? foot.seconds > ownStep : stands || foot.seconds > longestSwing;
+  if (!lands) return;
+  foot.planted = true;
+  foot.seconds = 0;
+}
+
+function liftOf(foot: FootState, { legLength }: Stance): number {
+  const highest = liftShare * legLength;
+  if (foot.leftBehind) return 0.6 * highest * Math.sin(Math.PI * Math.min(1, foot.seconds / ownStep));
+  return highest * clamp((1.5 * (plantAbove - foot.standing)) / plantAbove, leastLift, 1);
+}
+
+function swing(foot: FootState, goal: ExpectedFoot, deltaSeconds: number): void {
+  const share = smoothingFactor(followHalfLife, deltaSeconds) * Math.min(1, foot.seconds / takeOff);
+  const { position } = foot;
+  position.x += (goal.x + foot.velocityX * lead - position.x) * share;
+  position.z += (goal.z + foot.velocityZ * lead - position.z) * share;
+  foot.yaw += wrapAngle(goal.yaw - foot.yaw) * share;
+}
+
+function followGoal(foot: FootState, goal: ExpectedFoot, deltaSeconds: number): void {
   foot.seconds += deltaSeconds;
-  foot.standing = damp(foot.standing, goal.standing, parameters.standingHalfLife, deltaSeconds);
+  foot.standing = damp(foot.standing, goal.standing, standingHalfLife, deltaSeconds);
   foot.velocityX = damp(foot.velocityX, (goal.x - foot.goalX) / deltaSeconds, velocityHalfLife, deltaSeconds);
   foot.velocityZ = damp(foot.velocityZ, (goal.z - foot.goalZ) / deltaSeconds, velocityHalfLife, deltaSeconds);
   foot.goalX = goal.x;
@@ -225,7 +181,7 @@ function followGoal(foot: FootState, goal: FootGoal, parameters: SteppingParamet
 }
 
 /** Puts a foot down at its goal. */
-function plant(foot: FootState, goal: FootGoal, { ankleHeight }: Stance): void {
+function plant(foot: FootState, goal: ExpectedFoot, { ankleHeight }: Stance): void {
   setVec3(foot.position, goal.x, ankleHeight, goal.z);
   foot.yaw = goal.yaw;
   foot.pitch = 0;
@@ -239,5 +195,3 @@ function plant(foot: FootState, goal: FootGoal, { ankleHeight }: Stance): void {
   foot.velocityX = 0;
   foot.velocityZ = 0;
 }
-
-export const createStepping = (parameters = standardStepping): Stepping => new TwoFeet(parameters);

@@ -44,8 +44,8 @@ import {
 } from '../math/vec3';
 import { type Heading, readHeading } from '../tracking/heading';
 import type { TrackingFrame } from '../tracking/tracking-frame';
+import { alongArc, type DirectionArc, directionArc, makeDirectionArc, outsideOfBody } from './arms/direction-arc';
 import { type BodyHeading, followBodyHeading, makeBodyHeading } from './body-heading';
-import { alongArc, type DirectionArc, directionArc, makeDirectionArc, outsideOfBody } from './direction-arc';
 import lostHand from './lost-hand.json';
 
 /**

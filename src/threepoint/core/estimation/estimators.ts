@@ -1,13 +1,13 @@
 import type { Calibration } from '../body/calibration';
-import { createDeviceSource } from './device';
-import { createHandsOnly } from './hands-only';
 import { transformJoints } from './joint-positions';
 import type { JointSource } from './joint-source';
-import { createPaper } from './paper';
+import { createDeviceSource } from './methods/device';
+import { createHandsOnly } from './methods/hands-only';
+import { createPaper } from './methods/paper';
+import { createResidual } from './methods/residual';
+import type { PoseRegressor } from './networks/pose-regressor';
 import { Pipeline } from './pipeline';
 import { type EstimatorName, estimatorNames, type PoseEstimator } from './pose-estimator';
-import type { PoseRegressor } from './pose-regressor';
-import { createResidual } from './residual';
 
 /** The methods that cannot work without their network. */
 export type NetworkName = 'paper' | 'learned';

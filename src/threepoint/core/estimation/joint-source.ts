@@ -2,8 +2,8 @@ import type { ChestSpaceBody } from '../body/skeleton';
 import type { Transform } from '../math/pose';
 import type { DeviceBody } from '../tracking/device-body';
 import type { CompletedFrame } from './complete-hands';
+import type { IkSolution, ThreePoints } from './ik/solve-ik';
 import type { MutableJointPositions } from './joint-positions';
-import type { IkSolution, ThreePoints } from './solve-ik';
 import type { SteadyTrackersState } from './steady-trackers';
 
 /** The results of the first two stages for one frame. */

@@ -36,10 +36,10 @@ import {
   vec3,
 } from '../math/vec3';
 import type { CompletedFrame, CompletedHand } from './complete-hands';
-import { placeShoulder, type TorsoBones, type TorsoPose } from './fit-torso';
 import limits from './kinematic-limits.json';
 import { followPin, handOverSeconds, makePin, type Pin } from './pin';
 import type { TrackedJoints } from './tracked-joints';
+import { placeShoulder, type TorsoBones, type TorsoPose } from './trunk/fit-torso';
 
 /** A tracked joint that is this far [m] beyond the reach of its bones from the head is wrong, and counts as lost. */
 const strayTracker = 0.15;

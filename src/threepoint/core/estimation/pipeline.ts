@@ -8,21 +8,21 @@ import { vec3 } from '../math/vec3';
 import type { DeviceBody } from '../tracking/device-body';
 import { floorFromHeading } from '../tracking/heading';
 import type { TrackingFrame } from '../tracking/tracking-frame';
+import { armBones, fitArms, makeFitArmsState, resetFitArms } from './arms/fit-arms';
 import { completeHands, makeCompleteHandsState, resetCompleteHands } from './complete-hands';
 import { composeBody } from './compose-body';
-import { armBones, fitArms, makeFitArmsState, resetFitArms } from './fit-arms';
-import { fitTorso, makeFitTorsoState, resetFitTorso, torsoBones } from './fit-torso';
-import { HeadsetMountCorrection } from './headset-mount-correction';
+import { makeIkSolution, makeThreePoints, solveIk, turnHands } from './ik/solve-ik';
 import { makeJoints } from './joint-positions';
 import type { JointSource, SolvedFrame } from './joint-source';
 import { limitJoints, makeLimitJointsState, resetLimitJoints } from './limit-joints';
-import { makeHandTiltsState, noticeHandTilts, resetHandTilts } from './notice-hand-tilts';
-import { makeHeadsetRiseState, noticeHeadsetRise, resetHeadsetRise } from './notice-headset-rise';
+import { HeadsetMountCorrection } from './online-calibration/headset-mount-correction';
+import { makeHandTiltsState, noticeHandTilts, resetHandTilts } from './online-calibration/notice-hand-tilts';
+import { makeHeadsetRiseState, noticeHeadsetRise, resetHeadsetRise } from './online-calibration/notice-headset-rise';
 import { makePinTrunkState, pinTrunk, resetPinTrunk } from './pin-trunk';
 import type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from './pose-estimator';
-import { makeIkSolution, makeThreePoints, solveIk, turnHands } from './solve-ik';
 import { makeSteadyTrackersState, resetSteadyTrackers, steadyTrackers } from './steady-trackers';
 import { makeTrackedJointsState, placeTrackedJoints, type TrackedJoints } from './tracked-joints';
+import { fitTorso, makeFitTorsoState, resetFitTorso, torsoBones } from './trunk/fit-torso';
 
 /** The longest gap between frames [s] that counts as motion; after a longer one filters and memories are reset. */
 const longestGapSeconds = 0.5;

@@ -8,7 +8,7 @@ import {
   makeArmTransition,
   startTransition,
   type WantedArm,
-} from 'threepoint/core/estimation/arm-transition';
+} from 'threepoint/core/estimation/arms/arm-transition';
 import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
 import {
   add,

@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import { chestSpaceBody } from 'threepoint/core/body/skeleton';
+import { solveIk } from 'threepoint/core/estimation/ik/solve-ik';
 import { copyJoints } from 'threepoint/core/estimation/joint-positions';
-import { solveIk } from 'threepoint/core/estimation/solve-ik';
 import { identity } from 'threepoint/core/math/quat';
 import { distance, vec3 } from 'threepoint/core/math/vec3';
 import { expect, test } from 'vitest';

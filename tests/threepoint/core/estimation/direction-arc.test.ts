@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { alongArc, directionArc } from 'threepoint/core/estimation/direction-arc';
+import { alongArc, directionArc } from 'threepoint/core/estimation/arms/direction-arc';
 import { rotate } from 'threepoint/core/math/quat';
 import { distance, dot, length, normalise, scale, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';

@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { armBones } from 'threepoint/core/estimation/fit-arms';
+import { armBones } from 'threepoint/core/estimation/arms/fit-arms';
 import type { TrackedPose } from 'threepoint/core/math/pose';
 import { multiply, rotate, rotateInverse, rotationBetween, twistAngle, twistOf } from 'threepoint/core/math/quat';
 import {

@@ -1,5 +1,5 @@
-import { Gait, shippedGait } from 'threepoint/core/estimation/gait';
-import { GaitFeatures, type GaitPoints } from 'threepoint/core/estimation/gait-features';
+import { Gait, shippedGait } from 'threepoint/core/estimation/gait/gait';
+import { GaitFeatures, type GaitPoints } from 'threepoint/core/estimation/gait/gait-features';
 import type { Quat } from 'threepoint/core/math/quat';
 import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';

@@ -2,9 +2,12 @@ import { type Calibration, provisionalCalibration } from 'threepoint/core/body/c
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { chestSpaceBody, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { createIk } from 'threepoint/core/estimation/estimators';
-import { unremarkable, usualReach } from 'threepoint/core/estimation/headset-rise.json';
-import { makeHeadsetRiseState, noticeHeadsetRise } from 'threepoint/core/estimation/notice-headset-rise';
-import { makeIkSolution, makeThreePoints } from 'threepoint/core/estimation/solve-ik';
+import { makeIkSolution, makeThreePoints } from 'threepoint/core/estimation/ik/solve-ik';
+import { unremarkable, usualReach } from 'threepoint/core/estimation/online-calibration/headset-rise.json';
+import {
+  makeHeadsetRiseState,
+  noticeHeadsetRise,
+} from 'threepoint/core/estimation/online-calibration/notice-headset-rise';
 import { transformPoint } from 'threepoint/core/math/pose';
 import { fromAxisAngle } from 'threepoint/core/math/quat';
 import { sides } from 'threepoint/core/math/side';

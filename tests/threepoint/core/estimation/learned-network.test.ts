@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { createPlainRegressor } from 'threepoint/core/estimation/learned-network';
-import type { PoseRegressor } from 'threepoint/core/estimation/pose-regressor';
+import { createPlainRegressor } from 'threepoint/core/estimation/networks/learned-network';
+import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { type GoldenModel, readGolden } from './golden';
 import { movingPerson } from './moving-person';

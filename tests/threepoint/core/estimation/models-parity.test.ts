@@ -1,5 +1,5 @@
 import { estimatedJoints } from 'threepoint/core/body/joints';
-import { learnedInputCount } from 'threepoint/core/estimation/residual';
+import { learnedInputCount } from 'threepoint/core/estimation/methods/residual';
 import { describe, expect, test } from 'vitest';
 import { type GoldenModel, readGolden } from './golden';
 import { type NetworkName, openShippedModel } from './shipped-models';

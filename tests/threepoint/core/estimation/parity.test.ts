@@ -1,12 +1,12 @@
 import { turnOfTilt } from 'threepoint/core/body/hand-tilt';
 import { estimatedJoints, type JointName } from 'threepoint/core/body/joints';
 import { chestSpaceBody, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { chestFeatureCount, chestFeatures } from 'threepoint/core/estimation/chest-features';
-import { FeatureWindow, featureCount, frameFeatures } from 'threepoint/core/estimation/features';
+import { solveIk } from 'threepoint/core/estimation/ik/solve-ik';
 import { transformJoints } from 'threepoint/core/estimation/joint-positions';
-import { makeHandTiltsState, noticeHandTilts } from 'threepoint/core/estimation/notice-hand-tilts';
-import { paperFeatures } from 'threepoint/core/estimation/paper-features';
-import { solveIk } from 'threepoint/core/estimation/solve-ik';
+import { chestFeatureCount, chestFeatures } from 'threepoint/core/estimation/networks/chest-features';
+import { FeatureWindow, featureCount, frameFeatures } from 'threepoint/core/estimation/networks/features';
+import { paperFeatures } from 'threepoint/core/estimation/networks/paper-features';
+import { makeHandTiltsState, noticeHandTilts } from 'threepoint/core/estimation/online-calibration/notice-hand-tilts';
 import { type Side, sides } from 'threepoint/core/math/side';
 import { distance, subtract, type Vec3 } from 'threepoint/core/math/vec3';
 import { floorFromHeading } from 'threepoint/core/tracking/heading';

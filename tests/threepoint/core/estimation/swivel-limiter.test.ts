@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import { elbowCircle, makeElbowCircle } from 'threepoint/core/body/two-bone-ik';
-import { makeFitTorsoState } from 'threepoint/core/estimation/fit-torso';
-import { type EstimatedPole, estimatedPole, limitSwivel } from 'threepoint/core/estimation/swivel-limiter';
+import { type EstimatedPole, estimatedPole, limitSwivel } from 'threepoint/core/estimation/arms/swivel-limiter';
+import { makeFitTorsoState } from 'threepoint/core/estimation/trunk/fit-torso';
 import { copyVec3, distance, down, normalise, scale, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
 import { number, seed } from '../arbitraries';

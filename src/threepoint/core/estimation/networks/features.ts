@@ -1,10 +1,10 @@
-import { estimatedJoints } from '../body/joints';
-import type { ChestSpaceBody } from '../body/skeleton';
-import type { Pose } from '../math/pose';
-import { rotate } from '../math/quat';
-import { right, up, type Vec3, vec3, writeVec3 } from '../math/vec3';
-import type { JointPositions } from './joint-positions';
-import type { ThreePoints } from './solve-ik';
+import { estimatedJoints } from '../../body/joints';
+import type { ChestSpaceBody } from '../../body/skeleton';
+import type { Pose } from '../../math/pose';
+import { rotate } from '../../math/quat';
+import { right, up, type Vec3, vec3, writeVec3 } from '../../math/vec3';
+import type { ThreePoints } from '../ik/solve-ik';
+import type { JointPositions } from '../joint-positions';
 
 /** The number of features of a frame; their order is in docs/estimation.md. */
 export const featureCount = 46;

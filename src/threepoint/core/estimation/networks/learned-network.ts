@@ -1,4 +1,4 @@
-import { estimatedJoints } from '../body/joints';
+import { estimatedJoints } from '../../body/joints';
 import { readWeights, tensorOf } from './model-weights';
 import { Perceptron } from './perceptron';
 import type { FlatWeights, ModelContract, PoseRegressor } from './pose-regressor';

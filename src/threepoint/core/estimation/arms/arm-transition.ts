@@ -1,6 +1,6 @@
-import type { LimbBones } from '../body/two-bone-ik';
-import { clamp } from '../math/damper';
-import { quat, rotate, rotationBetween } from '../math/quat';
+import type { LimbBones } from '../../body/two-bone-ik';
+import { clamp } from '../../math/damper';
+import { quat, rotate, rotationBetween } from '../../math/quat';
 import {
   addScaled,
   copyVec3,
@@ -13,7 +13,7 @@ import {
   normalise,
   type Vec3,
   vec3,
-} from '../math/vec3';
+} from '../../math/vec3';
 import { advanceArc, alongArc, type DirectionArc, directionArc, makeDirectionArc, retargetArc } from './direction-arc';
 
 /** The shortest transition [s]. */

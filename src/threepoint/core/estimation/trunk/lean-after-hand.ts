@@ -1,4 +1,4 @@
-import { softenedReach } from '../body/two-bone-ik';
+import { softenedReach } from '../../body/two-bone-ik';
 import {
   addScaled,
   copyVec3,
@@ -12,9 +12,9 @@ import {
   subtract,
   type Vec3,
   vec3,
-} from '../math/vec3';
-import type { CompletedHand } from './complete-hands';
-import limits from './kinematic-limits.json';
+} from '../../math/vec3';
+import type { CompletedHand } from '../complete-hands';
+import limits from '../kinematic-limits.json';
 
 const { anatomicalPasses, extremeReach } = limits.reach;
 

@@ -1,9 +1,9 @@
-import { sideSign } from '../body/skeleton';
-import { type ElbowCircle, poleAcross } from '../body/two-bone-ik';
-import { wrapAngle } from '../math/angle';
-import { clamp, smoothingFactor, smoothstep } from '../math/damper';
-import { fromAxes, type Quat, quat, rotate, rotateInverse, rotationBetween } from '../math/quat';
-import type { Side } from '../math/side';
+import { sideSign } from '../../body/skeleton';
+import { type ElbowCircle, poleAcross } from '../../body/two-bone-ik';
+import { wrapAngle } from '../../math/angle';
+import { clamp, smoothingFactor, smoothstep } from '../../math/damper';
+import { fromAxes, type Quat, quat, rotate, rotateInverse, rotationBetween } from '../../math/quat';
+import type { Side } from '../../math/side';
 import {
   addScaled,
   backward,
@@ -21,9 +21,9 @@ import {
   up,
   type Vec3,
   vec3,
-} from '../math/vec3';
-import type { TorsoPose } from './fit-torso';
-import limits from './kinematic-limits.json';
+} from '../../math/vec3';
+import limits from '../kinematic-limits.json';
+import type { TorsoPose } from '../trunk/fit-torso';
 
 const { trunkCapsule: capsule } = limits;
 

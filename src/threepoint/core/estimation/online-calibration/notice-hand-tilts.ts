@@ -1,6 +1,6 @@
-import { type HandTilts, turnOfTilt, turnToForearm, usualHandTilt } from '../body/hand-tilt';
-import { type MutableQuat, quat, rotate } from '../math/quat';
-import { type Side, sides } from '../math/side';
+import { type HandTilts, turnOfTilt, turnToForearm, usualHandTilt } from '../../body/hand-tilt';
+import { type MutableQuat, quat, rotate } from '../../math/quat';
+import { type Side, sides } from '../../math/side';
 import {
   addScaled,
   cross,
@@ -12,10 +12,10 @@ import {
   scale,
   setVec3,
   vec3,
-} from '../math/vec3';
-import type { CompletedFrame } from './complete-hands';
+} from '../../math/vec3';
+import type { CompletedFrame } from '../complete-hands';
+import type { IkSolution } from '../ik/solve-ik';
 import { calibratedMetres, doubtAngle, memoryMetres, usualMetres } from './hand-tilts.json';
-import type { IkSolution } from './solve-ik';
 
 /** The estimated tilt of one hand to its forearm; directions from elbow to wrist in the frame of the tracked hand. */
 interface HandTiltState {

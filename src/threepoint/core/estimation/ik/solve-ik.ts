@@ -1,10 +1,10 @@
-import { headJointOf } from '../body/head-joint';
-import { type ChestSpaceBody, sideSign } from '../body/skeleton';
-import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../body/two-bone-ik';
-import { clamp } from '../math/damper';
-import { type MutablePose, makePose, type Pose } from '../math/pose';
-import { fromAxisAngle, type MutableQuat, multiply, type Quat, quat, rotate, rotateInverse } from '../math/quat';
-import type { Side } from '../math/side';
+import { headJointOf } from '../../body/head-joint';
+import { type ChestSpaceBody, sideSign } from '../../body/skeleton';
+import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../../body/two-bone-ik';
+import { clamp } from '../../math/damper';
+import { type MutablePose, makePose, type Pose } from '../../math/pose';
+import { fromAxisAngle, type MutableQuat, multiply, type Quat, quat, rotate, rotateInverse } from '../../math/quat';
+import type { Side } from '../../math/side';
 import {
   add,
   addScaled,
@@ -24,10 +24,10 @@ import {
   type Vec3,
   vec3,
   writeVec3,
-} from '../math/vec3';
+} from '../../math/vec3';
+import { type MutableJointPositions, makeJoints } from '../joint-positions';
+import limits from '../kinematic-limits.json';
 import parameters from './ik-parameters.json';
-import { type MutableJointPositions, makeJoints } from './joint-positions';
-import limits from './kinematic-limits.json';
 
 /** Head and wrists in the heading frame. */
 export interface ThreePoints {

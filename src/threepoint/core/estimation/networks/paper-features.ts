@@ -1,6 +1,6 @@
-import type { Pose } from '../math/pose';
-import { toEulerYxz } from '../math/quat';
-import { type Vec3, vec3 } from '../math/vec3';
+import type { Pose } from '../../math/pose';
+import { toEulerYxz } from '../../math/quat';
+import { type Vec3, vec3 } from '../../math/vec3';
 
 /** 2 quantities of 3 components for 3 points. */
 export const paperFeatureCount = 18;

@@ -1,5 +1,5 @@
-import { reasonOf } from '../errors/reasons';
-import { allFinite } from '../math/all-finite';
+import { reasonOf } from '../../errors/reasons';
+import { allFinite } from '../../math/all-finite';
 import type { PoseRegressor } from './pose-regressor';
 
 /**

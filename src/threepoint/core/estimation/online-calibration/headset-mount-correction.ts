@@ -1,7 +1,7 @@
-import type { Calibration } from '../body/calibration';
-import { type MutablePose, makePose, type TrackedPose } from '../math/pose';
-import { fromAxisAngle, identity, type MutableQuat, multiply, quat, rotate } from '../math/quat';
-import { addScaled, right, up, vec3 } from '../math/vec3';
+import type { Calibration } from '../../body/calibration';
+import { type MutablePose, makePose, type TrackedPose } from '../../math/pose';
+import { fromAxisAngle, identity, type MutableQuat, multiply, quat, rotate } from '../../math/quat';
+import { addScaled, right, up, vec3 } from '../../math/vec3';
 
 const headUp = vec3(0, 0, 0);
 

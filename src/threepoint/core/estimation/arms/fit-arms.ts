@@ -1,5 +1,5 @@
-import { alongArm, armBoneRotation, elbowHinge, handBoneRotation, unwrapTwist } from '../body/arm-rotations';
-import { armBonesOf, type Skeleton } from '../body/skeleton';
+import { alongArm, armBoneRotation, elbowHinge, handBoneRotation, unwrapTwist } from '../../body/arm-rotations';
+import { armBonesOf, type Skeleton } from '../../body/skeleton';
 import {
   type ElbowCircle,
   elbowCircle,
@@ -7,8 +7,8 @@ import {
   type LimbBones,
   makeElbowCircle,
   softenedReach,
-} from '../body/two-bone-ik';
-import { clamp } from '../math/damper';
+} from '../../body/two-bone-ik';
+import { clamp } from '../../math/damper';
 import {
   conjugate,
   fromAxisAngle,
@@ -21,8 +21,8 @@ import {
   rotateInverse,
   twistAngle,
   twistOf,
-} from '../math/quat';
-import type { Side } from '../math/side';
+} from '../../math/quat';
+import type { Side } from '../../math/side';
 import {
   addScaled,
   backward,
@@ -34,7 +34,11 @@ import {
   type Vec3,
   vec3,
   zero,
-} from '../math/vec3';
+} from '../../math/vec3';
+import type { CompletedFrame, CompletedHand } from '../complete-hands';
+import type { JointPositions } from '../joint-positions';
+import { restSeconds } from '../lost-hand.json';
+import type { TorsoPose } from '../trunk/fit-torso';
 import {
   type ArmDirections,
   type ArmTransition,
@@ -45,11 +49,7 @@ import {
   startTransition,
   type WantedArm,
 } from './arm-transition';
-import type { CompletedFrame, CompletedHand } from './complete-hands';
 import { outsideOfBody } from './direction-arc';
-import type { TorsoPose } from './fit-torso';
-import type { JointPositions } from './joint-positions';
-import { restSeconds } from './lost-hand.json';
 import { type EstimatedPole, estimatedPole, limitSwivel, type SwivelContext, type SwivelState } from './swivel-limiter';
 
 /** How far a wrist bends against the forearm [rad]: 90°, the extreme of flexion. */

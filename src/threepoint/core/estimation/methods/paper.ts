@@ -1,10 +1,10 @@
-import { estimatedJoints } from '../body/joints';
-import { setVec3 } from '../math/vec3';
-import { type MutableJointPositions, makeJoints, transformJoints } from './joint-positions';
-import type { JointNetwork, JointSource, SolvedFrame } from './joint-source';
-import { LatestResult } from './latest-result';
-import { paperFeatureCount, paperFeatures } from './paper-features';
-import type { PoseRegressor } from './pose-regressor';
+import { estimatedJoints } from '../../body/joints';
+import { setVec3 } from '../../math/vec3';
+import { type MutableJointPositions, makeJoints, transformJoints } from '../joint-positions';
+import type { JointNetwork, JointSource, SolvedFrame } from '../joint-source';
+import { LatestResult } from '../networks/latest-result';
+import { paperFeatureCount, paperFeatures } from '../networks/paper-features';
+import type { PoseRegressor } from '../networks/pose-regressor';
 
 /**
  * The paper's network as published: local positions in the room's axes and Euler angles in, six joints out. Inverse

@@ -1,9 +1,10 @@
-import type { Pose } from '../math/pose';
-import type { Side } from '../math/side';
+import type { Mutable } from '../../math/mutable';
+import type { Pose } from '../../math/pose';
+import type { Side } from '../../math/side';
+import type { Tensor } from '../networks/model-weights';
+import { Perceptron } from '../networks/perceptron';
 import { GaitFeatures, type GaitPoints, gaitFeatureCount, yawOfHips } from './gait-features';
 import shipped from './gait-network.json';
-import type { Tensor } from './model-weights';
-import { Perceptron } from './perceptron';
 
 /**
  * The contents of a file of gait weights: its training data, and each tensor's shape and numbers
@@ -20,18 +21,11 @@ export interface GaitNetwork {
  * An expected foot: floor frame [m], direction of the toes [rad, 0 towards −Z], and the probability that it stands [0,
  * 1].
  */
-interface ExpectedFoot {
+export interface ExpectedFoot {
   readonly x: number;
   readonly z: number;
   readonly yaw: number;
   readonly standing: number;
-}
-
-interface MutableExpectedFoot {
-  x: number;
-  z: number;
-  yaw: number;
-  standing: number;
 }
 
 /** Both feet from the hips [eye heights, their frame], logits of standing, sine and cosine of each foot's yaw. */
@@ -47,7 +41,7 @@ export const shippedGait: GaitNetwork = shipped;
 export class Gait {
   /** The newest estimate; overwritten by the next update. */
   readonly feet: Readonly<Record<Side, ExpectedFoot>>;
-  readonly #own: Record<Side, MutableExpectedFoot> = {
+  readonly #own: Record<Side, Mutable<ExpectedFoot>> = {
     left: { x: 0, z: 0, yaw: 0, standing: 1 },
     right: { x: 0, z: 0, yaw: 0, standing: 1 },
   };

@@ -7,9 +7,9 @@ import {
   quat,
   rotationBetween,
   slerp,
-} from '../math/quat';
-import type { Side } from '../math/side';
-import { addScaled, dot, lerp, type MutableVec3, normalise, reject, subtract, type Vec3, vec3 } from '../math/vec3';
+} from '../../math/quat';
+import type { Side } from '../../math/side';
+import { addScaled, dot, lerp, type MutableVec3, normalise, reject, subtract, type Vec3, vec3 } from '../../math/vec3';
 
 /** The path on a sphere from one direction to another, by way of a third where they lie far apart. */
 export interface DirectionArc {

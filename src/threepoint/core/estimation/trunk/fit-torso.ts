@@ -1,7 +1,7 @@
-import { clavicleRest, clavicleRoot } from '../body/arm-rotations';
-import limbLimits from '../body/limb-limits.json';
-import { armBonesOf, type Skeleton } from '../body/skeleton';
-import { clamp, smoothingFactor, smoothstep } from '../math/damper';
+import { clavicleRest, clavicleRoot } from '../../body/arm-rotations';
+import limbLimits from '../../body/limb-limits.json';
+import { armBonesOf, type Skeleton } from '../../body/skeleton';
+import { clamp, smoothingFactor, smoothstep } from '../../math/damper';
 import {
   alignDirections,
   limitAngle,
@@ -13,8 +13,8 @@ import {
   restDirections,
   rotate,
   rotationBetween,
-} from '../math/quat';
-import type { Side } from '../math/side';
+} from '../../math/quat';
+import type { Side } from '../../math/side';
 import {
   add,
   addScaled,
@@ -35,10 +35,10 @@ import {
   up,
   type Vec3,
   vec3,
-} from '../math/vec3';
-import type { CompletedFrame } from './complete-hands';
-import type { JointPositions } from './joint-positions';
-import limits from './kinematic-limits.json';
+} from '../../math/vec3';
+import type { CompletedFrame } from '../complete-hands';
+import type { JointPositions } from '../joint-positions';
+import limits from '../kinematic-limits.json';
 import { beginLean, followLean, type Lean, leanFurther, makeLean } from './lean-after-hand';
 
 const { torso: torsoLimits, torsoExtreme: extremeLimits } = limits;

@@ -1,5 +1,5 @@
-import type { ChestSpaceBody } from '../body/skeleton';
-import { rotate } from '../math/quat';
+import type { ChestSpaceBody } from '../../body/skeleton';
+import { rotate } from '../../math/quat';
 import {
   dot,
   length,
@@ -12,8 +12,8 @@ import {
   type Vec3,
   vec3,
   writeVec3,
-} from '../math/vec3';
-import type { ChestAxes, IkSolution, ThreePoints } from './solve-ik';
+} from '../../math/vec3';
+import type { ChestAxes, IkSolution, ThreePoints } from '../ik/solve-ik';
 
 /** The number of features of a frame in the chest frame; their order is in docs/estimation.md. */
 export const chestFeatureCount = 38;

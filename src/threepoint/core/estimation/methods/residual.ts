@@ -1,17 +1,17 @@
-import type { Calibration } from '../body/calibration';
-import { estimatedJoints } from '../body/joints';
-import { type ChestSpaceBody, chestSpaceBody } from '../body/skeleton';
-import { smoothingFactor } from '../math/damper';
-import { halfLifeOfCutoff } from '../math/one-euro';
-import { transformPoint } from '../math/pose';
-import { add, lerp, scale, setVec3 } from '../math/vec3';
-import { chestFeatureCount, chestFeatures, headingFromChest } from './chest-features';
-import { FeatureWindow, featureCount, frameFeatures } from './features';
-import { copyJoints, type MutableJointPositions, makeJoints } from './joint-positions';
-import type { JointNetwork, JointSource, SolvedFrame } from './joint-source';
-import { LatestResult } from './latest-result';
-import type { PoseRegressor } from './pose-regressor';
-import { correctionCutoff } from './smoothing.json';
+import type { Calibration } from '../../body/calibration';
+import { estimatedJoints } from '../../body/joints';
+import { type ChestSpaceBody, chestSpaceBody } from '../../body/skeleton';
+import { smoothingFactor } from '../../math/damper';
+import { halfLifeOfCutoff } from '../../math/one-euro';
+import { transformPoint } from '../../math/pose';
+import { add, lerp, scale, setVec3 } from '../../math/vec3';
+import { copyJoints, type MutableJointPositions, makeJoints } from '../joint-positions';
+import type { JointNetwork, JointSource, SolvedFrame } from '../joint-source';
+import { chestFeatureCount, chestFeatures, headingFromChest } from '../networks/chest-features';
+import { FeatureWindow, featureCount, frameFeatures } from '../networks/features';
+import { LatestResult } from '../networks/latest-result';
+import type { PoseRegressor } from '../networks/pose-regressor';
+import { correctionCutoff } from '../smoothing.json';
 
 /** Half-life [s] of the low-pass on the correction. */
 const correctionHalfLife = halfLifeOfCutoff(correctionCutoff);

@@ -1,8 +1,8 @@
-import type { Calibration } from '../body/calibration';
-import { type Fingers, unknownFingers } from '../body/hand-shape';
-import { makePose, type TrackedPose } from '../math/pose';
-import { HeadsetMountCorrection } from './headset-mount-correction';
-import type { PoseEstimator } from './pose-estimator';
+import type { Calibration } from '../../body/calibration';
+import { type Fingers, unknownFingers } from '../../body/hand-shape';
+import { makePose, type TrackedPose } from '../../math/pose';
+import { HeadsetMountCorrection } from '../online-calibration/headset-mount-correction';
+import type { PoseEstimator } from '../pose-estimator';
 
 /** The result of `update`, overwritten by the next. */
 interface OwnedPose {

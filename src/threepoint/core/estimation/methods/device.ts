@@ -1,9 +1,9 @@
-import { type EstimatedJoint, estimatedJoints } from '../body/joints';
-import { rotate, rotateInverse } from '../math/quat';
-import { addScaled, distance, subtract, type Vec3, vec3 } from '../math/vec3';
-import { type DeviceBody, deviceJoint, type SharedJoint } from '../tracking/device-body';
-import { makeJoints, mapJoints } from './joint-positions';
-import type { JointSource, SolvedFrame } from './joint-source';
+import { type EstimatedJoint, estimatedJoints } from '../../body/joints';
+import { rotate, rotateInverse } from '../../math/quat';
+import { addScaled, distance, subtract, type Vec3, vec3 } from '../../math/vec3';
+import { type DeviceBody, deviceJoint, type SharedJoint } from '../../tracking/device-body';
+import { makeJoints, mapJoints } from '../joint-positions';
+import type { JointSource, SolvedFrame } from '../joint-source';
 
 /**
  * The largest distance [m] of the device's head or wrist from the tracked one; beyond it the device reports another

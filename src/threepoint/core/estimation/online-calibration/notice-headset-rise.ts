@@ -1,9 +1,9 @@
-import { clamp } from '../math/damper';
-import { type Side, sides } from '../math/side';
-import { length, subtract, vec3 } from '../math/vec3';
-import type { CompletedFrame } from './complete-hands';
+import { clamp } from '../../math/damper';
+import { type Side, sides } from '../../math/side';
+import { length, subtract, vec3 } from '../../math/vec3';
+import type { CompletedFrame } from '../complete-hands';
+import type { SolvedFrame } from '../joint-source';
 import { furthest, hanging, share, speed, unremarkable, usualReach } from './headset-rise.json';
-import type { SolvedFrame } from './joint-source';
 
 /** Estimate of how far the headset sits above its nominal place on the head. */
 export interface HeadsetRiseState {
