@@ -5,6 +5,7 @@ import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
 import { checkInWorker } from 'threepoint/avatar/file/check-in-worker';
 import { hashOf } from 'threepoint/avatar/file/file-hash';
 import { avatarLimits } from 'threepoint/avatar/file/inspect-avatar';
+import type { ReadBones } from 'threepoint/avatar/humanoid/bones-of-file';
 import { withNamedBones } from 'threepoint/avatar/humanoid/name-bones';
 import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
 import { type BuiltInBody, builtInAvatarOf, type SkinTone } from 'threepoint/core/body/avatar-ref';
@@ -20,15 +21,26 @@ export const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits
 export const fetchBuiltInAvatar = (name: BuiltInBody, onProgress?: (share: number) => void): Promise<ArrayBuffer> =>
   readLimited(`${pageFolder()}/avatars/${name}.vrm`, avatarFile, onProgress && { onProgress });
 
+/** A checked file without its bytes, which can be read from it again. */
+export type AvatarFile = Omit<CheckedAvatar, 'bytes'>;
+
+/** The file of an avatar, and the map of its bones that the user gave; undefined: none. */
+export interface MappedFile {
+  readonly checked: AvatarFile;
+  readonly bones: BoneMap | undefined;
+}
+
 /** An avatar, and the reference by which other players see it. */
 export interface LoadedUserAvatar {
   readonly avatar: Avatar;
   readonly worn: WornAvatar;
+  /** null: a built-in avatar. */
+  readonly source: MappedFile | null;
 }
 
 export interface AvatarLoaderOptions {
   /** The bone maps that users gave for files. */
-  readonly knownBones: Pick<KnownBones, 'of' | 'keep'>;
+  readonly knownBones: Pick<KnownBones, 'of' | 'keep' | 'forget'>;
   /** Uploads an avatar to the graphics device before it is shown. */
   prepare(object: Avatar['object']): Promise<void>;
 }
@@ -36,11 +48,16 @@ export interface AvatarLoaderOptions {
 /**
  * Returns the file for other players, who have no map of its bones. Its hash is null if this page cannot compute it.
  */
-async function fileFor({ bytes, hash }: CheckedAvatar, bones: BoneMap | undefined) {
-  if (!bones) return { file: new Blob([bytes]), hash };
+async function fileFor({ bytes, file, hash }: CheckedAvatar, bones: BoneMap | undefined) {
+  if (!bones) return { file, hash };
   const named = await withNamedBones(bytes, bones);
   return { file: new Blob([named]), hash: await hashOf(named) };
 }
+
+const withBytes = async (checked: AvatarFile): Promise<CheckedAvatar> => ({
+  ...checked,
+  bytes: await checked.file.arrayBuffer(),
+});
 
 /** Loads avatars from files, addresses and the page's folder. */
 export class AvatarLoader {
@@ -59,6 +76,7 @@ export class AvatarLoader {
     return {
       avatar: await createAvatarBetweenFrames(await parseAvatar(await bytes, labelOf(body))),
       worn: builtInAvatarOf(body, skinTone),
+      source: null,
     };
   }
 
@@ -79,18 +97,30 @@ export class AvatarLoader {
     return this.#build(checked, name, checked.hash === null ? undefined : this.#options.knownBones.of(checked.hash));
   }
 
-  /** Builds the avatar of a checked file with these bones, and stores them for the file. */
-  async buildWith(checked: CheckedAvatar, name: string, bones: BoneMap): Promise<LoadedUserAvatar> {
-    const loaded = await this.#build(checked, name, bones);
-    if (checked.hash !== null) this.#options.knownBones.keep(checked.hash, bones);
+  /**
+   * Builds the avatar of a checked file with these bones, and stores them for the file. null: without a map, which is
+   * forgotten.
+   */
+  async buildWith(checked: AvatarFile, name: string, bones: BoneMap | null): Promise<LoadedUserAvatar> {
+    const loaded = await this.#build(await withBytes(checked), name, bones ?? undefined);
+    const { knownBones } = this.#options;
+    if (checked.hash !== null && bones) knownBones.keep(checked.hash, bones);
+    else if (checked.hash !== null) knownBones.forget(checked.hash);
     return loaded;
+  }
+
+  /** Reads the bones of a checked file, and what they are without a map. */
+  async bonesOf(checked: AvatarFile, name: string): Promise<ReadBones> {
+    const { bonesOfFile } = await import('threepoint/avatar/humanoid/bones-of-file');
+    return bonesOfFile(await withBytes(checked), name, decoders);
   }
 
   async #build(checked: CheckedAvatar, name: string, bones: BoneMap | undefined): Promise<LoadedUserAvatar> {
     const avatar = await createAvatarBetweenFrames(await parseChecked(checked, name, { decoders, bones }));
     try {
       await this.#options.prepare(avatar.object);
-      return { avatar, worn: { name, ...(await fileFor(checked, bones)) } };
+      const { bytes: _, ...file } = checked;
+      return { avatar, worn: { name, ...(await fileFor(checked, bones)) }, source: { checked: file, bones } };
     } catch (error) {
       avatar.dispose();
       throw error;

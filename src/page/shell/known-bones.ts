@@ -5,7 +5,7 @@ import { boneMap, type PreferenceStore } from './preferences';
 /** The number of files whose maps are stored, the newest ones. */
 const mostFiles = 20;
 
-/** The bone maps of files that could not be matched, by the files' SHA-256; on this device only. */
+/** The bone maps that users gave for files, by the files' SHA-256; on this device only. */
 export class KnownBones {
   readonly #store: Pick<PreferenceStore, 'preferences' | 'remember'>;
 
@@ -21,8 +21,15 @@ export class KnownBones {
   /** A map that could not be read again is not kept: all that is remembered would be lost with it. */
   keep(hash: string, bones: BoneMap): void {
     if (!v.is(boneMap, bones)) return;
-    const { [hash]: _before, ...others } = this.#store.preferences.bones ?? {};
-    const kept = [...Object.entries(others), [hash, bones] as const].slice(-mostFiles);
+    const kept = [...this.#without(hash), [hash, bones] as const].slice(-mostFiles);
     this.#store.remember({ bones: Object.fromEntries(kept) });
+  }
+
+  forget(hash: string): void {
+    this.#store.remember({ bones: Object.fromEntries(this.#without(hash)) });
+  }
+
+  #without(hash: string): (readonly [string, BoneMap])[] {
+    return Object.entries(this.#store.preferences.bones ?? {}).filter(([each]) => each !== hash);
   }
 }

@@ -44,7 +44,7 @@ const schema = v.object({
   singleKeys: v.optional(v.boolean()),
   bots: v.optional(v.boolean()),
   name: v.optional(v.pipe(v.string(), v.maxLength(40))),
-  /** The bone maps of files that could not be matched to a humanoid, by SHA-256. */
+  /** The bone maps that the user gave for files, by SHA-256. */
   bones: v.optional(v.record(v.pipe(v.string(), v.regex(avatarHash)), boneMap)),
   shareAvatar: v.optional(v.boolean()),
   plainOthers: v.optional(v.boolean()),

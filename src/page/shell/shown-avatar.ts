@@ -11,7 +11,13 @@ import type { WornAvatar } from 'threepoint-rooms/client/shared-avatar';
 import { nameOf } from 'threepoint-ui/limited-files';
 import type { Notices } from 'threepoint-ui/notices';
 import type { Studio } from '../studio/studio';
-import { AvatarLoader, type AvatarLoaderOptions, fetchBuiltInAvatar, type LoadedUserAvatar } from './avatar-loader';
+import {
+  type AvatarFile,
+  AvatarLoader,
+  type AvatarLoaderOptions,
+  fetchBuiltInAvatar,
+  type LoadedUserAvatar,
+} from './avatar-loader';
 import type { Settings } from './settings';
 
 export interface ShownAvatarOptions extends AvatarLoaderOptions {
@@ -22,7 +28,10 @@ export interface ShownAvatarOptions extends AvatarLoaderOptions {
   onChange(): void;
 }
 
-/** A loaded file whose bones could not be matched to a humanoid: the user must map them. */
+/**
+ * A loaded file whose bones the user maps: they could not be matched to a humanoid, or the shown avatar's are to be
+ * corrected.
+ */
 export interface WaitingForBones {
   readonly name: string;
   /** The file's bones at rest. */
@@ -33,6 +42,10 @@ export interface WaitingForBones {
   readonly confidence: UnknownBones['confidence'];
   /** A sentence about what is wrong with them; null: the user gave none yet. */
   readonly complaint: string | null;
+  /** Whether the file is the shown avatar. */
+  readonly isShown: boolean;
+  /** Whether the bones are the user's map, and the file is worn without it as well. */
+  readonly canForgetMap: boolean;
 }
 
 /** An avatar that was requested, until it is shown, refused or cancelled. */
@@ -56,6 +69,7 @@ export class ShownAvatar {
   #avatar: Avatar | null = null;
   #name = labelOf(plainAvatar);
   #worn: WornAvatar = plainAvatar;
+  #source: LoadedUserAvatar['source'] = null;
   #seatPalette: string | null = null;
   #pending: string | null = null;
   /** The number of requests, and that of the request that is shown. */
@@ -63,7 +77,7 @@ export class ShownAvatar {
   #shown = 0;
   /** The file that is loading; null: none. */
   #loading: Request | null = null;
-  #waiting: (WaitingForBones & { readonly checked: CheckedAvatar }) | null = null;
+  #waiting: (WaitingForBones & { readonly checked: AvatarFile }) | null = null;
 
   constructor(options: ShownAvatarOptions) {
     this.#options = options;
@@ -109,7 +123,12 @@ export class ShownAvatar {
     return this.#loading !== null;
   }
 
-  /** A file whose bones the user must map; null: none. */
+  /** Whether the shown avatar is a file, whose bones the user can correct. */
+  get canCorrectBones(): boolean {
+    return this.#source !== null && this.#waiting === null && !this.isLoading;
+  }
+
+  /** A file whose bones the user maps; null: none. */
   get waiting(): WaitingForBones | null {
     return this.#waiting;
   }
@@ -160,8 +179,39 @@ export class ShownAvatar {
     });
   }
 
-  /** Maps the bones of the file that waits for them. Returns false if they do not fit; `waiting` has the reason. */
-  async giveBones(bones: BoneMap): Promise<boolean> {
+  /** Offers the bones of the shown file for correction: `waiting` has them. A failure becomes a notice. */
+  async correctBones(): Promise<void> {
+    const [source, name, turn] = [this.#source, this.#name, this.#requested];
+    if (!source) return;
+    const { checked, bones } = source;
+    try {
+      const { joints, matched, confidence, accepted } = await this.#loader.bonesOf(checked, name);
+      if (this.#requested !== turn || this.#source !== source || this.#waiting) return;
+      const [own, sure] = bones ? [bones, {}] : [matched, confidence];
+      const canForgetMap = bones !== undefined && accepted;
+      this.#waiting = {
+        name,
+        joints,
+        bones: own,
+        confidence: sure,
+        complaint: null,
+        isShown: true,
+        canForgetMap,
+        checked,
+      };
+    } catch (error) {
+      const text = `The bones of ${name} could not be read: ${reasonFor(name, error)}. Open the file again.`;
+      this.#options.notices.show('error', text);
+    } finally {
+      this.#options.onChange();
+    }
+  }
+
+  /**
+   * Maps the bones of the file that waits for them; null: forgets the user's map. Returns false if they do not fit;
+   * `waiting` has the reason.
+   */
+  async giveBones(bones: BoneMap | null): Promise<boolean> {
     const waiting = this.#waiting;
     if (!waiting) return false;
     const { name, checked } = waiting;
@@ -175,7 +225,8 @@ export class ShownAvatar {
       this.#show(loaded, name, this.#requested);
       return true;
     } catch (error) {
-      if (this.#waiting === waiting) this.#waiting = { ...waiting, bones, complaint: reasonFor(name, error) };
+      if (this.#waiting === waiting)
+        this.#waiting = { ...waiting, bones: bones ?? waiting.bones, complaint: reasonFor(name, error) };
       return false;
     } finally {
       this.#options.onChange();
@@ -247,7 +298,8 @@ export class ShownAvatar {
     const isNewest = turn === this.#requested;
     if (error instanceof UnknownBones && checked && isNewest) {
       const { joints, matched: bones, confidence } = error;
-      this.#waiting = { name, joints, bones, confidence, complaint: null, checked };
+      const asked = { complaint: null, isShown: false, canForgetMap: false };
+      this.#waiting = { name, joints, bones, confidence, ...asked, checked };
       this.#pending = `${name} is waiting for its bones to be mapped.`;
       const how = 'Map them by hand: Controls, Avatar, Bones of this file.';
       notices.show('error', `${name} could not be shown. Its bones could not be matched to a humanoid. ${how}`);
@@ -257,12 +309,13 @@ export class ShownAvatar {
     if (isNewest) this.#pending = isBuiltIn ? null : `${name} could not be shown.`;
   }
 
-  #show({ avatar, worn }: LoadedUserAvatar, name: string, turn: number): void {
+  #show({ avatar, worn, source }: LoadedUserAvatar, name: string, turn: number): void {
     const { scene, settings, body } = this.#options;
     this.#avatar?.dispose();
     this.#avatar = avatar;
     this.#name = name;
     this.#worn = worn;
+    this.#source = source;
     this.#shown = turn;
     this.#waiting = null;
     if (turn === this.#requested) this.#pending = null;

@@ -25,8 +25,8 @@ export type { BoneMap } from '../core/humanoid/bones';
 
 export interface LoadAvatarOptions {
   /**
-   * The name of the file's node for each bone, in VRM's names, for a humanoid without VRM. At rest it stands in a
-   * T-pose and faces +Z.
+   * The name of the file's node for each bone, in VRM's names, instead of the bones that a VRM states and that are
+   * found in another humanoid. A VRM needs its legs as well.
    */
   readonly bones?: BoneMap;
   /**

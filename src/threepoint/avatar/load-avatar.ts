@@ -12,6 +12,7 @@ import { inspectAvatar } from './file/inspect-avatar';
 import { makeGeometryPlain } from './file/plain-geometry';
 import { viewsOfFile } from './file/views-of-file';
 import { restoreBindPose } from './humanoid/bind-pose';
+import { setVrmBones } from './humanoid/name-bones';
 import { boneNode, demandBones } from './humanoid/needed-bones';
 import { settleRest } from './humanoid/rest-pose';
 import { betweenFrames } from './in-steps';
@@ -25,7 +26,7 @@ export interface LoadedAvatar {
 }
 
 export interface ParseOptions {
-  /** The bones of a humanoid that is not a VRM and whose names are unknown. */
+  /** The bones of a humanoid, instead of those that a VRM states and that are found in other files. */
   readonly bones?: BoneMap | undefined;
   /** The decoders; without them compressed files are refused. */
   readonly decoders?: Decoders;
@@ -46,11 +47,23 @@ export async function parseAvatar(
 }
 
 /** Parses a file that has passed `checkAvatar`. */
-export async function parseChecked(
-  { bytes, packed, file }: Pick<CheckedAvatar, 'bytes' | 'packed' | 'file'>,
+export async function parseChecked(checked: ReadableAvatar, name: string, options: ParseOptions = {}) {
+  const { gltf, own } = await readScene(checked, name, options);
+  // Files without a humanoid of their own need the matcher, which others do not load.
+  const vrm = own ?? (await import('./humanoid/humanoid-of-scene')).humanoidOf(gltf.scene, name, options.bones);
+  settleRest(vrm, name);
+  return { name, vrm, nodeIndices: nodeIndicesOf(gltf) } satisfies LoadedAvatar;
+}
+
+/** A file that has passed `checkAvatar`. */
+export type ReadableAvatar = Pick<CheckedAvatar, 'bytes' | 'packed' | 'file'>;
+
+/** Reads the scene of a file, its bones as bound, and the VRM that it states; undefined: it is no VRM. */
+export async function readScene(
+  { bytes, packed, file }: ReadableAvatar,
   name: string,
-  { bones, decoders = {} }: ParseOptions = {},
-): Promise<LoadedAvatar> {
+  { bones, decoders = {} }: ParseOptions,
+): Promise<{ readonly gltf: GLTF; readonly own: VRM | undefined }> {
   const loader = new GLTFLoader();
   for (const extension of packed) await decoders[extension]?.(loader);
   loader.register(withoutAnimations);
@@ -58,20 +71,29 @@ export async function parseChecked(
   loader.register((parser) => new VRMLoaderPlugin(parser));
   const chunks = chunksOf(new Uint8Array(bytes))!;
   loader.register(viewsOfFile(chunks.binary, file));
-  const gltf = await loader.parseAsync(chunks.json, '').catch((error: unknown) => {
-    throw new Error(`${name}: cannot be read as glTF (${reasonOf(error)})`);
-  });
+  const gltf = await loader
+    .parseAsync(bones ? withVrmBones(chunks.json, bones, name) : chunks.json, '')
+    .catch((error: unknown) => {
+      throw new Error(`${name}: cannot be read as glTF (${reasonOf(error)})`);
+    });
   await betweenFrames(makeGeometryPlain(gltf.scene));
-  const own = bones ? undefined : (gltf.userData.vrm as VRM | undefined);
+  const own = gltf.userData.vrm as VRM | undefined;
   if (own) {
     demandBones(name, (bone) => boneNode(own, bone) !== null);
     // VRM 0.x faces −Z at rest, 1.0 faces +Z: from here on all face +Z.
     VRMUtils.rotateVRM0(own);
   } else restoreBindPose(gltf.scene);
-  // Files without a humanoid of their own need the matcher, which others do not load.
-  const vrm = own ?? (await import('./humanoid/humanoid-of-scene')).humanoidOf(gltf.scene, name, bones);
-  settleRest(vrm, name);
-  return { name, vrm, nodeIndices: nodeIndicesOf(gltf) };
+  return { gltf, own };
+}
+
+/** Returns the JSON of a file in which a VRM states these bones. Throws a sentence that names the file. */
+function withVrmBones(text: string, bones: BoneMap, name: string): string {
+  const json = JSON.parse(text);
+  try {
+    return setVrmBones(json, bones) ? JSON.stringify(json) : text;
+  } catch (error) {
+    throw new Error(`${name}: ${reasonOf(error)}`);
+  }
 }
 
 /** Leaves out animations, which no one plays on a body that poses move. */

@@ -73,6 +73,7 @@ function files() {
         },
         openBuiltIn: async () => true,
         giveBones: async () => true,
+        waiting: null,
       },
       mocap: { open: async (sources) => void mocap.push(sources) },
       body: { discontinuity: () => void done.push(`the body begins anew while ${recorder.mode}`) },

@@ -12,7 +12,7 @@ import type { ShownAvatar } from '../shown-avatar';
 const recordingFile: FileKind = { what: 'a recording', megabytes: 100 };
 
 export interface OpenedFilesOptions {
-  readonly avatar: Pick<ShownAvatar, 'open' | 'openBuiltIn' | 'giveBones' | 'name'>;
+  readonly avatar: Pick<ShownAvatar, 'open' | 'openBuiltIn' | 'giveBones' | 'name' | 'waiting'>;
   readonly recorder: Pick<Recorder, 'ask' | 'open' | 'replay'>;
   readonly notices: Pick<Notices, 'show'>;
   readonly body: Pick<BodySolver, 'discontinuity'>;
@@ -66,10 +66,14 @@ export class OpenedFiles {
     else if (outcome) notices.show('info', `${avatar.name} is your avatar now.`);
   }
 
-  /** Sets the bones of the file that waits for them. Never rejects: the form shows what is wrong. */
-  async giveBones(bones: BoneMap): Promise<void> {
+  /**
+   * Sets the bones of the file that waits for them; null: forgets the user's map. Never rejects: the form shows what is
+   * wrong.
+   */
+  async giveBones(bones: BoneMap | null): Promise<void> {
     const { avatar, notices } = this.#options;
-    if (await avatar.giveBones(bones)) notices.show('info', `${avatar.name} is your avatar now.`);
+    const text = avatar.waiting?.isShown ? 'has the new bones now.' : 'is your avatar now.';
+    if (await avatar.giveBones(bones)) notices.show('info', `${avatar.name} ${text}`);
   }
 
   /** Ours, also after a reload. */

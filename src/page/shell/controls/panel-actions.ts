@@ -57,6 +57,7 @@ function avatarActions({ writer, avatar, files }: PanelActionsOptions): AvatarAc
     showBuiltInAvatar: () => files.showBuiltInAvatar(),
     cancelAvatar: () => avatar.cancel(),
     setUpperBodyOnly: (upperBodyOnly) => writer.keep({ upperBodyOnly }),
+    correctBones: () => void avatar.correctBones(),
     giveBones: (bones) => void files.giveBones(bones),
     setShareAvatar: (shareAvatar) => writer.keep({ shareAvatar }),
     setPlainOthers: (plainOthers) => writer.keep({ plainOthers }),

@@ -16,8 +16,8 @@ export interface PaletteChoice {
   readonly color: string;
 }
 
-/** Shows the name of the avatar and, for built-in avatars, their colours. */
-function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions) {
+/** Shows the name of the avatar and, for built-in avatars, their colours. `correct`: what corrects a file's bones. */
+function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions, correct: HTMLElement) {
   const name = element('p', { class: 'avatar-name' });
   const pending = createRunningLine({ class: 'hint' });
   const builtIn = button('Back to the page’s avatar', () => actions.showBuiltInAvatar());
@@ -53,6 +53,7 @@ function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions)
       row('Colours', colours),
       row('Skin', tones),
       builtIn,
+      correct,
     ),
     show({
       avatarName,
@@ -111,9 +112,10 @@ function otherAvatars(actions: AvatarActions): HTMLElement {
   );
 }
 
-/** Shows the form for the bones of a file. Its code is loaded once a file waits for them. */
+/** Shows the form for the bones of a file. Its code is loaded once a file waits for them, or is to be corrected. */
 function createBones(actions: AvatarActions) {
   const node = element('div', {});
+  const correct = button('Correct the bones…', () => actions.correctBones());
   let waiting: PanelState['waitingForBones'] = null;
   let form: ReturnType<typeof createBonesForm> | null = null;
   let isLoading = false;
@@ -121,7 +123,7 @@ function createBones(actions: AvatarActions) {
     isLoading = true;
     try {
       const { createBonesForm } = await import('./bones-form');
-      form = createBonesForm((map) => actions.giveBones(map));
+      form = createBonesForm({ give: (map) => actions.giveBones(map), cancel: () => actions.cancelAvatar() });
       node.replaceChildren(form.node);
       form.show(waiting);
     } catch (error) {
@@ -131,10 +133,14 @@ function createBones(actions: AvatarActions) {
   }
   return {
     node,
-    show({ waitingForBones }: PanelState) {
+    correct,
+    show({ waitingForBones, canCorrectBones }: PanelState) {
+      const hadFocus = node.contains(document.activeElement);
       waiting = waitingForBones;
+      correct.hidden = !canCorrectBones;
       if (form) form.show(waiting);
       else if (waiting && !isLoading) void load();
+      if (hadFocus && !waiting && canCorrectBones) correct.focus();
     },
   };
 }
@@ -165,8 +171,8 @@ function createSight(actions: AvatarActions) {
 
 /** Which avatar the body wears, and how much of it. */
 export function createAvatarPage(palettes: readonly PaletteChoice[], actions: AvatarActions): PanelPage {
-  const shown = createShown(palettes, actions);
   const bones = createBones(actions);
+  const shown = createShown(palettes, actions, bones.correct);
   const sight = createSight(actions);
   const upperBody = toggle('Upper body only', (on) => actions.setUpperBodyOnly(on));
   return {

@@ -8,8 +8,15 @@ import './bones-form.css';
 /** Fingers, eyes and jaw are listed once a bone is one of them. */
 const alwaysListed = 5;
 
-/** Lets the user map the bones of one file that could not be matched to a humanoid: on a picture, and by a list. */
-function createMapping(waiting: WaitingForBones, give: (bones: BoneMap) => void) {
+/** What the form does with the user's map. */
+interface BonesActions {
+  /** null: forgets the user's map. */
+  give(bones: BoneMap | null): void;
+  cancel(): void;
+}
+
+/** Lets the user map the bones of one file: on a picture, and by a list. */
+function createMapping(waiting: WaitingForBones, { give, cancel }: BonesActions) {
   const choices = new BoneChoices(waiting);
   /** The bone that is chosen, and the part that the user wants to find on the picture. */
   let chosen: number | null = null;
@@ -81,16 +88,19 @@ function createMapping(waiting: WaitingForBones, give: (bones: BoneMap) => void)
     if (missing.length === 0) give(choices.bones);
   }
   choose(null);
+  const { isShown, canForgetMap } = waiting;
+  const why = isShown
+    ? 'Does a limb move as it should not? Then a bone is mapped to the wrong part of the body.'
+    : `The ${choices.joints.length} bones of ${waiting.name} could not be matched to a humanoid.`;
   const node = element(
     'section',
-    { class: 'bones' },
+    { class: 'bones', tabindex: -1, 'aria-label': 'Bones of this file' },
     element('h2', {}, 'Bones of this file'),
     element(
       'p',
       { class: 'hint' },
-      `The ${choices.joints.length} bones of ${waiting.name} could not be matched to a humanoid. Choose a bone on the ` +
-        'picture, then its part of the body. A tap among bones that are close together enlarges them. The page ' +
-        'remembers the map for this file.',
+      `${why} Choose a bone on the picture, then its part of the body. A tap among bones that are close together ` +
+        'enlarges them. The page remembers the map for this file.',
     ),
     picture.node,
     bone,
@@ -104,12 +114,14 @@ function createMapping(waiting: WaitingForBones, give: (bones: BoneMap) => void)
     ...listed.map(({ node }) => node),
     complaint,
     button('Use these bones', submit, { class: 'primary' }),
+    ...(canForgetMap ? [button('Forget my map', () => give(null))] : []),
+    ...(isShown ? [button('Cancel', cancel)] : []),
   );
   return { node, complaint };
 }
 
 /** Lets the user map the bones of the file that waits for it, one file after another. */
-export function createBonesForm(give: (bones: BoneMap) => void) {
+export function createBonesForm(actions: BonesActions) {
   const node = element('div', {});
   let mapping: ReturnType<typeof createMapping> | null = null;
   let shown: WaitingForBones | null = null;
@@ -117,8 +129,10 @@ export function createBonesForm(give: (bones: BoneMap) => void) {
     node,
     show(waiting: WaitingForBones | null) {
       if (waiting?.joints !== shown?.joints) {
-        mapping = waiting && createMapping(waiting, give);
+        mapping = waiting && createMapping(waiting, actions);
         node.replaceChildren(...(mapping ? [mapping.node] : []));
+        // The user has asked for the form: it is below the button that opens it, or far below on a small screen.
+        if (waiting?.isShown) mapping?.node.focus();
       }
       // The page's complaint about a map that was given.
       if (mapping && waiting?.complaint !== shown?.complaint) mapping.complaint.textContent = waiting?.complaint ?? '';

@@ -50,7 +50,9 @@ export interface PanelState {
   readonly builtInAvatarOffered: boolean;
   /** Whether an avatar is loading, which the user can cancel. */
   readonly avatarOnItsWay: boolean;
-  /** A file whose bones the user must map; null: none. */
+  /** Whether the shown avatar is a file, whose bones the user can correct. */
+  readonly canCorrectBones: boolean;
+  /** A file whose bones the user maps; null: none. */
   readonly waitingForBones: WaitingForBones | null;
   readonly shareAvatar: boolean;
   readonly plainOthers: boolean;
@@ -102,8 +104,10 @@ export interface AvatarActions {
   showBuiltInAvatar(): void;
   cancelAvatar(): void;
   setUpperBodyOnly(on: boolean): void;
-  /** Which bone of the file that waits is which. */
-  giveBones(bones: BoneMap): void;
+  /** Opens the form for the bones of the shown file. */
+  correctBones(): void;
+  /** Which bone of the file that waits is which; null: forgets the user's map. */
+  giveBones(bones: BoneMap | null): void;
   setShareAvatar(on: boolean): void;
   setPlainOthers(on: boolean): void;
 }

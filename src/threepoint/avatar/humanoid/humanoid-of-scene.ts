@@ -5,7 +5,7 @@ import type { SkeletonJoint } from '../../core/humanoid/joint-tree';
 import { humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-humanoid';
 import { distance, isFiniteVec3 } from '../../core/math/vec3';
 import { demandBones } from './needed-bones';
-import { UnknownBones } from './unknown-bones';
+import { fileBones, UnknownBones } from './unknown-bones';
 
 /** The file's own name of a node: three.js rewrites names, and keeps the file's beside. */
 const nameOf = (node: Object3D): string => (typeof node.userData.name === 'string' ? node.userData.name : node.name);
@@ -28,9 +28,13 @@ function skinBones(scene: Group): Set<Object3D> {
   return bones;
 }
 
-/** The nodes that may be bones: those that move skin, with what lies between them; of a file without skins all. */
-function candidatesOf(scene: Group): readonly Object3D[] {
+/**
+ * The nodes that may be bones: those that move skin, with what lies between them; of a file without skins all.
+ * `known`: nodes that are bones in any case.
+ */
+function candidatesOf(scene: Group, known: Iterable<Object3D>): readonly Object3D[] {
   const skinned = skinBones(scene);
+  if (skinned.size > 0) for (const node of known) skinned.add(node);
   const all: Object3D[] = [];
   scene.traverse((node) => all.push(node));
   if (skinned.size === 0) return all;
@@ -62,11 +66,9 @@ function skinWeights(scene: Group): Map<Object3D, number> {
   return sums;
 }
 
-/**
- * Finds the bones of a scene. Throws UnknownBones with what was found and what is missing where they are no humanoid's.
- */
-function foundBones(scene: Group, name: string): ReadonlyMap<BoneName, Object3D> {
-  const nodes = candidatesOf(scene);
+/** Returns the bones of a scene at rest, and their nodes. Throws where they have no places. */
+export function skeletonOf(scene: Group, name: string, known: Iterable<Object3D> = []) {
+  const nodes = candidatesOf(scene, known);
   const indices = new Map(nodes.map((node, i) => [node, i]));
   const weights = skinWeights(scene);
   // A scale below zero mirrors the joints; the skin is drawn mirrored, too.
@@ -82,13 +84,21 @@ function foundBones(scene: Group, name: string): ReadonlyMap<BoneName, Object3D>
   if (lost) throw new Error(`${name}: the joint of ${lost.name} lies nowhere`);
   if (joints.length > 1 && joints.every(({ position }) => distance(position, joints[0]!.position) === 0))
     throw new Error(`${name}: its joints lie all in one place: is the scene scaled to nothing?`);
+  return { nodes, joints };
+}
+
+/**
+ * Finds the bones of a scene. Throws UnknownBones with what was found and what is missing where they are no humanoid's.
+ */
+function foundBones(scene: Group, name: string): ReadonlyMap<BoneName, Object3D> {
+  const { nodes, joints } = skeletonOf(scene, name);
   const match = matchHumanoid(joints);
   const complaint = humanoidComplaint(match);
   if (!complaint)
     return new Map(Object.entries(match.map).map(([bone, { joint }]) => [bone as BoneName, nodes[joint]!]));
   if (joints.every((joint) => joint.name === '')) throw new Error(`${name}: no humanoid in the file: it has no bones`);
   const advice = "Map them by hand: loadAvatar(source, {bones: {hips: '…', …}})";
-  throw new UnknownBones(`${name}: ${complaint}. ${advice}`, joints, match.map);
+  throw new UnknownBones(`${name}: ${complaint}. ${advice}`, fileBones(joints, match.map));
 }
 
 /** The nodes that a map names, of several of one name one that carries skin. Throws where one is not in the file. */
