@@ -15,7 +15,7 @@ import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
 import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { WebSocket } from 'ws';
 import { countingKind } from '../../tests/rooms/room/counting-game';
-import type { ClientAnswer, Load, Meeting, PoseLatencies } from './conversation';
+import type { ClientAnswer, Farewell, Load, Meeting, PoseLatencies } from './conversation';
 
 /** A pose packet as players send it most: two controllers and a body. */
 function packet(): Uint8Array {
@@ -183,6 +183,14 @@ class Client {
     measurement?.left(now, this.#bytes.length + (this.#plain ? head.length : 0));
   }
 
+  leave(): void {
+    this.#sendMessage({ type: 'leave' });
+  }
+
+  #sendMessage(message: object): void {
+    this.#say(`42${JSON.stringify(['/', ['message', message]])}`);
+  }
+
   #say(text: string): void {
     this.#socket.send(text);
   }
@@ -239,14 +247,13 @@ class Client {
       avatar: plainAvatar,
       voice: null,
     };
-    const message = { type: 'join', version: protocolVersion, ...person };
-    this.#say(`42${JSON.stringify(['/', ['message', message]])}`);
+    this.#sendMessage({ type: 'join', version: protocolVersion, ...person });
   }
 
   #welcomed({ seat, time }: { readonly seat: number; readonly time: number }): void {
     this.#seat = seat;
     this.#ahead = time * 1000 - performance.now();
-    if (this.#plays) this.#say(`42${JSON.stringify(['/', ['message', { type: 'ready', ready: true }]])}`);
+    if (this.#plays) this.#sendMessage({ type: 'ready', ready: true });
     this.#join();
   }
 }
@@ -274,6 +281,10 @@ class Crowd {
     const latencies = measurement.result();
     measurement = null;
     return latencies;
+  }
+
+  leave(): void {
+    for (const client of this.#rooms.flat()) client.leave();
   }
 
   /** Another room, with people who come one after the other: its seats are given in that order. */
@@ -320,12 +331,13 @@ const kindFor = (people: number): string => (people === 3 ? ballKind : countingK
 
 let crowd: Crowd | null = null;
 
-async function hear(message: Meeting | Load): Promise<void> {
-  if ('port' in message) crowd = new Crowd(message);
+async function hear(message: Meeting | Load | Farewell): Promise<void> {
+  if (message === 'leave') crowd?.leave();
+  else if ('port' in message) crowd = new Crowd(message);
   else if (crowd) process.send?.((await crowd.play(message)) satisfies ClientAnswer);
 }
 
-process.on('message', (message: Meeting | Load) => {
+process.on('message', (message: Meeting | Load | Farewell) => {
   hear(message).catch((error: Error) => {
     console.error(error.message);
     process.exit(1);

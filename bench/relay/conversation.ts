@@ -42,6 +42,9 @@ export interface PoseLatencies {
   readonly clientLoad: number;
 }
 
+/** To the clients: all leave their rooms and give up their seats. */
+export type Farewell = 'leave';
+
 /** From the clients: all are there, and the seconds that are measured begin; how it went. */
 export type ClientAnswer = 'measuring' | PoseLatencies;
 

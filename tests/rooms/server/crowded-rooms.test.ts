@@ -1,7 +1,7 @@
 import { fork } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import { expect, onTestFinished, test } from 'vitest';
-import type { ClientAnswer, Load, Meeting, PoseLatencies } from '../../../bench/relay/conversation';
+import type { ClientAnswer, Farewell, Load, Meeting, PoseLatencies } from '../../../bench/relay/conversation';
 import { isNightly } from '../../nightly';
 import { reportFigures } from '../../reliability/report-figures';
 import { heardFrom, kill } from '../../server/child-process';
@@ -28,7 +28,12 @@ async function play(port: number, { rooms, seconds }: typeof crowd) {
   clients.send({ relay: 'ours', port, secret: testSecret, room: 3, hz: 30, plays: true } satisfies Meeting);
   clients.send({ rooms, warmUpSeconds: 1, seconds } satisfies Load);
   expect(await heardFrom<ClientAnswer>(clients)).toBe('measuring');
-  return { heard: await heardFrom<PoseLatencies>(clients), leave: () => kill(clients) };
+  return {
+    heard: await heardFrom<PoseLatencies>(clients),
+    /** Gives up the seats; those of clients whose process is killed are held for half a minute. */
+    leave: () => clients.send('leave' satisfies Farewell),
+    kill: () => kill(clients),
+  };
 }
 
 test('rooms of three play on time, and are gone with all that they took when their players are, again and again', {
@@ -48,20 +53,20 @@ test('rooms of three play on time, and are gone with all that they took when the
   const gone = () => expect.poll(ask, { timeout: 120_000, interval: 500 }).toMatchObject({ rooms: 0, sockets: 0 });
 
   const first = await play(relay.port, warmUp);
-  await first.leave();
+  first.leave();
   await gone();
   const before = await relay.measure();
   await Promise.all([relay.forget(), idle.forget()]);
 
-  const { heard, leave } = await play(relay.port, crowd);
+  const { heard, kill: disconnect } = await play(relay.port, crowd);
   const [during, machine] = await Promise.all([relay.measure(), idle.measure()]);
   expect(await ask()).toMatchObject({ rooms: crowd.rooms, players: 3 * crowd.rooms });
-  await leave();
+  await disconnect();
   await gone();
   const after = [await relay.measure()];
   for (let i = 0; i < later.times; i++) {
     const again = await play(relay.port, later);
-    await again.leave();
+    again.leave();
     await gone();
     after.push(await relay.measure());
   }
