@@ -1,4 +1,4 @@
-import { createTrialLog, type TrialOutcome } from '../model/records/trial-log';
+import { TrialLog, type TrialOutcome } from '../model/records/trial-log';
 import type { RandomSource } from './random-source';
 
 /**
@@ -80,7 +80,7 @@ function chanceUnder({ effects, practice }: PerformanceModel, { condition, cohor
 
 function logFor(model: PerformanceModel, player: Player) {
   const { refreshRateHz } = model;
-  return createTrialLog(
+  return new TrialLog(
     { name: 'Simulated headset', refreshRateHz, input: 'simulated' },
     { eyeHeight: player.eyeHeight, armSpan: player.armSpan },
   );
@@ -88,7 +88,7 @@ function logFor(model: PerformanceModel, player: Player) {
 
 /** Adds frames and tracking for a number of seconds. */
 function addFrames(
-  log: ReturnType<typeof logFor>,
+  log: TrialLog,
   model: PerformanceModel,
   { estimator }: Circumstances,
   seconds: number,

@@ -1,21 +1,6 @@
-import { normalCdf } from './distributions';
 import { noncentralityOfT } from './noncentral';
-import { cubesOf, rankBiserialInterval, ranksOf } from './ranks';
-import { criticalT, deviationOf, type Interval, meanOf, roundingOf, twoSidedP } from './summaries';
-
-/** Welch's two-sided t-test of first − second, of different participants. */
-export interface WelchTest {
-  readonly n: readonly [number, number];
-  readonly meanDifference: number;
-  readonly interval: Interval | null;
-  /** null if there is no variance to measure the difference with; so are p and df. */
-  readonly t: number | null;
-  readonly df: number | null;
-  readonly p: number | null;
-  /** Cohen's d_s: the difference in pooled standard deviations. */
-  readonly ds: number | null;
-  readonly dsInterval: Interval | null;
-}
+import { approximateP, cubesOf, exactBelow, type RankTest, rankBiserialInterval, ranksOf } from './ranks';
+import { criticalT, deviationOf, meanOf, roundingOf, type TTest, twoSidedP } from './summaries';
 
 function refuseEmpty(first: readonly number[], second: readonly number[]): void {
   if (first.length === 0 || second.length === 0) throw new Error('two groups: one of them is empty');
@@ -31,13 +16,16 @@ export function standardError(
   return { error: Math.sqrt(sum), df: sum ** 2 / (shares[0] ** 2 / (n[0] - 1) + shares[1] ** 2 / (n[1] - 1)) };
 }
 
-/** Computes R's `t.test(first, second)`. Throws if a list is empty. */
-export function welchTest(first: readonly number[], second: readonly number[], confidence = 0.95): WelchTest {
+/**
+ * Computes Welch's t-test of different participants as R's `t.test(first, second)`; d is d_s, the difference in pooled
+ * standard deviations. Throws if a list is empty.
+ */
+export function welchTest(first: readonly number[], second: readonly number[], confidence = 0.95): TTest {
   refuseEmpty(first, second);
   const n = [first.length, second.length] as const;
   const means = [meanOf(first), meanOf(second)] as const;
   const meanDifference = means[0] - means[1];
-  const untested = { n, meanDifference, interval: null, t: null, df: null, p: null, ds: null, dsInterval: null };
+  const untested = { meanDifference, interval: null, t: null, df: null, p: null, d: null, dInterval: null };
   if (n[0] < 2 || n[1] < 2) return untested;
   const variances = [deviationOf(first) ** 2, deviationOf(second) ** 2] as const;
   const { error, df } = standardError(variances, n);
@@ -48,35 +36,18 @@ export function welchTest(first: readonly number[], second: readonly number[], c
   const pooled = Math.sqrt(((n[0] - 1) * variances[0] + (n[1] - 1) * variances[1]) / pooledDf);
   // The factor from Student's t to its noncentrality, which is the effect.
   const unit = Math.sqrt(1 / n[0] + 1 / n[1]);
-  const ds = meanDifference / pooled;
-  const noncentrality = noncentralityOfT(ds / unit, pooledDf, confidence);
+  const d = meanDifference / pooled;
+  const noncentrality = noncentralityOfT(d / unit, pooledDf, confidence);
   return {
-    n,
     meanDifference,
     interval: { low: meanDifference - half, high: meanDifference + half },
     t,
     df,
     p: twoSidedP(t, df),
-    ds,
-    dsInterval: noncentrality && { low: noncentrality.low * unit, high: noncentrality.high * unit },
+    d,
+    dInterval: noncentrality && { low: noncentrality.low * unit, high: noncentrality.high * unit },
   };
 }
-
-/** Wilcoxon's rank-sum test (Mann and Whitney's) of first − second, two-sided. */
-export interface RankSumTest {
-  /** The number of pairs in which the first is larger, ties counting half: R's W. */
-  readonly w: number;
-  readonly method: 'exact' | 'normal';
-  /** null if all values are equal. */
-  readonly p: number | null;
-  /** The rank-biserial correlation in [−1, 1]: how much likelier a value of the first is larger than smaller. */
-  readonly effect: number;
-  /** The interval of the effect; null if no value of one side is beyond one of the other. */
-  readonly effectInterval: Interval | null;
-}
-
-/** From this many values on, or with ties, R uses the normal approximation. */
-const exactBelow = 50;
 
 /** Counts the ways to choose `first` of first + second ranks for each value of W. */
 export function rankSumCounts(first: number, second: number): readonly number[] {
@@ -108,10 +79,12 @@ function exactPs(first: number, second: number): (w: number) => number {
 }
 
 /**
- * Computes R's `wilcox.test(first, second)` up to R 4.5: exact for fewer than 50 values in each group without ties,
- * otherwise the normal approximation with continuity correction. Throws if a list is empty.
+ * Computes Wilcoxon's rank-sum test (Mann and Whitney's) as R's `wilcox.test(first, second)` up to R 4.5: exact for
+ * fewer than 50 values in each group without ties, otherwise the normal approximation with continuity correction. The
+ * statistic is W, the number of pairs in which the first is larger, ties counting half; p is null if all values are
+ * equal. Throws if a list is empty.
  */
-export function rankSumTest(first: readonly number[], second: readonly number[]): RankSumTest {
+export function rankSumTest(first: readonly number[], second: readonly number[]): RankTest {
   refuseEmpty(first, second);
   const [m, n] = [first.length, second.length];
   const { ranks, ties } = ranksOf([...first, ...second]);
@@ -120,7 +93,7 @@ export function rankSumTest(first: readonly number[], second: readonly number[])
   const exact = ties.length === 0 && m < exactBelow && n < exactBelow;
   const effectInterval = rankBiserialInterval(effect, Math.sqrt((m + n + 1) / (3 * m * n)));
   const p = exact ? exactPs(m, n)(w) : normalP(w, m, n, ties);
-  return { w, method: exact ? 'exact' : 'normal', p, effect, effectInterval };
+  return { statistic: w, method: exact ? 'exact' : 'normal', p, effect, effectInterval };
 }
 
 /** Returns null if all values are tied. */
@@ -128,9 +101,7 @@ function normalP(w: number, m: number, n: number, ties: readonly number[]): numb
   const all = m + n;
   const deviation = Math.sqrt(((m * n) / 12) * (all + 1 - cubesOf(ties) / (all * (all - 1))));
   if (deviation === 0) return null;
-  const distance = w - (m * n) / 2;
-  const z = (distance - Math.sign(distance) / 2) / deviation;
-  return Math.min(1, 2 * normalCdf(-Math.abs(z)));
+  return approximateP(w - (m * n) / 2, deviation);
 }
 
 /** Returns a function from W to its two-sided p for m and n values without ties. */

@@ -2,6 +2,29 @@ import { bisect } from 'threepoint/core/math/bisection';
 import { normalCdf } from './distributions';
 import { type Interval, roundingOf } from './summaries';
 
+/** A two-sided test of first − second by ranks. */
+export interface RankTest {
+  /** V or W of Wilcoxon's tests. */
+  readonly statistic: number;
+  /** exact: the distribution of the statistic; normal: its approximation with correction for continuity and ties. */
+  readonly method: 'exact' | 'normal';
+  /** null if nothing differs. */
+  readonly p: number | null;
+  /** The rank-biserial correlation in [−1, 1]: (ranks for − ranks against) / all ranks. */
+  readonly effect: number | null;
+  /** The interval of the effect; null also if all ranks are on one side. */
+  readonly effectInterval: Interval | null;
+}
+
+/** Below this many pairs, or values in each group, R uses the exact distribution, if there are no ties or zeros. */
+export const exactBelow = 50;
+
+/** Returns the two-sided p of a statistic at this distance from its mean, by the normal approximation. */
+export function approximateP(distance: number, deviation: number): number {
+  const z = (distance - Math.sign(distance) / 2) / deviation;
+  return Math.min(1, 2 * normalCdf(-Math.abs(z)));
+}
+
 /**
  * Ranks from 1, ties sharing their mean rank, and the sizes of the groups of ties. Values next to each other are tied
  * where they are no further apart than `rounding`; 0: where they are equal to the last digit.

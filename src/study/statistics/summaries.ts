@@ -17,6 +17,21 @@ export interface MeanSummary {
   readonly interval: Interval | null;
 }
 
+/** A two-sided t-test of first − second. */
+export interface TTest {
+  readonly meanDifference: number;
+  readonly interval: Interval | null;
+  /** null if there is no variance to measure the difference with, up to rounding; so is p. */
+  readonly t: number | null;
+  /** null without values for it. */
+  readonly df: number | null;
+  readonly p: number | null;
+  /** Cohen's d; null if t is. */
+  readonly d: number | null;
+  /** null also if t is too far out to compute it. */
+  readonly dInterval: Interval | null;
+}
+
 /** Returns the arithmetic mean, NaN for no values. */
 export const meanOf = (values: readonly number[]) => values.reduce((sum, value) => sum + value, 0) / values.length;
 

@@ -5,7 +5,6 @@ import { fileURLToPath } from 'node:url';
 import { strFromU8, unzipSync } from 'fflate';
 import { groupsOf } from 'threepoint-study/model/plan/allocation';
 import { checkedRecord } from 'threepoint-study/model/records/study-record';
-import { compareAnswers, compareScores } from 'threepoint-study/model/results/compare-conditions';
 import { answersIn, trialsIn } from 'threepoint-study/model/tables/study-tables';
 import { answerModelWith, nullAnswerModel } from 'threepoint-study/simulation/answer-model';
 import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
@@ -13,6 +12,7 @@ import { randomSource } from 'threepoint-study/simulation/random-source';
 import { simulatedPlan, simulateStudy } from 'threepoint-study/simulation/simulate-study';
 import { describe, expect, test } from 'vitest';
 import { directoryWith } from '../../temporary-directory';
+import { compareAnswers, compareScores } from '../model/answered';
 import { latencyPlan, paperPlan } from '../model/studies';
 
 const root = fileURLToPath(new URL('../../..', import.meta.url));
@@ -78,9 +78,9 @@ describe('a simulated study', () => {
   test('shows the analysis what was put in: answers and scores', () => {
     const performance = { ...statedPerformanceModel, hitChance: [0.6, 0.5, 0.4, 0.3], effects: { learned: 0.5 } };
     const records = simulate({ answers: answerModelWith({ learned: 1.5 }), performance });
-    const answers = compareAnswers(answersIn(records, plan), ['learned', 'ik']);
+    const answers = compareAnswers(answersIn(records, plan));
     expect(answers.comparisons.filter(({ holmP }) => (holmP ?? 1) < 0.05).length).toBeGreaterThan(6);
-    const [archery] = compareScores(trialsIn(records), ['learned', 'ik']).points.comparisons;
+    const [archery] = compareScores(trialsIn(records)).points.comparisons;
     expect(archery?.test?.t).toBeGreaterThan(0);
     expect(archery?.test?.p).toBeLessThan(0.05);
   });

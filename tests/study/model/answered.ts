@@ -1,4 +1,7 @@
+import { compareConditions } from 'threepoint-study/model/results/compare-conditions';
+import { answerMeasures, scoreMeasures } from 'threepoint-study/model/results/measures';
 import type { AnswerRow } from 'threepoint-study/model/tables/answer-tables';
+import type { TrialRow } from 'threepoint-study/model/tables/study-tables';
 
 /** One question answered under conditions c0, c1 … by P01, P02 …. */
 export const rowsOf = (participants: readonly (readonly number[])[]): readonly AnswerRow[] =>
@@ -16,3 +19,15 @@ export const rowsOf = (participants: readonly (readonly number[])[]): readonly A
       excluded: '',
     })),
   );
+
+const sides = ['learned', 'ik'] as const;
+
+/** Compares every question or scale with numeric answers under two conditions. */
+export const compareAnswers = (rows: readonly AnswerRow[], conditions: readonly [string, string] = sides) =>
+  compareConditions(answerMeasures(rows), conditions);
+
+/** Compares the scores of every task under the learned method and IK, with points and per cent as separate families. */
+export const compareScores = (rows: readonly TrialRow[]) => ({
+  points: compareConditions(scoreMeasures(rows, 'points'), sides),
+  percent: compareConditions(scoreMeasures(rows, 'percent'), sides),
+});

@@ -23,20 +23,20 @@ describe('two cohorts', () => {
       rowsOf(plantGrowth.flat().map((value) => [value])),
       (participant) => ['control', 'first', 'second'][Math.floor((Number(participant.slice(1)) - 1) / 10)] ?? '',
     );
-    const [compared] = compareCohorts(measures, { cohorts: ['second', 'control'], conditions: ['c0'] });
+    const [compared] = compareCohorts(measures, { sides: ['second', 'control'], conditions: ['c0'] });
     const [control = [], , second = []] = plantGrowth;
     expect([compared?.first?.n, compared?.second?.n]).toEqual([10, 10]);
     expect(compared?.test).toEqual(welchTest(second, control));
-    expect(compared?.rankSum).toEqual(rankSumTest(second, control));
+    expect(compared?.ranks).toEqual(rankSumTest(second, control));
   });
 
   test('under one of three conditions, and by the mean of what each had under all three', () => {
     const [first = [], second = []] = chicks;
-    const cohorts = ['diet-2', 'diet-1'] as const;
-    const [last] = compareCohorts(ofChicks, { cohorts, conditions: ['c2'] });
+    const sides = ['diet-2', 'diet-1'] as const;
+    const [last] = compareCohorts(ofChicks, { sides, conditions: ['c2'] });
     const lastOf = (members: typeof first) => members.map((weights) => weights[2] as number);
     expect(last?.test).toEqual(welchTest(lastOf(second), lastOf(first)));
-    const [mean] = compareCohorts(ofChicks, { cohorts, conditions: ['c0', 'c1', 'c2'] });
+    const [mean] = compareCohorts(ofChicks, { sides, conditions: ['c0', 'c1', 'c2'] });
     expect(mean?.test).toEqual(welchTest(second.map(meanOf), first.map(meanOf)));
   });
 
@@ -46,7 +46,7 @@ describe('two cohorts', () => {
     );
     const measures = answerMeasures(rows, (participant) => (participant < 'P18' ? 'first' : 'others'));
     const sizes = (conditions: readonly string[]) =>
-      compareCohorts(measures, { cohorts: ['first', 'others'], conditions }).map(({ first, second }) => [
+      compareCohorts(measures, { sides: ['first', 'others'], conditions }).map(({ first, second }) => [
         first?.n,
         second?.n,
       ]);
@@ -64,8 +64,8 @@ describe('two cohorts', () => {
       ]),
       (participant) => participant,
     );
-    const compared = compareCohorts(measures, { cohorts: ['P01', 'P02'], conditions: ['c0', 'c1', 'c2'] });
-    expect(compared).toMatchObject([{ rankSum: { w: 0.5, effect: 0 } }]);
+    const compared = compareCohorts(measures, { sides: ['P01', 'P02'], conditions: ['c0', 'c1', 'c2'] });
+    expect(compared).toMatchObject([{ ranks: { statistic: 0.5, effect: 0 } }]);
   });
 
   test('are alike where the means of their rounds add up to the same under all conditions: tied, and without a spread', () => {
@@ -79,14 +79,16 @@ describe('two cohorts', () => {
     const rounds = sums.map((own) => own.map((sum) => [0, 1, 2].map((round) => Math.floor((sum + round) / 3))));
     const rows = [0, 1, 2].flatMap((round) => rowsOf(rounds.map((own) => own.map((under) => under[round] as number))));
     const measures = answerMeasures(rows, (participant) => (participant < 'P03' ? 'first' : 'others'));
-    const compared = compareCohorts(measures, { cohorts: ['first', 'others'], conditions: ['c0', 'c1', 'c2'] });
-    expect(compared).toMatchObject([{ rankSum: { w: 2, p: null, effect: 0 }, test: { t: null, p: null, ds: null } }]);
+    const compared = compareCohorts(measures, { sides: ['first', 'others'], conditions: ['c0', 'c1', 'c2'] });
+    expect(compared).toMatchObject([
+      { ranks: { statistic: 2, p: null, effect: 0 }, test: { t: null, p: null, d: null } },
+    ]);
   });
 
   test('of whom one has no one: means alone, no test', () => {
     const measures = answerMeasures(rowsOf([[3], [4]]), () => 'all');
-    const compared = compareCohorts(measures, { cohorts: ['all', 'none'], conditions: ['c0'] });
-    expect(compared).toMatchObject([{ first: { n: 2, mean: 3.5 }, second: null, test: null, rankSum: null }]);
+    const compared = compareCohorts(measures, { sides: ['all', 'none'], conditions: ['c0'] });
+    expect(compared).toMatchObject([{ first: { n: 2, mean: 3.5 }, second: null, test: null, ranks: null }]);
   });
 });
 

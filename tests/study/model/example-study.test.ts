@@ -2,12 +2,12 @@ import { checkedPlan, languagesOf, participantsOf, type StudyPlan } from 'threep
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { resumed } from 'threepoint-study/model/progress/progress';
 import { checkedRecord, type StudyRecord } from 'threepoint-study/model/records/study-record';
-import { compareAnswers } from 'threepoint-study/model/results/compare-conditions';
 import { answersIn, scalesIn, studyTables } from 'threepoint-study/model/tables/study-tables';
 import { nullAnswerModel } from 'threepoint-study/simulation/answer-model';
 import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
 import { simulateStudy } from 'threepoint-study/simulation/simulate-study';
 import { describe, expect, test } from 'vitest';
+import { compareAnswers } from './answered';
 import { examplePlan, paperPlan, planWith, session } from './studies';
 
 const plan = examplePlan();
@@ -115,7 +115,9 @@ describe('a study with questions of every kind', () => {
     const records = simulateStudy(simulated, models, 5, 1e9).flatMap((one) => one.records);
     for (const record of records) checkedRecord(JSON.parse(JSON.stringify(record)), simulated);
     const named = (rows: Parameters<typeof compareAnswers>[0]) =>
-      compareAnswers(rows, ['learned', 'hands-only']).comparisons.map(({ of, pairs }) => `${of} ${pairs.length}`);
+      compareAnswers(rows, ['learned', 'hands-only']).comparisons.map(
+        ({ of, values }) => `${of} ${values.first.length}`,
+      );
     expect(named(answersIn(records, simulated))).toEqual(
       [
         'mine',

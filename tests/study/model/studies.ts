@@ -7,7 +7,7 @@ import { begin, currentStep, type Progress } from 'threepoint-study/model/progre
 import type { Answer, AnswerForm } from 'threepoint-study/model/questionnaires/question-kind';
 import { questionKind } from 'threepoint-study/model/questionnaires/question-kinds';
 import type { StudyRecord } from 'threepoint-study/model/records/study-record';
-import { createTrialLog, type TrialOutcome } from 'threepoint-study/model/records/trial-log';
+import { TrialLog, type TrialOutcome } from 'threepoint-study/model/records/trial-log';
 
 const shippedFile = (name: string): string =>
   readFileSync(fileURLToPath(new URL(`../../../public/studies/${name}.json`, import.meta.url)), 'utf8');
@@ -43,7 +43,7 @@ export const aWomanOf26 = {
 } as const;
 
 export function outcomeOf(score = 40): TrialOutcome {
-  const log = createTrialLog({ name: 'Test headset', refreshRateHz: 72, input: 'controllers' }, null);
+  const log = new TrialLog({ name: 'Test headset', refreshRateHz: 72, input: 'controllers' }, null);
   log.frame({ frame: 6.5, inference: 0.4 }, false);
   log.shot();
   log.event({ time: 3.5, type: 'hit', points: 10 });

@@ -3,9 +3,9 @@ import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { checkedRecord, longestRecord } from 'threepoint-study/model/records/study-record';
 import {
   checkedOutcome,
-  createDurationStatistics,
-  createTrialLog,
+  DurationStatistics,
   mostTrialEvents,
+  TrialLog,
 } from 'threepoint-study/model/records/trial-log';
 import { describe, expect, test } from 'vitest';
 import { number, seed } from '../../threepoint/core/arbitraries';
@@ -18,7 +18,7 @@ describe('durations', () => {
   test('are summed up as sorting them would', () => {
     fc.assert(
       fc.property(fc.array(number(0, 150), { minLength: 1, maxLength: 300 }), (durations) => {
-        const statistics = createDurationStatistics();
+        const statistics = new DurationStatistics();
         for (const ms of durations) statistics.add(ms);
         const sorted = durations.toSorted((a, b) => a - b);
         const summary = statistics.summary();
@@ -36,7 +36,7 @@ describe('durations', () => {
   });
 
   test('that are none say nothing', () => {
-    const statistics = createDurationStatistics();
+    const statistics = new DurationStatistics();
     statistics.add(Number.NaN);
     statistics.add(-1);
     expect(statistics.summary()).toBeNull();
@@ -45,7 +45,7 @@ describe('durations', () => {
 
 describe('the log of a trial', () => {
   test('counts frames, shots and hits', () => {
-    const log = createTrialLog(device, { eyeHeight: 1.6, armSpan: 1.5 });
+    const log = new TrialLog(device, { eyeHeight: 1.6, armSpan: 1.5 });
     log.frame({ frame: 5, inference: 0.4 }, false);
     log.frame({ frame: 15, inference: 0.6 }, true);
     log.shot();
@@ -60,7 +60,7 @@ describe('the log of a trial', () => {
   });
 
   test('knows how often and how long a hand was lost', () => {
-    const log = createTrialLog(device, null);
+    const log = new TrialLog(device, null);
     const seen = { head: true, leftHand: true, rightHand: true };
     log.tracked(0, seen);
     log.tracked(1, { ...seen, leftHand: false });
@@ -74,7 +74,7 @@ describe('the log of a trial', () => {
   });
 
   test('stays small in a trial that does not', () => {
-    const log = createTrialLog(device, null);
+    const log = new TrialLog(device, null);
     for (let i = 0; i < 5000; i++) {
       log.frame({ frame: i % 30, tracking: 0.1 }, false);
       log.event({ time: i / 100, type: 'hit', points: 1 });

@@ -18,6 +18,7 @@ test('two tasks that participants read alike stand side by side in a figure, eac
   const compared = (measures: typeof scales) => compareConditions(measures, ['late-200', 'late-0']).comparisons;
   const charts = scaleCharts({
     results,
+    between: false,
     labels: { first: '200 ms', second: '0 ms' },
     ...{ answers: [], scales: compared(scales), points: [], percent: [], planned: [] },
   });

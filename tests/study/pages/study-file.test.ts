@@ -1,6 +1,5 @@
 import { strToU8, zipSync } from 'fflate';
-import { compareAnswers } from 'threepoint-study/model/results/compare-conditions';
-import { comparisonTable, paperTable } from 'threepoint-study/model/results/result-tables';
+import { conditionsTable, paperTable } from 'threepoint-study/model/results/result-tables';
 import { answersIn } from 'threepoint-study/model/tables/study-tables';
 import { tidyCsv } from 'threepoint-study/model/tables/tidy-csv';
 import { shownResults } from 'threepoint-study/pages/results/shown-results';
@@ -10,6 +9,7 @@ import { nullAnswerModel } from 'threepoint-study/simulation/answer-model';
 import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
 import { simulatedPlan, simulateStudy } from 'threepoint-study/simulation/simulate-study';
 import { expect, test } from 'vitest';
+import { compareAnswers } from '../model/answered';
 import { paperPlan } from '../model/studies';
 import { testSoftware } from '../server/running-studies';
 
@@ -54,9 +54,9 @@ test.each<[string, Uint8Array, RegExp]>([
 });
 
 test('the table of comparisons has a row per question and full precision, and says that it is simulated', () => {
-  const { comparisons } = compareAnswers(answersIn(records, plan), ['learned', 'ik']);
+  const { comparisons } = compareAnswers(answersIn(records, plan));
   const facts = { family: 'explored', simulated: true, aboutOf: () => '', isPlanned: () => false } as const;
-  const csv = tidyCsv(comparisonTable('answers', [{ conditions: ['learned', 'ik'], comparisons }], facts))
+  const csv = tidyCsv(conditionsTable('answers', [{ sides: ['learned', 'ik'], comparisons }], facts))
     .trimEnd()
     .split('\r\n');
   expect(csv).toHaveLength(13);

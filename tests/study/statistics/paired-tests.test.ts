@@ -20,9 +20,9 @@ describe('the paired t-test', () => {
   });
 
   test('gives the effect in standard deviations of the differences: t / √n', () => {
-    const { t, dz, n } = pairedTTest(sleep.first, sleep.second);
-    expect(dz).toBeCloseTo((t as number) / Math.sqrt(n), 12);
-    expect(dz).toBeCloseTo(-1.284558, 6);
+    const { t, df, d } = pairedTTest(sleep.first, sleep.second);
+    expect(d).toBeCloseTo((t as number) / Math.sqrt((df as number) + 1), 12);
+    expect(d).toBeCloseTo(-1.284558, 6);
   });
 
   test('turns its sign, and nothing else, with the pairs', () => {
@@ -33,10 +33,10 @@ describe('the paired t-test', () => {
   });
 
   test('says nothing where all differences are alike', () => {
-    expect(pairedTTest([4, 5, 3], [3, 4, 2])).toMatchObject({ meanDifference: 1, t: null, p: null, dz: null });
+    expect(pairedTTest([4, 5, 3], [3, 4, 2])).toMatchObject({ meanDifference: 1, t: null, p: null, d: null });
     expect(pairedTTest([4, 5, 3], [4, 5, 3])).toMatchObject({ meanDifference: 0, t: null, p: null });
     expect(pairedTTest([0.3, 0.6], [0.1, 0.4])).toMatchObject({ t: null, p: null });
-    expect(pairedTTest([4], [3])).toMatchObject({ n: 1, df: 0, t: null, p: null });
+    expect(pairedTTest([4], [3])).toMatchObject({ df: 0, t: null, p: null });
   });
 
   test('needs pairs', () => {
@@ -64,14 +64,14 @@ describe("Wilcoxon's signed-rank test", () => {
   test('agrees with R on its sleep data, where a zero and ties call for the approximation', () => {
     const result = signedRankTest(sleep.first, sleep.second);
     // V = 0, p-value = 0.009091
-    expect(result).toMatchObject({ v: 0, n: 9, zeros: 1, method: 'normal', effect: -1 });
+    expect(result).toMatchObject({ statistic: 0, n: 9, zeros: 1, method: 'normal', effect: -1 });
     expect(result.p).toBeCloseTo(0.009091, 6);
   });
 
   test("agrees with R's exact test of Hollander and Wolfe's patients", () => {
     const result = signedRankTest(depression.first, depression.second);
     // V = 40; R prints p = 0.01953 one-sided.
-    expect(result).toMatchObject({ v: 40, n: 9, zeros: 0, method: 'exact' });
+    expect(result).toMatchObject({ statistic: 40, n: 9, zeros: 0, method: 'exact' });
     expect(result.p).toBeCloseTo(2 * 0.01953125, 10);
   });
 
@@ -82,7 +82,7 @@ describe("Wilcoxon's signed-rank test", () => {
         fc.array(fc.boolean(), { minLength: 10, maxLength: 10 }),
         (n, signs) => {
           const differences = Array.from({ length: n }, (_, index) => (signs[index] ? 1 : -1) * (index + 1));
-          const { v, p } = signedRankTest(differences, new Array(n).fill(0));
+          const { statistic: v, p } = signedRankTest(differences, new Array(n).fill(0));
           const middle = (n * (n + 1)) / 4;
           let extreme = 0;
           for (let ways = 0; ways < 2 ** n; ways++) {
@@ -102,7 +102,7 @@ describe("Wilcoxon's signed-rank test", () => {
     const counted = signedRankTest(differences, new Array(49).fill(0));
     const approximate = signedRankTest([...differences, 0], new Array(50).fill(0));
     expect(counted.method).toBe('exact');
-    expect(approximate).toMatchObject({ method: 'normal', v: counted.v, n: 49 });
+    expect(approximate).toMatchObject({ method: 'normal', statistic: counted.statistic, n: 49 });
     expect(Math.abs((counted.p as number) - (approximate.p as number))).toBeLessThan(0.001);
   });
 

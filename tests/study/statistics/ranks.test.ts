@@ -82,7 +82,7 @@ describe('ranks', () => {
   });
 
   test('of pairs leave out those that differ by rounding alone, however little the others do', () => {
-    const { zeros, n, v } = signedRankTest([50.1 + 0.2, 50.1, 50.2], [50.3, 50, 50]);
-    expect([zeros, n, v]).toEqual([1, 2, 3]);
+    const { zeros, n, statistic } = signedRankTest([50.1 + 0.2, 50.1, 50.2], [50.3, 50, 50]);
+    expect([zeros, n, statistic]).toEqual([1, 2, 3]);
   });
 });

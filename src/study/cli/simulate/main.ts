@@ -32,10 +32,10 @@ function cohortFindings(
 ): readonly string[] {
   const [baseline, other] = cohorts;
   if (!baseline || !other) return [];
-  const compared = { cohorts: [other.id, baseline.id], conditions: conditions.map(({ id }) => id) } as const;
+  const compared = { sides: [other.id, baseline.id], conditions: conditions.map(({ id }) => id) } as const;
   const lines = [...compareCohorts(answers, compared), ...compareCohorts(points, compared)].map(
     ({ of, test, holmP }) =>
-      `  ${of}: t(${test?.df?.toFixed(1)}) = ${signed(test?.t)}, d_s = ${signed(test?.ds)}, Holm ${pText(holmP)}`,
+      `  ${of}: t(${test?.df?.toFixed(1)}) = ${signed(test?.t)}, d_s = ${signed(test?.d)}, Holm ${pText(holmP)}`,
   );
   return [`${other.id} − ${baseline.id}, Welch’s t-tests between cohorts, Holm over all questions (scores):`, ...lines];
 }
@@ -61,7 +61,7 @@ function findings(records: readonly StudyRecord[], plan: StudyPlan): readonly st
   }
   for (const { of, first, second, test } of compareConditions(measures.points, [other.id, baseline.id]).comparisons) {
     const p = test?.p == null ? '' : `, ${pText(test.p)}`;
-    lines.push(`  ${of}: ${first?.mean.toFixed(2)} against ${second?.mean.toFixed(2)} points (n = ${test?.n})${p}`);
+    lines.push(`  ${of}: ${first?.mean.toFixed(2)} against ${second?.mean.toFixed(2)} points (n = ${first?.n})${p}`);
   }
   return lines;
 }

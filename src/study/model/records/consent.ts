@@ -2,7 +2,7 @@ import { checked, numberBetween, text, ValidationError } from 'threepoint/core/v
 import * as v from 'valibot';
 import { languageTag } from '../phrases/words';
 
-const consentSchema = v.object({
+export const consentSchema = v.object({
   /** The version of the text that was shown. */
   version: text(40),
   given: v.literal(true, 'nothing is recorded without consent'),

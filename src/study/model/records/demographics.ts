@@ -19,7 +19,7 @@ const visions = ['normal', 'corrected', 'impaired'] as const;
 const ages = { min: 16, max: 120 };
 const longest = { major: 80, systems: 120 };
 
-const demographicsSchema = v.object({
+export const demographicsSchema = v.object({
   gender: v.picklist(genders, `expected one of ${genders.join(', ')}`),
   /** Years. */
   age: integerBetween(ages.min, ages.max),

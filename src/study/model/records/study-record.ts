@@ -1,7 +1,6 @@
 import { threePointNames } from 'threepoint/core/estimation/pose-estimator';
 import {
   checked,
-  handTiltsSchema,
   identifier,
   integerBetween,
   numberBetween,
@@ -13,9 +12,9 @@ import * as v from 'valibot';
 import { languageTag } from '../phrases/words';
 import type { StudyPlan } from '../plan/plan';
 import { checkedAnswers, questionnaireNamed } from '../questionnaires/questionnaires';
-import { checkedConsent } from './consent';
-import { checkedDemographics } from './demographics';
-import { checkedOutcome } from './trial-log';
+import { consentSchema } from './consent';
+import { demographicsSchema } from './demographics';
+import { calibrationEntries, outcomeSchema } from './trial-log';
 
 /** The version of stored records, which increases with every change of meaning. */
 export const recordVersion = 1;
@@ -34,8 +33,6 @@ const placeSchema = v.object({
   /** Counted from 1; an interrupted trial has another attempt. */
   attempt: blockNumber,
 });
-
-const condition = v.object({ condition: identifier, estimator: v.picklist(threePointNames) });
 
 const eventSchema = v.variant('type', [
   v.object({
@@ -75,42 +72,6 @@ const eventSchema = v.variant('type', [
 /** The types of events in a session, apart from questions and trials. */
 export const eventTypes = eventSchema.options.map(({ entries }) => entries.type.literal);
 
-const bodies = {
-  consent: v.looseObject({ version: v.string() }),
-  demographics: v.looseObject({}),
-  calibration: v.object({
-    place: placeSchema,
-    eyeHeight: numberBetween(0.3, 2.5),
-    armSpan: numberBetween(0.3, 2.5),
-    /** Absent: not measured. */
-    gazePitch: v.optional(numberBetween(-0.5, 0.5)),
-    handTilts: v.optional(handTiltsSchema),
-  }),
-  trial: v.object({
-    place: placeSchema,
-    /** null: a tutorial, which is not evaluated. */
-    condition: v.nullable(identifier),
-    estimator: v.picklist(threePointNames),
-    repetition: blockNumber,
-    group: blockNumber,
-    outcome: v.looseObject({}),
-  }),
-  answers: v.object({
-    place: placeSchema,
-    ...condition.entries,
-    questionnaire: identifier,
-    /** The language of the questionnaire; absent: the study has only one. */
-    language: v.exactOptional(languageTag),
-    answers: v.record(v.string(), v.union([v.number(), v.string()], 'expected a number or a text')),
-    /** The time from the first question to handing in, without pauses. */
-    seconds: numberBetween(0, 1e7),
-    overtime: v.boolean(),
-  }),
-  event: eventSchema,
-} as const;
-
-export type RecordKind = keyof typeof bodies;
-
 const envelope = {
   version: v.literal(recordVersion, `expected ${recordVersion}, the version that this program reads`),
   /** Unique for the participant, so that a record that is sent twice is stored once. */
@@ -127,43 +88,54 @@ const envelope = {
 };
 
 const recordSchema = v.variant('kind', [
-  v.object({ ...envelope, kind: v.literal('consent'), body: bodies.consent }),
-  v.object({ ...envelope, kind: v.literal('demographics'), body: bodies.demographics }),
-  v.object({ ...envelope, kind: v.literal('calibration'), body: bodies.calibration }),
-  v.object({ ...envelope, kind: v.literal('trial'), body: bodies.trial }),
-  v.object({ ...envelope, kind: v.literal('answers'), body: bodies.answers }),
-  v.object({ ...envelope, kind: v.literal('event'), body: bodies.event }),
+  v.object({ ...envelope, kind: v.literal('consent'), body: consentSchema }),
+  v.object({ ...envelope, kind: v.literal('demographics'), body: demographicsSchema }),
+  v.object({
+    ...envelope,
+    kind: v.literal('calibration'),
+    body: v.object({ place: placeSchema, ...calibrationEntries }),
+  }),
+  v.object({
+    ...envelope,
+    kind: v.literal('trial'),
+    body: v.object({
+      place: placeSchema,
+      /** null: a tutorial, which is not evaluated. */
+      condition: v.nullable(identifier),
+      estimator: v.picklist(threePointNames),
+      repetition: blockNumber,
+      group: blockNumber,
+      outcome: outcomeSchema,
+    }),
+  }),
+  v.object({
+    ...envelope,
+    kind: v.literal('answers'),
+    body: v.object({
+      place: placeSchema,
+      condition: identifier,
+      estimator: v.picklist(threePointNames),
+      questionnaire: identifier,
+      /** The language of the questionnaire; absent: the study has only one. */
+      language: v.exactOptional(languageTag),
+      answers: v.record(v.string(), v.union([v.number(), v.string()], 'expected a number or a text')),
+      /** The time from the first question to handing in, without pauses. */
+      seconds: numberBetween(0, 1e7),
+      overtime: v.boolean(),
+    }),
+  }),
+  v.object({ ...envelope, kind: v.literal('event'), body: eventSchema }),
 ]);
-
-type LooseRecord = v.InferOutput<typeof recordSchema>;
-type RecordOf<Kind extends RecordKind, Body> = Omit<Extract<LooseRecord, { kind: Kind }>, 'body'> & {
-  readonly body: Body;
-};
 
 export type Place = v.InferOutput<typeof placeSchema>;
 export type StudyEvent = v.InferOutput<typeof eventSchema>;
-export type ConsentRecord = RecordOf<'consent', ReturnType<typeof checkedConsent>>;
-export type DemographicsRecord = RecordOf<'demographics', ReturnType<typeof checkedDemographics>>;
-export type CalibrationRecord = Extract<LooseRecord, { kind: 'calibration' }>;
-export type TrialRecord = RecordOf<
-  'trial',
-  Omit<Extract<LooseRecord, { kind: 'trial' }>['body'], 'outcome'> & {
-    readonly outcome: ReturnType<typeof checkedOutcome>;
-  }
->;
-export type AnswersRecord = Extract<LooseRecord, { kind: 'answers' }>;
-export type EventRecord = Extract<LooseRecord, { kind: 'event' }>;
-
 /** A record about a participant, complete in itself. */
-export type StudyRecord =
-  | ConsentRecord
-  | DemographicsRecord
-  | CalibrationRecord
-  | TrialRecord
-  | AnswersRecord
-  | EventRecord;
+export type StudyRecord = v.InferOutput<typeof recordSchema>;
+export type DemographicsRecord = Extract<StudyRecord, { kind: 'demographics' }>;
+export type TrialRecord = Extract<StudyRecord, { kind: 'trial' }>;
 
-function within<T>(field: string, check: () => T): T {
+/** Returns the result of a check; its ValidationErrors name the field below `field`. */
+export function within<T>(field: string, check: () => T): T {
   try {
     return check();
   } catch (error) {
@@ -172,40 +144,21 @@ function within<T>(field: string, check: () => T): T {
   }
 }
 
-/** The part of a plan that decides whether a record fits it. */
-export type RecordedBy = Pick<StudyPlan, 'questionnaires'>;
-
 /**
  * Returns a record of this study that may be stored; throws a ValidationError that names the field, also for one that
  * is too long.
  */
-export function checkedRecord(value: unknown, plan: RecordedBy): StudyRecord {
+export function checkedRecord(value: unknown, plan: Pick<StudyPlan, 'questionnaires'>): StudyRecord {
   const record = checked(recordSchema, value);
-  const length = JSON.stringify(record).length;
+  const length = JSON.stringify(value).length;
   if (length > longestRecord)
     throw new ValidationError('', `a record has at most ${longestRecord} characters, this one ${length}`);
-  switch (record.kind) {
-    case 'consent':
-      return { ...record, body: within('body', () => checkedConsent(record.body, record.body.version)) };
-    case 'demographics':
-      return { ...record, body: within('body', () => checkedDemographics(record.body)) };
-    case 'trial': {
-      const outcome = within('body.outcome', () => checkedOutcome(record.body.outcome));
-      return { ...record, body: { ...record.body, outcome } };
-    }
-    case 'answers': {
-      const { questionnaire, answers } = record.body;
-      const asked = questionnaireNamed(plan, questionnaire);
-      if (!asked) throw new ValidationError('body.questionnaire', `the study has no questionnaire "${questionnaire}"`);
-      return {
-        ...record,
-        body: {
-          ...record.body,
-          answers: within('body.answers', () => ({ ...checkedAnswers(asked, answers) })),
-        },
-      };
-    }
-    default:
-      return record;
-  }
+  if (record.kind !== 'answers') return record;
+  const { questionnaire, answers } = record.body;
+  const asked = questionnaireNamed(plan, questionnaire);
+  if (!asked) throw new ValidationError('body.questionnaire', `the study has no questionnaire "${questionnaire}"`);
+  return {
+    ...record,
+    body: { ...record.body, answers: within('body.answers', () => ({ ...checkedAnswers(asked, answers) })) },
+  };
 }

@@ -24,7 +24,15 @@ const stageSchema = v.object({
 
 const lossSchema = v.object({ losses: count, seconds: duration });
 
-const outcomeSchema = v.object({
+/** The measures of a body; those that are absent were not measured. */
+export const calibrationEntries = {
+  eyeHeight: numberBetween(0.3, 2.5),
+  armSpan: numberBetween(0.3, 2.5),
+  gazePitch: v.optional(numberBetween(-0.5, 0.5)),
+  handTilts: v.optional(handTiltsSchema),
+};
+
+export const outcomeSchema = v.object({
   version: v.literal(trialVersion, `expected ${trialVersion}, the version that this program reads`),
   /** The time from the start to the end. */
   seconds: duration,
@@ -79,15 +87,7 @@ const outcomeSchema = v.object({
     input: v.picklist(['controllers', 'hands', 'mixed', 'emulated', 'simulated']),
   }),
   /** The measures of the body; null: not measured. */
-  calibration: v.nullable(
-    v.object({
-      eyeHeight: numberBetween(0.3, 2.5),
-      armSpan: numberBetween(0.3, 2.5),
-      forearm: v.optional(numberBetween(0.1, 0.6)),
-      gazePitch: v.optional(numberBetween(-0.5, 0.5)),
-      handTilts: v.optional(handTiltsSchema),
-    }),
-  ),
+  calibration: v.nullable(v.object({ ...calibrationEntries, forearm: v.optional(numberBetween(0.1, 0.6)) })),
   tracking: v.object({ head: lossSchema, leftHand: lossSchema, rightHand: lossSchema }),
   /** The aids that were on: aim assistance, seated play, one hand. */
   assists: v.pipe(v.array(text(60)), v.maxLength(16, 'expected at most sixteen assists')),
@@ -112,42 +112,40 @@ const bins = 4000;
  * Statistics of durations [ms] in bounded memory: percentiles are exact to 0.05 ms, and above 200 ms they are the
  * maximum.
  */
-export interface DurationStatistics {
-  add(ms: number): void;
-  /** null without values. */
-  summary(): StageSummary | null;
-}
+export class DurationStatistics {
+  readonly #histogram = new Uint32Array(bins);
+  #count = 0;
+  #sum = 0;
+  #min = Number.POSITIVE_INFINITY;
+  #max = 0;
 
-export function createDurationStatistics(): DurationStatistics {
-  const histogram = new Uint32Array(bins);
-  let count = 0;
-  let sum = 0;
-  let min = Number.POSITIVE_INFINITY;
-  let max = 0;
-  const quantile = (q: number) => {
-    const rank = Math.ceil(q * count);
+  add(ms: number): void {
+    if (!Number.isFinite(ms) || ms < 0) return;
+    this.#count += 1;
+    this.#sum += ms;
+    this.#min = Math.min(this.#min, ms);
+    this.#max = Math.max(this.#max, ms);
+    const bin = Math.floor(ms / binMs);
+    if (bin < bins) this.#histogram[bin] = (this.#histogram[bin] as number) + 1;
+  }
+
+  /** Returns null without values. */
+  summary(): StageSummary | null {
+    const count = this.#count;
+    if (count === 0) return null;
+    const ends = { minMs: this.#min, maxMs: this.#max, meanMs: this.#sum / count };
+    return { count, ...ends, p50Ms: this.#quantile(0.5), p95Ms: this.#quantile(0.95) };
+  }
+
+  #quantile(q: number): number {
+    const rank = Math.ceil(q * this.#count);
     let seen = 0;
-    for (let bin = 0; bin < bins; bin++) {
-      seen += histogram[bin] as number;
-      if (seen >= rank) return Math.min(max, Math.max(min, (bin + 0.5) * binMs));
-    }
-    return max;
-  };
-  return {
-    add(ms) {
-      if (!Number.isFinite(ms) || ms < 0) return;
-      count += 1;
-      sum += ms;
-      min = Math.min(min, ms);
-      max = Math.max(max, ms);
-      const bin = Math.floor(ms / binMs);
-      if (bin < bins) histogram[bin] = (histogram[bin] as number) + 1;
-    },
-    summary() {
-      if (count === 0) return null;
-      return { count, minMs: min, maxMs: max, meanMs: sum / count, p50Ms: quantile(0.5), p95Ms: quantile(0.95) };
-    },
-  };
+    const bin = this.#histogram.findIndex((inBin) => {
+      seen += inBin;
+      return seen >= rank;
+    });
+    return bin < 0 ? this.#max : Math.min(this.#max, Math.max(this.#min, (bin + 0.5) * binMs));
+  }
 }
 
 type Tracked = 'head' | 'leftHand' | 'rightHand';
@@ -159,101 +157,95 @@ type Tracked = 'head' | 'leftHand' | 'rightHand';
 export type FrameListener = (spentMs: Readonly<Record<string, number>>, late: boolean) => void;
 
 /** Collects a trial. Frames only write numbers; `finish` computes the rest. */
-export interface TrialLog {
-  /** Counts a frame: milliseconds per stage, and whether it was shown late. */
-  readonly frame: FrameListener;
-  /** Counts what was tracked at this second of the trial; times increase. */
-  tracked(time: number, seen: Readonly<Record<Tracked, boolean>>): void;
-  shot(): void;
-  event(event: TrialEvent): void;
-  assist(name: string): void;
-  finish(end: {
-    readonly seconds: number;
-    readonly ended: TrialOutcome['ended'];
-    readonly score: number;
-    readonly maximum: number;
-    readonly motionFrames: number;
-    /** null: unknown. */
-    readonly clock?: TrialClock | null;
-  }): TrialOutcome;
-}
+export class TrialLog {
+  readonly #device: TrialOutcome['device'];
+  readonly #calibration: Calibration | null;
+  readonly #stages = new Map<string, DurationStatistics>();
+  readonly #tracking = {
+    head: { losses: 0, seconds: 0 },
+    leftHand: { losses: 0, seconds: 0 },
+    rightHand: { losses: 0, seconds: 0 },
+  };
+  /** The parts that are lost at the moment. */
+  readonly #lost = new Set<Tracked>();
+  readonly #events: TrialEvent[] = [];
+  readonly #assists = new Set<string>();
+  readonly #counts = { eventCount: 0, shots: 0, hits: 0 };
+  readonly #frames = { count: 0, missed: 0 };
+  #lastTime: number | null = null;
 
-export function createTrialLog(device: TrialOutcome['device'], calibration: Calibration | null): TrialLog {
-  const stages = new Map<string, DurationStatistics>();
-  const losses: Record<Tracked, { losses: number; seconds: number; lost: boolean }> = {
-    head: { losses: 0, seconds: 0, lost: false },
-    leftHand: { losses: 0, seconds: 0, lost: false },
-    rightHand: { losses: 0, seconds: 0, lost: false },
-  };
-  const events: TrialEvent[] = [];
-  const assists = new Set<string>();
-  let eventCount = 0;
-  let shots = 0;
-  let hits = 0;
-  let frames = 0;
-  let missed = 0;
-  let lastTime: number | null = null;
-  return {
-    frame(parts, late) {
-      frames += 1;
-      if (late) missed += 1;
-      for (const [name, ms] of Object.entries(parts)) {
-        let statistics = stages.get(name);
-        if (!statistics) {
-          if (stages.size >= mostTrialStages)
-            throw new Error(`a trial logs at most ${mostTrialStages} stages, "${name}" is one more`);
-          statistics = createDurationStatistics();
-          stages.set(name, statistics);
-        }
-        statistics.add(ms);
+  constructor(device: TrialOutcome['device'], calibration: Calibration | null) {
+    this.#device = device;
+    this.#calibration = calibration;
+  }
+
+  /** Counts a frame: milliseconds per stage, and whether it was shown late. */
+  frame(parts: Readonly<Record<string, number>>, late: boolean): void {
+    this.#frames.count += 1;
+    if (late) this.#frames.missed += 1;
+    for (const [name, ms] of Object.entries(parts)) {
+      let statistics = this.#stages.get(name);
+      if (!statistics) {
+        if (this.#stages.size >= mostTrialStages)
+          throw new Error(`a trial logs at most ${mostTrialStages} stages, "${name}" is one more`);
+        statistics = new DurationStatistics();
+        this.#stages.set(name, statistics);
       }
-    },
-    tracked(time, seen) {
-      const passed = lastTime === null ? 0 : Math.max(0, time - lastTime);
-      lastTime = time;
-      for (const part of ['head', 'leftHand', 'rightHand'] as const) {
-        const loss = losses[part];
-        if (loss.lost) loss.seconds += passed;
-        if (!seen[part] && !loss.lost) loss.losses += 1;
-        loss.lost = !seen[part];
+      statistics.add(ms);
+    }
+  }
+
+  /** Counts what was tracked at this second of the trial; times increase. */
+  tracked(time: number, seen: Readonly<Record<Tracked, boolean>>): void {
+    const passed = this.#lastTime === null ? 0 : Math.max(0, time - this.#lastTime);
+    this.#lastTime = time;
+    for (const part of ['head', 'leftHand', 'rightHand'] as const) {
+      if (this.#lost.has(part)) this.#tracking[part].seconds += passed;
+      if (seen[part]) this.#lost.delete(part);
+      else if (!this.#lost.has(part)) {
+        this.#lost.add(part);
+        this.#tracking[part].losses += 1;
       }
-    },
-    shot() {
-      shots += 1;
-    },
-    event(event) {
-      eventCount += 1;
-      if (event.type === 'hit') hits += 1;
-      if (events.length < mostTrialEvents) events.push(event);
-    },
-    assist(name) {
-      assists.add(name);
-    },
-    finish({ seconds, ended, score, maximum, motionFrames, clock }) {
-      const loss = (part: Tracked) => ({ losses: losses[part].losses, seconds: losses[part].seconds });
-      const summaries: Record<string, StageSummary> = {};
-      for (const [name, statistics] of stages) {
-        const summary = statistics.summary();
-        if (summary) summaries[name] = summary;
-      }
-      return checkedOutcome({
-        version: trialVersion,
-        seconds,
-        ended,
-        score,
-        maximum,
-        shots,
-        hits,
-        events,
-        eventCount,
-        frames: { count: frames, missed, stages: summaries },
-        device,
-        calibration,
-        tracking: { head: loss('head'), leftHand: loss('leftHand'), rightHand: loss('rightHand') },
-        assists: [...assists],
-        motionFrames,
-        ...(clock && { clock }),
-      });
-    },
-  };
+    }
+  }
+
+  shot(): void {
+    this.#counts.shots += 1;
+  }
+
+  event(event: TrialEvent): void {
+    this.#counts.eventCount += 1;
+    if (event.type === 'hit') this.#counts.hits += 1;
+    if (this.#events.length < mostTrialEvents) this.#events.push(event);
+  }
+
+  assist(name: string): void {
+    this.#assists.add(name);
+  }
+
+  /** Returns the outcome; throws a ValidationError if it is not valid. `clock` null: unknown. */
+  finish({
+    clock,
+    ...end
+  }: Pick<TrialOutcome, 'seconds' | 'ended' | 'score' | 'maximum' | 'motionFrames'> & {
+    readonly clock?: TrialClock | null;
+  }): TrialOutcome {
+    const stages: Record<string, StageSummary> = {};
+    for (const [name, statistics] of this.#stages) {
+      const summary = statistics.summary();
+      if (summary) stages[name] = summary;
+    }
+    return checkedOutcome({
+      version: trialVersion,
+      ...end,
+      ...this.#counts,
+      events: this.#events,
+      frames: { ...this.#frames, stages },
+      device: this.#device,
+      calibration: this.#calibration,
+      tracking: this.#tracking,
+      assists: [...this.#assists],
+      ...(clock && { clock }),
+    });
+  }
 }

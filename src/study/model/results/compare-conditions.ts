@@ -1,19 +1,22 @@
 import { asFamily } from '../../statistics/holm';
-import { type PairedTTest, pairedTTest, type SignedRankTest, signedRankTest } from '../../statistics/paired-tests';
-import { type MeanSummary, meanSummary } from '../../statistics/summaries';
-import type { AnswerRow } from '../tables/answer-tables';
-import type { TrialRow } from '../tables/study-tables';
-import { answerMeasures, type Exclusion, type Measure, type Measured, scoreMeasures } from './measures';
+import { pairedTTest, signedRankTest } from '../../statistics/paired-tests';
+import type { RankTest } from '../../statistics/ranks';
+import { type MeanSummary, meanSummary, type TTest } from '../../statistics/summaries';
+import type { Exclusion, Measure, Measured } from './measures';
 
-/** The comparison of a question or a score under two conditions. */
+/** The comparison of a measure under two conditions (paired tests) or between two cohorts: first − second. */
 export interface Comparison extends Measured {
-  /** null: no participant has both. */
+  /** null: no one has a value. */
   readonly first: MeanSummary | null;
   readonly second: MeanSummary | null;
-  /** The pairs in the order of the participants (or groups), for paired plots. */
-  readonly pairs: readonly { readonly who: string; readonly first: number; readonly second: number }[];
-  readonly test: PairedTTest | null;
-  readonly signedRank: SignedRankTest | null;
+  /**
+   * The value of each participant (or group) in order. Values of two conditions at one index are a pair, those of
+   * cohorts are of different participants.
+   */
+  readonly values: { readonly first: readonly number[]; readonly second: readonly number[] };
+  /** null: a side has no values. */
+  readonly test: TTest | null;
+  readonly ranks: RankTest | null;
   /** Adjusted over the family of comparisons made together. */
   readonly holmP: number | null;
   readonly ranksHolmP: number | null;
@@ -24,35 +27,36 @@ export interface Results {
   readonly excluded: readonly Exclusion[];
 }
 
-type Pair = Comparison['pairs'][number];
-
-/** Returns the participants with a value under both conditions, and the names of those who lack one. */
+/** Returns the values of participants who have both, and the names of those who lack one. */
 function paired({ of, means }: Measure, [first, second]: readonly [string, string]) {
-  const pairs: Pair[] = [];
+  const values = { first: [] as number[], second: [] as number[] };
   const alone: Exclusion[] = [];
   for (const [who, own] of means) {
-    const values = { first: own.get(first), second: own.get(second) };
-    if (values.first !== undefined && values.second !== undefined) {
-      pairs.push({ who, first: values.first, second: values.second });
-    } else if (values.first !== undefined || values.second !== undefined) {
-      const missing = values.first === undefined ? first : second;
-      alone.push({ participant: who, of, reason: `no valid value under "${missing}"` });
+    const [one, other] = [own.get(first), own.get(second)];
+    if (one !== undefined && other !== undefined) {
+      values.first.push(one);
+      values.second.push(other);
+    } else if (one !== undefined || other !== undefined) {
+      alone.push({ participant: who, of, reason: `no valid value under "${one === undefined ? first : second}"` });
     }
   }
-  return { pairs, alone };
+  return { values, alone };
 }
 
-function tested(pairs: readonly Pair[]) {
-  if (pairs.length === 0) return { first: null, second: null, test: null, signedRank: null };
-  const first = pairs.map((pair) => pair.first);
-  const second = pairs.map((pair) => pair.second);
-  return {
-    first: meanSummary(first),
-    second: meanSummary(second),
-    test: pairedTTest(first, second),
-    signedRank: signedRankTest(first, second),
-  };
-}
+/** Returns comparisons of measures as one family for Holm's correction; `tests` are those of two sides with values. */
+export const comparisonsOf = (
+  measured: readonly (Measured & Pick<Comparison, 'values'>)[],
+  tests: (first: readonly number[], second: readonly number[]) => Pick<Comparison, 'test' | 'ranks'>,
+): readonly Comparison[] =>
+  asFamily(
+    measured.map(({ of, asked, unit, values }) => {
+      const [first, second] = [values.first, values.second].map((own) => (own.length === 0 ? null : meanSummary(own)));
+      const tested = first && second ? tests(values.first, values.second) : { test: null, ranks: null };
+      return { of, asked, unit, values, first: first ?? null, second: second ?? null, ...tested };
+    }),
+    ({ test }) => test?.p ?? null,
+    ({ ranks }) => ranks?.p ?? null,
+  );
 
 /**
  * Compares measures between two conditions, first − second, as one family for Holm's correction. Only participants with
@@ -60,27 +64,15 @@ function tested(pairs: readonly Pair[]) {
  */
 export function compareConditions(measures: readonly Measure[], conditions: readonly [string, string]): Results {
   const excluded: Exclusion[] = [];
-  const single = measures.map((measure) => {
-    const { of, asked, unit, voided } = measure;
-    const { pairs, alone } = paired(measure, conditions);
-    for (const { condition, ...reason } of voided) if (conditions.includes(condition)) excluded.push(reason);
+  const measured = measures.map((measure) => {
+    const { values, alone } = paired(measure, conditions);
+    for (const { condition, ...reason } of measure.voided) if (conditions.includes(condition)) excluded.push(reason);
     excluded.push(...alone);
-    return { of, asked, unit, pairs, ...tested(pairs) };
+    return { ...measure, values };
   });
-  const comparisons = asFamily(
-    single,
-    ({ test }) => test?.p ?? null,
-    ({ signedRank }) => signedRank?.p ?? null,
-  );
+  const comparisons = comparisonsOf(measured, (first, second) => ({
+    test: pairedTTest(first, second),
+    ranks: signedRankTest(first, second),
+  }));
   return { comparisons, excluded };
 }
-
-/** Compares every question or scale with numeric answers, as one family. */
-export const compareAnswers = (rows: readonly AnswerRow[], conditions: readonly [string, string]): Results =>
-  compareConditions(answerMeasures(rows), conditions);
-
-/** Compares the scores of every task, with points and per cent as separate families. */
-export const compareScores = (rows: readonly TrialRow[], conditions: readonly [string, string]) => ({
-  points: compareConditions(scoreMeasures(rows, 'points'), conditions),
-  percent: compareConditions(scoreMeasures(rows, 'percent'), conditions),
-});

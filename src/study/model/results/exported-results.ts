@@ -4,14 +4,13 @@ import type { Questionnaire } from '../questionnaires/questionnaires';
 import type { StudyRecord } from '../records/study-record';
 import { answersIn, scalesIn, trialsIn } from '../tables/study-tables';
 import type { Table } from '../tables/tidy-csv';
-import { type ComparedCohortPair, cohortTable } from './cohort-table';
 import { compareAll } from './compare-all';
 import { type ComparedCohorts, compareCohorts } from './compare-cohorts';
 import { compareConditions } from './compare-conditions';
 import { frameTimes } from './frame-times';
 import { answerMeasures, type CohortOf, type Measure, type Measured, scoreMeasures } from './measures';
 import { isPlanned, plannedMeasures } from './planned';
-import { comparisonTable, frameTimeTable, overallTable, type TableFacts } from './result-tables';
+import { cohortsTable, conditionsTable, frameTimeTable, overallTable, type TableFacts } from './result-tables';
 
 /** Returns the subject of a question or the name of a scale; empty: none. */
 export function aboutIn(asked: readonly Questionnaire[], { asked: of }: Pick<Measured, 'asked'>): string {
@@ -72,7 +71,7 @@ export function cohortViews({ conditions }: Pick<StudyPlan, 'conditions'>): read
 
 /** Returns every pair of cohorts in every view. */
 const cohortComparisonsOf = (plan: StudyPlan): readonly ComparedCohorts[] =>
-  pairsOf(plan.cohorts ?? []).flatMap((cohorts) => cohortViews(plan).map((conditions) => ({ cohorts, conditions })));
+  pairsOf(plan.cohorts ?? []).flatMap((sides) => cohortViews(plan).map((conditions) => ({ sides, conditions })));
 
 /**
  * Returns the results of the page for every pair of conditions and cohorts. Throws if simulated records and records of
@@ -90,16 +89,16 @@ export function resultTables(records: readonly StudyRecord[], plan: StudyPlan): 
   /** Returns three tables of the same measures; p is adjusted within each family. */
   const tablesOf = (name: string, families: readonly (readonly Measure[])[]): readonly Table[] => {
     const facts = factsFor(name === 'planned' ? 'planned' : 'explored');
-    const pairs = pairsOf(plan.conditions).flatMap((conditions) =>
-      families.map((family) => ({ conditions, comparisons: compareConditions(family, conditions).comparisons })),
+    const pairs = pairsOf(plan.conditions).flatMap((sides) =>
+      families.map((family) => ({ sides, comparisons: compareConditions(family, sides).comparisons })),
     );
-    const cohorts: readonly ComparedCohortPair[] = cohortComparisonsOf(plan).flatMap((compared) =>
-      families.map((family) => ({ compared, comparisons: compareCohorts(family, compared) })),
+    const cohorts = cohortComparisonsOf(plan).flatMap((compared) =>
+      families.map((family) => ({ ...compared, comparisons: compareCohorts(family, compared) })),
     );
     return [
-      comparisonTable(`${name}-compared`, pairs, facts),
+      conditionsTable(`${name}-compared`, pairs, facts),
       overallTable(`${name}-overall`, overallComparisons(families[0] ?? [], plan), facts),
-      cohortTable(`${name}-cohorts`, cohorts, facts),
+      cohortsTable(`${name}-cohorts`, cohorts, facts),
     ];
   };
   return [

@@ -1,8 +1,6 @@
 import type { Effect, VarianceAnalysis } from '../../statistics/analysis-of-variance';
-import type { WelchTest } from '../../statistics/between-tests';
-import type { SignedRankTest } from '../../statistics/paired-tests';
-import type { Interval, MeanSummary } from '../../statistics/summaries';
-import { boolean, type Column, number, type Table, text } from '../tables/tidy-csv';
+import type { Interval } from '../../statistics/summaries';
+import { boolean, type Cell, type Column, number, type Table, text } from '../tables/tidy-csv';
 import type { OverallComparison } from './compare-all';
 import type { Comparison } from './compare-conditions';
 import type { FrameTimeRow } from './frame-times';
@@ -26,11 +24,10 @@ const simulatedColumn = boolean(
 );
 const ids = 'small letters, digits, hyphens';
 /** Values in [0, 1]: p, ε, shares of variance. */
-export const share = '0 to 1';
-const correlation = '-1 to 1';
+const share = '0 to 1';
 
 /** The first columns of every table of compared measures. */
-export const measureColumns: readonly Column[] = [
+const measureColumns: readonly Column[] = [
   simulatedColumn,
   text(
     'of',
@@ -48,7 +45,7 @@ export const measureColumns: readonly Column[] = [
 ];
 
 /** Returns the first cells of every row. */
-export const measureCells = (one: Measured, { simulated, aboutOf, isPlanned }: TableFacts) => ({
+const measureCells = (one: Measured, { simulated, aboutOf, isPlanned }: TableFacts) => ({
   simulated,
   of: one.of,
   about: aboutOf(one),
@@ -56,18 +53,11 @@ export const measureCells = (one: Measured, { simulated, aboutOf, isPlanned }: T
   planned: isPlanned(one),
 });
 
-/** Returns the columns of one side's mean and interval. */
-export const meanColumns = (side: 'first' | 'second', what: string, source: (figure: string) => string) => [
-  number(`mean_${side}`, '', 'any', source('mean'), `Mean ${what}.`),
-  number(`low_${side}`, '', 'any', source('interval'), 'Lower end of its 95 % confidence interval.'),
-  number(`high_${side}`, '', 'any', source('interval'), 'Upper end.'),
+/** Returns the columns of the ends of an interval; `none` says when both are empty. */
+const endColumns = (name: string, source: string, none?: string) => [
+  number(`low_${name}`, '', 'any', source, 'Lower end of its 95 % confidence interval.'),
+  number(`high_${name}`, '', 'any', source, none === undefined ? 'Upper end.' : `Upper end; both empty: ${none}.`),
 ];
-
-/** Returns the cells of one side. */
-export const meanCells = (side: 'first' | 'second', summary: MeanSummary | null) => ({
-  [`mean_${side}`]: summary?.mean ?? null,
-  ...endCells(side, summary?.interval),
-});
 
 /** Returns the cells of the ends of an interval. */
 const endCells = (name: string, ends: Interval | null | undefined) => ({
@@ -75,110 +65,167 @@ const endCells = (name: string, ends: Interval | null | undefined) => ({
   [`high_${name}`]: ends?.high ?? null,
 });
 
-/** Returns the cells of a t-test and its effect size, which is named `ds` or `dz`. */
-export const testCells = (
-  test: Pick<WelchTest, 'meanDifference' | 'interval' | 't' | 'df' | 'p'> | null | undefined,
-  effect: 'ds' | 'dz',
-  size: number | null | undefined,
-  ends: Interval | null | undefined,
-) => ({
-  difference: test?.meanDifference ?? null,
-  ...endCells('difference', test?.interval),
-  t: test?.t ?? null,
-  df: test?.df ?? null,
-  p: test?.p ?? null,
-  [effect]: size ?? null,
-  ...endCells(effect, ends),
-});
-
-/** Returns the cells of a rank-biserial correlation. */
-export const biserialCells = (ranks: Pick<SignedRankTest, 'effect' | 'effectInterval'> | null | undefined) => ({
-  rank_biserial: ranks?.effect ?? null,
-  ...endCells('rank_biserial', ranks?.effectInterval),
-});
-
-/** Returns the columns of the ends of an effect's interval. */
-export const endColumns = (name: string, method: string, none: string) => [
-  number(`low_${name}`, '', 'any', `computed: ${method}`, 'Lower end of its 95 % confidence interval.'),
-  number(`high_${name}`, '', 'any', `computed: ${method}`, `Upper end; both empty: ${none}.`),
-];
-
-/** Returns the columns of an interval by the noncentral t. */
-export const noncentralColumns = (name: string) =>
-  endColumns(name, 'noncentral t', 'nothing varies, or t is too far out');
-
-/** The columns of the interval of a rank-biserial correlation. */
-export const biserialColumns = [
-  number('rank_biserial', '', correlation, 'computed: (ranks for − ranks against) / all ranks', 'Its effect size.'),
-  ...endColumns(
-    'rank_biserial',
-    "Fisher's z with the standard error of the ranks where nothing differs",
-    'all ranks are on one side',
-  ),
-];
-
-/** Describes the rows over which p is adjusted. */
-export const familyText = ({ family }: Pick<TableFacts, 'family'>, alike: string) =>
-  `computed: Holm over the rows of this table with the same ${alike}${family === 'planned' ? '' : ' and unit'}`;
-
-const t = 'computed: paired t-test';
-const wilcoxon = "computed: Wilcoxon's signed-rank test, as R's wilcox.test up to 4.5, ties within rounding";
-const underBoth = (figure: string) => `computed: the ${figure} of what each had under both conditions`;
-
-function comparisonColumns(facts: TableFacts): readonly Column[] {
-  const family = familyText(facts, 'two conditions');
-  return [
-    ...measureColumns,
-    text('first', ids, 'plan.json: conditions', 'Condition from which the other is subtracted.'),
-    text('second', ids, 'plan.json: conditions', 'Condition that is subtracted.'),
-    number('n', '', '0, 1, 2 …', 'computed', 'Pairs: participants, or groups where a group has one score.'),
-    ...meanColumns('first', 'under the first condition', underBoth),
-    ...meanColumns('second', 'under the second condition', underBoth),
-    number('difference', '', 'any', t, 'Mean of first − second.'),
-    number('low_difference', '', 'any', t, 'Lower end of its 95 % confidence interval.'),
-    number('high_difference', '', 'any', t, 'Upper end.'),
-    number('t', '', 'any', t, 'Empty: the differences do not vary.'),
-    number('df', '', '0, 1, 2 …', t, 'Its degrees of freedom.'),
-    number('p', '', share, t, 'Its two-sided p.'),
-    number('p_holm', '', share, family, 'p adjusted.'),
-    number('dz', '', 'any', 'computed: t / √n', "Cohen's d_z: mean difference in its standard deviations."),
-    ...noncentralColumns('dz'),
-    number('v', '', '0 and more', wilcoxon, 'Sum of the positive ranks.'),
-    number('p_wilcoxon', '', share, wilcoxon, 'Its two-sided p.'),
-    number('p_wilcoxon_holm', '', share, family, 'p_wilcoxon adjusted.'),
-    text('method_wilcoxon', 'exact, normal', wilcoxon, 'normal: approximation for ties, zeros and 50 pairs or more.'),
-    ...biserialColumns,
-  ];
-}
-
-/** Comparisons that belong together. */
-export interface ComparedPair {
+/** Comparisons of the same two sides; `conditions` are those over whose mean cohorts are compared. */
+export interface ComparedSides {
   /** The ids: first − second. */
-  readonly conditions: readonly [string, string];
+  readonly sides: readonly [string, string];
+  readonly conditions?: readonly string[];
   readonly comparisons: readonly Comparison[];
 }
 
-const comparisonCells = (one: Comparison) => ({
-  n: one.pairs.length,
-  ...meanCells('first', one.first),
-  ...meanCells('second', one.second),
-  ...testCells(one.test, 'dz', one.test?.dz, one.test?.dzInterval),
+/** What tables of compared conditions and of compared cohorts say differently. */
+interface TwoSides {
+  /** The columns after those of the measure, and their cells. */
+  readonly head: readonly Column[];
+  readonly headCells: (sides: ComparedSides, one: Comparison) => Readonly<Record<string, Cell>>;
+  /** What each mean is of, and the population of its figures. */
+  readonly means: { readonly first: string; readonly second: string; readonly each: string };
+  /** The test, the difference, when t is empty, and the degrees of freedom. */
+  readonly t: { readonly test: string; readonly difference: string; readonly empty: string };
+  readonly df: { readonly values: string; readonly description: string };
+  readonly d: { readonly name: string; readonly source: string; readonly description: string };
+  /** Wilcoxon's test: its name in columns, in words, its statistic and when it is approximated. */
+  readonly ranks: {
+    readonly name: string;
+    readonly test: string;
+    readonly statistic: string;
+    readonly description: string;
+    readonly approximated: string;
+  };
+  /** What the rows of a family have in common. */
+  readonly alike: string;
+}
+
+const twoConditions: TwoSides = {
+  head: [
+    text('first', ids, 'plan.json: conditions', 'Condition from which the other is subtracted.'),
+    text('second', ids, 'plan.json: conditions', 'Condition that is subtracted.'),
+    number('n', '', '0, 1, 2 …', 'computed', 'Pairs: participants, or groups where a group has one score.'),
+  ],
+  headCells: ({ sides: [first, second] }, { values }) => ({ first, second, n: values.first.length }),
+  means: {
+    first: 'under the first condition',
+    second: 'under the second condition',
+    each: 'each had under both conditions',
+  },
+  t: { test: 'paired t-test', difference: 'Mean of first − second.', empty: 'the differences do not vary' },
+  df: { values: '0, 1, 2 …', description: 'Its degrees of freedom.' },
+  d: { name: 'dz', source: 't / √n', description: "Cohen's d_z: mean difference in its standard deviations." },
+  ranks: {
+    name: 'wilcoxon',
+    test: 'signed-rank test',
+    statistic: 'v',
+    description: 'Sum of the positive ranks.',
+    approximated: 'ties, zeros and 50 pairs or more',
+  },
+  alike: 'two conditions',
+};
+
+const twoCohorts: TwoSides = {
+  head: [
+    text('first', ids, 'plan.json: cohorts', 'Cohort from which the other is subtracted.'),
+    text('second', ids, 'plan.json: cohorts', 'Cohort that is subtracted.'),
+    text(
+      'condition',
+      ids,
+      'plan.json: conditions',
+      'Condition; empty: the mean of each participant over all conditions.',
+    ),
+    number('n_first', '', '0, 1, 2 …', 'computed', 'Participants of the first (groups, where a group has one score).'),
+    number('n_second', '', '0, 1, 2 …', 'computed', 'Of the second.'),
+  ],
+  headCells: ({ sides: [first, second], conditions = [] }, { values }) => ({
+    ...{ first, second, condition: conditions.length === 1 ? (conditions[0] ?? '') : '' },
+    ...{ n_first: values.first.length, n_second: values.second.length },
+  }),
+  means: { first: 'of the first cohort', second: 'of the second cohort', each: 'each of the cohort had' },
+  t: { test: "Welch's t-test", difference: 'First − second.', empty: 'there are too few, or nothing varies' },
+  df: { values: 'more than 0', description: 'Its degrees of freedom by Welch and Satterthwaite.' },
+  d: { name: 'ds', source: 'difference / pooled standard deviation', description: "Cohen's d_s." },
+  ranks: {
+    name: 'rank_sum',
+    test: "rank-sum test (Mann and Whitney's)",
+    statistic: 'w',
+    description: 'Pairs of both cohorts in which the first is larger; ties count half.',
+    approximated: 'ties and 50 in a cohort or more',
+  },
+  alike: 'two cohorts, condition',
+};
+
+function twoSidedColumns({ head, means, t, df, d, ranks, alike }: TwoSides, family: TableFacts['family']) {
+  const holm = `computed: Holm over the rows of this table with the same ${alike}${family === 'planned' ? '' : ' and unit'}`;
+  const tTest = `computed: ${t.test}`;
+  const wilcoxon = `computed: Wilcoxon's ${ranks.test}, as R's wilcox.test up to 4.5, ties within rounding`;
+  const rankP = `p_${ranks.name}`;
+  const meanColumns = (side: 'first' | 'second') => [
+    number(`mean_${side}`, '', 'any', `computed: the mean of what ${means.each}`, `Mean ${means[side]}.`),
+    ...endColumns(side, `computed: the interval of what ${means.each}`),
+  ];
+  return [
+    ...measureColumns,
+    ...head,
+    ...meanColumns('first'),
+    ...meanColumns('second'),
+    number('difference', '', 'any', tTest, t.difference),
+    ...endColumns('difference', tTest),
+    number('t', '', 'any', tTest, `Empty: ${t.empty}.`),
+    number('df', '', df.values, tTest, df.description),
+    number('p', '', share, tTest, 'Its two-sided p.'),
+    number('p_holm', '', share, holm, 'p adjusted.'),
+    number(d.name, '', 'any', `computed: ${d.source}`, d.description),
+    ...endColumns(d.name, 'computed: noncentral t', 'nothing varies, or t is too far out'),
+    number(ranks.statistic, '', '0 and more', wilcoxon, ranks.description),
+    number(rankP, '', share, wilcoxon, 'Its two-sided p.'),
+    number(`${rankP}_holm`, '', share, holm, `${rankP} adjusted.`),
+    text(`method_${ranks.name}`, 'exact, normal', wilcoxon, `normal: approximation for ${ranks.approximated}.`),
+    number('rank_biserial', '', '-1 to 1', 'computed: (ranks for − ranks against) / all ranks', 'Its effect size.'),
+    ...endColumns(
+      'rank_biserial',
+      "computed: Fisher's z with the standard error of the ranks where nothing differs",
+      'all ranks are on one side',
+    ),
+  ];
+}
+
+const twoSidedCells = ({ d, ranks: { name, statistic } }: TwoSides, one: Comparison) => ({
+  ...{ mean_first: one.first?.mean ?? null, ...endCells('first', one.first?.interval) },
+  ...{ mean_second: one.second?.mean ?? null, ...endCells('second', one.second?.interval) },
+  difference: one.test?.meanDifference ?? null,
+  ...endCells('difference', one.test?.interval),
+  t: one.test?.t ?? null,
+  df: one.test?.df ?? null,
+  p: one.test?.p ?? null,
   p_holm: one.holmP,
-  v: one.signedRank?.v ?? null,
-  p_wilcoxon: one.signedRank?.p ?? null,
-  p_wilcoxon_holm: one.ranksHolmP,
-  method_wilcoxon: one.signedRank?.method ?? '',
-  ...biserialCells(one.signedRank),
+  [d.name]: one.test?.d ?? null,
+  ...endCells(d.name, one.test?.dInterval),
+  [statistic]: one.ranks?.statistic ?? null,
+  [`p_${name}`]: one.ranks?.p ?? null,
+  [`p_${name}_holm`]: one.ranksHolmP,
+  [`method_${name}`]: one.ranks?.method ?? '',
+  rank_biserial: one.ranks?.effect ?? null,
+  ...endCells('rank_biserial', one.ranks?.effectInterval),
 });
 
-/** Returns comparisons of conditions as a tidy table in full precision. */
-export const comparisonTable = (name: string, pairs: readonly ComparedPair[], facts: TableFacts): Table => ({
-  name,
-  columns: comparisonColumns(facts),
-  rows: pairs.flatMap(({ conditions: [first, second], comparisons }) =>
-    comparisons.map((one) => ({ ...measureCells(one, facts), first, second, ...comparisonCells(one) })),
-  ),
-});
+/** Returns a function that makes a tidy table of comparisons in full precision. */
+const tableOf =
+  (kind: TwoSides) =>
+  (name: string, compared: readonly ComparedSides[], facts: TableFacts): Table => ({
+    name,
+    columns: twoSidedColumns(kind, facts.family),
+    rows: compared.flatMap((sides) =>
+      sides.comparisons.map((one) => ({
+        ...measureCells(one, facts),
+        ...kind.headCells(sides, one),
+        ...twoSidedCells(kind, one),
+      })),
+    ),
+  });
+
+/** Returns comparisons of two conditions as a tidy table. */
+export const conditionsTable = tableOf(twoConditions);
+
+/** Returns comparisons of two cohorts as a tidy table. */
+export const cohortsTable = tableOf(twoCohorts);
 
 const fTest = 'computed: analysis of variance, type III squares';
 const ranks = "computed: Friedman's test; with one condition Kruskal and Wallis's";

@@ -1,22 +1,20 @@
 import * as Plot from '@observablehq/plot';
-import type { CohortComparison } from '../../model/results/compare-cohorts';
+import { offerDownload } from 'threepoint-ui/downloads';
+import { button, element } from 'threepoint-ui/element';
 import type { Comparison } from '../../model/results/compare-conditions';
 import { swarm } from './swarm';
 
 /** The labels of the two conditions or cohorts that are compared. */
-export interface ComparedLabels {
+interface ComparedLabels {
   readonly first: string;
   readonly second: string;
 }
 
-/** A comparison with a mean on either side. */
-export type TwoSided = Pick<Comparison, 'first' | 'second'>;
-
-export interface ChartOptions<One extends TwoSided> {
+export interface ChartOptions {
   readonly title: string;
   readonly labels: ComparedLabels;
   /** Returns the name of a comparison below the axis. */
-  readonly nameOf: (comparison: One) => string;
+  readonly nameOf: (comparison: Comparison) => string;
   readonly axis: string;
   /** Ends of the scale. */
   readonly domain: readonly [number, number];
@@ -45,7 +43,7 @@ const noteLines = (note: string, width: number, letter = 6.3): readonly string[]
 /** Adds the title, the key and the mark of simulation inside the picture, so that copies of it keep them. */
 function headed(
   plot: SVGSVGElement | HTMLElement,
-  { title, labels, simulated }: Omit<ChartOptions<never>, 'nameOf'>,
+  { title, labels, simulated }: ChartOptions,
   note: string,
 ): SVGSVGElement {
   if (!(plot instanceof SVGSVGElement)) throw new Error('ui/charts: expected a plain SVG from the plot');
@@ -86,7 +84,7 @@ const shared = {
 } as const;
 
 /** Answers are whole numbers; other scales choose their own ticks. */
-const ticksOf = ({ domain: [low, high] }: Pick<ChartOptions<never>, 'domain'>) =>
+const ticksOf = ({ domain: [low, high] }: Pick<ChartOptions, 'domain'>) =>
   high - low < 10 ? Array.from({ length: high - low + 1 }, (_, index) => low + index) : 5;
 
 /** Formats ends of scales as whole numbers: "3", not "3.0". */
@@ -95,8 +93,27 @@ const tickText = (value: number): string => String(Number(value.toFixed(6)));
 const widthFor = (count: number, each = 100) => Math.max(520, 90 + count * each);
 const height = 360;
 
+/** Draws comparisons side by side; `plot` is what differs between charts. */
+function drawn(
+  comparisons: readonly Comparison[],
+  options: ChartOptions,
+  note: string,
+  { padding, ...plot }: Plot.PlotOptions & { readonly padding: number },
+): SVGSVGElement {
+  const picture = Plot.plot({
+    ...shared,
+    width: widthFor(comparisons.length),
+    height,
+    fx: { label: null, domain: comparisons.map(options.nameOf), padding },
+    y: { label: null, domain: [...options.domain], grid: true, ticks: ticksOf(options), tickFormat: tickText },
+    color: { domain: [...sides], range: [colours.first, colours.second] },
+    ...plot,
+  });
+  return headed(picture as SVGSVGElement, options, `${options.axis}; ${note}`);
+}
+
 /** Returns the mean of each side with its 95 % confidence interval, clipped to the scale. */
-const meansOf = <One extends TwoSided>(comparisons: readonly One[], { nameOf, domain }: ChartOptions<One>) =>
+const meansOf = (comparisons: readonly Comparison[], { nameOf, domain }: ChartOptions) =>
   comparisons.flatMap((comparison) =>
     sides.flatMap((side) => {
       const summary = comparison[side];
@@ -109,17 +126,12 @@ const meansOf = <One extends TwoSided>(comparisons: readonly One[], { nameOf, do
   );
 
 /** Draws means as bars with their 95 % confidence intervals, as figures 11 to 14 of the paper. */
-export function barChart<One extends TwoSided>(comparisons: readonly One[], options: ChartOptions<One>): SVGSVGElement {
-  const [low, high] = options.domain;
+export function barChart(comparisons: readonly Comparison[], options: ChartOptions): SVGSVGElement {
+  const [low] = options.domain;
   const bars = meansOf(comparisons, options);
-  const plot = Plot.plot({
-    ...shared,
-    width: widthFor(comparisons.length),
-    height,
+  return drawn(comparisons, options, 'mean and 95 % confidence interval', {
+    padding: 0.25,
     x: { axis: null, domain: [...sides], padding: 0.12 },
-    fx: { label: null, domain: comparisons.map(options.nameOf), padding: 0.25 },
-    y: { label: null, domain: [low, high], grid: true, ticks: ticksOf(options), tickFormat: tickText },
-    color: { domain: [...sides], range: [colours.first, colours.second] },
     marks: [
       Plot.barY(bars, { fx: 'of', x: 'side', y1: low, y2: 'mean', fill: 'side' }),
       Plot.ruleX(bars, { fx: 'of', x: 'side', y1: 'from', y2: 'to', stroke: ink, strokeWidth: 1.5 }),
@@ -137,46 +149,30 @@ export function barChart<One extends TwoSided>(comparisons: readonly One[], opti
       Plot.ruleY([low]),
     ],
   });
-  return headed(plot as SVGSVGElement, options, `${options.axis}; mean and 95 % confidence interval`);
 }
 
 /** Draws every participant (or group) as a line from one condition to the other. Equal lines make a thicker one. */
-export function pairedChart(comparisons: readonly Comparison[], options: ChartOptions<Comparison>): SVGSVGElement {
+export function pairedChart(comparisons: readonly Comparison[], options: ChartOptions): SVGSVGElement {
   const lines = comparisons.flatMap((comparison) => {
-    const alike = new Map<string, { second: number; first: number; count: number }>();
-    for (const { first, second } of comparison.pairs) {
-      const key = `${first} ${second}`;
-      const line = alike.get(key) ?? { first, second, count: 0 };
-      line.count += 1;
-      alike.set(key, line);
-    }
+    const of = options.nameOf(comparison);
+    const alike = new Map<string, { first: number; second: number; count: number }>();
+    comparison.values.first.forEach((first, index) => {
+      const second = comparison.values.second[index] as number;
+      const key = `${of} ${first} ${second}`;
+      alike.set(key, { first, second, count: (alike.get(key)?.count ?? 0) + 1 });
+    });
     return [...alike].flatMap(([key, { first, second, count }]) => {
-      const of = options.nameOf(comparison);
-      const common = {
-        of,
-        key: `${of} ${key}`,
-        count,
-        rises: first > second ? 'up' : first < second ? 'down' : 'same',
-      };
+      const common = { of, key, count, rises: first > second ? 'up' : first < second ? 'down' : 'same' };
       return [
         { ...common, side: 'second', value: second },
         { ...common, side: 'first', value: first },
       ];
     });
   });
-  const means = comparisons.flatMap((comparison) =>
-    sides.flatMap((side) => {
-      const summary = comparison[side];
-      return summary ? [{ of: options.nameOf(comparison), side, value: summary.mean }] : [];
-    }),
-  );
-  const plot = Plot.plot({
-    ...shared,
-    width: widthFor(comparisons.length),
-    height,
+  const means = meansOf(comparisons, options);
+  return drawn(comparisons, options, `left ${options.labels.second}, right ${options.labels.first}`, {
+    padding: 0.2,
     x: { axis: null, domain: ['second', 'first'], padding: 0.5 },
-    fx: { label: null, domain: comparisons.map(options.nameOf), padding: 0.2 },
-    y: { label: null, domain: [...options.domain], grid: true, ticks: ticksOf(options), tickFormat: tickText },
     color: {
       domain: ['up', 'same', 'down', 'first', 'second'],
       range: [colours.first, '#8a95a3', colours.second, colours.first, colours.second],
@@ -192,14 +188,9 @@ export function pairedChart(comparisons: readonly Comparison[], options: ChartOp
         strokeWidth: ({ count }: { count: number }) => 0.8 + 1.1 * count,
         strokeLinecap: 'round',
       }),
-      Plot.dot(means, { fx: 'of', x: 'side', y: 'value', fill: 'side', r: 5, stroke: 'white', strokeWidth: 1.5 }),
+      Plot.dot(means, { fx: 'of', x: 'side', y: 'mean', fill: 'side', r: 5, stroke: 'white', strokeWidth: 1.5 }),
     ],
   });
-  return headed(
-    plot as SVGSVGElement,
-    options,
-    `${options.axis}; left ${options.labels.second}, right ${options.labels.first}`,
-  );
 }
 
 /** The diameter of a dot [pixels]. */
@@ -209,8 +200,8 @@ const strip = { mean: 0.07, dots: 0.29, width: 0.34 } as const;
 
 /** Draws every participant (or group) of two cohorts as a dot next to means and 95 % confidence intervals. */
 export function stripChart(
-  comparisons: readonly CohortComparison[],
-  options: ChartOptions<CohortComparison> & { readonly each: string },
+  comparisons: readonly Comparison[],
+  options: ChartOptions & { readonly each: string },
 ): SVGSVGElement {
   const [low, high] = options.domain;
   const width = widthFor(comparisons.length, 130);
@@ -234,29 +225,23 @@ export function stripChart(
     }),
   );
   const means = meansOf(comparisons, options).map((one) => ({ ...one, x: outwards[one.side] * strip.mean }));
-  const plot = Plot.plot({
-    ...shared,
+  return drawn(comparisons, options, `each dot a ${options.each}, mean and 95 % confidence interval`, {
+    padding,
     width,
-    height,
     x: { axis: null, domain: [-0.5, 0.5] },
-    fx: { label: null, domain: comparisons.map(options.nameOf), padding },
-    y: { label: null, domain: [low, high], grid: true, ticks: ticksOf(options), tickFormat: tickText },
-    color: { domain: [...sides], range: [colours.first, colours.second] },
     marks: [
       Plot.dot(dots, { fx: 'of', x: 'x', y: 'value', fill: 'side', fillOpacity: 0.65, r: dotDiameter / 2 }),
       Plot.ruleX(means, { fx: 'of', x: 'x', y1: 'from', y2: 'to', stroke: 'side', strokeWidth: 2.5 }),
       Plot.dot(means, { fx: 'of', x: 'x', y: 'mean', fill: 'side', r: 5, stroke: 'white', strokeWidth: 1.5 }),
     ],
   });
-  const legend = `each dot a ${options.each}, mean and 95 % confidence interval`;
-  return headed(plot as SVGSVGElement, options, `${options.axis}; ${legend}`);
 }
 
 /** Returns the picture as an SVG file. */
-export const svgText = (svg: SVGSVGElement): string => new XMLSerializer().serializeToString(svg);
+const svgText = (svg: SVGSVGElement): string => new XMLSerializer().serializeToString(svg);
 
 /** Resolves with the picture at twice its size as PNG, for slides and papers that do not accept SVG. */
-export async function pngOf(svg: SVGSVGElement): Promise<Blob> {
+async function pngOf(svg: SVGSVGElement): Promise<Blob> {
   const width = Number(svg.getAttribute('width'));
   const height = Number(svg.getAttribute('height'));
   const address = URL.createObjectURL(new Blob([svgText(svg)], { type: 'image/svg+xml' }));
@@ -276,4 +261,26 @@ export async function pngOf(svg: SVGSVGElement): Promise<Blob> {
   } finally {
     URL.revokeObjectURL(address);
   }
+}
+
+/**
+ * Returns a picture with its caption and buttons that save it as SVG and PNG; `file` is a name without its extension.
+ */
+export function figure(svg: SVGSVGElement, caption: string, file: string): HTMLElement {
+  svg.setAttribute('role', 'img');
+  svg.setAttribute('aria-label', caption);
+  return element(
+    'figure',
+    {},
+    svg,
+    element(
+      'div',
+      { class: 'bar' },
+      element('figcaption', { class: 'soft' }, caption),
+      button('SVG', () => offerDownload(`${file}.svg`, 'image/svg+xml', svgText(svg)), { class: 'small' }),
+      button('PNG', () => void pngOf(svg).then((blob) => offerDownload(`${file}.png`, 'image/png', blob)), {
+        class: 'small',
+      }),
+    ),
+  );
 }

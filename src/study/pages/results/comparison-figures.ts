@@ -1,56 +1,41 @@
+import { element } from 'threepoint-ui/element';
 import { inLanguage } from '../../model/phrases/words';
 import { languagesOf } from '../../model/plan/plan';
 import type { AnswerForm } from '../../model/questionnaires/question-kind';
 import { questionKind } from '../../model/questionnaires/question-kinds';
 import { scaleRange } from '../../model/questionnaires/questionnaire-scores';
-import type { CohortComparison } from '../../model/results/compare-cohorts';
 import type { Comparison } from '../../model/results/compare-conditions';
-import type { Measured } from '../../model/results/measures';
-import { barChart, pairedChart, stripChart, type TwoSided } from './charts';
-import { figure } from './figure';
+import { barChart, figure, pairedChart, stripChart } from './charts';
 import type { Compared } from './shown-results';
 
-type Two = Measured & TwoSided;
-
 /** Comparisons on one scale in one chart. */
-export interface Chart<One extends Two> {
-  readonly comparisons: readonly One[];
+interface Chart {
+  readonly comparisons: readonly Comparison[];
   readonly title: string;
   readonly file: string;
   readonly axis: string;
   readonly domain: readonly [number, number];
-  readonly nameOf: (one: One) => string;
-  /** A note after the caption of the means. */
+  readonly nameOf: (one: Comparison) => string;
+  /** A note after the caption of the means of two conditions. */
   readonly note: string;
   /** The unit that has one value each. */
   readonly each: 'participant' | 'group';
 }
 
-/** Returns the means of a chart as a figure. */
-export function meansFigure<One extends Two>({ results, labels }: Compared<One>, chart: Chart<One>): HTMLElement {
-  const { comparisons, title, file, note, each: _, ...options } = chart;
-  const { simulated } = results.study;
-  const bars = barChart(comparisons, { title, labels, simulated, ...options });
-  return figure(bars, `${title}, means${note}`, results.fileOf(file));
-}
-
-/** Returns every pair of a chart as a figure. */
-export function pairsFigure({ results, labels }: Compared<Comparison>, chart: Chart<Comparison>): HTMLElement {
-  const { comparisons, title, file, note: _, each, ...options } = chart;
-  const { simulated } = results.study;
-  const lines = pairedChart(comparisons, { title: `${title}, pairs`, labels, simulated, ...options });
-  return figure(lines, `${title}, every ${each}`, results.fileOf(`${file}-pairs`));
-}
-
-/** Returns every participant of two cohorts as a figure. */
-export function stripFigure(
-  { results, labels }: Compared<CohortComparison>,
-  chart: Chart<CohortComparison>,
-): HTMLElement {
-  const { comparisons, title, file, note: _, each, ...options } = chart;
-  const { simulated } = results.study;
-  const dots = stripChart(comparisons, { title, labels, simulated, each, ...options });
-  return figure(dots, `${title}, every ${each}`, results.fileOf(`${file}-strip`));
+/** Returns the figures of a chart: the means, and every pair of values or every participant of two cohorts. */
+export function chartFigures({ results, labels, between }: Compared, chart: Chart): HTMLElement {
+  const { comparisons, title, note, each } = chart;
+  const file = results.fileOf(between ? `${chart.file}-cohorts` : chart.file);
+  const options = { ...chart, labels, simulated: results.study.simulated };
+  const every = between
+    ? stripChart(comparisons, options)
+    : pairedChart(comparisons, { ...options, title: `${title}, pairs` });
+  return element(
+    'div',
+    { class: 'figures' },
+    figure(barChart(comparisons, options), `${title}, means${between ? '' : note}`, file),
+    figure(every, `${title}, every ${each}`, `${file}-${between ? 'strip' : 'pairs'}`),
+  );
 }
 
 function axisOf(form: AnswerForm, [from, to]: readonly [number, number], language: string): string {
@@ -67,10 +52,10 @@ const paperFigures: Readonly<Record<string, string>> = {
 };
 
 /** Returns a chart for the questions of a task and questionnaire that share a scale. */
-export function questionCharts<One extends Two>({ results, answers }: Compared<One>): readonly Chart<One>[] {
+export function questionCharts({ results, answers }: Compared): readonly Chart[] {
   const { asked } = results;
   const [language] = languagesOf(results.study.plan);
-  const charts = new Map<string, Chart<One>>();
+  const charts = new Map<string, Chart>();
   for (const one of answers) {
     const questionnaire = asked.find(({ id }) => id === one.asked?.questionnaire);
     const form = questionnaire?.questions.find(({ id }) => id === one.asked?.question)?.answer;
@@ -100,9 +85,9 @@ export function questionCharts<One extends Two>({ results, answers }: Compared<O
 }
 
 /** Returns a chart for each scale, with all tasks side by side. */
-export function scaleCharts<One extends Two>({ results, scales }: Compared<One>): readonly Chart<One>[] {
+export function scaleCharts({ results, scales }: Compared): readonly Chart[] {
   const { asked } = results;
-  const charts = new Map<string, Chart<One>>();
+  const charts = new Map<string, Chart>();
   for (const one of scales) {
     const questionnaire = asked.find(({ id }) => id === one.asked?.questionnaire);
     const scale = questionnaire?.scales.find(({ id }) => id === one.asked?.question);
@@ -124,7 +109,7 @@ export function scaleCharts<One extends Two>({ results, scales }: Compared<One>)
 }
 
 /** Returns a chart for each task that has scores. */
-export const scoreCharts = <One extends Two>({ results, percent }: Compared<One>): readonly Chart<One>[] =>
+export const scoreCharts = ({ results, percent }: Compared): readonly Chart[] =>
   percent.map((comparison) => {
     const name = results.titleOf(comparison.of);
     const task = results.study.plan.tasks.find(({ id }) => id === comparison.of);

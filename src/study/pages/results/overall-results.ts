@@ -40,7 +40,7 @@ function rowsOf(results: ShownResults, one: OverallComparison, tagged: boolean):
         effect.df.join(', '),
         pText(effect.correctedP ?? effect.p),
         fixed(effect.epsilon, 3),
-        meanCell(effect.partialEtaSquared ?? undefined, effect.interval, 2),
+        meanCell(effect.partialEtaSquared, effect.interval, 2),
         first ? pText(holmP) : none,
         first ? fixed(ranks?.chiSquared, 3) : none,
         first ? pText(ranks?.p) : none,

@@ -14,7 +14,7 @@ export const pText = (p: number | null | undefined) =>
   p == null ? none : p < 0.0005 ? '< .001' : p.toFixed(3).replace(/^0/, '');
 const interval = (between: Interval | null | undefined, digits: number) =>
   between ? `[${fixed(between.low, digits)}, ${fixed(between.high, digits)}]` : '';
-export const meanCell = (mean: number | undefined, between: Interval | null | undefined, digits: number): Node =>
+export const meanCell = (mean: number | null | undefined, between: Interval | null | undefined, digits: number): Node =>
   element('div', {}, fixed(mean, digits), element('div', { class: 'soft interval' }, interval(between, digits)));
 
 /** Returns the name of a measure, marked if it is planned and the table also has others. */

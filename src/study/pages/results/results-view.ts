@@ -7,12 +7,11 @@ import type { Exclusion } from '../../model/results/measures';
 import { studyTables } from '../../model/tables/study-tables';
 import { tidyCsv } from '../../model/tables/tidy-csv';
 import { chooser, pairChooser } from './choosers';
-import { cohortResults } from './cohort-results';
 import { frameTimeParts } from './frame-time-results';
 import { overallResults } from './overall-results';
-import { pairResults } from './pair-results';
 import { bar } from './result-cells';
 import { type ShownResults, type ShownStudy, shownResults } from './shown-results';
+import { cohortResults, pairResults } from './two-sided-results';
 
 /** The sides that are compared on the page: first − second. */
 export interface Selection {
@@ -151,7 +150,7 @@ function cohortParts(results: ShownResults, selection: Selection, choose: Choose
     ...choosing,
     ...(cohorts[0] === cohorts[1]
       ? [element('p', { class: 'complaint' }, 'Choose two different cohorts.')]
-      : cohortResults(results, { cohorts, conditions: under })),
+      : cohortResults(results, { sides: cohorts, conditions: under })),
   ];
 }
 

@@ -34,16 +34,18 @@ export interface ShownResults {
 }
 
 /** Two compared sides as they are shown: first − second. */
-export interface Compared<One extends Measured & Pick<Comparison, 'first' | 'second'>> {
+export interface Compared {
   readonly results: ShownResults;
+  /** Whether the sides are cohorts, of different participants; otherwise they are conditions. */
+  readonly between: boolean;
   readonly labels: { readonly first: string; readonly second: string };
-  readonly answers: readonly One[];
+  readonly answers: readonly Comparison[];
   /** The comparisons of scales, which are a separate family. */
-  readonly scales: readonly One[];
-  readonly points: readonly One[];
-  readonly percent: readonly One[];
+  readonly scales: readonly Comparison[];
+  readonly points: readonly Comparison[];
+  readonly percent: readonly Comparison[];
   /** The comparisons that the plan names: answers, scales and points. */
-  readonly planned: readonly One[];
+  readonly planned: readonly Comparison[];
 }
 
 /** Returns the measures of a study. Throws if simulated records and records of people are mixed. */

@@ -5,7 +5,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Schedule, StudyStep } from '../../model/plan/schedule';
 import { mostMotionBytes } from '../../model/progress/study-api';
 import { TrialSeconds } from '../../model/records/trial-clock';
-import { createTrialLog, type FrameListener, type TrialLog, type TrialOutcome } from '../../model/records/trial-log';
+import { type FrameListener, TrialLog, type TrialOutcome } from '../../model/records/trial-log';
 import type { TaskEnd, TaskRunner } from './task-runner';
 
 /** The steps that are played. */
@@ -85,7 +85,7 @@ export class PlayedTrial {
     this.#host = host;
     this.#device = host.device();
     this.#calibration = host.calibration();
-    this.#log = createTrialLog(this.#device, this.#calibration);
+    this.#log = new TrialLog(this.#device, this.#calibration);
     this.#frames = motion ? [] : null;
     this.#seconds = new TrialSeconds(now);
     for (const name of runner.assists()) this.#log.assist(name);

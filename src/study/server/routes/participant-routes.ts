@@ -5,7 +5,7 @@ import { jsonOf, textOf } from 'threepoint-http/router';
 import * as v from 'valibot';
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
 import { profileFrom } from '../../model/records/participant-profile';
-import { checkedRecord } from '../../model/records/study-record';
+import { checkedRecord, within } from '../../model/records/study-record';
 import type { StudyStore } from '../storage/store';
 import { type Exporting, exporting, exportOf } from './export-routes';
 import type { StudyGuard } from './guard';
@@ -120,14 +120,7 @@ export function participantRoutes({ store, guard, seats, software, makeZip }: Pa
     route('POST', `${own}/records`, 'participant', bodyLimits.json, (call) => {
       const { records } = checked(batchSchema, jsonOf(call));
       const plan = store.plans.planFor(call.study, call.participant);
-      const valid = records.map((record, index) => {
-        try {
-          return checkedRecord(record, plan);
-        } catch (error) {
-          if (!(error instanceof ValidationError)) throw error;
-          throw new ValidationError(`records[${index}]${error.field && `.${error.field}`}`, error.complaint);
-        }
-      });
+      const valid = records.map((record, index) => within(`records[${index}]`, () => checkedRecord(record, plan)));
       return json({ acknowledged: store.records.store(call.study, call.participant, valid, call.at) });
     }),
     route('GET', `${own}/records`, 'participant', 0, ({ study, participant }) =>
