@@ -204,7 +204,6 @@ export class ArcheryActivity implements OpenActivity {
   }
 
   dispose(): void {
-    this.#view.bow.removeFromParent();
     this.#context.stage.studio.setSurroundings(null);
     this.#view.dispose();
   }

@@ -6,6 +6,7 @@ import type { Opening } from 'threepoint-games/ball/basket';
 import type { BallCue } from 'threepoint-games/ball/gestures';
 import { stations } from 'threepoint-games/ball/stations';
 import type { Launch } from 'threepoint-games/ballistics';
+import { disposeTree } from '../scene/dispose-tree';
 import type { Quality } from '../scene/renderer';
 import type { AudibleStage } from '../scene/sound/sound-stage';
 import type { Surroundings } from '../scene/surroundings';
@@ -172,9 +173,9 @@ class CourtView implements BallView {
   }
 
   dispose(): void {
-    this.lobby.dispose();
-    const signs = [this.#boards, this.#pops, this.#names];
-    for (const part of [this.#sounds, this.#balls, this.#basket, ...signs, this.#arc, this.#court]) part.dispose();
+    this.#sounds.dispose();
+    disposeTree(this.own);
+    disposeTree(this.#court.object);
   }
 
   #showBalls({ state, time, attendants, opening: held, aim }: BallScene): void {

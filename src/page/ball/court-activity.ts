@@ -255,7 +255,6 @@ export class CourtActivity implements OpenActivity {
   dispose(): void {
     this.voices.dispose();
     this.play.leave();
-    this.#view.own.removeFromParent();
     this.#context.stage.studio.setSurroundings(null);
     this.#avatars.dispose();
     this.#view.dispose();

@@ -11,19 +11,8 @@ import {
   Vector3,
 } from 'three';
 import type { Arrow } from 'threepoint-games/archery/archery-state';
-import { disposeTree } from '../../scene/dispose-tree';
 import { merged, painted } from '../../scene/painted-geometry';
 import { type ArrowPose, arrowPose, makeArrowPose } from './arrow-pose';
-
-/** All arrows that can be seen, drawn in one call; arena frame. */
-export interface Arrows {
-  readonly object: InstancedMesh;
-  /** Arrows shot by a time of the match [s], in order, and one on the string; null: none there. */
-  show(arrows: readonly Arrow[], time: number, nocked: ArrowPose | null): void;
-  /** The pose drawn for the i-th arrow now shown; the nocked one comes last. */
-  poseAt(index: number): { readonly tip: Vector3; readonly direction: Vector3 };
-  dispose(): void;
-}
 
 /** More arrows than are shot in a round; older ones make room. */
 const capacity = 64;
@@ -85,8 +74,8 @@ export function arrowGeometry(length: number): BufferGeometry {
 
 const minusZ = new Vector3(0, 0, -1);
 
-/** length [m]: from tip to nock. */
-export function createArrows(length: number): Arrows {
+/** All arrows that can be seen, drawn in one call; arena frame. length [m]: from tip to nock. */
+export function createArrows(length: number) {
   const object = new InstancedMesh(arrowGeometry(length), new MeshLambertMaterial({ vertexColors: true }), capacity);
   object.name = 'arrows';
   object.instanceMatrix.setUsage(DynamicDrawUsage);
@@ -107,7 +96,8 @@ export function createArrows(length: number): Arrows {
 
   return {
     object,
-    show(arrows, time, nocked) {
+    /** Arrows shot by a time of the match [s], in order, and one on the string; null: none there. */
+    show(arrows: readonly Arrow[], time: number, nocked: ArrowPose | null): void {
       let count = 0;
       for (let i = Math.max(0, arrows.length - capacity + 1); i < arrows.length; i++) {
         const arrow = arrows[i]!;
@@ -119,16 +109,13 @@ export function createArrows(length: number): Arrows {
       object.count = count + (nocked ? 1 : 0);
       object.instanceMatrix.needsUpdate = true;
     },
-    poseAt(index) {
+    /** The pose drawn for the i-th arrow now shown; the nocked one comes last. */
+    poseAt(index: number): { readonly tip: Vector3; readonly direction: Vector3 } {
       object.getMatrixAt(index, matrix);
       return {
         tip: new Vector3().setFromMatrixPosition(matrix),
         direction: new Vector3(0, 0, -1).transformDirection(matrix),
       };
-    },
-    dispose() {
-      object.removeFromParent();
-      disposeTree(object);
     },
   };
 }

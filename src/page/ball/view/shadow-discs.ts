@@ -1,12 +1,4 @@
-import {
-  DataTexture,
-  InstancedMesh,
-  LinearFilter,
-  Matrix4,
-  MeshBasicMaterial,
-  type Object3D,
-  PlaneGeometry,
-} from 'three';
+import { DataTexture, InstancedMesh, LinearFilter, Matrix4, MeshBasicMaterial, PlaneGeometry } from 'three';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import { ballRadius } from 'threepoint-games/ball/flight';
 
@@ -14,15 +6,7 @@ import { ballRadius } from 'threepoint-games/ball/flight';
  * Soft dark discs on the floor under what flies, smaller and fainter the higher it is: where it will come down can be
  * seen.
  */
-export interface ShadowDiscs {
-  readonly object: Object3D;
-  put(index: number, position: Vec3): void;
-  hide(index: number): void;
-  /** After the last of a frame. */
-  update(): void;
-}
-
-export function createShadowDiscs(count: number): ShadowDiscs {
+export function createShadowDiscs(count: number) {
   const side = 32;
   const pixels = new Uint8Array(side * side * 4);
   for (let y = 0; y < side; y++) {
@@ -47,15 +31,18 @@ export function createShadowDiscs(count: number): ShadowDiscs {
   for (let i = 0; i < count; i++) mesh.setMatrixAt(i, gone);
   return {
     object: mesh,
-    put(index, { x, y, z }) {
+    put(index: number, { x, y, z }: Vec3): void {
       const size = 1 / (1 + 0.28 * Math.max(0, y - ballRadius));
       mesh.setMatrixAt(index, matrix.makeScale(size, 1, size).setPosition(x, 0.012, z));
     },
-    hide(index) {
+    hide(index: number): void {
       mesh.setMatrixAt(index, gone);
     },
-    update() {
+    /** After the last of a frame. */
+    update(): void {
       mesh.instanceMatrix.needsUpdate = true;
     },
   };
 }
+
+export type ShadowDiscs = ReturnType<typeof createShadowDiscs>;
