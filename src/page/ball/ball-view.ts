@@ -162,14 +162,14 @@ class CourtView implements BallView {
 
   playEvents(events: readonly BallEvent[], cues: readonly BallCue[]): void {
     if (!this.#shown) return;
-    const { state, time, pageTime, attendants: people, me, opening } = this.#shown;
+    const { state, pageTime, attendants: people, me, opening } = this.#shown;
     for (const event of events) {
       const text = lineOfEvent(event, people);
       if (text) this.#line = { text, until: pageTime + lineSeconds };
       if (event.type === 'caught') this.#pops.add((opening ?? state.basket).position, pageTime);
     }
     const mine = me === null ? null : people[me];
-    this.#sounds.playEvents({ state, time, events, cues, me, people, palms: mine?.palms ?? unseenPalms });
+    this.#sounds.playEvents({ state, events, cues, me, people, palms: mine?.palms ?? unseenPalms });
   }
 
   dispose(): void {
