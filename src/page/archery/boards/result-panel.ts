@@ -1,14 +1,9 @@
 import { Group } from 'three';
+import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { ArcheryState } from 'threepoint-games/archery/archery-state';
 import { buttonUnder, createSheet, type SheetContent, type SheetSize } from '../../scene/boards/sheet';
 import type { Quality } from '../../scene/renderer';
 import { paintResult, restartButton, resultSize } from './scoreboard-drawing';
-
-interface Point {
-  readonly x: number;
-  readonly y: number;
-  readonly z: number;
-}
 
 const size: SheetSize = { ...resultSize, metres: 1.36 };
 
@@ -49,7 +44,7 @@ export function createResultPanel(quality: Quality) {
      * Distance along a ray [m, floor frame; unit direction] to the restart button; null: it misses, or there is no
      * panel now.
      */
-    restartAt: (origin: Point, direction: Point): number | null => sheet.buttonAt(origin, direction)?.distance ?? null,
+    restartAt: (origin: Vec3, direction: Vec3): number | null => sheet.buttonAt(origin, direction)?.distance ?? null,
     /** Lights the button while something points at it. */
     setHovered: (on: boolean): void => sheet.setHovered(on ? 'restart' : null),
   };

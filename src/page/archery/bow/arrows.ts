@@ -54,22 +54,17 @@ export function arrowGeometry(length: number): BufferGeometry {
   const along = (geometry: BufferGeometry, z: number) => geometry.rotateX(Math.PI / 2).translate(0, 0, z);
   const rod = (from: number, to: number, radius: number, color: string) =>
     painted(along(new CylinderGeometry(radius, radius, to - from, 7, 1, true), (from + to) / 2), color);
-  return merged(
-    [
-      painted(new ConeGeometry(0.0062, 0.036, 8).rotateX(-Math.PI / 2).translate(0, 0, 0.018), '#8d99a6'),
-      rod(0.036, 0.056, 0.0056, '#6d7883'),
-      rod(0.056, length - 0.19, shaftRadius, '#e2bd86'),
-      rod(length - 0.19, length - 0.165, shaftRadius * 1.06, '#1e2a38'),
-      rod(length - 0.165, length - 0.03, shaftRadius, '#f2e7cf'),
-      rod(length - 0.03, length, shaftRadius * 1.15, '#1e2a38'),
-      vane(0, length, '#ff9d1f'),
-      vane((2 * Math.PI) / 3, length, '#fbfaf4'),
-      vane((-2 * Math.PI) / 3, length, '#fbfaf4'),
-    ].map((geometry) => {
-      const flat = geometry.index ? geometry.toNonIndexed() : geometry;
-      return flat;
-    }),
-  );
+  return merged([
+    painted(new ConeGeometry(0.0062, 0.036, 8).rotateX(-Math.PI / 2).translate(0, 0, 0.018), '#8d99a6'),
+    rod(0.036, 0.056, 0.0056, '#6d7883'),
+    rod(0.056, length - 0.19, shaftRadius, '#e2bd86'),
+    rod(length - 0.19, length - 0.165, shaftRadius * 1.06, '#1e2a38'),
+    rod(length - 0.165, length - 0.03, shaftRadius, '#f2e7cf'),
+    rod(length - 0.03, length, shaftRadius * 1.15, '#1e2a38'),
+    vane(0, length, '#ff9d1f'),
+    vane((2 * Math.PI) / 3, length, '#fbfaf4'),
+    vane((-2 * Math.PI) / 3, length, '#fbfaf4'),
+  ]);
 }
 
 const minusZ = new Vector3(0, 0, -1);

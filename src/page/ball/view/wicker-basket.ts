@@ -68,7 +68,7 @@ export function createWickerBasket() {
     '#7b5a31',
   );
   const body = new Mesh(
-    merged([...bands, floor, ...posts, rim, lower, foot].map((part) => (part.index ? part.toNonIndexed() : part))),
+    merged([...bands, floor, ...posts, rim, lower, foot]),
     new MeshLambertMaterial({ vertexColors: true, side: DoubleSide }),
   );
   body.castShadow = true;
