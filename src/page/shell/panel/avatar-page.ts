@@ -141,8 +141,8 @@ function createBones(actions: AvatarActions) {
 
 /** Which avatars players show to each other. */
 function createSight(actions: AvatarActions) {
-  const share = toggle('Others see my avatar', (on) => actions.setShareAvatar(on));
-  const plain = toggle('Show all others as mannequins', (on) => actions.setPlainOthers(on));
+  const share = toggle('Others see my avatar', (shareAvatar) => actions.keep({ shareAvatar }));
+  const plain = toggle('Show all others as mannequins', (plainOthers) => actions.keep({ plainOthers }));
   return {
     node: element(
       'section',
@@ -168,7 +168,7 @@ export function createAvatarPage(palettes: readonly PaletteChoice[], actions: Av
   const shown = createShown(palettes, actions);
   const bones = createBones(actions);
   const sight = createSight(actions);
-  const upperBody = toggle('Upper body only', (on) => actions.setUpperBodyOnly(on));
+  const upperBody = toggle('Upper body only', (upperBodyOnly) => actions.keep({ upperBodyOnly }));
   return {
     name: 'Avatar',
     content: [shown.node, bones.node, otherAvatars(actions), sight.node, element('section', {}, upperBody.node)],
