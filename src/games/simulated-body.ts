@@ -1,6 +1,7 @@
-import type { MutablePose } from 'threepoint/core/math/pose';
-import { fromAxes, type MutableQuat, quat } from 'threepoint/core/math/quat';
+import type { Buttons } from 'threepoint/core/input/button-presses';
+import { fromAxes, type MutableQuat } from 'threepoint/core/math/quat';
 import { cross, type MutableVec3, normalise, scale, setVec3, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
 /**
  * Arm length (shoulder to wrist) and half the shoulder width, as shares of the standing eye height (averages of the
@@ -35,9 +36,8 @@ export function lookAlong(direction: Vec3, target?: MutableQuat): MutableQuat {
 export const swayAt = (time: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
   setVec3(target, 0.006 * Math.sin(time * 0.61), 0.002 * Math.sin(time * 1.5), 0.005 * Math.sin(time * 0.43 + 1));
 
-/** Creates a tracked head or hand, at the origin until its pose is written. */
-export const makeTracked = (): MutablePose<'floor'> & { readonly tracking: 'tracked' } => ({
-  position: vec3(0, 0, 0),
-  orientation: quat(0, 0, 0, 1),
-  tracking: 'tracked',
-});
+/** Head, hands and buttons of a simulated player at one moment: new objects in every frame. */
+export interface PlayerInput {
+  readonly frame: TrackingFrame;
+  readonly buttons: Buttons;
+}

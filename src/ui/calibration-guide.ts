@@ -21,7 +21,6 @@ export interface CalibrationGuideOptions {
 
 /** Leads through two seconds of standing still. Its clock is that of the tracked frames. */
 export interface CalibrationGuide {
-  readonly running: boolean;
   start(): void;
   cancel(): void;
   /** Every tracked frame, running or not. */
@@ -40,9 +39,6 @@ export function createCalibrationGuide(options: CalibrationGuideOptions): Calibr
   }
 
   return {
-    get running() {
-      return running;
-    },
     start() {
       running = true;
       startTime = null;

@@ -22,7 +22,6 @@ export interface FrameReport {
 }
 
 export interface Overlay {
-  readonly visible: boolean;
   setVisible(visible: boolean): void;
   show(report: FrameReport): void;
 }
@@ -57,7 +56,7 @@ export function createOverlay(region: HTMLElement): Overlay {
   const bar = element('div', { class: 'stage-bar', 'aria-hidden': 'true' });
   const rows = element('tbody');
   const difference = element('p', { class: 'difference' });
-  const cells = new Map<string, { row: HTMLElement; part: HTMLElement; p50: HTMLElement; p95: HTMLElement }>();
+  const cells = new Map<string, { part: HTMLElement; p50: HTMLElement; p95: HTMLElement }>();
   region.append(
     element('p', { class: 'total' }, total, tail),
     bar,
@@ -91,15 +90,12 @@ export function createOverlay(region: HTMLElement): Overlay {
     const part = element('i', { class: `stage ${name}` });
     rows.append(row);
     bar.append(part);
-    const made = { row, part, p50, p95 };
+    const made = { part, p50, p95 };
     cells.set(name, made);
     return made;
   }
 
   return {
-    get visible() {
-      return !region.hidden;
-    },
     setVisible(visible) {
       region.hidden = !visible;
     },

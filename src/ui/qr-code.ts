@@ -3,7 +3,6 @@ const quiet = 4;
 
 /** A text as a QR code, with the white around it. */
 export interface QrCode {
-  readonly text: string;
   /** The side of the square, including the white margin on both sides [modules]. */
   readonly side: number;
   /** Whether a module is dark, by column and row from the upper left. */
@@ -14,7 +13,7 @@ export interface QrCode {
 export async function qrCode(text: string): Promise<QrCode> {
   const { encode } = await import('uqr');
   const { data, size } = encode(text, { ecc: 'M', border: quiet });
-  return { text, side: size, isDark: (x, y) => data[y]?.[x] ?? false };
+  return { side: size, isDark: (x, y) => data[y]?.[x] ?? false };
 }
 
 const svgNamespace = 'http://www.w3.org/2000/svg';

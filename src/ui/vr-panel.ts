@@ -14,8 +14,6 @@ import {
  */
 export interface VrPanel {
   readonly mesh: Mesh;
-  readonly width: number;
-  readonly height: number;
   /** Clears the panel and draws. Call it only when something changed. */
   draw(paint: (context: CanvasRenderingContext2D) => void): void;
   /** Returns a point of the world on the canvas [pixels], and its distance in front of the panel [m]. */
@@ -41,8 +39,6 @@ export function createVrPanel(width: number, height: number, pixelsPerMetre: num
   const scale = new Vector3();
   return {
     mesh,
-    width,
-    height,
     draw(paint) {
       context.clearRect(0, 0, width, height);
       paint(context);

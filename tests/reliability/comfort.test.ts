@@ -21,7 +21,6 @@ test('the edges are dark at a turn and clear again in under half a second, round
   expect(vignette.object.visible).toBe(false);
   vignette.show(10.5, eyes);
   expect(vignette.darkness).toBe(0);
-  vignette.dispose();
 });
 
 test('the dark edges are before the eyes alone: a mirror shows no black ball for a head', () => {

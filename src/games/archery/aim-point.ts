@@ -31,7 +31,3 @@ export function aimOf(origin: Vec3, direction: Vec3, targets: readonly Target[])
   }
   return { point: addScaled(origin, direction, nearest), distance: nearest, target };
 }
-
-/** Returns the point at which a ray aims, as `aimOf`. */
-export const aimPoint = (origin: Vec3, direction: Vec3, targets: readonly Target[]): Vec3 =>
-  aimOf(origin, direction, targets).point;

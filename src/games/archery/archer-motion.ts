@@ -1,8 +1,6 @@
-import type { Buttons } from 'threepoint/core/input/button-presses';
 import { clamp } from 'threepoint/core/math/damper';
 import { addScaled, subtract } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { minimumJerk, yawOf } from '../simulated-body';
+import { minimumJerk, type PlayerInput, yawOf } from '../simulated-body';
 import { type ArcherBody, ArcherPostures, mix, type Posture } from './archer-postures';
 import type { ArcheryState, Target } from './archery-state';
 
@@ -20,7 +18,7 @@ interface Movement {
 /** The built-in archer, which produces hands and buttons for a whole round. */
 export interface Archer {
   /** Returns head, hands (floor frame) and buttons at `time` [s, not decreasing], for this state of the match. */
-  follow(time: number, state: ArcheryState): { readonly frame: TrackingFrame; readonly buttons: Buttons };
+  follow(time: number, state: ArcheryState): PlayerInput;
 }
 
 /**

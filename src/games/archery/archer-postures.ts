@@ -1,7 +1,7 @@
-import { allReleased, type Button, type Buttons, type HandButtons } from 'threepoint/core/input/button-presses';
+import { allReleased, type HandButtons } from 'threepoint/core/input/button-presses';
 import { clamp } from 'threepoint/core/math/damper';
-import { type Pose, type TrackedPose, type Transform, transformPose } from 'threepoint/core/math/pose';
-import { fromAxisAngle, identity, multiply, type Quat, rotate, slerp } from 'threepoint/core/math/quat';
+import type { Pose, TrackedPose } from 'threepoint/core/math/pose';
+import { fromAxisAngle, multiply, type Quat, rotate, slerp } from 'threepoint/core/math/quat';
 import { otherSide, type Side } from 'threepoint/core/math/side';
 import {
   add,
@@ -19,12 +19,11 @@ import {
   vec3,
   zero,
 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { wristAround } from '../fist';
 import {
   armShare,
   lookAlong,
-  makeTracked,
+  type PlayerInput,
   shoulderBehind,
   shoulderDrop,
   shoulderShare,
@@ -41,10 +40,6 @@ export interface ArcherBody {
   readonly eyeHeight: number;
   /** Shoulder to wrist [m]. Default: the average for a standing person with this eye height. */
   readonly armLength?: number;
-  /** The button that the string hand presses. */
-  readonly button?: Button;
-  /** Transform from the arena to the floor. Default: the identity. */
-  readonly floorFromArena?: Transform<'floor', 'arena'>;
 }
 
 /** Turn of the trunk away from the target [rad], when ready and when drawing: the bow shoulder leads. */
@@ -92,39 +87,23 @@ export const mix = (a: Posture, b: Posture, share: number): Posture => ({
   onString: a.onString + (b.onString - a.onString) * share,
 });
 
-/** An archer's head, hands and buttons: new objects in every frame. */
-export interface ArcherInput {
-  readonly frame: TrackingFrame;
-  readonly buttons: Buttons;
-}
-
-/** The postures of one archer, and their head, hands and buttons. */
+/** The postures of one archer, and their head, hands and buttons. The floor of the archer is that of the arena. */
 export class ArcherPostures {
   /** The eyes of the archer at the centre of the zone, arena frame. */
   readonly eyes: Vec3;
   readonly #bowSide: Side;
   readonly #stringSide: Side;
-  readonly #button: Button;
   readonly #arm: number;
   readonly #halfShoulders: number;
-  readonly #floorFromArena: Transform<'floor', 'arena'>;
   /** The sign of x on the side of the string hand. */
   readonly #aside: -1 | 1;
 
-  constructor({
-    bowSide,
-    eyeHeight,
-    button = 'trigger',
-    armLength = armShare * eyeHeight,
-    floorFromArena,
-  }: ArcherBody) {
+  constructor({ bowSide, eyeHeight, armLength = armShare * eyeHeight }: ArcherBody) {
     this.eyes = vec3(0, eyeHeight, 0);
     this.#bowSide = bowSide;
     this.#stringSide = otherSide(bowSide);
-    this.#button = button;
     this.#arm = armLength;
     this.#halfShoulders = (shoulderShare / armShare) * armLength;
-    this.#floorFromArena = floorFromArena ?? { position: zero, orientation: identity };
     this.#aside = bowSide === 'left' ? 1 : -1;
   }
 
@@ -218,11 +197,11 @@ export class ArcherPostures {
    * Returns head, hands (floor frame) and buttons of a posture at a time [s]. `pressure`: on the string hand's button,
    * 0 to 1. `swing`: outward offset of that hand [m].
    */
-  seen(now: Posture, time: number, pressure: number, swing: number): ArcherInput {
+  seen(now: Posture, time: number, pressure: number, swing: number): PlayerInput {
     const head = add(this.eyes, swayAt(time));
     const bowHand = this.#inFloor(head, this.#bowWrist(now));
     const stringHand = this.#inFloor(head, this.#stringWrist(now, swing));
-    const pressed: HandButtons = { ...allReleased, [this.#button]: pressure };
+    const pressed: HandButtons = { ...allReleased, trigger: pressure };
     const left = this.#bowSide === 'left';
     return {
       frame: {
@@ -284,9 +263,6 @@ export class ArcherPostures {
 
   /** Returns the pose, given relative to `origin`, in the floor frame. */
   #inFloor(origin: Vec3, { position, orientation }: Pose<'arena'>): TrackedPose {
-    const seen = makeTracked();
-    add(origin, position, seen.position);
-    transformPose(this.#floorFromArena, { position: seen.position, orientation }, seen);
-    return seen;
+    return { position: add(origin, position), orientation, tracking: 'tracked' };
   }
 }

@@ -1,5 +1,4 @@
 import type { Quat } from 'threepoint/core/math/quat';
-import type { RandomState } from 'threepoint/core/math/random';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 
 /** What may differ between matches. */
@@ -62,7 +61,6 @@ export type RoundEnd = 'arrows' | 'targets' | 'time';
 
 export interface ArcheryState {
   readonly options: ArcheryOptions;
-  readonly random: RandomState;
   /** Ticks since the start. */
   readonly tick: number;
   /** ready: waits for the start signal; the clock stands. */

@@ -15,6 +15,7 @@ import { addScaled, copyVec3, distance, type Vec3, vec3, zero } from 'threepoint
 import { longestStep } from 'threepoint/core/tracking/page-clock';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { fistOf } from '../fist';
+import type { HapticPulse } from '../haptic-pulse';
 import type { ArcheryAction, BowView } from './archery-state';
 import { arrowLength, maximumDraw, minimumDraw } from './bow';
 import { forwardOf, stringAtRest, turnBow } from './bow-hand';
@@ -42,14 +43,6 @@ export const defaultArcheryGestureSettings: ArcheryGestureSettings = {
   armed: true,
   arenaFromFloor: { position: zero, orientation: identity },
 };
-
-/** A haptic pulse for one hand. */
-export interface HapticPulse {
-  readonly side: Side;
-  /** 0 to 1. */
-  readonly strength: number;
-  readonly seconds: number;
-}
 
 /**
  * A cue for sounds, captions and logs. taken: `side` has the bow now. near-string: a press here would nock. creak:

@@ -1,5 +1,5 @@
 import { clamp } from 'threepoint/core/math/damper';
-import { nextRandom, type RandomState } from 'threepoint/core/math/random';
+import { randomNumbers } from 'threepoint/core/math/random';
 import {
   addScaled,
   distance,
@@ -83,16 +83,11 @@ export const defaultArcheryOptions: ArcheryOptions = {
 /** Limits of the eye height by which targets are placed [m]; it is clamped to them. */
 export const eyeHeightLimits = { min: 0.6, max: 2.4 } as const;
 
-function placeTargets(eyeHeight: number, random: RandomState): { targets: Target[]; random: RandomState } {
-  let state = random;
-  const chance = (): number => {
-    const { value, state: after } = nextRandom(state);
-    state = after;
-    return value;
-  };
+function placeTargets(eyeHeight: number, seed: number): Target[] {
+  const chance = randomNumbers(seed);
   const mirrored = chance() < 0.5 ? -1 : 1;
   const eyes = vec3(0, eyeHeight, 0);
-  const targets = layout.map((place): Target => {
+  return layout.map((place): Target => {
     const bearing = mirrored * place.bearing + (2 * chance() - 1) * bearingSpread;
     const centre = vec3(
       place.distance * Math.sin(bearing),
@@ -107,7 +102,6 @@ function placeTargets(eyeHeight: number, random: RandomState): { targets: Target
       points: place.points,
     };
   });
-  return { targets, random: state };
 }
 
 function checkedOptions(options: Partial<ArcheryOptions>): ArcheryOptions {
@@ -279,16 +273,14 @@ export const archeryRules: GameRules<ArcheryState, ArcheryAction, ArcheryEvent, 
 
   start(_players, seed, options = {}) {
     const checked = checkedOptions(options);
-    const { targets, random } = placeTargets(checked.eyeHeight, { seed });
     return {
       options: checked,
-      random,
       tick: 0,
       phase: 'ready',
       end: null,
       score: 0,
       arrowsLeft: checked.arrows,
-      targets,
+      targets: placeTargets(checked.eyeHeight, seed),
       arrows: [],
       head: vec3(0, checked.eyeHeight, 0),
       inZone: true,

@@ -1,8 +1,6 @@
-import type { Buttons } from 'threepoint/core/input/button-presses';
 import { clamp, dampVec3 } from 'threepoint/core/math/damper';
 import { subtract, type Vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { minimumJerk, yawOf } from '../simulated-body';
+import { minimumJerk, type PlayerInput, yawOf } from '../simulated-body';
 import { type ArcherBody, ArcherPostures, mix, type Posture } from './archer-postures';
 
 /** What a pointer asks of an archer. */
@@ -20,7 +18,7 @@ export interface SteeredArcher {
   /** The hands return from a shot, and a press is not heeded yet. */
   readonly recovers: boolean;
   /** Returns head, hands (floor frame) and buttons at `time` [s, not decreasing]. */
-  follow(time: number, steering: Steering): { readonly frame: TrackingFrame; readonly buttons: Buttons };
+  follow(time: number, steering: Steering): PlayerInput;
 }
 
 /** Half-life of the aim [s], because a mouse jumps and arms do not. */

@@ -1,4 +1,3 @@
-import type { RandomState } from 'threepoint/core/math/random';
 import type { Side } from 'threepoint/core/math/side';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { SeatAction } from 'threepoint/core/tracking/seat-action';
@@ -23,7 +22,6 @@ export type BallRole = 'thrower' | 'holder';
 
 /** One of the three players. All numbers in a state are rounded to 0.1 mm or 0.1 ms, which keeps messages short. */
 export interface BallPlayer {
-  readonly id: string;
   readonly role: BallRole;
   /** Index in `stations`. */
   readonly station: number;
@@ -71,7 +69,6 @@ export type BallEnd = 'balls' | 'time';
 
 export interface BallState {
   readonly options: BallOptions;
-  readonly random: RandomState;
   /** Ticks since the match was created, waiting for players included. */
   readonly tick: number;
   readonly phase: 'ready' | 'running' | 'over';

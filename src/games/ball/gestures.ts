@@ -21,6 +21,7 @@ import { type Side, sides } from 'threepoint/core/math/side';
 import { copyVec3, distance, length, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { ballInPalm, fistOf } from '../fist';
+import type { HapticPulse } from '../haptic-pulse';
 import { slowestThrow } from './actions';
 import type { BallAction, BallEvent, BallInput, BallState } from './ball-state';
 import { ballRadius } from './flight';
@@ -39,14 +40,6 @@ export interface BallGestureSettings {
   readonly matchAhead: number;
 }
 
-/** A haptic pulse for one hand. */
-export interface BallPulse {
-  readonly side: Side;
-  /** 0 to 1. */
-  readonly strength: number;
-  readonly seconds: number;
-}
-
 /** A cue for sounds and captions. slipped: the match has the ball elsewhere. */
 export interface BallCue {
   readonly type: 'near' | 'grabbed' | 'thrown' | 'dropped' | 'slipped';
@@ -58,7 +51,7 @@ export interface BallCue {
 export interface BallGestureFrame {
   /** Inputs of the rules, arena frame; the pose is the first. */
   readonly actions: readonly BallInput[];
-  readonly haptics: readonly BallPulse[];
+  readonly haptics: readonly HapticPulse[];
   readonly cues: readonly BallCue[];
   /** The ball in each hand, by the hand's own actions; null: none. */
   readonly held: Readonly<Record<Side, number | null>>;
@@ -143,7 +136,7 @@ export class BallGestures {
   private now: BallGestureSettings;
   private time = 0;
   private actions: BallInput[] = [];
-  private haptics: BallPulse[] = [];
+  private haptics: HapticPulse[] = [];
   private cues: BallCue[] = [];
 
   constructor(private readonly settings: () => BallGestureSettings) {

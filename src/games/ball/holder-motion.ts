@@ -16,6 +16,7 @@ import {
   vec3,
 } from 'threepoint/core/math/vec3';
 import { fallsTo, velocityAt } from '../ballistics';
+import type { PlayerInput } from '../simulated-body';
 import type { BallState, TimedLaunch } from './ball-state';
 import { gripRadius } from './basket';
 import { ballInAir } from './flight';
@@ -24,7 +25,6 @@ import {
   type MutableGrasp,
   makePosture,
   type PlayerBody,
-  type PlayerInput,
   type PlayerPostures,
 } from './player-postures';
 import { ballMatchTime } from './state-readings';

@@ -1,6 +1,12 @@
-import { allReleased, type Button, type Buttons, type HandButtons } from 'threepoint/core/input/button-presses';
+import { allReleased, type HandButtons } from 'threepoint/core/input/button-presses';
 import { clamp } from 'threepoint/core/math/damper';
-import { invertTransform, type TrackedPose, type Transform, transformPoint } from 'threepoint/core/math/pose';
+import {
+  invertTransform,
+  makeTrackedPose,
+  type TrackedPose,
+  type Transform,
+  transformPoint,
+} from 'threepoint/core/math/pose';
 import { copyQuat, fromAxisAngle, type MutableQuat, multiply, type Quat, quat, slerp } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import {
@@ -15,9 +21,16 @@ import {
   type Vec3,
   vec3,
 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { wristAround } from '../fist';
-import { armShare, makeTracked, shoulderBehind, shoulderDrop, shoulderShare, swayAt, yawOf } from '../simulated-body';
+import {
+  armShare,
+  type PlayerInput,
+  shoulderBehind,
+  shoulderDrop,
+  shoulderShare,
+  swayAt,
+  yawOf,
+} from '../simulated-body';
 
 /** The body and the station of a player. */
 export interface PlayerBody {
@@ -26,8 +39,6 @@ export interface PlayerBody {
   /** Shoulder to wrist [m]. Default: the average for a standing person with this eye height. */
   readonly armLength?: number;
   readonly arenaFromFloor: Transform<'arena', 'floor'>;
-  /** The button that takes and throws. */
-  readonly button?: Button;
 }
 
 /** Position and directions of a fist, floor frame. */
@@ -81,12 +92,6 @@ export function copyPosture(posture: PlayerPosture, target: MutablePosture = mak
   copyGrasp(posture.left, target.left);
   copyGrasp(posture.right, target.right);
   return target;
-}
-
-/** Head, hands and buttons of a simulated player: new objects in every frame. */
-export interface PlayerInput {
-  readonly frame: TrackingFrame;
-  readonly buttons: Buttons;
 }
 
 /** Limits of the head's yaw and pitch [rad]. */
@@ -151,7 +156,6 @@ export function createPlayerPostures({
   eyeHeight,
   arenaFromFloor,
   armLength = armShare * eyeHeight,
-  button = 'trigger',
 }: PlayerBody): PlayerPostures {
   const arm = armLength;
   const floorFromArena = invertTransform(arenaFromFloor);
@@ -161,12 +165,12 @@ export function createPlayerPostures({
   const shoulder = (side: Side, eyes: Vec3, target?: MutableVec3): MutableVec3 => add(eyes, fromEyes[side], target);
 
   function wrist(side: Side, { fist, knuckles, thumb }: Grasp): TrackedPose {
-    const pose = makeTracked();
+    const pose = makeTrackedPose();
     wristAround<'floor'>(side, add(fist, drift, drifted), knuckles, thumb, pose);
     return pose;
   }
 
-  const pressing = (pressure: number): HandButtons => ({ ...allReleased, [button]: pressure });
+  const pressing = (pressure: number): HandButtons => ({ ...allReleased, trigger: pressure });
 
   return {
     arm,
@@ -188,7 +192,7 @@ export function createPlayerPostures({
     },
     seen(posture, time, leftPressure, rightPressure) {
       swayAt(time, drift);
-      const head = makeTracked();
+      const head = makeTrackedPose();
       add(posture.eyes, drift, head.position);
       copyQuat(posture.gaze, head.orientation);
       const leftHand = wrist('left', posture.left);

@@ -202,24 +202,22 @@ function roundEnd(state: BallState): BallEnd | null {
 export const ballRules: GameRules<BallState, BallInput, BallEvent, BallOptions> = {
   tickSeconds,
 
-  start(players, seed, options = {}) {
+  start(players, _seed, options = {}) {
     const checked = checkedOptions(options);
     if (players.length !== stations.length) {
       throw new Error(`ball game: it takes ${stations.length} players, not ${players.length}`);
     }
     return {
       options: checked,
-      random: { seed },
       tick: 0,
       phase: 'ready',
       startedAt: null,
       end: null,
       score: 0,
-      players: players.map((id, index): BallPlayer => {
+      players: players.map((_, index): BallPlayer => {
         const count = stations.length;
         const station = (((index + checked.rotation) % count) + count) % count;
         return {
-          id,
           role: station === holderStation ? 'holder' : 'thrower',
           station,
           present: false,

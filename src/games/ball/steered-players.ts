@@ -16,7 +16,7 @@ import {
   vec3,
 } from 'threepoint/core/math/vec3';
 import type { Launch } from '../ballistics';
-import { minimumJerk } from '../simulated-body';
+import { minimumJerk, type PlayerInput } from '../simulated-body';
 import { createHolder } from './holder-motion';
 import {
   copyPosture,
@@ -24,7 +24,6 @@ import {
   makePosture,
   mixPostures,
   type PlayerBody,
-  type PlayerInput,
   type PlayerPosture,
   type PlayerPostures,
 } from './player-postures';

@@ -1,5 +1,5 @@
 import { clamp } from 'threepoint/core/math/damper';
-import { nextRandom } from 'threepoint/core/math/random';
+import { randomNumbers } from 'threepoint/core/math/random';
 import type { Side } from 'threepoint/core/math/side';
 import {
   add,
@@ -16,7 +16,7 @@ import {
   vec3,
 } from 'threepoint/core/math/vec3';
 import { gravity } from '../ballistics';
-import { minimumJerk } from '../simulated-body';
+import { minimumJerk, type PlayerInput } from '../simulated-body';
 import type { BallState } from './ball-state';
 import {
   copyPosture,
@@ -24,7 +24,6 @@ import {
   makePosture,
   mixPostures,
   type PlayerBody,
-  type PlayerInput,
   type PlayerPosture,
   type PlayerPostures,
 } from './player-postures';
@@ -103,7 +102,7 @@ function mayThrow({ state, player }: BotSight): boolean {
 class Thrower implements BallBot {
   readonly #postures: PlayerPostures;
   readonly #moves: ThrowPostures;
-  #random: { readonly seed: number };
+  readonly #random: () => number;
   readonly #from = makePosture();
   #fromPressure = 0;
   #began: number | null = null;
@@ -117,7 +116,7 @@ class Thrower implements BallBot {
   constructor(body: PlayerBody, seed: number) {
     this.#postures = createPlayerPostures(body);
     this.#moves = new ThrowPostures(this.#postures);
-    this.#random = { seed };
+    this.#random = randomNumbers(seed);
   }
 
   follow(time: number, sight: BotSight): PlayerInput {
@@ -176,9 +175,7 @@ class Thrower implements BallBot {
 
   /** Returns a random number in [−1, 1]. */
   #chance(): number {
-    const next = nextRandom(this.#random);
-    this.#random = next.state;
-    return 2 * next.value - 1;
+    return 2 * this.#random() - 1;
   }
 
   /**

@@ -12,28 +12,16 @@ import type { Notices } from 'threepoint-ui/notices';
 import type { Quality } from '../scene/renderer';
 import type { SurroundingsHost } from '../scene/surroundings';
 
-/** The settings that activities read. The object is live. */
-export interface ActivitySettings {
-  /** A simulated player moves the body while no person does. */
-  readonly actor: boolean;
-  /** The mouse plays instead of the simulated player while no headset is worn. */
-  readonly mouse: boolean;
+/** The settings of activities that the browser stores for later visits. */
+export interface StoredActivitySettings {
   readonly sound: boolean;
   readonly bowSide: Side;
   readonly oneHanded: boolean;
   readonly everyHitCounts: boolean;
-  /** Rounds wait for a start signal, as in a study; absent: the first arrow starts them too. */
-  readonly startSignal?: boolean;
-  /** Length of a round [s]; absent: the default of the game. */
-  readonly seconds?: number;
   /** Bots take free seats. */
   readonly bots: boolean;
   /** The player's name; empty: not given. */
   readonly name: string;
-  /** The name that others see if the player gave none. */
-  readonly guestName: string;
-  /** The seat that a spectator's camera follows; null: the camera is free. */
-  readonly following: number | null;
   /** Players of the same room see an avatar file of this player. */
   readonly shareAvatar: boolean;
   /** All other players are shown as mannequins. */
@@ -42,19 +30,21 @@ export interface ActivitySettings {
   readonly voicesByRelay: boolean;
 }
 
-/** The settings that the browser stores for later visits. */
-export type StoredActivitySettings = Pick<
-  ActivitySettings,
-  | 'bowSide'
-  | 'oneHanded'
-  | 'everyHitCounts'
-  | 'sound'
-  | 'bots'
-  | 'name'
-  | 'shareAvatar'
-  | 'plainOthers'
-  | 'voicesByRelay'
->;
+/** The settings that activities read. The object is live. */
+export interface ActivitySettings extends StoredActivitySettings {
+  /** A simulated player moves the body while no person does. */
+  readonly actor: boolean;
+  /** The mouse plays instead of the simulated player while no headset is worn. */
+  readonly mouse: boolean;
+  /** Rounds wait for a start signal, as in a study; absent: the first arrow starts them too. */
+  readonly startSignal?: boolean;
+  /** Length of a round [s]; absent: the default of the game. */
+  readonly seconds?: number;
+  /** The name that others see if the player gave none. */
+  readonly guestName: string;
+  /** The seat that a spectator's camera follows; null: the camera is free. */
+  readonly following: number | null;
+}
 
 export interface ActivitySettingsWriter {
   /** Changes settings for this visit. */

@@ -11,16 +11,11 @@ import type { Side } from 'threepoint/core/math/side';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Pulse } from 'threepoint/xr/haptics';
+import type { PlayerInput } from 'threepoint-games/simulated-body';
 import type { TaskPlace, TaskRunner } from 'threepoint-study/participant/trial/task-runner';
 import type { CameraScene } from '../scene/desktop-view';
 import type { ActivityContext, ActivitySettings, ActivitySettingsWriter } from './activity-context';
 import type { ActivityMenu } from './activity-menu';
-
-/** Head, hands and buttons of a simulated player, or of one that a pointer steers, at one moment. */
-export interface PlayerInput {
-  readonly frame: TrackingFrame;
-  readonly buttons: Buttons;
-}
 
 /** A person to look at, floor frame. */
 export interface Watched {

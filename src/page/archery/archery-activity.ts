@@ -9,7 +9,8 @@ import type { Side } from 'threepoint/core/math/side';
 import { copyVec3, up, vec3, zero } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Pulse } from 'threepoint/xr/haptics';
-import type { ActivityPanel, OpenActivity, PlayerInput } from '../activity/activity';
+import type { PlayerInput } from 'threepoint-games/simulated-body';
+import type { ActivityPanel, OpenActivity } from '../activity/activity';
 import type { ActivityContext } from '../activity/activity-context';
 import type { ActivityMenu, MenuEntry } from '../activity/activity-menu';
 import type { CameraScene } from '../scene/desktop-view';
@@ -204,7 +205,6 @@ export class ArcheryActivity implements OpenActivity {
   }
 
   dispose(): void {
-    this.#view.bow.removeFromParent();
     this.#context.stage.studio.setSurroundings(null);
     this.#view.dispose();
   }

@@ -9,16 +9,12 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { aimOf } from 'threepoint-games/archery/aim-point';
 import { type Archer, createArcher } from 'threepoint-games/archery/archer-motion';
 import type { ArcheryAction, ArcheryEvent, ArcheryState, BowView } from 'threepoint-games/archery/archery-state';
-import {
-  ArcheryGestures,
-  type BowCue,
-  defaultArcheryGestureSettings,
-  type HapticPulse,
-} from 'threepoint-games/archery/gestures';
+import { ArcheryGestures, type BowCue, defaultArcheryGestureSettings } from 'threepoint-games/archery/gestures';
 import { archeryRules, delayed, fullScore, isArmed, matchTime, secondsLeft } from 'threepoint-games/archery/rules';
 import { createSteeredArcher, type SteeredArcher } from 'threepoint-games/archery/steered-archer';
+import type { HapticPulse } from 'threepoint-games/haptic-pulse';
 import { createMatch, type Match } from 'threepoint-games/match';
-import type { PlayerInput } from '../activity/activity';
+import type { PlayerInput } from 'threepoint-games/simulated-body';
 
 /** The player's choices, read in every frame. */
 export interface ArcherySettings {

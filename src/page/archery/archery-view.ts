@@ -1,42 +1,21 @@
-import type { Group } from 'three';
 import { invertTransform, type Pose, type Transform, transformPoint } from 'threepoint/core/math/pose';
 import { rotate } from 'threepoint/core/math/quat';
 import { addScaled, vec3 } from 'threepoint/core/math/vec3';
 import type { ArcheryEvent, ArcheryState, BowView } from 'threepoint-games/archery/archery-state';
 import { arrowLength, braceHeight } from 'threepoint-games/archery/bow';
 import type { BowCue } from 'threepoint-games/archery/gestures';
+import { disposeTree } from '../scene/dispose-tree';
 import type { Quality } from '../scene/renderer';
-import type { AudibleStage } from '../scene/sound/sound-stage';
-import { createResultPanel, type ResultPanel } from './boards/result-panel';
+import { createResultPanel } from './boards/result-panel';
 import { ScorePops } from './boards/score-pops';
 import { createScoreboard } from './boards/scoreboard';
 import { makeArrowPose } from './bow/arrow-pose';
 import { createArrows } from './bow/arrows';
 import { createBow } from './bow/bow-model';
 import { createTrails } from './bow/trails';
-import { createRange, type Range } from './range/range';
+import { createRange } from './range/range';
 import { TargetStands } from './range/target-stands';
 import { Sounds } from './sound/archery-sounds';
-
-/** Everything that is seen of archery. */
-export interface ArcheryView {
-  /** The place to give to the arena; holds all of the view but the bow and what is nocked on it. */
-  readonly range: Range;
-  /** The bow in its hand, floor frame; to be added to the scene next to the avatar. */
-  readonly bow: Group;
-  readonly result: Pick<ResultPanel, 'restartAt' | 'setHovered'>;
-  /**
-   * Draws a state at a time of the match [s]; the bow and head as tracked now, floor frame. No bow is seen where it is
-   * null.
-   */
-  show(state: ArcheryState, bow: BowView | null, matchTime: number, head: Pose<'floor'>): void;
-  /** Shows or hides the board beside the field. At a desk the play bar has its figures, and the logo would cover it. */
-  showScoreboard(visible: boolean): void;
-  /** Plays and captions what happened since the last frame; cues of the bow are in the floor frame. */
-  playEvents(events: readonly ArcheryEvent[], cues: readonly BowCue[]): void;
-  readonly sound: AudibleStage;
-  dispose(): void;
-}
 
 export interface ArcheryViewOptions {
   readonly quality: Quality;
@@ -48,7 +27,8 @@ export interface ArcheryViewOptions {
   readonly onCaption: (text: string) => void;
 }
 
-export function createArcheryView({ quality, floorFromArena, distances, onCaption }: ArcheryViewOptions): ArcheryView {
+/** Everything that is seen of archery. */
+export function createArcheryView({ quality, floorFromArena, distances, onCaption }: ArcheryViewOptions) {
   const arenaFromFloor = invertTransform(floorFromArena);
   const range = createRange(quality, floorFromArena, distances);
   const stands = new TargetStands(quality);
@@ -64,11 +44,17 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
   const bow = createBow(quality, braceHeight);
   range.object.add(stands.object, arrows.object, trails.object, scoreboard.object, pops.object, result.object);
   return {
+    /** The place to give to the arena; holds all of the view but the bow and what is nocked on it. */
     range,
+    /** The bow in its hand, floor frame; to be added to the scene next to the avatar. */
     bow: bow.object,
     result,
     sound: sounds.stage,
-    show(state, bowView, matchTime, head) {
+    /**
+     * Draws a state at a time of the match [s]; the bow and head as tracked now, floor frame. No bow is seen where it
+     * is null.
+     */
+    show(state: ArcheryState, bowView: BowView | null, matchTime: number, head: Pose<'floor'>): void {
       shown = state;
       sounds.setListener(head);
       const nocked = bowView?.arrow;
@@ -88,14 +74,22 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
       range.setZoneWarning(!state.inZone);
       range.animate(matchTime);
     },
-    showScoreboard(visible) {
+    /**
+     * Shows or hides the board beside the field. At a desk the play bar has its figures, and the logo would cover it.
+     */
+    showScoreboard(visible: boolean): void {
       scoreboard.object.visible = visible;
     },
-    playEvents(events, cues) {
+    /** Plays and captions what happened since the last frame; cues of the bow are in the floor frame. */
+    playEvents(events: readonly ArcheryEvent[], cues: readonly BowCue[]): void {
       if (shown) sounds.playEvents(shown, events, cues);
     },
-    dispose() {
-      for (const part of [sounds, stands, arrows, trails, scoreboard, pops, result, bow, range]) part.dispose();
+    dispose(): void {
+      sounds.dispose();
+      disposeTree(bow.object);
+      disposeTree(range.object);
     },
   };
 }
+
+export type ArcheryView = ReturnType<typeof createArcheryView>;

@@ -6,6 +6,7 @@ import type { Opening } from 'threepoint-games/ball/basket';
 import type { BallCue } from 'threepoint-games/ball/gestures';
 import { stations } from 'threepoint-games/ball/stations';
 import type { Launch } from 'threepoint-games/ballistics';
+import { disposeTree } from '../scene/dispose-tree';
 import type { Quality } from '../scene/renderer';
 import type { AudibleStage } from '../scene/sound/sound-stage';
 import type { Surroundings } from '../scene/surroundings';
@@ -161,20 +162,20 @@ class CourtView implements BallView {
 
   playEvents(events: readonly BallEvent[], cues: readonly BallCue[]): void {
     if (!this.#shown) return;
-    const { state, time, pageTime, attendants: people, me, opening } = this.#shown;
+    const { state, pageTime, attendants: people, me, opening } = this.#shown;
     for (const event of events) {
       const text = lineOfEvent(event, people);
       if (text) this.#line = { text, until: pageTime + lineSeconds };
       if (event.type === 'caught') this.#pops.add((opening ?? state.basket).position, pageTime);
     }
     const mine = me === null ? null : people[me];
-    this.#sounds.playEvents({ state, time, events, cues, me, people, palms: mine?.palms ?? unseenPalms });
+    this.#sounds.playEvents({ state, events, cues, me, people, palms: mine?.palms ?? unseenPalms });
   }
 
   dispose(): void {
-    this.lobby.dispose();
-    const signs = [this.#boards, this.#pops, this.#names];
-    for (const part of [this.#sounds, this.#balls, this.#basket, ...signs, this.#arc, this.#court]) part.dispose();
+    this.#sounds.dispose();
+    disposeTree(this.own);
+    disposeTree(this.#court.object);
   }
 
   #showBalls({ state, time, attendants, opening: held, aim }: BallScene): void {

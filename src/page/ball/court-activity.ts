@@ -8,11 +8,12 @@ import type { Pose, Transform } from 'threepoint/core/math/pose';
 import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { BallPulse } from 'threepoint-games/ball/gestures';
 import { defaultBallOptions } from 'threepoint-games/ball/rules';
+import type { HapticPulse } from 'threepoint-games/haptic-pulse';
+import type { PlayerInput } from 'threepoint-games/simulated-body';
 import { bannerText } from 'threepoint-rooms/client/banner';
 import type { RoomBodies } from 'threepoint-rooms/drawing/room-bodies';
-import type { ActivityPanel, OpenActivity, PlayerInput, PlayerProbe, Watched } from '../activity/activity';
+import type { ActivityPanel, OpenActivity, PlayerProbe, Watched } from '../activity/activity';
 import type { ActivityContext } from '../activity/activity-context';
 import type { ActivityMenu } from '../activity/activity-menu';
 import type { CameraScene } from '../scene/desktop-view';
@@ -151,7 +152,7 @@ export class CourtActivity implements OpenActivity {
     return this.play.act(time, !this.#context.headset.worn);
   }
 
-  update(frame: TrackingFrame, buttons: Buttons): readonly BallPulse[] {
+  update(frame: TrackingFrame, buttons: Buttons): readonly HapticPulse[] {
     this.#newestFrame = frame;
     return this.#follow(frame.time, frame, this.#context.study.idle ? nothingPressed : buttons);
   }
@@ -255,7 +256,6 @@ export class CourtActivity implements OpenActivity {
   dispose(): void {
     this.voices.dispose();
     this.play.leave();
-    this.#view.own.removeFromParent();
     this.#context.stage.studio.setSurroundings(null);
     this.#avatars.dispose();
     this.#view.dispose();
@@ -290,7 +290,7 @@ export class CourtActivity implements OpenActivity {
     return written;
   }
 
-  #follow(time: number, frame: TrackingFrame | null, buttons: Buttons): readonly BallPulse[] {
+  #follow(time: number, frame: TrackingFrame | null, buttons: Buttons): readonly HapticPulse[] {
     const newest = this.play.follow(time, frame, buttons);
     if (!newest) return [];
     this.#clock.follow(newest.state);

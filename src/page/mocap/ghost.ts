@@ -118,13 +118,4 @@ export class Ghost {
     const matrix = at ? this.#matrix.makeScale(radius, radius, radius).setPosition(at) : nowhere;
     mesh.setMatrixAt(index, matrix);
   }
-
-  dispose(): void {
-    for (const mesh of [...this.#sticks, ...this.#balls]) {
-      mesh.geometry.dispose();
-      (mesh.material as Material).dispose();
-      mesh.dispose();
-    }
-    this.object.removeFromParent();
-  }
 }

@@ -1,23 +1,13 @@
 import { PerspectiveCamera, Raycaster, Vector2, Vector3 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { smoothingFactor } from 'threepoint/core/math/damper';
 import type { Pose } from 'threepoint/core/math/pose';
 import type { Ray } from 'threepoint/core/math/ray';
+import type { Vec3 } from 'threepoint/core/math/vec3';
 
 export const viewNames = ['third-person', 'front', 'first-person'] as const;
 /** third-person: orbits the body from behind. front: from where the mirror hangs. first-person: through the eyes. */
 export type ViewName = (typeof viewNames)[number];
-
-interface Point {
-  readonly x: number;
-  readonly y: number;
-  readonly z: number;
-}
-
-/** The pose of the eyes, floor frame. */
-interface Eyes {
-  readonly position: Point;
-  readonly orientation: Point & { readonly w: number };
-}
 
 /** Parts of the window [CSS pixels] that the controls cover, so that the body is centred in what is left. */
 export interface Insets {
@@ -35,8 +25,8 @@ const keyStep = Math.PI / 36;
 
 /** A start of the camera and the point that it looks at, both from the pelvis [m]. */
 export interface CameraStart {
-  readonly offset: Point;
-  readonly aim: Point;
+  readonly offset: Vec3;
+  readonly aim: Vec3;
   readonly fovDegrees: number;
 }
 
@@ -174,14 +164,14 @@ export class DesktopView {
   }
 
   /** Follows a body: its pelvis and eyes, floor frame; elapsed [s] since the last call. */
-  update(pelvis: Point, { position, orientation }: Eyes, elapsed: number): void {
+  update(pelvis: Vec3, { position, orientation }: Pose<'floor'>, elapsed: number): void {
     const { camera } = this;
     if (this.#view === 'first-person') {
       camera.position.copy(position);
       camera.quaternion.copy(orientation);
       return;
     }
-    const part = 1 - 0.5 ** (elapsed / followHalfLife);
+    const part = smoothingFactor(followHalfLife, elapsed);
     const target = this.#target;
     const before = this.#before.copy(target);
     target.x += (pelvis.x - target.x) * part;

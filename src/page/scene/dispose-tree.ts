@@ -1,14 +1,19 @@
-import { InstancedMesh, type Material, Mesh, type Object3D, type Texture } from 'three';
+import { InstancedMesh, Mesh, type Object3D, Sprite } from 'three';
+import { texturesOf } from './surface-textures';
 
-/** Gives back what the graphics card holds for an object and all below it: geometries, materials and their maps. */
+/**
+ * Removes an object, and gives back what the graphics card holds for it and all below it: geometries, materials and
+ * their pictures.
+ */
 export function disposeTree(root: Object3D): void {
+  root.removeFromParent();
   root.traverse((object) => {
-    if (!(object instanceof Mesh)) return;
-    object.geometry.dispose();
     if (object instanceof InstancedMesh) object.dispose();
-    const materials: readonly (Material & { readonly map?: Texture | null })[] = [object.material].flat();
-    for (const material of materials) {
-      material.map?.dispose();
+    // All sprites share the geometry of three.js.
+    if (object instanceof Mesh) object.geometry.dispose();
+    if (!(object instanceof Mesh || object instanceof Sprite)) return;
+    for (const material of [object.material].flat()) {
+      for (const texture of texturesOf(material)) texture.dispose();
       material.dispose();
     }
   });

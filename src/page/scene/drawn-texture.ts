@@ -1,15 +1,8 @@
 import { CanvasTexture, LinearMipmapLinearFilter, SRGBColorSpace } from 'three';
 import { anisotropyOf, type Quality } from './renderer';
 
-/** A texture that is drawn on a 2D canvas. */
-export interface DrawnTexture {
-  readonly texture: CanvasTexture;
-  /** Clears the canvas and draws. Call it only when something changed. */
-  draw(paint: (context: CanvasRenderingContext2D) => void): void;
-}
-
-/** Width and height in pixels. Throws where the browser offers no 2D canvas. */
-export function createDrawnTexture(width: number, height: number, quality: Quality): DrawnTexture {
+/** A texture that is drawn on a 2D canvas. Width and height in pixels. Throws where the browser offers no 2D canvas. */
+export function createDrawnTexture(width: number, height: number, quality: Quality) {
   const canvas = document.createElement('canvas');
   canvas.width = width;
   canvas.height = height;
@@ -22,10 +15,13 @@ export function createDrawnTexture(width: number, height: number, quality: Quali
   texture.anisotropy = Math.max(4, anisotropyOf(quality));
   return {
     texture,
-    draw(paint) {
+    /** Clears the canvas and draws. Call it only when something changed. */
+    draw(paint: (context: CanvasRenderingContext2D) => void): void {
       context.clearRect(0, 0, width, height);
       paint(context);
       texture.needsUpdate = true;
     },
   };
 }
+
+export type DrawnTexture = ReturnType<typeof createDrawnTexture>;

@@ -1,32 +1,5 @@
-import {
-  type Material,
-  type Mesh,
-  type Object3D,
-  PerspectiveCamera,
-  type Scene,
-  type ShaderMaterial,
-  type Texture,
-  type WebGLRenderer,
-} from 'three';
-
-const isTexture = (value: unknown): value is Texture =>
-  typeof value === 'object' && value !== null && 'isTexture' in value;
-
-/** Every picture on the surfaces under an object, those of shaders too. */
-function texturesOf(object: Object3D): Set<Texture> {
-  const textures = new Set<Texture>();
-  const take = (material: Material) => {
-    const uniforms = Object.values((material as Partial<ShaderMaterial>).uniforms ?? {});
-    for (const value of [...Object.values(material), ...uniforms.map((uniform) => uniform.value)]) {
-      if (isTexture(value)) textures.add(value);
-    }
-  };
-  object.traverse((node) => {
-    if (!('isMesh' in node)) return;
-    for (const material of [(node as Mesh).material].flat()) take(material);
-  });
-  return textures;
-}
+import { type Mesh, type Object3D, PerspectiveCamera, type Scene, type Texture, type WebGLRenderer } from 'three';
+import { texturesOf } from './surface-textures';
 
 const nextTurn = (): Promise<void> => new Promise((resolve) => setTimeout(resolve));
 
@@ -35,7 +8,13 @@ const nextTurn = (): Promise<void> => new Promise((resolve) => setTimeout(resolv
  * programs while the device compiles them by itself. Its first picture waits for neither.
  */
 export async function prepareFirstPicture(renderer: WebGLRenderer, scene: Scene, object: Object3D): Promise<void> {
-  for (const texture of texturesOf(object)) {
+  const textures = new Set<Texture>();
+  object.traverse((node) => {
+    if (!('isMesh' in node)) return;
+    for (const material of [(node as Mesh).material].flat())
+      for (const each of texturesOf(material)) textures.add(each);
+  });
+  for (const texture of textures) {
     renderer.initTexture(texture);
     await nextTurn();
   }

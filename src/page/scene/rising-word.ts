@@ -68,9 +68,4 @@ export class RisingWord {
   hide(): void {
     this.object.visible = false;
   }
-
-  dispose(): void {
-    this.object.material.dispose();
-    this.#drawn.texture.dispose();
-  }
 }

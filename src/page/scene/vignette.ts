@@ -10,18 +10,7 @@ const openingSeconds = 0.4;
  * Darkens the edges of the picture for a moment. A turn that only the centre of the eye sees causes less motion
  * sickness.
  */
-export interface Vignette {
-  readonly object: Mesh;
-  /** Dark at this time [s]. */
-  close(time: number): void;
-  /** Round these eyes, floor frame; null: not seen. */
-  show(time: number, eyes: Pose<'floor'> | null): void;
-  /** How dark the edges are, 0 to 1. */
-  readonly darkness: number;
-  dispose(): void;
-}
-
-export function createVignette(): Vignette {
+export function createVignette() {
   const material = new ShaderMaterial({
     side: BackSide,
     transparent: true,
@@ -52,10 +41,12 @@ export function createVignette(): Vignette {
   let closedAt = Number.NEGATIVE_INFINITY;
   return {
     object,
-    close(time) {
+    /** Dark at this time [s]. */
+    close(time: number): void {
       closedAt = time;
     },
-    show(time, eyes) {
+    /** Round these eyes, floor frame; null: not seen. */
+    show(time: number, eyes: Pose<'floor'> | null): void {
       const darkness = 1 - smoothstep(0, openingSeconds, time - closedAt);
       material.uniforms.darkness!.value = darkness;
       object.visible = eyes !== null && darkness > 0;
@@ -63,12 +54,11 @@ export function createVignette(): Vignette {
       object.position.copy(eyes.position);
       object.quaternion.copy(eyes.orientation);
     },
-    get darkness() {
+    /** How dark the edges are, 0 to 1. */
+    get darkness(): number {
       return material.uniforms.darkness!.value as number;
-    },
-    dispose() {
-      object.geometry.dispose();
-      material.dispose();
     },
   };
 }
+
+export type Vignette = ReturnType<typeof createVignette>;

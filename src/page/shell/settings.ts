@@ -1,6 +1,6 @@
 import { type BuiltInBody, plainAvatar, type SkinTone } from 'threepoint/core/body/avatar-ref';
-import type { ActivitySettings, StoredActivitySettings } from '../activity/activity-context';
-import type { PreferenceStore } from './preferences';
+import type { ActivitySettings } from '../activity/activity-context';
+import type { PreferenceStore, Preferences } from './preferences';
 import type { Switches } from './switches';
 
 /** What the user set, for this visit. The object is live; a SettingsWriter alone changes it. */
@@ -75,23 +75,7 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
 }
 
 /** The settings that a browser keeps for later visits. */
-export type LastingSettings = Partial<
-  StoredActivitySettings &
-    Pick<
-      Settings,
-      | 'mirror'
-      | 'upperBodyOnly'
-      | 'overlay'
-      | 'largerText'
-      | 'singleKeys'
-      | 'panel'
-      | 'palette'
-      | 'builtInBody'
-      | 'skinTone'
-      | 'passthrough'
-      | 'gaze'
-    >
->;
+export type LastingSettings = Partial<Pick<Settings, keyof Settings & keyof Preferences>>;
 
 /** The only writer of the settings. Every change is reported, so that it appears on the screen. */
 export class SettingsWriter {

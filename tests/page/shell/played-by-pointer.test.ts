@@ -8,7 +8,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { Pointing } from 'threepoint/xr/pointing';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
-import type { PlayerInput } from 'threepoint-page/activity/activity';
+import type { PlayerInput } from 'threepoint-games/simulated-body';
 import { type ArcheryFrame, createArcheryPlay } from 'threepoint-page/archery/archery-play';
 import { CourtInput } from 'threepoint-page/ball/court-input';
 import { createBallPlay } from 'threepoint-page/ball/match/ball-play';

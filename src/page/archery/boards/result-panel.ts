@@ -1,37 +1,17 @@
 import { Group } from 'three';
+import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { ArcheryState } from 'threepoint-games/archery/archery-state';
 import { buttonUnder, createSheet, type SheetContent, type SheetSize } from '../../scene/boards/sheet';
-import { disposeTree } from '../../scene/dispose-tree';
 import type { Quality } from '../../scene/renderer';
 import { paintResult, restartButton, resultSize } from './scoreboard-drawing';
-
-interface Point {
-  readonly x: number;
-  readonly y: number;
-  readonly z: number;
-}
-
-/** The panel at the end of a round: score, percentage, each arrow, a button for another round; arena frame. */
-export interface ResultPanel {
-  readonly object: Group;
-  /** Shows the result of a round that is over; hides itself otherwise. `time`: of the match [s]. */
-  show(state: ArcheryState, time: number): void;
-  /**
-   * Distance along a ray [m, floor frame; unit direction] to the restart button; null: it misses, or there is no panel
-   * now.
-   */
-  restartAt(origin: Point, direction: Point): number | null;
-  /** Lights the button while something points at it. */
-  setHovered(on: boolean): void;
-  dispose(): void;
-}
 
 const size: SheetSize = { ...resultSize, metres: 1.36 };
 
 /** Whether a point of the panel [m, from its middle] lies on the restart button. */
 export const onRestartButton = (x: number, y: number): boolean => buttonUnder([restartButton], size, x, y) !== null;
 
-export function createResultPanel(quality: Quality): ResultPanel {
+/** The panel at the end of a round: score, percentage, each arrow, a button for another round; arena frame. */
+export function createResultPanel(quality: Quality) {
   const object = new Group();
   object.name = 'result panel';
   object.position.z = -2.1;
@@ -54,16 +34,20 @@ export function createResultPanel(quality: Quality): ResultPanel {
 
   return {
     object,
-    show(state, time) {
+    /** Shows the result of a round that is over; hides itself otherwise. `time`: of the match [s]. */
+    show(state: ArcheryState, time: number): void {
       // A little below the eyes, standing or seated.
       object.position.y = state.options.eyeHeight - 0.18;
       sheet.show(state.phase === 'over' ? contentOf(state) : null, time);
     },
-    restartAt: (origin, direction) => sheet.buttonAt(origin, direction)?.distance ?? null,
-    setHovered: (on) => sheet.setHovered(on ? 'restart' : null),
-    dispose() {
-      object.removeFromParent();
-      disposeTree(object);
-    },
+    /**
+     * Distance along a ray [m, floor frame; unit direction] to the restart button; null: it misses, or there is no
+     * panel now.
+     */
+    restartAt: (origin: Vec3, direction: Vec3): number | null => sheet.buttonAt(origin, direction)?.distance ?? null,
+    /** Lights the button while something points at it. */
+    setHovered: (on: boolean): void => sheet.setHovered(on ? 'restart' : null),
   };
 }
+
+export type ResultPanel = ReturnType<typeof createResultPanel>;

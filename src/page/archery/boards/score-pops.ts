@@ -32,9 +32,4 @@ export class ScorePops {
     }
     for (; next < this.#words.length; next++) this.#words[next]?.hide();
   }
-
-  dispose(): void {
-    this.object.removeFromParent();
-    for (const word of this.#words) word.dispose();
-  }
 }

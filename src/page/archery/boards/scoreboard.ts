@@ -1,24 +1,16 @@
 import { Group } from 'three';
 import type { ArcheryState } from 'threepoint-games/archery/archery-state';
 import { createWoodenBoard } from '../../scene/boards/wooden-board';
-import { disposeTree } from '../../scene/dispose-tree';
 import { createDrawnTexture } from '../../scene/drawn-texture';
 import type { Quality } from '../../scene/renderer';
 import { boardSize, boardText, paintBoard } from './scoreboard-drawing';
-
-/** A board on two posts next to the field: score, arrows, time, the last hit; arena frame. */
-export interface Scoreboard {
-  readonly object: Group;
-  /** At a time of the match [s]; draws only what changed. */
-  show(state: ArcheryState, time: number): void;
-  dispose(): void;
-}
 
 const place = { x: -4.9, z: -9 };
 const width = 3;
 const height = (width * boardSize.height) / boardSize.width;
 
-export function createScoreboard(quality: Quality): Scoreboard {
+/** A board on two posts next to the field: score, arrows, time, the last hit; arena frame. */
+export function createScoreboard(quality: Quality) {
   const object = new Group();
   object.name = 'scoreboard';
   // High beside the field, turned to the archer: a glance away from the targets, in front of none.
@@ -29,16 +21,13 @@ export function createScoreboard(quality: Quality): Scoreboard {
   let shown = '';
   return {
     object,
-    show(state, time) {
+    /** At a time of the match [s]; draws only what changed. */
+    show(state: ArcheryState, time: number): void {
       const text = boardText(state, time);
       const key = JSON.stringify(text);
       if (key === shown) return;
       shown = key;
       draw((context) => paintBoard(context, text));
-    },
-    dispose() {
-      object.removeFromParent();
-      disposeTree(object);
     },
   };
 }

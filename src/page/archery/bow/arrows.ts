@@ -11,19 +11,8 @@ import {
   Vector3,
 } from 'three';
 import type { Arrow } from 'threepoint-games/archery/archery-state';
-import { disposeTree } from '../../scene/dispose-tree';
 import { merged, painted } from '../../scene/painted-geometry';
 import { type ArrowPose, arrowPose, makeArrowPose } from './arrow-pose';
-
-/** All arrows that can be seen, drawn in one call; arena frame. */
-export interface Arrows {
-  readonly object: InstancedMesh;
-  /** Arrows shot by a time of the match [s], in order, and one on the string; null: none there. */
-  show(arrows: readonly Arrow[], time: number, nocked: ArrowPose | null): void;
-  /** The pose drawn for the i-th arrow now shown; the nocked one comes last. */
-  poseAt(index: number): { readonly tip: Vector3; readonly direction: Vector3 };
-  dispose(): void;
-}
 
 /** More arrows than are shot in a round; older ones make room. */
 const capacity = 64;
@@ -65,28 +54,23 @@ export function arrowGeometry(length: number): BufferGeometry {
   const along = (geometry: BufferGeometry, z: number) => geometry.rotateX(Math.PI / 2).translate(0, 0, z);
   const rod = (from: number, to: number, radius: number, color: string) =>
     painted(along(new CylinderGeometry(radius, radius, to - from, 7, 1, true), (from + to) / 2), color);
-  return merged(
-    [
-      painted(new ConeGeometry(0.0062, 0.036, 8).rotateX(-Math.PI / 2).translate(0, 0, 0.018), '#8d99a6'),
-      rod(0.036, 0.056, 0.0056, '#6d7883'),
-      rod(0.056, length - 0.19, shaftRadius, '#e2bd86'),
-      rod(length - 0.19, length - 0.165, shaftRadius * 1.06, '#1e2a38'),
-      rod(length - 0.165, length - 0.03, shaftRadius, '#f2e7cf'),
-      rod(length - 0.03, length, shaftRadius * 1.15, '#1e2a38'),
-      vane(0, length, '#ff9d1f'),
-      vane((2 * Math.PI) / 3, length, '#fbfaf4'),
-      vane((-2 * Math.PI) / 3, length, '#fbfaf4'),
-    ].map((geometry) => {
-      const flat = geometry.index ? geometry.toNonIndexed() : geometry;
-      return flat;
-    }),
-  );
+  return merged([
+    painted(new ConeGeometry(0.0062, 0.036, 8).rotateX(-Math.PI / 2).translate(0, 0, 0.018), '#8d99a6'),
+    rod(0.036, 0.056, 0.0056, '#6d7883'),
+    rod(0.056, length - 0.19, shaftRadius, '#e2bd86'),
+    rod(length - 0.19, length - 0.165, shaftRadius * 1.06, '#1e2a38'),
+    rod(length - 0.165, length - 0.03, shaftRadius, '#f2e7cf'),
+    rod(length - 0.03, length, shaftRadius * 1.15, '#1e2a38'),
+    vane(0, length, '#ff9d1f'),
+    vane((2 * Math.PI) / 3, length, '#fbfaf4'),
+    vane((-2 * Math.PI) / 3, length, '#fbfaf4'),
+  ]);
 }
 
 const minusZ = new Vector3(0, 0, -1);
 
-/** length [m]: from tip to nock. */
-export function createArrows(length: number): Arrows {
+/** All arrows that can be seen, drawn in one call; arena frame. length [m]: from tip to nock. */
+export function createArrows(length: number) {
   const object = new InstancedMesh(arrowGeometry(length), new MeshLambertMaterial({ vertexColors: true }), capacity);
   object.name = 'arrows';
   object.instanceMatrix.setUsage(DynamicDrawUsage);
@@ -107,7 +91,8 @@ export function createArrows(length: number): Arrows {
 
   return {
     object,
-    show(arrows, time, nocked) {
+    /** Arrows shot by a time of the match [s], in order, and one on the string; null: none there. */
+    show(arrows: readonly Arrow[], time: number, nocked: ArrowPose | null): void {
       let count = 0;
       for (let i = Math.max(0, arrows.length - capacity + 1); i < arrows.length; i++) {
         const arrow = arrows[i]!;
@@ -119,16 +104,13 @@ export function createArrows(length: number): Arrows {
       object.count = count + (nocked ? 1 : 0);
       object.instanceMatrix.needsUpdate = true;
     },
-    poseAt(index) {
+    /** The pose drawn for the i-th arrow now shown; the nocked one comes last. */
+    poseAt(index: number): { readonly tip: Vector3; readonly direction: Vector3 } {
       object.getMatrixAt(index, matrix);
       return {
         tip: new Vector3().setFromMatrixPosition(matrix),
         direction: new Vector3(0, 0, -1).transformDirection(matrix),
       };
-    },
-    dispose() {
-      object.removeFromParent();
-      disposeTree(object);
     },
   };
 }

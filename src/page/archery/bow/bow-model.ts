@@ -15,24 +15,8 @@ import {
 import { conjugate, quat, rotate } from 'threepoint/core/math/quat';
 import { add, distance, lerp, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { BowView } from 'threepoint-games/archery/archery-state';
-import { disposeTree } from '../../scene/dispose-tree';
 import type { Quality } from '../../scene/renderer';
 import { bendLimb, limbPoints, limbRoot, type MutableLimbPoint, makeLimb, stringBow } from './limb-shape';
-
-/** The bow in the archer's hand, in the frame of its BowView (floor). */
-export interface Bow {
-  readonly object: Group;
-  /** null hides it. */
-  show(view: BowView | null): void;
-  /** How far the limbs are bent now [rad]; grows with the draw. */
-  readonly bend: number;
-  /**
-   * The string from the upper tip over the nock point to the lower tip, in the frame of the BowView; the same objects
-   * in every frame.
-   */
-  readonly stringPoints: readonly [Vec3, Vec3, Vec3];
-  dispose(): void;
-}
 
 /** Corners of a cross-section. */
 const sides = 10;
@@ -243,8 +227,11 @@ function createBowParts(quality: Quality, limbSections: readonly LimbSection[]) 
   return { object, riser, limbGeometry, upperString, lowerString, serving };
 }
 
-/** A recurve bow of walnut, maple and horn. braceHeight [m]: from the grip to the string at rest. */
-export function createBow(quality: Quality, braceHeight: number): Bow {
+/**
+ * The bow in the archer's hand, in the frame of its BowView (floor). A recurve bow of walnut, maple and horn.
+ * braceHeight [m]: from the grip to the string at rest.
+ */
+export function createBow(quality: Quality, braceHeight: number) {
   const strung = stringBow(braceHeight);
   const sections = makeLimbSections();
   bendLimb(0, sections);
@@ -268,7 +255,8 @@ export function createBow(quality: Quality, braceHeight: number): Bow {
 
   return {
     object,
-    show(view) {
+    /** null hides it. */
+    show(view: BowView | null): void {
       object.visible = view !== null;
       if (!view) return;
       const { position, orientation } = view.bow;
@@ -288,15 +276,16 @@ export function createBow(quality: Quality, braceHeight: number): Bow {
       add(position, rotate(orientation, nock, middle), middle);
       add(position, rotate(orientation, lower, bottom), bottom);
     },
-    get bend() {
+    /** How far the limbs are bent now [rad]; grows with the draw. */
+    get bend(): number {
       return bend;
     },
-    get stringPoints() {
+    /**
+     * The string from the upper tip over the nock point to the lower tip, in the frame of the BowView; the same objects
+     * in every frame.
+     */
+    get stringPoints(): readonly [Vec3, Vec3, Vec3] {
       return stringPoints;
-    },
-    dispose() {
-      object.removeFromParent();
-      disposeTree(object);
     },
   };
 }

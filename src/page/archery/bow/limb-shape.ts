@@ -1,4 +1,5 @@
 import { bisect } from 'threepoint/core/math/bisection';
+import { smoothstep } from 'threepoint/core/math/damper';
 import { distance, type MutableVec3, setVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 
 /**
@@ -22,11 +23,6 @@ export const limbLength = 0.53;
 /** Points along a limb, root and tip included. */
 export const limbPoints = 17;
 
-const smooth = (from: number, to: number, value: number): number => {
-  const t = Math.max(0, Math.min(1, (value - from) / (to - from)));
-  return t * t * (3 - 2 * t);
-};
-
 /**
  * The centre line of the upper limb, written into `limbPoints` points; `bend` [rad] is how much its tip has turned
  * towards the archer. The lower limb is its mirror image.
@@ -38,7 +34,7 @@ export function bendLimb(bend: number, points: readonly MutableLimbPoint[]): voi
   for (let i = 0; i < limbPoints; i++) {
     const along = i / (limbPoints - 1);
     // Unbent the limb leans back and curls away again at its end; it bends most near its root.
-    const angle = 0.08 + 0.5 * along - 1.05 * smooth(0.5, 1, along) + bend * along * (1.55 - 0.55 * along);
+    const angle = 0.08 + 0.5 * along - 1.05 * smoothstep(0.5, 1, along) + bend * along * (1.55 - 0.55 * along);
     const point = points[i];
     if (point) {
       point.y = y;

@@ -14,16 +14,7 @@ import {
 } from 'threepoint/core/math/vec3';
 import type { Arrow } from 'threepoint-games/archery/archery-state';
 import { bothSides } from '../../scene/both-sides';
-import { disposeTree } from '../../scene/dispose-tree';
 import { arrowPose, makeArrowPose } from './arrow-pose';
-
-/** Bright ribbons behind arrows in flight; arena frame. */
-export interface Trails {
-  readonly object: Mesh;
-  /** At a time of the match [s], turned to eyes at `head`. */
-  show(arrows: readonly Arrow[], time: number, head: Vec3): void;
-  dispose(): void;
-}
 
 /** The duration of a trail [s], after which it has faded. */
 const memory = 0.32;
@@ -51,8 +42,8 @@ const trailMaterial = (): ShaderMaterial =>
       }`,
   });
 
-/** arrowLength [m]: the ribbon begins at the nock. */
-export function createTrails(arrowLength: number): Trails {
+/** Bright ribbons behind arrows in flight; arena frame. arrowLength [m]: the ribbon begins at the nock. */
+export function createTrails(arrowLength: number) {
   const positions = new BufferAttribute(new Float32Array(most * points * 2 * 3), 3).setUsage(DynamicDrawUsage);
   const strengths = new BufferAttribute(new Float32Array(most * points * 2), 1).setUsage(DynamicDrawUsage);
   const geometry = new BufferGeometry();
@@ -101,7 +92,8 @@ export function createTrails(arrowLength: number): Trails {
 
   return {
     object,
-    show(arrows, time, head) {
+    /** At a time of the match [s], turned to eyes at `head`. */
+    show(arrows: readonly Arrow[], time: number, head: Vec3): void {
       let trails = 0;
       for (let i = arrows.length - 1; i >= 0 && trails < most; i--) {
         const arrow = arrows[i]!;
@@ -111,10 +103,6 @@ export function createTrails(arrowLength: number): Trails {
       }
       geometry.setDrawRange(0, trails * (points - 1) * 6);
       if (trails > 0) positions.needsUpdate = strengths.needsUpdate = true;
-    },
-    dispose() {
-      object.removeFromParent();
-      disposeTree(object);
     },
   };
 }

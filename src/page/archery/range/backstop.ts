@@ -14,6 +14,7 @@ import {
   TubeGeometry,
   Vector3,
 } from 'three';
+import { clamp } from 'threepoint/core/math/damper';
 import { walls } from 'threepoint-games/archery/rules';
 import { bothSides } from '../../scene/both-sides';
 import { woodColor } from '../../scene/outdoors/wood';
@@ -97,7 +98,7 @@ function bank(): BufferGeometry {
   const low = new Color('#5c7f38');
   const high = new Color('#86a552');
   return painted(geometry.translate(0, -0.04, field.back - 3.5), (_x, y, _z, paint) => {
-    paint.copy(low).lerp(high, Math.max(0, Math.min(1, y / 1.6)));
+    paint.copy(low).lerp(high, clamp(y / 1.6, 0, 1));
   });
 }
 

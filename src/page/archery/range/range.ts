@@ -1,6 +1,5 @@
 import { Group, Vector3 } from 'three';
 import type { Transform } from 'threepoint/core/math/pose';
-import { disposeTree } from '../../scene/dispose-tree';
 import { mergeAlike } from '../../scene/merge-alike';
 import { daylight } from '../../scene/outdoors/daylight';
 import { createLandscape } from '../../scene/outdoors/landscape';
@@ -23,7 +22,6 @@ export interface Range extends Surroundings {
   setZoneWarning(on: boolean): void;
   /** Moves what moves by itself; time [s]. */
   animate(time: number): void;
-  dispose(): void;
 }
 
 /**
@@ -73,10 +71,5 @@ export function createRange(
     ),
     setZoneWarning: zone.setWarning,
     animate: zone.animate,
-    dispose() {
-      object.removeFromParent();
-      disposeTree(object);
-      noise.dispose();
-    },
   };
 }

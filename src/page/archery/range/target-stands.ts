@@ -282,12 +282,6 @@ export class TargetStands {
     this.#showPlates(targets);
   }
 
-  dispose(): void {
-    this.object.removeFromParent();
-    disposeTree(this.object);
-    this.#plates.texture.dispose();
-  }
-
   /** A state that travelled or was replayed has other objects for the same targets: those stay as they stand. */
   #setTargets(targets: readonly Target[]): void {
     if (targets === this.#built) return;

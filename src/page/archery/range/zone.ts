@@ -13,17 +13,6 @@ import { bothSides } from '../../scene/both-sides';
 import { merged, painted } from '../../scene/painted-geometry';
 import { field } from './field';
 
-/** The mark on the floor where the archer stands. */
-export interface Zone {
-  readonly object: Group;
-  /**
-   * Warns that the archer has left the zone: the border turns orange and thicker, and a striped fence rises along it.
-   */
-  setWarning(on: boolean): void;
-  /** Lets the warning pulse; time [s]. */
-  animate(time: number): void;
-}
-
 const { width, depth } = field.zone;
 const fenceHeight = 0.42;
 
@@ -95,8 +84,8 @@ function createFence(): Mesh<BufferGeometry, ShaderMaterial> {
   return fence;
 }
 
-/** Arena frame, about its origin. */
-export function createZone(): Zone {
+/** The mark on the floor where the archer stands. Arena frame, about its origin. */
+export function createZone() {
   const object = new Group();
   object.name = 'zone';
   const boards = new Mesh(deck(), new MeshLambertMaterial({ vertexColors: true }));
@@ -109,11 +98,15 @@ export function createZone(): Zone {
   object.add(boards, calm, alarmed, fence);
   return {
     object,
-    setWarning(on) {
+    /**
+     * Warns that the archer has left the zone: the border turns orange and thicker, and a striped fence rises along it.
+     */
+    setWarning(on: boolean): void {
       calm.visible = !on;
       alarmed.visible = fence.visible = on;
     },
-    animate(time) {
+    /** Lets the warning pulse; time [s]. */
+    animate(time: number): void {
       (fence.material.uniforms.pulse as { value: number }).value = 0.8 + 0.2 * Math.cos(time * 2 * Math.PI);
     },
   };

@@ -1,22 +1,18 @@
 import type { ArcheryEvent } from 'threepoint-games/archery/archery-state';
-import type { HapticPulse } from 'threepoint-games/archery/gestures';
+import { type HapticPulse, inBothHands } from 'threepoint-games/haptic-pulse';
 
 /**
  * Pulses of what happens away from the hands: a hit is felt in the bow, stronger for more points, a warning and the
  * bell in both hands. Draw and release are the gestures' own.
  */
 export function eventHaptics(events: readonly ArcheryEvent[], bowSide: HapticPulse['side']): readonly HapticPulse[] {
-  const both = (strength: number, seconds: number): HapticPulse[] => [
-    { side: 'left', strength, seconds },
-    { side: 'right', strength, seconds },
-  ];
   return events.flatMap((event) => {
     if (event.type === 'landed' && event.landing.target !== null) {
       const strength = event.landing.points > 0 ? 0.25 + 0.5 * Math.min(1, event.landing.points / 20) : 0.15;
       return [{ side: bowSide, strength, seconds: 0.04 }];
     }
-    if (event.type === 'left-zone') return both(0.6, 0.18);
-    if (event.type === 'ended') return both(0.4, 0.3);
+    if (event.type === 'left-zone') return inBothHands(0.6, 0.18);
+    if (event.type === 'ended') return inBothHands(0.4, 0.3);
     return [];
   });
 }

@@ -9,6 +9,7 @@ import {
   Mesh,
   MeshLambertMaterial,
 } from 'three';
+import { clamp } from 'threepoint/core/math/damper';
 import { ballRadius } from 'threepoint-games/ball/flight';
 import { createContactShadows } from '../../scene/outdoors/contact-shadows';
 import { createScatter } from '../../scene/outdoors/scatter';
@@ -79,7 +80,7 @@ function planter(x: number, z: number, random: (low?: number, high?: number) => 
     painted(new CylinderGeometry(0.27, 0.21, 0.42, 20).translate(x, 0.21, z), '#c9c3b6'),
     painted(new CylinderGeometry(0.285, 0.285, 0.05, 20).translate(x, 0.42, z), '#b8b1a3'),
     painted(shrub.scale(1, 0.92, 1).translate(x, 0.72, z), (_x, y, _z, paint) => {
-      paint.setHSL(green, 0.42, 0.2 + 0.2 * Math.max(0, Math.min(1, (y - 0.4) / 0.65)));
+      paint.setHSL(green, 0.42, 0.2 + 0.2 * clamp((y - 0.4) / 0.65, 0, 1));
     }),
   ];
 }
@@ -127,23 +128,21 @@ export function createCourtFurniture(balls: number): Group {
   furniture.name = 'furniture';
   const random = createScatter(611);
   const racks = new Mesh(
-    merged([...rack(0, balls), ...rack(1, balls)].map((part) => withoutIndex(part))),
+    merged([...rack(0, balls), ...rack(1, balls)]),
     // The pennants have two sides; racks of the same material are drawn with them in one call.
     new MeshLambertMaterial({ vertexColors: true, side: DoubleSide }),
   );
   const side = court.halfWidth + 0.75;
   const tubs = [-1, 1].flatMap((sign) => [court.near - 0.3, -2.5, court.far + 0.3].map((z) => ({ x: sign * side, z })));
   const around = new Mesh(
-    merged(
-      [
-        ...bench(-side, 0, Math.PI / 2),
-        ...bench(-side, -5, Math.PI / 2),
-        ...bench(side, 0, -Math.PI / 2),
-        ...bench(side, -5, -Math.PI / 2),
-        ...tubs.flatMap(({ x, z }) => planter(x, z, random)),
-        ...[-1, 1].flatMap((sign) => bunting(sign * (side + 0.55), court.near, court.far)),
-      ].map((part) => withoutIndex(part)),
-    ),
+    merged([
+      ...bench(-side, 0, Math.PI / 2),
+      ...bench(-side, -5, Math.PI / 2),
+      ...bench(side, 0, -Math.PI / 2),
+      ...bench(side, -5, -Math.PI / 2),
+      ...tubs.flatMap(({ x, z }) => planter(x, z, random)),
+      ...[-1, 1].flatMap((sign) => bunting(sign * (side + 0.55), court.near, court.far)),
+    ]),
     new MeshLambertMaterial({ vertexColors: true, side: DoubleSide }),
   );
   racks.castShadow = racks.receiveShadow = around.castShadow = around.receiveShadow = true;
@@ -159,7 +158,3 @@ export function createCourtFurniture(balls: number): Group {
   );
   return furniture;
 }
-
-/** Geometries merge only where all have an index or none has. */
-const withoutIndex = (geometry: BufferGeometry): BufferGeometry =>
-  geometry.index ? geometry.toNonIndexed() : geometry;

@@ -1,6 +1,5 @@
 import { Group, Vector3 } from 'three';
 import type { Transform } from 'threepoint/core/math/pose';
-import { disposeTree } from '../../scene/dispose-tree';
 import { mergeAlike } from '../../scene/merge-alike';
 import { daylight } from '../../scene/outdoors/daylight';
 import { createLandscape } from '../../scene/outdoors/landscape';
@@ -11,19 +10,14 @@ import type { Surroundings } from '../../scene/surroundings';
 import { createCourtFurniture } from './court-furniture';
 import { createCourtGround } from './court-ground';
 
-/** The place where the ball game is played; its object holds everything that is given in the arena frame. */
-export interface Court {
-  readonly object: Group;
-  /** Returns the court for a user's floor frame. */
-  placed(floorFromArena: Transform<'floor', 'arena'>): Surroundings;
-  dispose(): void;
-}
-
 /** Towards the sun, arena frame: from the side, so that neither throwers nor holder look into it. */
 const towardsSun = new Vector3(9, 11, 1.5);
 
-/** Builds the court for this many balls. */
-export function createCourt(quality: Quality, balls: number): Court {
+/**
+ * The place where the ball game is played; its object holds everything that is given in the arena frame. Builds the
+ * court for this many balls.
+ */
+export function createCourt(quality: Quality, balls: number) {
   const object = new Group();
   object.name = 'ball court';
   const noise = createNoiseTexture(quality);
@@ -32,7 +26,8 @@ export function createCourt(quality: Quality, balls: number): Court {
   object.add(createSky(noise, towardsSun, quality), createCourtGround(noise), createLandscape(quality), furniture);
   return {
     object,
-    placed(floorFromArena) {
+    /** Returns the court for a user's floor frame. */
+    placed(floorFromArena: Transform<'floor', 'arena'>): Surroundings {
       object.position.copy(floorFromArena.position);
       object.quaternion.copy(floorFromArena.orientation);
       return {
@@ -50,10 +45,7 @@ export function createCourt(quality: Quality, balls: number): Court {
         ),
       };
     },
-    dispose() {
-      object.removeFromParent();
-      disposeTree(object);
-      noise.dispose();
-    },
   };
 }
+
+export type Court = ReturnType<typeof createCourt>;

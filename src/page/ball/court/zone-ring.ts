@@ -4,17 +4,11 @@ import type { Vec3 } from 'threepoint/core/math/vec3';
 import { zoneRadius } from 'threepoint-games/ball/stations';
 import { bothSides } from '../../scene/both-sides';
 
-/** The edge of the zone in which throws and catches count, visible only to a player close to it; arena frame. */
-export interface ZoneRing {
-  readonly mesh: Mesh;
-  /** The station's middle and one's own head; null: a spectator. */
-  show(station: Vec3 | null, head: Vec3): void;
-}
-
 /** It begins to show this far before the edge [m]. */
 const notice = 0.4;
 
-export function createZoneRing(): ZoneRing {
+/** The edge of the zone in which throws and catches count, visible only to a player close to it; arena frame. */
+export function createZoneRing() {
   const material = new MeshBasicMaterial({
     color: '#ff9d1f',
     transparent: true,
@@ -27,7 +21,8 @@ export function createZoneRing(): ZoneRing {
   mesh.visible = false;
   return {
     mesh,
-    show(station, head) {
+    /** The station's middle and one's own head; null: a spectator. */
+    show(station: Vec3 | null, head: Vec3): void {
       const near = station ? Math.hypot(head.x - station.x, head.z - station.z) - (zoneRadius - notice) : 0;
       mesh.visible = station !== null && near > 0;
       if (!station || !mesh.visible) return;

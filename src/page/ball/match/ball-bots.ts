@@ -12,9 +12,10 @@ import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import type { Opening } from 'threepoint-games/ball/basket';
 import { type BallGestureFrame, type BallGestures, createBallGestures } from 'threepoint-games/ball/gestures';
 import { createHolder } from 'threepoint-games/ball/holder-motion';
-import type { PlayerBody, PlayerInput } from 'threepoint-games/ball/player-postures';
+import type { PlayerBody } from 'threepoint-games/ball/player-postures';
 import { holderStation, stations } from 'threepoint-games/ball/stations';
 import { type BallBot, createThrower } from 'threepoint-games/ball/thrower-motion';
+import type { PlayerInput } from 'threepoint-games/simulated-body';
 import type { Visitor } from 'threepoint-rooms/client/connection';
 
 /** The least rate at which a simulated player moves, even if pictures are slower: a throw takes a fifth of a second. */

@@ -15,11 +15,12 @@ import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-cl
 import type { BallEvent, BallRole, BallState } from 'threepoint-games/ball/ball-state';
 import { basketInHands, type Opening } from 'threepoint-games/ball/basket';
 import { ballRadius } from 'threepoint-games/ball/flight';
-import type { BallCue, BallPulse } from 'threepoint-games/ball/gestures';
+import type { BallCue } from 'threepoint-games/ball/gestures';
 import { ballSecondsLeft, ballsLeft } from 'threepoint-games/ball/state-readings';
 import { isInZone } from 'threepoint-games/ball/stations';
 import type { Launch } from 'threepoint-games/ballistics';
 import { ballInPalm } from 'threepoint-games/fist';
+import type { HapticPulse } from 'threepoint-games/haptic-pulse';
 import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
 import type { RemotePerson } from 'threepoint-rooms/client/room-client';
 import { seatLooks } from '../court/court-plan';
@@ -70,7 +71,7 @@ export interface BallFrame {
   /** The page was hidden before this frame, and the events are from that time: their sounds are over. */
   readonly resumed: boolean;
   readonly cues: readonly BallCue[];
-  readonly haptics: readonly BallPulse[];
+  readonly haptics: readonly HapticPulse[];
   readonly held: Readonly<Record<Side, number | null>>;
   /** How the ball in the own hand would fly, arena frame; null: no one aims it with a mouse. */
   readonly aim: Launch | null;

@@ -10,8 +10,8 @@ import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-cl
 import type { BallGame } from 'threepoint-games/ball/ball-policy';
 import type { BallEvent } from 'threepoint-games/ball/ball-state';
 import type { BallGestureFrame, BallGestures } from 'threepoint-games/ball/gestures';
-import type { PlayerInput } from 'threepoint-games/ball/player-postures';
 import type { BallSteering } from 'threepoint-games/ball/steered-players';
+import type { PlayerInput } from 'threepoint-games/simulated-body';
 import type { ConnectionStatus, Visitor, VoiceChannel } from 'threepoint-rooms/client/connection';
 import { RoomClient } from 'threepoint-rooms/client/room-client';
 import { BallBots, type CourtSight, gesturesOf, play, readyAfter } from './ball-bots';

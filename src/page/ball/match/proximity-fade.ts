@@ -1,5 +1,5 @@
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { clamp } from 'threepoint/core/math/damper';
+import { clamp, smoothstep } from 'threepoint/core/math/damper';
 import { type Transform, transformPoint } from 'threepoint/core/math/pose';
 import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
 
@@ -45,6 +45,5 @@ export function proximityFade(eyes: Vec3, pose: AvatarPose, placement: Transform
     transformPoint(placement, pose.rightHand.position, hand);
     nearest = Math.min(nearest, distanceToLine(eyes, hand, hand));
   }
-  const share = clamp((nearest - goneAt) / (fadesFrom - goneAt), 0, 1);
-  return share * share * (3 - 2 * share);
+  return smoothstep(goneAt, fadesFrom, nearest);
 }

@@ -2,8 +2,7 @@ import type { Calibration } from 'threepoint/core/body/calibration';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { zero } from 'threepoint/core/math/vec3';
 import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
-import type { BallCue, BallGestures, BallPulse } from 'threepoint-games/ball/gestures';
-import type { PlayerInput } from 'threepoint-games/ball/player-postures';
+import type { BallCue, BallGestures } from 'threepoint-games/ball/gestures';
 import { holderStation } from 'threepoint-games/ball/stations';
 import {
   type BallSteering,
@@ -13,6 +12,8 @@ import {
 } from 'threepoint-games/ball/steered-players';
 import type { BallBot } from 'threepoint-games/ball/thrower-motion';
 import type { Launch } from 'threepoint-games/ballistics';
+import type { HapticPulse } from 'threepoint-games/haptic-pulse';
+import type { PlayerInput } from 'threepoint-games/simulated-body';
 import { actorFor, bodyAt, type CourtSight, momentsUntil, moveOnce, performedAt, play, stationOf } from './ball-bots';
 
 const idle: BallSteering = {
@@ -48,7 +49,7 @@ export class SimulatedPlayer {
   #steering: BallSteering | null = null;
   #actedAt: number | null = null;
   #cues: readonly BallCue[] = none;
-  #haptics: readonly BallPulse[] = none;
+  #haptics: readonly HapticPulse[] = none;
 
   constructor(options: SimulatedPlayerOptions, calibration: Calibration, sight: CourtSight) {
     this.#options = options;
@@ -88,7 +89,7 @@ export class SimulatedPlayer {
   }
 
   /** Returns cues and haptics of the moments between two pictures, once. */
-  takeMissed(): { readonly cues: readonly BallCue[]; readonly haptics: readonly BallPulse[] } {
+  takeMissed(): { readonly cues: readonly BallCue[]; readonly haptics: readonly HapticPulse[] } {
     const missed = { cues: this.#cues, haptics: this.#haptics };
     this.#cues = none;
     this.#haptics = none;

@@ -32,8 +32,6 @@ export interface BallSounds {
 /** One frame of a match for the ears. */
 export interface Played {
   readonly state: BallState;
-  /** Seconds of the match. */
-  readonly time: number;
   readonly events: readonly BallEvent[];
   readonly cues: readonly BallCue[];
   readonly me: number | null;

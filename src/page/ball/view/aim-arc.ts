@@ -13,17 +13,6 @@ import { landsIn, type Opening } from 'threepoint-games/ball/basket';
 import { basketRadius } from 'threepoint-games/ball/flight';
 import { fallsTo, type Launch, positionAt } from 'threepoint-games/ballistics';
 import { bothSides } from '../../scene/both-sides';
-import { disposeTree } from '../../scene/dispose-tree';
-
-/** The way that a ball would go if it were thrown now, and where it would come down; arena frame. */
-export interface AimArc {
-  readonly object: Group;
-  /**
-   * null: nothing is aimed. The ring is as high and as wide as the basket's opening; green: the ball's middle goes in.
-   */
-  show(launch: Launch | null, opening: Pick<Opening, 'position'>): void;
-  dispose(): void;
-}
 
 const dots = 36;
 /** The radius of the first dot [m]; the last is half as large. */
@@ -33,7 +22,8 @@ const apart = 0.045;
 const beside = '#ffb02e';
 const inside = '#3ddc84';
 
-export function createAimArc(): AimArc {
+/** The way that a ball would go if it were thrown now, and where it would come down; arena frame. */
+export function createAimArc() {
   const object = new Group();
   object.name = 'aim';
   object.visible = false;
@@ -54,7 +44,11 @@ export function createAimArc(): AimArc {
   const upright = new Quaternion();
   return {
     object,
-    show(launch, { position: basket }) {
+    /**
+     * null: nothing is aimed. The ring is as high and as wide as the basket's opening; green: the ball's middle goes
+     * in.
+     */
+    show(launch: Launch | null, { position: basket }: Pick<Opening, 'position'>): void {
       object.visible = launch !== null;
       if (!launch) return;
       const seconds = fallsTo(launch, basket.y);
@@ -69,11 +63,6 @@ export function createAimArc(): AimArc {
       path.instanceMatrix.needsUpdate = true;
       ring.position.copy(lands);
       ringMaterial.color.set(landsIn(launch, basket) ? inside : beside);
-    },
-    dispose() {
-      object.removeFromParent();
-      path.dispose();
-      disposeTree(object);
     },
   };
 }

@@ -28,7 +28,6 @@ import type { Opening } from 'threepoint-games/ball/basket';
 import { ballRadius, basketDepth, basketRadius } from 'threepoint-games/ball/flight';
 import { ballPosition } from 'threepoint-games/ball/state-readings';
 import { ballsPerRack } from 'threepoint-games/ball/stations';
-import { disposeTree } from '../../scene/dispose-tree';
 import { painted } from '../../scene/painted-geometry';
 import type { Quality } from '../../scene/renderer';
 import { createShadowDiscs, type ShadowDiscs } from './shadow-discs';
@@ -41,7 +40,6 @@ export interface Balls {
   readonly object: Object3D;
   /** At a time of the match [s]. */
   show(state: BallState, time: number, inHand: InHand, opening: Opening | null): void;
-  dispose(): void;
 }
 
 /** The looks of the balls of the first rack and of the second. They differ in brightness and in the number of bands. */
@@ -186,12 +184,6 @@ class MatchBalls implements Balls {
     }
     for (const mesh of this.#meshes) mesh.instanceMatrix.needsUpdate = true;
     this.#shadows.update();
-  }
-
-  dispose(): void {
-    this.object.removeFromParent();
-    for (const mesh of this.#meshes) mesh.dispose();
-    disposeTree(this.object);
   }
 
   /** Returns the position in the basket of the ball that was caught after `index` others. */

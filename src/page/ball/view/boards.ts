@@ -1,6 +1,5 @@
 import { Group } from 'three';
 import { createWoodenBoard } from '../../scene/boards/wooden-board';
-import { disposeTree } from '../../scene/dispose-tree';
 import { createDrawnTexture } from '../../scene/drawn-texture';
 import type { Quality } from '../../scene/renderer';
 import { court } from '../court/court-plan';
@@ -9,13 +8,7 @@ import { boardSize, paintBoard, type Standing } from './board-drawing';
 /**
  * Two equal boards: one behind the holder, for the throwers, and one behind the throwers, for the holder; arena frame.
  */
-export interface Boards {
-  readonly object: Group;
-  show(standing: Standing, line: string): void;
-  dispose(): void;
-}
-
-export function createBoards(quality: Quality): Boards {
+export function createBoards(quality: Quality) {
   const object = new Group();
   object.name = 'boards';
   const { texture, draw } = createDrawnTexture(boardSize.width, boardSize.height, quality);
@@ -29,7 +22,7 @@ export function createBoards(quality: Quality): Boards {
   let shown = '';
   return {
     object,
-    show(standing, line) {
+    show(standing: Standing, line: string): void {
       const { state, seconds } = standing;
       const left = state.balls.map((place) => place.on + (place.on === 'air' && place.missed ? 'x' : ''));
       const key = JSON.stringify([state.score, seconds, state.phase, state.end, state.options, left, line]);
@@ -37,9 +30,7 @@ export function createBoards(quality: Quality): Boards {
       shown = key;
       draw((context) => paintBoard(context, standing, line));
     },
-    dispose() {
-      object.removeFromParent();
-      disposeTree(object);
-    },
   };
 }
+
+export type Boards = ReturnType<typeof createBoards>;

@@ -40,9 +40,4 @@ export class CatchPops {
   show(time: number, eyes: Vec3): void {
     for (const { word, at, from } of this.#catches) word.show(at, time - from, eyes);
   }
-
-  dispose(): void {
-    this.object.removeFromParent();
-    for (const { word } of this.#catches) word.dispose();
-  }
 }

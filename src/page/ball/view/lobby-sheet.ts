@@ -1,6 +1,5 @@
 import { Group } from 'three';
 import { createSheet, type Sheet, type SheetSize } from '../../scene/boards/sheet';
-import { disposeTree } from '../../scene/dispose-tree';
 import type { Quality } from '../../scene/renderer';
 import { type LobbyButton, lobbyButtons, lobbySize, paintLobby, type Standing } from './board-drawing';
 
@@ -9,7 +8,6 @@ export interface LobbySheet extends Pick<Sheet<LobbyButton>, 'buttonAt' | 'setHo
   readonly object: Group;
   /** eyeHeight [m]: of the reader; `time` [s]: the page's. Hides itself during a match, and where `inRoom` is false. */
   show(standing: Standing, eyeHeight: number, time: number, inRoom: boolean): void;
-  dispose(): void;
 }
 
 const size: SheetSize = { ...lobbySize, metres: 1.3 };
@@ -48,9 +46,5 @@ export function createLobbySheet(quality: Quality): LobbySheet {
     },
     buttonAt: sheet.buttonAt,
     setHovered: sheet.setHovered,
-    dispose() {
-      object.removeFromParent();
-      disposeTree(object);
-    },
   };
 }

@@ -7,14 +7,6 @@ import type { Quality } from '../../scene/renderer';
 import { roleTexts, seatLooks } from '../court/court-plan';
 import { nameOf, type Person } from './board-drawing';
 
-/** Names and roles over heads; arena frame. */
-export interface NameLabels {
-  readonly object: Group;
-  /** Shows the labels, by player; null: there is no player, or it is the user. */
-  show(labels: readonly (Label | null)[]): void;
-  dispose(): void;
-}
-
 export interface Label {
   readonly person: Person;
   readonly station: number;
@@ -183,15 +175,11 @@ function createLabel(quality: Quality, ringTexture: CanvasTexture) {
       material.opacity = label.opacity;
       ring.material.opacity = label.opacity * label.level;
     },
-    dispose() {
-      material.dispose();
-      ring.material.dispose();
-      texture.dispose();
-    },
   };
 }
 
-export function createNameLabels(count: number, quality: Quality): NameLabels {
+/** Names and roles over heads; arena frame. */
+export function createNameLabels(count: number, quality: Quality) {
   const object = new Group();
   object.name = 'names';
   const ring = createDrawnTexture(ringSize, ringSize, quality);
@@ -200,15 +188,13 @@ export function createNameLabels(count: number, quality: Quality): NameLabels {
   object.add(...labels.flatMap(({ sprites }) => sprites));
   return {
     object,
-    show(next) {
+    /** Shows the labels, by player; null: there is no player, or it is the user. */
+    show(next: readonly (Label | null)[]): void {
       labels.forEach((label, index) => {
         label.show(next[index] ?? null);
       });
     },
-    dispose() {
-      object.removeFromParent();
-      for (const label of labels) label.dispose();
-      ring.texture.dispose();
-    },
   };
 }
+
+export type NameLabels = ReturnType<typeof createNameLabels>;

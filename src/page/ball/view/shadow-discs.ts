@@ -1,43 +1,16 @@
-import {
-  DataTexture,
-  InstancedMesh,
-  LinearFilter,
-  Matrix4,
-  MeshBasicMaterial,
-  type Object3D,
-  PlaneGeometry,
-} from 'three';
+import { InstancedMesh, Matrix4, PlaneGeometry } from 'three';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import { ballRadius } from 'threepoint-games/ball/flight';
+import { createSoftSpot } from '../../scene/soft-spot';
 
 /**
  * Soft dark discs on the floor under what flies, smaller and fainter the higher it is: where it will come down can be
  * seen.
  */
-export interface ShadowDiscs {
-  readonly object: Object3D;
-  put(index: number, position: Vec3): void;
-  hide(index: number): void;
-  /** After the last of a frame. */
-  update(): void;
-}
-
-export function createShadowDiscs(count: number): ShadowDiscs {
-  const side = 32;
-  const pixels = new Uint8Array(side * side * 4);
-  for (let y = 0; y < side; y++) {
-    for (let x = 0; x < side; x++) {
-      const out = Math.hypot((x + 0.5) / side - 0.5, (y + 0.5) / side - 0.5) * 2;
-      const strength = Math.max(0, 1 - out);
-      pixels.set([10, 14, 20, 255 * strength * strength * (3 - 2 * strength) * 0.6], (y * side + x) * 4);
-    }
-  }
-  const texture = new DataTexture(pixels, side, side);
-  texture.magFilter = texture.minFilter = LinearFilter;
-  texture.needsUpdate = true;
+export function createShadowDiscs(count: number) {
   const mesh = new InstancedMesh(
     new PlaneGeometry(4.4 * ballRadius, 4.4 * ballRadius).rotateX(-Math.PI / 2),
-    new MeshBasicMaterial({ map: texture, transparent: true, depthWrite: false }),
+    createSoftSpot([10, 14, 20], 0.6),
     count,
   );
   mesh.frustumCulled = false;
@@ -47,15 +20,18 @@ export function createShadowDiscs(count: number): ShadowDiscs {
   for (let i = 0; i < count; i++) mesh.setMatrixAt(i, gone);
   return {
     object: mesh,
-    put(index, { x, y, z }) {
+    put(index: number, { x, y, z }: Vec3): void {
       const size = 1 / (1 + 0.28 * Math.max(0, y - ballRadius));
       mesh.setMatrixAt(index, matrix.makeScale(size, 1, size).setPosition(x, 0.012, z));
     },
-    hide(index) {
+    hide(index: number): void {
       mesh.setMatrixAt(index, gone);
     },
-    update() {
+    /** After the last of a frame. */
+    update(): void {
       mesh.instanceMatrix.needsUpdate = true;
     },
   };
 }
+
+export type ShadowDiscs = ReturnType<typeof createShadowDiscs>;

@@ -5,29 +5,22 @@ import {
   LatheGeometry,
   Mesh,
   MeshLambertMaterial,
-  type Object3D,
   TorusGeometry,
   Vector2,
   Vector3,
 } from 'three';
 import type { Opening } from 'threepoint-games/ball/basket';
 import { basketDepth, basketRadius, rimTube } from 'threepoint-games/ball/flight';
-import { disposeTree } from '../../scene/dispose-tree';
 import { merged, painted } from '../../scene/painted-geometry';
-
-/** The basket; its origin is the middle of the opening, which looks along +Y. */
-export interface WickerBasket {
-  readonly object: Object3D;
-  /** Arena frame. */
-  show(opening: Opening): void;
-  dispose(): void;
-}
 
 const stakes = 20;
 const weaves = 9;
 
-/** Woven bands that go in and out of upright stakes, a floor, and a rim that stands out in any light. */
-export function createWickerBasket(): WickerBasket {
+/**
+ * The basket; its origin is the middle of the opening, which looks along +Y. Woven bands that go in and out of upright
+ * stakes, a floor, and a rim that stands out in any light.
+ */
+export function createWickerBasket() {
   const object = new Group();
   object.name = 'basket';
   const bottom = basketRadius * 0.88;
@@ -75,7 +68,7 @@ export function createWickerBasket(): WickerBasket {
     '#7b5a31',
   );
   const body = new Mesh(
-    merged([...bands, floor, ...posts, rim, lower, foot].map((part) => (part.index ? part.toNonIndexed() : part))),
+    merged([...bands, floor, ...posts, rim, lower, foot]),
     new MeshLambertMaterial({ vertexColors: true, side: DoubleSide }),
   );
   body.castShadow = true;
@@ -84,13 +77,10 @@ export function createWickerBasket(): WickerBasket {
   const normal = new Vector3();
   return {
     object,
-    show(opening) {
+    /** Arena frame. */
+    show(opening: Opening): void {
       object.position.copy(opening.position);
       object.quaternion.setFromUnitVectors(upward, normal.copy(opening.normal));
-    },
-    dispose() {
-      object.removeFromParent();
-      disposeTree(object);
     },
   };
 }

@@ -1,12 +1,7 @@
 import { Matrix4, Mesh, MeshBasicMaterial, PlaneGeometry, Vector3 } from 'three';
+import type { Vec3 } from 'threepoint/core/math/vec3';
 import { createDrawnTexture } from '../drawn-texture';
 import type { Quality } from '../renderer';
-
-interface Point {
-  readonly x: number;
-  readonly y: number;
-  readonly z: number;
-}
 
 /** A button on a sheet [pixels]. */
 export interface SheetButton<Id extends string> {
@@ -41,7 +36,7 @@ export interface Sheet<Id extends string> {
    * The button that a ray meets, and how far away [m, floor frame; unit direction]; null: none, or no sheet has been
    * there for `settlingSeconds`.
    */
-  buttonAt(origin: Point, direction: Point): { readonly id: Id; readonly distance: number } | null;
+  buttonAt(origin: Vec3, direction: Vec3): { readonly id: Id; readonly distance: number } | null;
   /** Lights the button that something points at. */
   setHovered(id: Id | null): void;
 }

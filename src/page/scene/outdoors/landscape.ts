@@ -12,6 +12,7 @@ import {
   MeshLambertMaterial,
   Vector3,
 } from 'three';
+import { clamp } from 'threepoint/core/math/damper';
 import { merged, painted } from '../painted-geometry';
 import type { Quality } from '../renderer';
 import { createScatter } from './scatter';
@@ -80,7 +81,7 @@ function foliage(geometry: BufferGeometry, color: Color, low: number, high: numb
   const shade = color.clone().multiplyScalar(0.55);
   const lit = color.clone().lerp(new Color('#d9e07c'), 0.16);
   return painted(geometry, (_x, y, _z, paint) => {
-    paint.copy(shade).lerp(lit, Math.max(0, Math.min(1, (y - low) / (high - low))));
+    paint.copy(shade).lerp(lit, clamp((y - low) / (high - low), 0, 1));
   });
 }
 

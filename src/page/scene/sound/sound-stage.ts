@@ -20,16 +20,16 @@ export interface SoundStage {
   /** null while the audio rests: it would keep everything and play it at once later. */
   readonly player: Player | null;
   setListener(head: Pose<'floor'>): void;
-  /** 0 silent to 1. */
-  setVolume(volume: number): void;
   setMuted(on: boolean): void;
   dispose(): void;
 }
 
 /** What the page itself does with a stage. */
-export type AudibleStage = Pick<SoundStage, 'unlock' | 'open' | 'setVolume' | 'setMuted'>;
+export type AudibleStage = Pick<SoundStage, 'unlock' | 'open' | 'setMuted'>;
 
-/** Seconds in which volume and mute fade. */
+/** How loud everything is, from 0 to 1. */
+const volume = 0.8;
+/** Seconds in which the sound fades to mute and back. */
 const fadeSeconds = 0.03;
 
 function createPlayer(context: AudioContext, recipes: Recipes) {
@@ -129,11 +129,7 @@ export function createSoundStage(
   createContext: () => AudioContext = () => new AudioContext(),
 ): SoundStage {
   let player: Player | null = null;
-  let volume = 0.8;
   let muted = false;
-  const applyVolume = () => {
-    if (player) player.master.gain.setTargetAtTime(muted ? 0 : volume, player.context.currentTime, fadeSeconds);
-  };
   async function awaken(): Promise<Player> {
     if (!player) {
       const context = createContext();
@@ -159,13 +155,9 @@ export function createSoundStage(
     setListener(head) {
       if (player) placeListener(player.context, head);
     },
-    setVolume(next) {
-      volume = Math.max(0, Math.min(1, next));
-      applyVolume();
-    },
     setMuted(on) {
       muted = on;
-      applyVolume();
+      if (player) player.master.gain.setTargetAtTime(on ? 0 : volume, player.context.currentTime, fadeSeconds);
     },
     dispose() {
       void player?.context.close();

@@ -1,7 +1,7 @@
 import { armSpanFromFingertipSpan, calibrationComplaint, eyeHeightFromStature } from 'threepoint/core/body/calibration';
 import { offerDownload } from 'threepoint-ui/downloads';
 import type { PanelActions } from '../panel/panel';
-import type { AvatarActions, BodyActions, RecordingActions, ViewActions } from '../panel/panel-state';
+import type { AvatarActions, BodyActions, RecordingActions, SettingActions } from '../panel/panel-state';
 import type { ControlledParts } from './controlled-parts';
 import type { Measuring } from './measuring';
 import type { MotionExport } from './motion-export';
@@ -13,7 +13,14 @@ export interface PanelActionsOptions extends ControlledParts {
   readonly measuring: Pick<Measuring, 'start'>;
 }
 
-function bodyActions({ store, writer, body, notices, userCalibration, measuring }: PanelActionsOptions): BodyActions {
+function bodyActions({
+  store,
+  writer,
+  body,
+  notices,
+  userCalibration,
+  measuring,
+}: PanelActionsOptions): Omit<BodyActions, keyof SettingActions> {
   return {
     chooseEstimator(name) {
       store.remember({ estimator: name });
@@ -34,11 +41,10 @@ function bodyActions({ store, writer, body, notices, userCalibration, measuring 
       else userCalibration.calibrateForGood(calibration, 'by hand');
     },
     resetCalibration: () => userCalibration.resetCalibration(),
-    setDeviceBody: (deviceBody) => writer.change({ deviceBody }),
   };
 }
 
-function avatarActions({ writer, avatar, files }: PanelActionsOptions): AvatarActions {
+function avatarActions({ writer, avatar, files }: PanelActionsOptions): Omit<AvatarActions, keyof SettingActions> {
   return {
     choosePalette(palette) {
       writer.keep({ palette });
@@ -56,11 +62,8 @@ function avatarActions({ writer, avatar, files }: PanelActionsOptions): AvatarAc
     openAvatarUrl: (url) => void files.openAvatar(url),
     showBuiltInAvatar: () => files.showBuiltInAvatar(),
     cancelAvatar: () => avatar.cancel(),
-    setUpperBodyOnly: (upperBodyOnly) => writer.keep({ upperBodyOnly }),
     correctBones: () => void avatar.correctBones(),
     giveBones: (bones) => void files.giveBones(bones),
-    setShareAvatar: (shareAvatar) => writer.keep({ shareAvatar }),
-    setPlainOthers: (plainOthers) => writer.keep({ plainOthers }),
   };
 }
 
@@ -115,29 +118,20 @@ function recordingActions(options: PanelActionsOptions): RecordingActions {
   };
 }
 
-function viewActions({ writer, stage, onChange }: PanelActionsOptions): ViewActions {
-  return {
-    chooseView(name) {
-      stage.view.setView(name);
-      onChange();
-    },
-    setMirror: (mirror) => writer.keep({ mirror }),
-    setDebugSkeleton: (debugSkeleton) => writer.change({ debugSkeleton }),
-    setOverlay: (overlay) => writer.keep({ overlay }),
-    setLargerText: (largerText) => writer.keep({ largerText }),
-    setSingleKeys: (singleKeys) => writer.keep({ singleKeys }),
-  };
-}
-
 /** What the wishes of the panel do to the page. */
 export function createPanelActions(options: PanelActionsOptions): PanelActions {
+  const { writer, stage, userCalibration, headset, onChange } = options;
   return {
     ...bodyActions(options),
     ...avatarActions(options),
     ...recordingActions(options),
-    ...viewActions(options),
-    recentre: () => options.userCalibration.recentre(),
-    exitVr: () => options.headset.exit(),
-    keepPanel: (panel) => options.writer.keep({ panel }),
+    change: (part) => writer.change(part),
+    keep: (part) => writer.keep(part),
+    chooseView(name) {
+      stage.view.setView(name);
+      onChange();
+    },
+    recentre: () => userCalibration.recentre(),
+    exitVr: () => headset.exit(),
   };
 }

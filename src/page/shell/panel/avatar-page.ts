@@ -147,8 +147,8 @@ function createBones(actions: AvatarActions) {
 
 /** Which avatars players show to each other. */
 function createSight(actions: AvatarActions) {
-  const share = toggle('Others see my avatar', (on) => actions.setShareAvatar(on));
-  const plain = toggle('Show all others as mannequins', (on) => actions.setPlainOthers(on));
+  const share = toggle('Others see my avatar', (shareAvatar) => actions.keep({ shareAvatar }));
+  const plain = toggle('Show all others as mannequins', (plainOthers) => actions.keep({ plainOthers }));
   return {
     node: element(
       'section',
@@ -174,7 +174,7 @@ export function createAvatarPage(palettes: readonly PaletteChoice[], actions: Av
   const bones = createBones(actions);
   const shown = createShown(palettes, actions, bones.correct);
   const sight = createSight(actions);
-  const upperBody = toggle('Upper body only', (on) => actions.setUpperBodyOnly(on));
+  const upperBody = toggle('Upper body only', (upperBodyOnly) => actions.keep({ upperBodyOnly }));
   return {
     name: 'Avatar',
     content: [shown.node, bones.node, otherAvatars(actions), sight.node, element('section', {}, upperBody.node)],

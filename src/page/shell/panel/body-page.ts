@@ -8,7 +8,7 @@ import type { BodyActions, PanelPage, PanelState } from './panel-state';
 export type MeasureRanges = Readonly<Record<'height' | 'armSpan' | 'forearm', MeasureRange>>;
 
 /** Lets the user choose an estimator. An unavailable one gives the reason. */
-function createEstimators(actions: Pick<BodyActions, 'chooseEstimator'>) {
+function createEstimators(actions: BodyActions) {
   const choices = estimatorOrder.map((name) => {
     const { label, text } = estimatorTexts[name];
     const described = `about-${name}`;
@@ -43,8 +43,8 @@ function createEstimators(actions: Pick<BodyActions, 'chooseEstimator'>) {
 }
 
 /** Whether the headset's body tracking is used. */
-function createDeviceBody(actions: Pick<BodyActions, 'setDeviceBody'>) {
-  const ask = toggle('Use the headset’s body tracking', (on) => actions.setDeviceBody(on));
+function createDeviceBody(actions: BodyActions) {
+  const ask = toggle('Use the headset’s body tracking', (deviceBody) => actions.change({ deviceBody }));
   const about =
     'Starts when you next enter VR, and lasts until you close the page. It is off by default, because it has crashed the browsers of some headsets.';
   return {

@@ -2,18 +2,12 @@ import type { BuiltInBody, SkinTone } from 'threepoint/core/body/avatar-ref';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import type { ViewName } from '../../scene/desktop-view';
+import type { Recorder } from '../../studio/recorder';
+import type { Settings, SettingsWriter } from '../settings';
 import type { WaitingForBones } from '../shown-avatar';
 
 /** What the recorder is doing; seconds since its start, of how many. */
-export interface RecorderState {
-  readonly mode: 'idle' | 'recording' | 'replaying';
-  readonly paused: boolean;
-  readonly seconds: number;
-  readonly duration: number;
-  readonly loop: boolean;
-  /** The name of the current recording; null: none. */
-  readonly name: string | null;
-}
+export type RecorderState = Pick<Recorder, 'mode' | 'paused' | 'seconds' | 'duration' | 'loop' | 'name'>;
 
 /**
  * Kinds of files that recordings can be made into: BVH in metres or centimetres, a VRM Animation, the shown avatar
@@ -31,18 +25,12 @@ export interface ExportState {
   readonly secondsLeft: number | null;
 }
 
-/** Everything that the panel shows. The panel itself has no state. */
-export interface PanelState {
+/** Everything that the panel shows, the settings among it. The panel itself has no state. */
+export interface PanelState extends Omit<Settings, 'palette' | 'builtInBody'> {
   readonly estimator: EstimatorName;
   /** The reason why an estimator is unavailable; absent: it is available. */
   readonly unavailable: Partial<Readonly<Record<EstimatorName, string>>>;
   readonly view: ViewName;
-  readonly mirror: boolean;
-  readonly upperBodyOnly: boolean;
-  readonly debugSkeleton: boolean;
-  readonly overlay: boolean;
-  readonly largerText: boolean;
-  readonly singleKeys: boolean;
   readonly avatarName: string;
   /** The state of an avatar that was requested and is not shown; null: there is none. */
   readonly avatarPending: string | null;
@@ -54,12 +42,8 @@ export interface PanelState {
   readonly canCorrectBones: boolean;
   /** A file whose bones the user maps; null: none. */
   readonly waitingForBones: WaitingForBones | null;
-  readonly shareAvatar: boolean;
-  readonly plainOthers: boolean;
   /** Which body of our own is shown; null: another avatar is. */
   readonly builtInBody: BuiltInBody | null;
-  /** The skin tone of a human avatar; undefined: the avatar's own. */
-  readonly skinTone: SkinTone | undefined;
   /** The colours of a built-in avatar; null: another avatar is shown, which keeps its own. */
   readonly palette: string | null;
   readonly heightCm: number;
@@ -67,10 +51,7 @@ export interface PanelState {
   /** null: not given. */
   readonly forearmCm: number | null;
   readonly eyeHeightCm: number;
-  readonly calibrationSource: string;
-  readonly actor: boolean;
   readonly emulated: boolean;
-  readonly emulatorPanel: boolean;
   readonly recorder: RecorderState;
   /** null: nothing is being made. */
   readonly exporting: ExportState | null;
@@ -81,21 +62,21 @@ export interface PanelState {
   readonly rateHz: number | null;
   /** The rates that it offers [Hz]. */
   readonly ratesHz: readonly number[];
-  /** Whether the next session uses the headset's body tracking. */
-  readonly deviceBody: boolean;
   /** Why the worn headset tracks no body; null: it does, or no headset is worn. */
   readonly bodyComplaint: string | null;
 }
 
-export interface BodyActions {
+/** Changes settings for this visit (`change`), or also for later ones (`keep`). */
+export type SettingActions = Pick<SettingsWriter, 'change' | 'keep'>;
+
+export interface BodyActions extends SettingActions {
   chooseEstimator(name: EstimatorName): void;
   calibrate(): void;
   setMeasures(measures: Pick<PanelState, 'heightCm' | 'armSpanCm' | 'forearmCm'>): void;
   resetCalibration(): void;
-  setDeviceBody(on: boolean): void;
 }
 
-export interface AvatarActions {
+export interface AvatarActions extends SettingActions {
   choosePalette(name: string): void;
   chooseBuiltInBody(name: BuiltInBody): void;
   chooseSkinTone(tone: SkinTone): void;
@@ -103,13 +84,10 @@ export interface AvatarActions {
   openAvatarUrl(url: string): void;
   showBuiltInAvatar(): void;
   cancelAvatar(): void;
-  setUpperBodyOnly(on: boolean): void;
   /** Opens the form for the bones of the shown file. */
   correctBones(): void;
   /** Which bone of the file that waits is which; null: forgets the user's map. */
   giveBones(bones: BoneMap | null): void;
-  setShareAvatar(on: boolean): void;
-  setPlainOthers(on: boolean): void;
 }
 
 export interface RecordingActions {
@@ -130,13 +108,8 @@ export interface RecordingActions {
   setEmulatorPanel(on: boolean): void;
 }
 
-export interface ViewActions {
+export interface ViewActions extends SettingActions {
   chooseView(view: ViewName): void;
-  setMirror(on: boolean): void;
-  setDebugSkeleton(on: boolean): void;
-  setOverlay(on: boolean): void;
-  setLargerText(on: boolean): void;
-  setSingleKeys(on: boolean): void;
 }
 
 /** A page of the panel, behind its tab. It shows a state and reports wishes; what happens is decided elsewhere. */

@@ -10,8 +10,6 @@ import { createViewPage } from './view-page';
 export interface PanelActions extends BodyActions, AvatarActions, RecordingActions, ViewActions {
   recentre(): void;
   exitVr(): void;
-  /** The user opened or closed the panel. */
-  keepPanel(open: boolean): void;
 }
 
 export interface PanelOptions extends MeasureRanges {
@@ -22,7 +20,7 @@ export interface Panel {
   readonly open: boolean;
   /** Opens or closes the panel. The region emits the event `toggle`. */
   setOpen(open: boolean): void;
-  /** Opens or closes the panel for the user, and reports it to `keepPanel`. */
+  /** Opens or closes the panel for the user, also on later visits. */
   toggle(): void;
   show(state: PanelState): void;
 }
@@ -51,7 +49,7 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
   }
   function toggle(): void {
     setOpen(content.hidden);
-    actions.keepPanel(!content.hidden);
+    actions.keep({ panel: !content.hidden });
   }
   region.append(element('div', { class: 'panel-bar' }, exit, recentre, opener), content);
   return {

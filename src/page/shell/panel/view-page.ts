@@ -50,11 +50,11 @@ export function createViewPage(actions: ViewActions): PanelPage {
     view,
     node: button(viewTexts[view], () => actions.chooseView(view), { 'aria-pressed': 'false' }),
   }));
-  const mirror = toggle('Mirror', (on) => actions.setMirror(on));
-  const skeleton = toggle('Debug skeleton', (on) => actions.setDebugSkeleton(on));
-  const overlay = toggle('Frame times', (on) => actions.setOverlay(on));
-  const largerText = toggle('Larger text', (on) => actions.setLargerText(on));
-  const singleKeys = toggle('Single keys', (on) => actions.setSingleKeys(on));
+  const mirror = toggle('Mirror', (mirror) => actions.keep({ mirror }));
+  const skeleton = toggle('Debug skeleton', (debugSkeleton) => actions.change({ debugSkeleton }));
+  const overlay = toggle('Frame times', (overlay) => actions.keep({ overlay }));
+  const largerText = toggle('Larger text', (largerText) => actions.keep({ largerText }));
+  const singleKeys = toggle('Single keys', (singleKeys) => actions.keep({ singleKeys }));
   const rate = element('p', { class: 'hint' });
   const camera = element(
     'section',
