@@ -2,6 +2,7 @@ import { writeFileSync } from 'node:fs';
 import { parseArgs } from 'node:util';
 import { type Browser, chromium } from '@playwright/test';
 import { reasonOf } from 'threepoint/core/errors/reasons';
+import { median } from 'threepoint/core/math/statistics';
 import { serve, type WebServer } from 'threepoint-http/web-server';
 import { findChromium } from '../scripts/chromium.mjs';
 import { createPageHandler } from '../server/page';
@@ -128,7 +129,7 @@ async function measureVisit(browser: Browser): Promise<Visit> {
   } finally {
     await server.close();
   }
-  return { firstBodyMs: times.sort((a, b) => a - b)[1] ?? Number.NaN, bytes };
+  return { firstBodyMs: median(times), bytes };
 }
 
 const executablePath = await findChromium();

@@ -1,3 +1,4 @@
+import { mean } from 'threepoint/core/math/statistics';
 import {
   add,
   cross,
@@ -151,8 +152,6 @@ function bodiesAt(driven: Driven, row: number): PictureOfMotion['bodies'] {
     ...Object.fromEntries(measuredMethods.map((name) => [name, seen((driven[name][row] as MeasuredFrame).joints)])),
   } as PictureOfMotion['bodies'];
 }
-
-const mean = (values: readonly number[]): number => values.reduce((sum, value) => sum + value, 0) / values.length;
 
 export function figuresOf({ traces, poses }: FigureCollection, rateHz: number): Figures {
   // Short clips contain little information about an error over time.

@@ -1,5 +1,6 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { type EstimatorName, estimatorNames } from 'threepoint/core/estimation/pose-estimator';
+import { quantile } from 'threepoint/core/math/statistics';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { ArcheryStage } from './archery';
 import { Court } from './court';
@@ -89,8 +90,7 @@ async function measureCrowd(
     drawn.push(performance.now() - started);
     if (count > 0) remote.push((received - receiving) / count);
   }
-  const sorted = remote.sort((a, b) => a - b);
-  const at = (q: number) => Number((sorted[Math.floor(q * sorted.length)] ?? Number.NaN).toFixed(4));
+  const at = (share: number) => Number(quantile(remote, share).toFixed(4));
   return {
     ...frameTimes(thread, drawn, thread.length),
     avatars: count + 1,

@@ -1,4 +1,5 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { mean, median } from 'threepoint/core/math/statistics';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { ArcheryStage } from './archery';
 import { Court } from './court';
@@ -25,12 +26,6 @@ const packetHz = 30;
 const blockFrames = 36;
 /** Frames of a block that count come after these. */
 const settleFrames = 6;
-
-const median = (values: readonly number[]): number => {
-  const sorted = [...values].sort((a, b) => a - b);
-  return sorted[Math.floor(sorted.length / 2)] ?? Number.NaN;
-};
-const mean = (values: readonly number[]): number => values.reduce((sum, value) => sum + value, 0) / values.length;
 
 /**
  * Frames with everyone and with the own body alone, block by block in turns, so that what else the machine does meets

@@ -10,6 +10,7 @@ import { createEstimator, type NetworkName, needsRegressor } from 'threepoint/co
 import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
 import { type EstimatorName, estimatorNames, type PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
 import { nextRandom } from 'threepoint/core/math/random';
+import { quantile } from 'threepoint/core/math/statistics';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { createInferenceWorker } from 'threepoint/onnx/create-inference-worker';
 import { loadRegressor } from 'threepoint/onnx/load-regressor';
@@ -79,9 +80,7 @@ export interface PageResult {
 }
 
 function quantiles(values: readonly number[]): Quantiles {
-  const sorted = Float64Array.from(values).sort();
-  const at = (q: number) =>
-    Number((sorted[Math.min(sorted.length - 1, Math.floor(q * sorted.length))] ?? Number.NaN).toFixed(4));
+  const at = (share: number) => Number(quantile(values, share).toFixed(4));
   return { p50: at(0.5), p95: at(0.95), p99: at(0.99) };
 }
 

@@ -4,6 +4,7 @@ import { createAfterFrame } from 'threepoint/api/after-frame';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createWithNetwork } from 'threepoint/core/estimation/estimators';
 import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
+import { quantile } from 'threepoint/core/math/statistics';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { NetworkCost, NetworkWay } from '../networks';
 
@@ -26,9 +27,6 @@ async function load(way: NetworkWay): Promise<PoseRegressor> {
     way === 'webgpu' ? { provider: 'webgpu' } : { createWorker: createInferenceWorker },
   );
 }
-
-const quantile = (values: readonly number[], share: number): number =>
-  values.toSorted((a, b) => a - b)[Math.floor(share * values.length)] ?? Number.NaN;
 
 async function measure(way: NetworkWay): Promise<NetworkCost> {
   const opened = performance.now();

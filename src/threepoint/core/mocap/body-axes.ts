@@ -1,4 +1,5 @@
 import { angleBetween, conjugate, fromAxes, fromAxisAngle, multiply, type Quat, quat, rotate } from '../math/quat';
+import { median } from '../math/statistics';
 import {
   cross,
   distance,
@@ -92,10 +93,6 @@ export function* sampledFrames(frameCount: number, most = mostSamples): Generato
   const step = Math.max(1, Math.ceil(frameCount / most));
   for (let frame = 0; frame < frameCount; frame += step) yield frame;
 }
-
-/** The middle value, of an even number the upper one; NaN: there is none. */
-export const median = (values: readonly number[]): number =>
-  [...values].sort((a, b) => a - b)[values.length >> 1] ?? Number.NaN;
 
 /** What a clip shows of its vertical, in floor axes of its rest pose. */
 interface Stance {
