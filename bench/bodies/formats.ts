@@ -1,10 +1,11 @@
 import type { UpperBodyPose } from 'threepoint/core/body/avatar-pose';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics, type JointPoses, makeJointPoses } from 'threepoint/core/body/forward-kinematics';
-import { type JointName, jointNames } from 'threepoint/core/body/joints';
+import { jointNames } from 'threepoint/core/body/joints';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { copyQuat, type MutableQuat, quat, slerp } from 'threepoint/core/math/quat';
 import { copyVec3, lerp, type MutableVec3, vec3 } from 'threepoint/core/math/vec3';
+import { recordOf } from 'threepoint/core/records';
 import type { SentBody } from 'threepoint-rooms/peers/pose-sender';
 import { PoseSender } from 'threepoint-rooms/peers/pose-sender';
 import { RemotePoses } from 'threepoint-rooms/peers/remote-poses';
@@ -150,10 +151,7 @@ const bones: Pick<BufferedFormat, 'packetOf' | 'place'> = {
     return { timeMs, positions: [vec3(x, y, z)], rotations: filled(rotations, boneCount, quat(0, 0, 0, 1)) };
   },
   place({ positions, rotations }, joints) {
-    const localRotations = Object.fromEntries(jointNames.map((name, i) => [name, rotations[i]])) as Record<
-      JointName,
-      MutableQuat
-    >;
+    const localRotations = recordOf(jointNames, (_, i) => rotations[i]!);
     forwardKinematics(skeleton, { hipsPosition: positions[0]!, localRotations }, joints);
   },
 };

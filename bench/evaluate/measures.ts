@@ -2,6 +2,7 @@ import { estimatedJoints } from 'threepoint/core/body/joints';
 import type { JointPositions } from 'threepoint/core/estimation/joint-positions';
 import { mean } from 'threepoint/core/math/statistics';
 import { distance, normalise, reject, subtract, type Vec3 } from 'threepoint/core/math/vec3';
+import { recordOf } from 'threepoint/core/records';
 import type { TruthJoint } from './recordings';
 import { swivelAngle } from './swivel-angle';
 
@@ -194,7 +195,7 @@ function spread(values: readonly number[]): Spread {
 
 const sum = (values: readonly number[]): number => values.reduce((total, value) => total + value, 0);
 const byJoint = <Figure>(figure: (index: number) => Figure): ByJoint<Figure> =>
-  Object.fromEntries(reportNames.map((name, index) => [name, figure(index)])) as ByJoint<Figure>;
+  recordOf(reportNames, (_, index) => figure(index));
 
 export function report(measures: Measures): Report {
   /** Coordinates of one joint. */

@@ -11,10 +11,16 @@ import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { createRenderer } from 'threepoint-page/scene/renderer';
 import { createStudio } from 'threepoint-page/studio/studio';
 import { Court } from './court';
+import { tellOutcome } from './outcome';
 import { createSenders } from './senders';
 import { trackedHandsDevice } from './tracked-hands';
 
-/** What is measured on this page; the real page is measured as it is. */
+/**
+ * What is measured on this page; the real page is measured as it is. An estimator: one estimate of one body, nothing
+ * else. ball8: a court with seven others whose packets come 30 times a second: received, decoded, played back, bent,
+ * drawn. hands: one's own body before the mirror with both hands tracked: the device's own poses were there before.
+ * stillScene: what three.js leaves for drawing an arena that nothing moves in.
+ */
 export type AllocationScene = 'ik' | 'paper' | 'learned' | 'ball8' | 'hands' | 'stillScene';
 
 declare global {
@@ -140,6 +146,4 @@ async function start(): Promise<void> {
     });
 }
 
-start().catch((error: unknown) => {
-  window.benchError = error instanceof Error ? (error.stack ?? error.message) : String(error);
-});
+void tellOutcome(start());

@@ -5,7 +5,10 @@ import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { composeTransforms, invertTransform, type TrackedPose } from 'threepoint/core/math/pose';
+import { composeTransforms, invertTransform, type TrackedPose, type Transform } from 'threepoint/core/math/pose';
+import { fromAxisAngle } from 'threepoint/core/math/quat';
+import { up, vec3 } from 'threepoint/core/math/vec3';
+import type { Mutable } from 'threepoint/core/records';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { createBallView } from 'threepoint-page/ball/ball-view';
 import type { Quality } from 'threepoint-page/scene/renderer';
@@ -13,7 +16,6 @@ import type { Studio } from 'threepoint-page/studio/studio';
 import { createRemotePlayers } from 'threepoint-rooms/client/remote-players';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import { decodePose } from 'threepoint-rooms/protocol/pose-codec';
-import { arenaFromCirclePlace } from './circle';
 
 /** What arrived of one seat. */
 export interface ArrivedBytes {
@@ -21,7 +23,17 @@ export interface ArrivedBytes {
   readonly bytes: Uint8Array;
 }
 
-type Writable<T> = { -readonly [Key in keyof T]: T[Key] };
+/** Radius of the circle on which many bodies are placed [m]. */
+const radius = 2.5;
+
+/** Returns the pose of a body's floor in the arena: bodies stand on a circle and face its centre. */
+function arenaFromCirclePlace(place: number, places: number): Transform<'arena', 'floor'> {
+  const angle = (2 * Math.PI * place) / places;
+  return {
+    position: vec3(radius * Math.sin(angle), 0, radius * Math.cos(angle)),
+    orientation: fromAxisAngle(up, angle),
+  };
+}
 
 /** A ball court that stands still, one's own floor at the first of so many places, and the others on theirs. */
 export class Court {
@@ -29,9 +41,9 @@ export class Court {
   readonly #view: ReturnType<typeof createBallView>;
   readonly #others: ReturnType<typeof createRemoteAvatars>;
   readonly #skeleton: Skeleton = skeletonFromCalibration(defaultCalibration);
-  readonly #seen: readonly Writable<SeenPerson>[];
+  readonly #seen: readonly Mutable<SeenPerson>[];
   readonly #people: SeenPerson[] = [];
-  readonly #shown: Writable<Parameters<ReturnType<typeof createBallView>['show']>[0]>;
+  readonly #shown: Mutable<Parameters<ReturnType<typeof createBallView>['show']>[0]>;
   #players = createRemotePlayers();
 
   constructor(studio: Studio, mannequin: ArrayBuffer, places: number, quality: Quality = 'low') {

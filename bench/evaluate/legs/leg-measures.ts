@@ -4,6 +4,7 @@ import { rotate } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { mean } from 'threepoint/core/math/statistics';
 import { add, copyVec3, distance, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { recordOf } from 'threepoint/core/records';
 import { rounded } from '../measures';
 import type { Contact, TrueLeg, TrueLegs } from './leg-truth';
 
@@ -183,5 +184,5 @@ export function legReport(m: LegMeasures): LegReport {
 export function meanReport(reports: readonly LegReport[]): LegReport {
   const meanOf = (key: keyof LegReport) => rounded(mean(reports.map((report) => report[key])), 3);
   const keys = Object.keys(reports[0]!) as (keyof LegReport)[];
-  return Object.fromEntries(keys.map((key) => [key, meanOf(key)])) as Record<keyof LegReport, number>;
+  return recordOf(keys, meanOf);
 }

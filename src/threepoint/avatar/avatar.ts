@@ -8,13 +8,14 @@ import { forwardKinematics, makeJointPoses } from '../core/body/forward-kinemati
 import { type HandGeometry, scaledHand } from '../core/body/hand-geometry';
 import type { FingerName, HandShape } from '../core/body/hand-shape';
 import { headJointOf } from '../core/body/head-joint';
-import { type JointName, jointNames } from '../core/body/joints';
+import { jointNames } from '../core/body/joints';
 import { type Skeleton, skeletonFromCalibration } from '../core/body/skeleton';
 import type { GaitPoints } from '../core/estimation/gait/gait-features';
-import { identity, type Quat, quat, rotate } from '../core/math/quat';
+import { identity, quat, rotate } from '../core/math/quat';
 import type { Side } from '../core/math/side';
 import { addScaled, setVec3, subtract, type Vec3, vec3 } from '../core/math/vec3';
 import { finishWork } from '../core/motion/work';
+import { type Mutable, recordOf } from '../core/records';
 import { Face } from './face';
 import { Fingers } from './hands/fingers';
 import { betweenFrames, type Steps } from './in-steps';
@@ -82,7 +83,7 @@ export interface Avatar {
 const averageBody: Calibration = { eyeHeight: 1.59, armSpan: 1.5 };
 /** A pause of the page moves feet no further than this [s]. */
 const longestStep = 0.25;
-const upright = Object.fromEntries(jointNames.map((name) => [name, identity])) as Record<JointName, Quat>;
+const upright = recordOf(jointNames, () => identity);
 
 /** What of a body takes long to make. */
 interface MadeParts {
@@ -144,7 +145,7 @@ class VrmAvatar implements Avatar {
   private lastTime: number | null = null;
   private readonly joints = makeJointPoses();
   /** The points of a pose that the legs follow. */
-  private readonly points: { -readonly [Key in keyof GaitPoints]: GaitPoints[Key] } = {
+  private readonly points: Mutable<GaitPoints> = {
     hips: this.joints.hips,
     head: this.joints.head,
     leftHand: this.joints.leftHand.position,

@@ -15,6 +15,7 @@ import {
   zero,
 } from '../math/vec3';
 import { type FileMotion, makeJointPoses } from '../motion/file-motion';
+import { recordOf } from '../records';
 import { directions } from './read-skeleton-map';
 import type { FileAxis } from './skeleton-map';
 
@@ -106,8 +107,8 @@ interface Stance {
 
 function stanceOf(file: FileMotion, floor: Quat, joints: StandingJoints): Stance {
   const poses = makeJointPoses(file.names.length);
-  const shares = Object.fromEntries(axisNames.map((axis) => [axis, 0])) as Record<FileAxis, number>;
-  const lows = Object.fromEntries(axisNames.map((axis) => [axis, [] as number[]])) as Record<FileAxis, number[]>;
+  const shares = recordOf(axisNames, () => 0);
+  const lows = recordOf(axisNames, (): number[] => []);
   const bodies = [joints.hips, joints.neck, ...joints.upperArms, ...joints.upperLegs, ...joints.feet].filter(
     (i) => i >= 0,
   );
@@ -129,7 +130,7 @@ function stanceOf(file: FileMotion, floor: Quat, joints: StandingJoints): Stance
     }
   }
   for (const axis of axisNames) shares[axis] /= count;
-  const lowest = Object.fromEntries(axisNames.map((axis) => [axis, median(lows[axis])])) as Record<FileAxis, number>;
+  const lowest = recordOf(axisNames, (axis) => median(lows[axis]));
   return { shares, lowest, upright: upright / count };
 }
 
