@@ -1,7 +1,7 @@
 import { PerspectiveCamera } from 'three';
 import { createAvatar } from 'threepoint/avatar/avatar';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { createMirror } from 'threepoint/avatar/mirror';
+import { Mirror } from 'threepoint/avatar/mirror';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
@@ -98,7 +98,7 @@ async function hands(): Promise<FrameOf> {
   const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
   const avatar = createAvatar(await parseAvatar(mannequin, 'mannequin.vrm'));
   avatar.setCalibration(defaultCalibration);
-  const mirror = createMirror({ distance: 1.5, resolution: 256, samples: 0 });
+  const mirror = new Mirror({ distance: 1.5, resolution: 256, samples: 0 });
   studio.scene.add(mirror.object, avatar.object);
   const estimator = createEstimator('ik', defaultCalibration);
   const moves = Array.from({ length: preparedFrames }, (_, i) => actorFrame(i / rateHz, defaultCalibration));

@@ -1,6 +1,6 @@
 import { createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { createRemoteAvatars, type SeenPerson } from 'threepoint/avatar/remote-avatars';
+import { RemoteAvatars, type SeenPerson } from 'threepoint/avatar/remote-avatars';
 import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
@@ -39,7 +39,7 @@ function arenaFromCirclePlace(place: number, places: number): Transform<'arena',
 export class Court {
   readonly #studio: Studio;
   readonly #view: ReturnType<typeof createBallView>;
-  readonly #others: ReturnType<typeof createRemoteAvatars>;
+  readonly #others: RemoteAvatars;
   readonly #skeleton: Skeleton = skeletonFromCalibration(defaultCalibration);
   readonly #seen: readonly Mutable<SeenPerson>[];
   readonly #people: SeenPerson[] = [];
@@ -51,7 +51,7 @@ export class Court {
     const floorFromArena = invertTransform(arenaFromCirclePlace(0, places));
     this.#view = createBallView({ quality, balls: 20, onCaption: () => undefined });
     studio.setSurroundings(this.#view.placed(floorFromArena));
-    this.#others = createRemoteAvatars({
+    this.#others = new RemoteAvatars({
       load: async () => createAvatarBetweenFrames(await parseAvatar(mannequin, 'mannequin.vrm')),
       plain: () => false,
       mouthOf: () => 0,

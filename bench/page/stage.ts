@@ -1,7 +1,7 @@
 import { PerspectiveCamera } from 'three';
 import { createAvatar } from 'threepoint/avatar/avatar';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { createMirror } from 'threepoint/avatar/mirror';
+import { Mirror } from 'threepoint/avatar/mirror';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createEstimator, type NetworkName, needsRegressor } from 'threepoint/core/estimation/estimators';
 import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
@@ -20,7 +20,7 @@ export async function openPicture() {
   renderer.setSize(480, 270, false);
   const studio = createStudio(renderer, 'low');
   // The page's settings for software rendering.
-  const mirror = createMirror({ distance: 1.5, resolution: 256, samples: 0 });
+  const mirror = new Mirror({ distance: 1.5, resolution: 256, samples: 0 });
   const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
   const avatar = createAvatar(await parseAvatar(mannequin, 'mannequin.vrm'));
   studio.scene.add(mirror.object, avatar.object);
