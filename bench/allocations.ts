@@ -1,35 +1,18 @@
 import { readFileSync } from 'node:fs';
 import { SourceMap } from 'node:module';
-import { fileURLToPath } from 'node:url';
 import type { Browser, CDPSession, Page } from '@playwright/test';
-import { serve, type WebServer } from 'threepoint-http/web-server';
 import { driveTime, pass } from '../e2e/driven-time';
-import { createPageHandler } from '../server/page';
+import { builtPages, outcomeOf, withServed } from './bench-page';
 import type { AllocationScene } from './page/allocations';
 
 /**
  * Bytes that a frame leaves to the collector, collected or not, on the page's own thread; the network's worker is
  * another heap.
  */
-export interface AllocationBytes {
-  /** One estimate of one body, nothing else. */
-  readonly update: Readonly<Record<'ik' | 'paper' | 'learned', number>>;
-  /** The page before the mirror, the actor in it, with the learned estimator. */
-  readonly mirror: number;
-  /** The page at the range while the built-in archer plays. */
-  readonly archery: number;
-  /** The page at the court: one's own player and two bots play a match, with all that a room does. */
-  readonly ball3: number;
-  /** A court with seven others whose packets come 30 times a second: received, decoded, played back, bent, drawn. */
-  readonly ball8: number;
-  /** One's own body before the mirror with both hands tracked: the device's own poses were there before. */
-  readonly hands: number;
-  /** What three.js leaves for drawing an arena that nothing moves in. */
-  readonly stillScene: number;
-  /**
-   * What of a frame is allocated below a call of three.js's renderer: its own, and what the browser makes of its calls.
-   */
-  readonly threeAlone: Readonly<Record<'mirror' | 'archery' | 'ball3' | 'ball8' | 'hands', number>>;
+export interface AllocatedBytes {
+  readonly all: number;
+  /** Allocated below a call of three.js's renderer: its own, and what the browser makes of its calls. */
+  readonly three: number;
 }
 
 /** A function of the page and what it leaves in a frame. */
@@ -41,7 +24,8 @@ export interface AllocationSite {
 }
 
 export interface Allocations {
-  readonly bytes: AllocationBytes;
+  /** By what was sampled. */
+  readonly bytes: Readonly<Record<string, AllocatedBytes>>;
   /** By what was sampled, most first. */
   readonly sites: Readonly<Record<string, readonly AllocationSite[]>>;
 }
@@ -76,26 +60,16 @@ const longestWaitMs = 300_000;
 /** A game that does not begin within so many seconds of its own does not begin. */
 const longestStart = 60;
 
-/** Folders of built pages, to find the map beside a script. */
-export interface BuiltPages {
-  /** The real page. */
-  readonly page: string;
-  /** The bench's own. */
-  readonly bench: string;
-}
-
 /** file:line in the sources of a place in a built script, both from 0. */
 type SourceOf = (url: string, line: number, column: number) => string;
 
-/** Finds sources by the maps that lie beside the scripts. */
-function createMaps(folderOf: (url: URL) => string | null): SourceOf {
+/** Finds sources by the maps that lie beside the scripts of a folder, which is served at this address. */
+function createMaps(address: string, folder: string): SourceOf {
   const maps = new Map<string, SourceMap | null>();
   const read = (url: string): SourceMap | null => {
+    if (!url.startsWith(address)) return null;
     try {
-      const folder = URL.canParse(url) ? folderOf(new URL(url)) : null;
-      return folder === null
-        ? null
-        : new SourceMap(JSON.parse(readFileSync(`${folder}${new URL(url).pathname}.map`, 'utf8')));
+      return new SourceMap(JSON.parse(readFileSync(`${folder}${new URL(url).pathname}.map`, 'utf8')));
     } catch (error) {
       if ((error as NodeJS.ErrnoException).code === 'ENOENT') return null;
       throw error;
@@ -169,7 +143,11 @@ async function sample(session: CDPSession, sourceOf: SourceOf, during: () => Pro
   return { frames, bytes, threeBytes, functions: [...functions.values()] };
 }
 
-/** What is played on the real page, and what is pressed before frames are sampled. */
+/**
+ * What is played on the real page, and what is pressed before frames are sampled: the actor before the mirror with the
+ * learned estimator; the built-in archer at the range; one's own player and two bots in a match, with all that a room
+ * does.
+ */
 const realPages = {
   mirror: { address: '?actor=on&seed=7', plays: false, press: null, warmUp: warmUpFrames },
   // A round has fewer frames than warm up and are sampled.
@@ -248,12 +226,8 @@ async function sampleRealPage(
 }
 
 async function sampleBenchPage(page: Page, session: CDPSession, sourceOf: SourceOf): Promise<Sample> {
-  await page.waitForFunction(() => window.runFrames ?? window.benchError, null, { timeout: 60_000 });
-  const run = (frames: number) =>
-    page.evaluate((frames) => {
-      if (!window.runFrames) throw new Error(window.benchError);
-      return window.runFrames(frames);
-    }, frames);
+  await outcomeOf(page, 60_000);
+  const run = (frames: number) => page.evaluate((frames) => window.runFrames!(frames), frames);
   await run(warmUpFrames);
   return sample(session, sourceOf, () => run(sampledFrames));
 }
@@ -289,64 +263,34 @@ function sitesOf({ frames, functions }: Sample, sourceOf: SourceOf): AllocationS
 /** Measures what frames allocate; `only`: the names of what is measured, absent: all. */
 export async function measureAllocations(
   browser: Browser,
-  built: BuiltPages,
+  realFolder: string,
   only?: readonly string[],
 ): Promise<Allocations> {
-  const servers: WebServer[] = [];
-  const folders = new Map<string, string>();
-  const open = async (folder: string): Promise<string> => {
-    const server = await serve(createPageHandler(folder), { host: '127.0.0.1', port: 0 });
-    servers.push(server);
-    folders.set(String(server.port), folder);
-    return `http://127.0.0.1:${server.port}/`;
-  };
-  const sourceOf = createMaps((url) => folders.get(url.port) ?? null);
-  const samples = new Map<string, Sample>();
+  const bytes: Record<string, AllocatedBytes> = {};
+  const sites: Record<string, readonly AllocationSite[]> = {};
   const wanted = (name: string) => only === undefined || only.includes(name);
-  try {
-    const realPage = await open(built.page);
+  const keep = (name: string, sampled: Sample, sourceOf: SourceOf) => {
+    bytes[name] = perFrame(sampled);
+    sites[name] = sitesOf(sampled, sourceOf);
+  };
+  await withServed(realFolder, async (address) => {
+    const sourceOf = createMaps(address, realFolder);
     for (const [name, played] of Object.entries(realPages).filter(([name]) => wanted(name))) {
       const of = (page: Page, session: CDPSession) => sampleRealPage(page, session, played, sourceOf);
-      samples.set(name, await visit(browser, `${realPage}${played.address}`, of));
+      keep(name, await visit(browser, `${address}/${played.address}`, of), sourceOf);
     }
-    const benchPage = await open(built.bench);
+  });
+  await withServed(builtPages.bench, async (address) => {
+    const sourceOf = createMaps(address, builtPages.bench);
     for (const name of benchScenes.filter(wanted)) {
       const of = (page: Page, session: CDPSession) => sampleBenchPage(page, session, sourceOf);
-      samples.set(name, await visit(browser, `${benchPage}allocations.html?scene=${name}`, of));
+      keep(name, await visit(browser, `${address}/allocations.html?scene=${name}`, of), sourceOf);
     }
-  } finally {
-    for (const server of servers) await server.close();
-  }
-  return summarise(samples, sourceOf);
+  });
+  return { bytes, sites };
 }
 
-function summarise(samples: ReadonlyMap<string, Sample>, sourceOf: SourceOf): Allocations {
-  const perFrame = (name: string, part: 'bytes' | 'threeBytes'): number => {
-    const sampled = samples.get(name);
-    return sampled ? Math.round(sampled[part] / sampled.frames) : Number.NaN;
-  };
-  const of = (name: string) => perFrame(name, 'bytes');
-  const three = (name: string) => perFrame(name, 'threeBytes');
-  return {
-    bytes: {
-      update: { ik: of('ik'), paper: of('paper'), learned: of('learned') },
-      mirror: of('mirror'),
-      archery: of('archery'),
-      ball3: of('ball3'),
-      ball8: of('ball8'),
-      hands: of('hands'),
-      stillScene: of('stillScene'),
-      threeAlone: {
-        mirror: three('mirror'),
-        archery: three('archery'),
-        ball3: three('ball3'),
-        ball8: three('ball8'),
-        hands: three('hands'),
-      },
-    },
-    sites: Object.fromEntries([...samples].map(([name, sampled]) => [name, sitesOf(sampled, sourceOf)])),
-  };
-}
-
-/** Folder of a build, as an absolute path. */
-export const builtIn = (folder: string) => fileURLToPath(new URL(`../${folder}`, import.meta.url));
+const perFrame = ({ bytes, threeBytes, frames }: Sample): AllocatedBytes => ({
+  all: Math.round(bytes / frames),
+  three: Math.round(threeBytes / frames),
+});

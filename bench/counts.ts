@@ -1,4 +1,5 @@
 import type { Browser } from '@playwright/test';
+import { outcomeOf } from './bench-page';
 
 /** What a picture, or a part of it, asks of the graphics device. */
 export interface DrawnCounts {
@@ -60,10 +61,7 @@ export async function countWorlds(browser: Browser, address: string): Promise<Re
   const page = await browser.newPage({ viewport: { width: 2 * 1680, height: 1760 } });
   try {
     await page.goto(`${address}/counts.html`);
-    await page.waitForFunction(() => window.worldCounts ?? window.worldsError, null, { timeout: 600_000 });
-    const { counts, error } = await page.evaluate(() => ({ counts: window.worldCounts, error: window.worldsError }));
-    if (!counts) throw new Error(`the worlds could not be counted: ${error}`);
-    return counts;
+    return await outcomeOf(page, 600_000);
   } finally {
     await page.close();
   }

@@ -2,15 +2,15 @@ import { writeFileSync } from 'node:fs';
 import { parseArgs } from 'node:util';
 import { type Browser, chromium } from '@playwright/test';
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import { serve, type WebServer } from 'threepoint-http/web-server';
+import { median } from 'threepoint/core/math/statistics';
 import { findChromium } from '../scripts/chromium.mjs';
-import { createPageHandler } from '../server/page';
 import { printFigures } from '../tests/print-figures';
-import { builtIn, measureAllocations } from './allocations';
+import { measureAllocations } from './allocations';
 import { measureAvatarLoading } from './avatar-loading';
+import { builtIn, builtPages, outcomeOf, withServed } from './bench-page';
 import { countWorlds, overBudget } from './counts';
-import { type MeasuredNetwork, measureNetworks } from './networks';
-import type { PageResult } from './page/main';
+import { measureNetworks } from './networks';
+import type { PagePart, PageResult } from './page/main';
 import {
   printAllocations,
   printArchery,
@@ -27,8 +27,6 @@ import {
   ratiosOf,
   type Visit,
 } from './tables';
-
-type Bytes = Visit['bytes'];
 
 const { values: options, positionals } = parseArgs({
   options: {
@@ -62,73 +60,51 @@ if (unknown.length > 0)
 /** No part takes so long [ms], not on a busy machine with graphics in software either: a page that does has stopped. */
 const longestPartMs = 3_600_000;
 
-/** Finer clocks need isolation: without it performance.now() moves in steps of 0.1 ms. */
-function serveIsolated(folder: string): Promise<WebServer> {
-  const page = createPageHandler(folder);
-  return serve(
-    (request, response) => {
-      response.setHeader('Cross-Origin-Opener-Policy', 'same-origin');
-      response.setHeader('Cross-Origin-Embedder-Policy', 'require-corp');
-      page(request, response);
-    },
-    { host: '127.0.0.1', port: 0 },
-  );
-}
-
 /** A part that is measured on the bench's own page. */
-async function measureOnPage(browser: Browser, part: Part): Promise<PageResult> {
-  const server = await serveIsolated(builtIn('.cache/bench'));
-  const page = await browser.newPage({ viewport: { width: 480, height: 270 } });
-  try {
-    const asked = new URLSearchParams({ parts: part, ...(options.rounds && { rounds: options.rounds }) });
-    await page.goto(`http://127.0.0.1:${server.port}/?${asked}`);
-    await page.waitForFunction(() => window.benchResult ?? window.benchError, null, { timeout: longestPartMs });
-    const { result, error } = await page.evaluate(() => ({ result: window.benchResult, error: window.benchError }));
-    if (!result) throw new Error(`the bench page failed: ${error}`);
-    return result;
-  } finally {
-    await page.close();
-    await server.close();
-  }
-}
+const measureOnPage = <Part extends PagePart>(browser: Browser, part: Part): Promise<PageResult<Part>> =>
+  withServed(builtPages.bench, async (address) => {
+    const page = await browser.newPage({ viewport: { width: 480, height: 270 } });
+    try {
+      const asked = new URLSearchParams({ part, ...(options.rounds && { rounds: options.rounds }) });
+      await page.goto(`${address}/?${asked}`);
+      return await outcomeOf<PageResult<Part>>(page, longestPartMs);
+    } finally {
+      await page.close();
+    }
+  });
 
 /** Opens the real page afresh: when the first body is on the screen, and what had to travel for it. */
-async function measureVisit(browser: Browser): Promise<Visit> {
-  const server = await serve(createPageHandler(builtIn('dist')), { host: '127.0.0.1', port: 0 });
+async function measureVisit(browser: Browser, address: string): Promise<Visit> {
   const times: number[] = [];
-  let bytes: Bytes = { app: 0, wasm: 0, models: 0, avatars: 0 };
-  try {
-    for (let visit = 0; visit < 3; visit++) {
-      const context = await browser.newContext({ viewport: { width: 960, height: 600 } });
-      const page = await context.newPage();
-      const arrived: Record<keyof Bytes, number> = { app: 0, wasm: 0, models: 0, avatars: 0 };
-      const bodies: Promise<void>[] = [];
-      page.on('response', (response) => {
-        const path = new URL(response.url()).pathname;
-        const kind = path.endsWith('.wasm')
-          ? 'wasm'
-          : path.startsWith('/models/')
-            ? 'models'
-            : path.startsWith('/avatars/')
-              ? 'avatars'
-              : 'app';
-        bodies.push(
-          response.body().then((body) => {
-            arrived[kind] += body.length;
-          }),
-        );
-      });
-      await page.goto(`http://127.0.0.1:${server.port}/?actor=on`);
-      await page.waitForFunction(() => window.threepoint?.probe().ready, null, { timeout: 60_000 });
-      times.push(await page.evaluate(() => window.threepoint?.probe().loading.firstBody ?? Number.NaN));
-      await Promise.all(bodies);
-      bytes = arrived;
-      await context.close();
-    }
-  } finally {
-    await server.close();
+  let bytes: Visit['bytes'] | undefined;
+  for (let visit = 0; visit < 3; visit++) {
+    const context = await browser.newContext({ viewport: { width: 960, height: 600 } });
+    const page = await context.newPage();
+    const arrived = { app: 0, wasm: 0, models: 0, avatars: 0 };
+    const bodies: Promise<void>[] = [];
+    page.on('response', (response) => {
+      const path = new URL(response.url()).pathname;
+      const kind = path.endsWith('.wasm')
+        ? 'wasm'
+        : path.startsWith('/models/')
+          ? 'models'
+          : path.startsWith('/avatars/')
+            ? 'avatars'
+            : 'app';
+      bodies.push(
+        response.body().then((body) => {
+          arrived[kind] += body.length;
+        }),
+      );
+    });
+    await page.goto(`${address}/?actor=on`);
+    await page.waitForFunction(() => window.threepoint?.probe().ready, null, { timeout: 60_000 });
+    times.push(await page.evaluate(() => window.threepoint?.probe().loading.firstBody ?? Number.NaN));
+    await Promise.all(bodies);
+    bytes = arrived;
+    await context.close();
   }
-  return { firstBodyMs: times.sort((a, b) => a - b)[1] ?? Number.NaN, bytes };
+  return { firstBodyMs: median(times), bytes: bytes! };
 }
 
 const executablePath = await findChromium();
@@ -148,94 +124,72 @@ const browser = await chromium.launch({
   ],
 });
 async function measureWhereAllocated(browser: Browser): Promise<void> {
-  const allocations = await measureAllocations(
-    browser,
-    { page: builtIn('.cache/bench-of-page'), bench: builtIn('.cache/bench') },
-    positionals.length > 0 ? positionals : undefined,
-  );
+  const only = positionals.length > 0 ? positionals : undefined;
+  const allocations = await measureAllocations(browser, builtIn('.cache/bench-of-page'), only);
   printSites(allocations);
   printAllocations(allocations);
   if (options.json) writeFileSync(options.json, `${JSON.stringify(allocations, null, 2)}\n`);
 }
 
-/** By way to run it: what the learned network costs a page that does nothing else. */
-async function measureLearned(browser: Browser): Promise<Readonly<Record<string, MeasuredNetwork>>> {
-  const server = await serveIsolated(builtIn('.cache/bench'));
-  try {
-    const costs = await measureNetworks(browser, `http://127.0.0.1:${server.port}`);
-    printNetworks(costs);
-    return costs;
-  } finally {
-    await server.close();
-  }
-}
-
 /** Measures one part, prints its figures and returns what goes into the JSON. */
 const measurePart: Readonly<Record<Part, (browser: Browser) => Promise<object>>> = {
   async visit(browser) {
-    const visit = await measureVisit(browser);
+    const visit = await withServed(builtPages.real, (address) => measureVisit(browser, address));
     printVisit(visit);
     return visit;
   },
   async counts(browser) {
-    const server = await serveIsolated(builtIn('.cache/bench'));
-    try {
-      const counts = await countWorlds(browser, `http://localhost:${server.port}`);
-      printCounts(counts);
-      const exceeded = overBudget(counts);
-      for (const sentence of exceeded) console.error(`bench: ${sentence}`);
-      if (exceeded.length > 0) process.exitCode = 1;
-      return { counts, exceeded };
-    } finally {
-      await server.close();
-    }
+    const counts = await withServed(builtPages.bench, (address) => countWorlds(browser, address));
+    printCounts(counts);
+    const exceeded = overBudget(counts);
+    for (const sentence of exceeded) console.error(`bench: ${sentence}`);
+    if (exceeded.length > 0) process.exitCode = 1;
+    return { counts, exceeded };
   },
   async frames(browser) {
-    const result = await measureOnPage(browser, 'frames');
-    const ratios = ratiosOf(result);
-    printCosts(result);
+    const frames = await measureOnPage(browser, 'frames');
+    const ratios = ratiosOf(frames);
+    printCosts(frames);
     printRatios(ratios);
-    printStages(result);
-    printOpening(result);
-    const { archery: _archery, ball: _ball, crowd: _crowd, ...frames } = result;
+    printStages(frames);
+    printOpening(frames);
     return { ...frames, ratios };
   },
   async archery(browser) {
-    const result = await measureOnPage(browser, 'archery');
-    printArchery(result);
-    return { archery: result.archery };
+    const archery = await measureOnPage(browser, 'archery');
+    printArchery(archery);
+    return { archery };
   },
   async ball(browser) {
-    const result = await measureOnPage(browser, 'ball');
-    printCourt(result);
-    return { ball: result.ball };
+    const ball = await measureOnPage(browser, 'ball');
+    printCourt(ball);
+    return { ball };
   },
   async crowd(browser) {
-    const { crowd } = await measureOnPage(browser, 'crowd');
-    if (crowd) printCrowd(crowd);
+    const crowd = await measureOnPage(browser, 'crowd');
+    printCrowd(crowd);
     return { crowd };
   },
   async allocations(browser) {
-    const allocations = await measureAllocations(browser, { page: builtIn('dist'), bench: builtIn('.cache/bench') });
+    const allocations = await measureAllocations(browser, builtPages.real);
     printAllocations(allocations);
     return { allocationBytes: allocations.bytes };
   },
   async networks(browser) {
-    return { networks: await measureLearned(browser) };
+    const networks = await withServed(builtPages.bench, (address) => measureNetworks(browser, address));
+    printNetworks(networks);
+    return { networks };
   },
   async avatar(browser) {
-    const server = await serve(createPageHandler(builtIn('dist')), { host: '127.0.0.1', port: 0 });
-    try {
-      const loading = await measureAvatarLoading(browser, `http://localhost:${server.port}`, options.avatar);
-      printFigures(`${loading.name}, ${loading.megabytes.toFixed(1)} MB`, {
-        'shown after [s]': loading.shownAfter / 1000,
-        'longest tasks of the page [ms of processor time]': loading.longestTasks.join(' '),
-        'without it': loading.longestWithout.join(' '),
-      });
-      return { avatarLoading: loading };
-    } finally {
-      await server.close();
-    }
+    const loading = await withServed(builtPages.real, (address) =>
+      measureAvatarLoading(browser, address, options.avatar),
+    );
+    printFigures(`${loading.name}, ${loading.megabytes.toFixed(1)} MB`, {
+      'shown after [s]': loading.shownAfter / 1000,
+      'longest tasks of the page [ms of processor time]': loading.longestTasks.join(' '),
+      'without it': loading.longestWithout.join(' '),
+    });
+    return { avatarLoading: loading };
   },
 };
 

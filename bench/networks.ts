@@ -1,4 +1,5 @@
 import type { Browser } from '@playwright/test';
+import { outcomeOf } from './bench-page';
 
 /**
  * Ways to run the learned network: our forward pass, onnxruntime-web's WebAssembly in the page's worker, its WebGPU.
@@ -44,9 +45,7 @@ export async function measureNetworks(
       );
     });
     await page.goto(`${address}/networks.html?way=${way}`);
-    await page.waitForFunction(() => window.networkCost ?? window.networkError, null, { timeout: 300_000 });
-    const { cost, error } = await page.evaluate(() => ({ cost: window.networkCost, error: window.networkError }));
-    if (!cost) throw new Error(`${way}: ${error}`);
+    const cost = await outcomeOf<NetworkCost>(page, 300_000);
     await Promise.all(arriving);
     costs[way] = { ...cost, bytes };
     await context.close();

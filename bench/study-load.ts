@@ -1,11 +1,13 @@
 // npm run bench:study [-- --participants 200 --seconds 60 --flush-ms 25 --json FILE]: remote participants of one study
 // at once on one server process, each as the page behaves.
+
 import { type ChildProcess, spawn } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
+import { quantile } from 'threepoint/core/math/statistics';
 import { parsePlan, participantsOf, type StudyPlan } from 'threepoint-study/model/plan/plan';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { begin } from 'threepoint-study/model/progress/progress';
@@ -40,9 +42,6 @@ const count = Number(options.participants);
 const seconds = Number(options.seconds);
 
 type Times = Map<string, number[]>;
-
-const quantile = (values: readonly number[], share: number): number =>
-  values.toSorted((a, b) => a - b)[Math.min(values.length - 1, Math.floor(values.length * share))] ?? Number.NaN;
 
 function remotePlan(): StudyPlan {
   const paper = parsePlan(paperFile, 'paper.json');

@@ -1,8 +1,9 @@
+import { recordOf } from 'threepoint/core/records';
 import { stageNames } from 'threepoint-page/shell/frame-timing';
 import type { Allocations } from './allocations';
 import { type WorldCounts, whole } from './counts';
 import type { MeasuredNetwork } from './networks';
-import type { CrowdTimes } from './page/crowd';
+import type { FrameTimes } from './page/frame-times';
 import type { PageResult } from './page/main';
 import { type PairedRatio, pairedRatio } from './paired-ratio';
 
@@ -16,13 +17,14 @@ export interface Visit {
 const row = (label: string, cells: readonly (string | number)[]) =>
   console.log(`  ${label.padEnd(14)}${cells.map((cell) => String(cell).padStart(12)).join('')}`);
 
-export function printAllocations({ bytes: { update, threeAlone, ...frames } }: Allocations): void {
+export function printAllocations({ bytes }: Allocations): void {
   console.log('\nWhat a frame leaves to the collector [kB]');
   row('', ['all', 'three.js']);
-  const kilobytes = (bytes: number | undefined) => (bytes === undefined ? '' : (bytes / 1000).toFixed(1));
-  const ofThree: Readonly<Record<string, number | undefined>> = threeAlone;
-  const measured = Object.entries({ ...update, ...frames }).filter(([, bytes]) => Number.isFinite(bytes));
-  for (const [name, bytes] of measured) row(name, [kilobytes(bytes), kilobytes(ofThree[name])]);
+  for (const [name, { all, three }] of Object.entries(bytes))
+    row(
+      name,
+      [all, three].map((bytes) => (bytes / 1000).toFixed(1)),
+    );
 }
 
 /** Prints the call sites with the most allocated bytes. */
@@ -61,7 +63,7 @@ export function printCounts(counts: Readonly<Record<string, WorldCounts>>): void
 const share = (value: number) => `${(100 * value).toFixed(1)} %`;
 
 /** By method: within the frame, with what it leaves for later, and the whole. */
-export function printCosts(frames: PageResult): void {
+export function printCosts(frames: PageResult<'frames'>): void {
   const { first, settled, shown } = frames.costs;
   for (const [title, table] of [
     ['In the animation frame, after ten seconds of it [ms]', settled.inFrameMs],
@@ -87,12 +89,9 @@ const compared = ['ik', 'paper', 'learned'] as const;
  * What is promised of a frame, as ratios within this run, round by round: the machine's speed and its other work are in
  * both.
  */
-export function ratiosOf({ blocks: { inFrameMs, threadMs } }: PageResult) {
+export function ratiosOf({ blocks: { inFrameMs, threadMs } }: PageResult<'frames'>) {
   const to = (costs: typeof inFrameMs, other: 'ccdik' | 'ik') =>
-    Object.fromEntries(compared.map((name) => [name, pairedRatio(costs[name], costs[other])])) as Record<
-      (typeof compared)[number],
-      PairedRatio
-    >;
+    recordOf(compared, (name) => pairedRatio(costs[name], costs[other]));
   return { inFrameToCcdIk: to(inFrameMs, 'ccdik'), threadToIk: to(threadMs, 'ik') };
 }
 
@@ -105,7 +104,7 @@ export function printRatios({ inFrameToCcdIk, threadToIk }: ReturnType<typeof ra
   for (const name of compared) row(name, [...cells(inFrameToCcdIk[name], 2), ...cells(threadToIk[name], 3)]);
 }
 
-export function printStages(frames: PageResult): void {
+export function printStages(frames: PageResult<'frames'>): void {
   console.log('\nStages, median, after ten seconds [ms]');
   row('', stageNames);
   for (const [name, stages] of Object.entries(frames.stagesMs))
@@ -115,63 +114,41 @@ export function printStages(frames: PageResult): void {
     );
 }
 
-export function printArchery(frames: PageResult): void {
+const frameColumns = ['min', 'mean', 'p50', 'p95', 'max', '72 Hz', '90 Hz', 'drawn p50', 'drawn p95'];
+
+const frameCells = ({ min, mean, p50, p95, max, missed72, missed90, drawnP50, drawnP95 }: FrameTimes) => [
+  ...[min, mean, p50, p95, max].map((ms) => ms.toFixed(2)),
+  share(missed72),
+  share(missed90),
+  drawnP50.toFixed(1),
+  drawnP95.toFixed(1),
+];
+
+export function printArchery(archery: PageResult<'archery'>): void {
   console.log("\nA round of archery, frame on the page's own thread [ms]; missed: share later than that rate allows");
-  row('', ['min', 'mean', 'p50', 'p95', 'max', '72 Hz', '90 Hz', 'drawn p50', 'drawn p95', 'points']);
-  for (const [name, times] of Object.entries(frames.archery)) {
-    const { min, mean, p50, p95, max, missed72, missed90, drawnP50, drawnP95, score } = times;
-    row(name, [
-      ...[min, mean, p50, p95, max].map((ms) => ms.toFixed(2)),
-      share(missed72),
-      share(missed90),
-      drawnP50.toFixed(1),
-      drawnP95.toFixed(1),
-      score,
-    ]);
-  }
+  row('', [...frameColumns, 'points']);
+  for (const [name, times] of Object.entries(archery)) row(name, [...frameCells(times), times.score]);
 }
 
-export function printCourt(frames: PageResult): void {
+export function printCourt(ball: PageResult<'ball'>): void {
   console.log("\nThe ball court, frame on the page's own thread [ms]; each other avatar's part of it");
-  row('', [
-    'avatars',
-    'min',
-    'mean',
-    'p50',
-    'p95',
-    'max',
-    '72 Hz',
-    '90 Hz',
-    'drawn p50',
-    'drawn p95',
-    'each p50',
-    'p95',
-  ]);
-  for (const [name, crowds] of Object.entries(frames.ball)) {
+  row('', ['avatars', ...frameColumns, 'each p50', 'p95']);
+  for (const [name, crowds] of Object.entries(ball)) {
     for (const times of crowds) {
-      const { avatars, min, mean, p50, p95, max, missed72, missed90, drawnP50, drawnP95 } = times;
-      row(name, [
-        avatars,
-        ...[min, mean, p50, p95, max].map((ms) => ms.toFixed(2)),
-        share(missed72),
-        share(missed90),
-        drawnP50.toFixed(1),
-        drawnP95.toFixed(1),
-        times.perRemoteMs?.toFixed(3) ?? '–',
-        times.perRemoteP95Ms?.toFixed(3) ?? '–',
-      ]);
+      const remote = [times.perRemoteMs, times.perRemoteP95Ms].map((ms) => ms?.toFixed(3) ?? '–');
+      row(name, [times.avatars, ...frameCells(times), ...remote]);
     }
   }
 }
 
-export function printCrowd({ others, aloneMs, beyondMs, receivedMs, bentMs, drawnMs }: CrowdTimes): void {
+export function printCrowd({ others, aloneMs, beyondMs, receivedMs, bentMs, drawnMs }: PageResult<'crowd'>): void {
   console.log(
     `\n${others} others at 72 Hz take ${beyondMs.toFixed(2)} ms of the page's thread (p50) beyond the ${aloneMs.toFixed(2)} ms of a frame without them: ` +
       `packets ${receivedMs.toFixed(2)}, bodies played back and bent ${bentMs.toFixed(2)}, drawn ${drawnMs.toFixed(2)}`,
   );
 }
 
-export function printOpening({ sessionCreateMs, firstInferenceMs }: PageResult): void {
+export function printOpening({ sessionCreateMs, firstInferenceMs }: PageResult<'frames'>): void {
   const whole = (values: Readonly<Record<string, number>>) =>
     Object.entries(values)
       .map(([name, value]) => `${name} ${value.toFixed(0)}`)

@@ -1,10 +1,11 @@
 import type { UpperBodyPose } from 'threepoint/core/body/avatar-pose';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics, type JointPoses, makeJointPoses } from 'threepoint/core/body/forward-kinematics';
-import { type JointName, jointNames } from 'threepoint/core/body/joints';
+import { jointNames } from 'threepoint/core/body/joints';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { type MutableQuat, quat, slerp } from 'threepoint/core/math/quat';
-import { lerp, type MutableVec3, vec3 } from 'threepoint/core/math/vec3';
+import { copyQuat, type MutableQuat, quat, slerp } from 'threepoint/core/math/quat';
+import { copyVec3, lerp, type MutableVec3, vec3 } from 'threepoint/core/math/vec3';
+import { recordOf } from 'threepoint/core/records';
 import type { SentBody } from 'threepoint-rooms/peers/pose-sender';
 import { PoseSender } from 'threepoint-rooms/peers/pose-sender';
 import { RemotePoses } from 'threepoint-rooms/peers/remote-poses';
@@ -29,56 +30,61 @@ export interface BodyFormat {
 }
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
-/** Bones of a humanoid with fingers and legs, as people send them; what the body lacks stands still. */
-const mostBones = 50;
-const otherBones = mostBones - jointNames.length;
+/** Bones of a humanoid with fingers and legs, as people send them. */
+const boneCount = 50;
+/** The joints of WebXR Body Tracking. */
+const deviceJointCount = 83;
 const packetMs = 1000 / 30;
 /** The buffer of networked-aframe's interpolation [ms]. */
 const bufferMs = 100;
 
-type Bones = { readonly timeMs: number; readonly hips: MutableVec3; readonly rotations: MutableQuat[] };
+/** What a packet of the buffered formats says; how many of each is the format's. */
+interface Packet {
+  readonly timeMs: number;
+  readonly positions: readonly MutableVec3[];
+  readonly rotations: readonly MutableQuat[];
+}
 
-const makeBones = (): Bones => ({
-  timeMs: 0,
-  hips: vec3(0, 0, 0),
-  rotations: Array.from({ length: mostBones }, () => quat(0, 0, 0, 1)),
-});
-
-const bonesOf = (timeMs: number, { hipsPosition: { x, y, z }, localRotations }: UpperBodyPose): Bones => ({
-  timeMs,
-  hips: vec3(x, y, z),
-  rotations: [
-    ...jointNames.map((name) => ({ ...localRotations[name] })),
-    ...Array.from({ length: otherBones }, () => quat(0, 0, 0, 1)),
-  ],
-});
+interface BufferedFormat {
+  readonly name: string;
+  readonly packetOf: (timeMs: number, body: UpperBodyPose) => Packet;
+  readonly write: (packet: Packet) => Uint8Array<ArrayBuffer>;
+  readonly read: (bytes: Uint8Array) => Packet;
+  /** Places the joints as a packet, or what lies between two, says. */
+  readonly place: (packet: Packet, joints: JointPoses) => void;
+}
 
 /** Draws one person 100 ms late, with linear interpolation between the packets around that time. */
-class BufferedBones {
-  readonly #packets: Bones[] = [];
-  readonly #shown = makeBones();
+class BufferedPerson {
+  readonly #place: BufferedFormat['place'];
+  readonly #packets: Packet[] = [];
   readonly #joints = makeJointPoses();
+  #shown: Packet | null = null;
   #offset = Number.POSITIVE_INFINITY;
   #drawn: Drawn | null = null;
 
-  receive(bones: Bones, timeMs: number): void {
+  constructor(place: BufferedFormat['place']) {
+    this.#place = place;
+  }
+
+  receive(packet: Packet, timeMs: number): void {
     const last = this.#packets.at(-1);
-    if (last && bones.timeMs <= last.timeMs) return;
+    if (last && packet.timeMs <= last.timeMs) return;
     // The fastest packet so far aligns the two clocks.
-    this.#offset = Math.min(this.#offset, timeMs - bones.timeMs);
-    this.#packets.push(bones);
+    this.#offset = Math.min(this.#offset, timeMs - packet.timeMs);
+    this.#packets.push(packet);
   }
 
   update(timeMs: number): void {
     if (this.#packets.length === 0) return;
     const at = timeMs - this.#offset - bufferMs;
     while (this.#packets.length > 2 && this.#packets[1]!.timeMs <= at) this.#packets.shift();
-    const [a, b = a] = this.#packets as [Bones, Bones?];
+    const [a, b = a] = this.#packets as [Packet, Packet?];
     const t = b === a ? 1 : Math.min(Math.max((at - a.timeMs) / (b.timeMs - a.timeMs), 0), 1);
-    lerp(a.hips, b.hips, t, this.#shown.hips);
-    for (let i = 0; i < mostBones; i++) slerp(a.rotations[i]!, b.rotations[i]!, t, this.#shown.rotations[i]!);
-    const localRotations = rotationsByName(this.#shown.rotations);
-    forwardKinematics(skeleton, { hipsPosition: this.#shown.hips, localRotations }, this.#joints);
+    this.#shown ??= structuredClone(a);
+    for (const [i, shown] of this.#shown.positions.entries()) lerp(a.positions[i]!, b.positions[i]!, t, shown);
+    for (const [i, shown] of this.#shown.rotations.entries()) slerp(a.rotations[i]!, b.rotations[i]!, t, shown);
+    this.#place(this.#shown, this.#joints);
     this.#drawn = { joints: this.#joints, senderMs: a.timeMs + t * (b.timeMs - a.timeMs) };
   }
 
@@ -87,116 +93,24 @@ class BufferedBones {
   }
 }
 
-const rotationsByName = (rotations: readonly MutableQuat[]) =>
-  Object.fromEntries(jointNames.map((name, i) => [name, rotations[i]])) as Record<JointName, MutableQuat>;
-
-/** A format that sends every bone, and is drawn 100 ms late. */
-function bonesFormat(
-  name: string,
-  write: (bones: Bones) => Uint8Array,
-  read: (bytes: Uint8Array) => Bones,
-): BodyFormat {
-  return {
-    name,
-    sender(send) {
-      let next = 0;
-      return (timeMs, { pose }) => {
-        if (timeMs < next || !pose?.body) return;
-        next = Math.max(next + packetMs, timeMs + packetMs / 2);
-        send(write(bonesOf(timeMs, pose.body)));
-      };
-    },
-    receiver() {
-      const people = new Map<string, BufferedBones>();
-      return {
-        receive(peer, bytes, timeMs) {
-          const person = people.get(peer) ?? new BufferedBones();
-          people.set(peer, person);
-          person.receive(read(bytes), timeMs);
-        },
-        update(timeMs) {
-          for (const person of people.values()) person.update(timeMs);
-        },
-        drawn: (peer) => people.get(peer)?.drawn ?? null,
-      };
-    },
-  };
-}
-
-const encoder = new TextEncoder();
-const decoder = new TextDecoder();
-const rounded = (value: number): number => Math.round(value * 1e4) / 1e4;
-
-/** Four decimals each, which is shorter than the full numbers that most pages send. */
-const json = bonesFormat(
-  'all bones as JSON',
-  ({ timeMs, hips, rotations }) =>
-    encoder.encode(
-      JSON.stringify({
-        time: Math.round(timeMs),
-        hips: [hips.x, hips.y, hips.z].map(rounded),
-        bones: rotations.map(({ x, y, z, w }) => [x, y, z, w].map(rounded)),
-      }),
-    ),
-  (bytes) => {
-    const { time, hips, bones } = JSON.parse(decoder.decode(bytes)) as {
-      time: number;
-      hips: [number, number, number];
-      bones: [number, number, number, number][];
-    };
-    return { timeMs: time, hips: vec3(...hips), rotations: bones.map((numbers) => quat(...numbers)) };
-  },
-);
-
-const float32 = bonesFormat(
-  'all bones as Float32',
-  ({ timeMs, hips, rotations }) => {
-    const numbers = [timeMs, hips.x, hips.y, hips.z, ...rotations.flatMap(({ x, y, z, w }) => [x, y, z, w])];
-    return new Uint8Array(Float32Array.from(numbers).buffer);
-  },
-  (bytes) => {
-    const n = new Float32Array(bytes.slice().buffer);
-    return {
-      timeMs: n[0]!,
-      hips: vec3(n[1]!, n[2]!, n[3]!),
-      rotations: Array.from({ length: mostBones }, (_, i) =>
-        quat(n[4 + 4 * i]!, n[5 + 4 * i]!, n[6 + 4 * i]!, n[7 + 4 * i]!),
-      ),
-    };
-  },
-);
-
-/** The joints of WebXR Body Tracking: position and orientation each. */
-const deviceJoints = 83;
-const jointNumbers = 7;
-
-/** Sends positions, and draws them without a skeleton: limbs shorten between packets. */
-const xrBody: BodyFormat = {
-  name: 'XRBody joints as Float32',
+/** A format that sends the body 30 times per second, and draws it 100 ms late. */
+const buffered = ({ name, packetOf, write, read, place }: BufferedFormat): BodyFormat => ({
+  name,
   sender(send) {
     let next = 0;
-    const joints = makeJointPoses();
     return (timeMs, { pose }) => {
       if (timeMs < next || !pose?.body) return;
       next = Math.max(next + packetMs, timeMs + packetMs / 2);
-      forwardKinematics(skeleton, pose.body, joints);
-      const numbers = new Float32Array(1 + deviceJoints * jointNumbers);
-      numbers[0] = timeMs;
-      for (const [i, name] of jointNames.entries()) {
-        const { position, orientation } = joints[name];
-        const { x, y, z, w } = orientation;
-        numbers.set([position.x, position.y, position.z, x, y, z, w], 1 + i * jointNumbers);
-      }
-      send(new Uint8Array(numbers.buffer));
+      send(write(packetOf(timeMs, pose.body)));
     };
   },
   receiver() {
-    const people = new Map<string, BufferedJoints>();
+    const people = new Map<string, BufferedPerson>();
     return {
       receive(peer, bytes, timeMs) {
-        const person = people.get(peer) ?? new BufferedJoints();
+        const person = people.get(peer) ?? new BufferedPerson(place);
         people.set(peer, person);
-        person.receive(new Float32Array(bytes.slice().buffer), timeMs);
+        person.receive(read(bytes), timeMs);
       },
       update(timeMs) {
         for (const person of people.values()) person.update(timeMs);
@@ -204,45 +118,93 @@ const xrBody: BodyFormat = {
       drawn: (peer) => people.get(peer)?.drawn ?? null,
     };
   },
+});
+
+/** Adds what the body lacks, which stands still. */
+const filled = <T>(items: readonly T[], count: number, still: T): T[] => [
+  ...items,
+  ...Array<T>(count - items.length).fill(still),
+];
+
+/** Numbers of a packet in full: its time, its positions, its rotations. */
+const asFloat32 = (positionCount: number, rotationCount: number): Pick<BufferedFormat, 'write' | 'read'> => ({
+  write({ timeMs, positions, rotations }) {
+    const numbers = [...positions.map(({ x, y, z }) => [x, y, z]), ...rotations.map(({ x, y, z, w }) => [x, y, z, w])];
+    return new Uint8Array(Float32Array.from([timeMs, ...numbers.flat()]).buffer);
+  },
+  read(bytes) {
+    const numbers = new Float32Array(bytes.slice().buffer);
+    let at = 0;
+    const next = () => numbers[at++]!;
+    return {
+      timeMs: next(),
+      positions: Array.from({ length: positionCount }, () => vec3(next(), next(), next())),
+      rotations: Array.from({ length: rotationCount }, () => quat(next(), next(), next(), next())),
+    };
+  },
+});
+
+/** The hips' position and the rotation of every bone. */
+const bones: Pick<BufferedFormat, 'packetOf' | 'place'> = {
+  packetOf(timeMs, { hipsPosition: { x, y, z }, localRotations }) {
+    const rotations = jointNames.map((name) => ({ ...localRotations[name] }));
+    return { timeMs, positions: [vec3(x, y, z)], rotations: filled(rotations, boneCount, quat(0, 0, 0, 1)) };
+  },
+  place({ positions, rotations }, joints) {
+    const localRotations = recordOf(jointNames, (_, i) => rotations[i]!);
+    forwardKinematics(skeleton, { hipsPosition: positions[0]!, localRotations }, joints);
+  },
 };
 
-class BufferedJoints {
-  readonly #packets: Float32Array[] = [];
-  readonly #joints = Array.from({ length: deviceJoints }, () => ({
-    position: vec3(0, 0, 0),
-    orientation: quat(0, 0, 0, 1),
-  }));
-  readonly #named = Object.fromEntries(jointNames.map((name, i) => [name, this.#joints[i]])) as unknown as JointPoses;
-  #offset = Number.POSITIVE_INFINITY;
-  #drawn: Drawn | null = null;
+const encoder = new TextEncoder();
+const decoder = new TextDecoder();
+const rounded = (value: number): number => Math.round(value * 1e4) / 1e4;
 
-  receive(numbers: Float32Array, timeMs: number): void {
-    const last = this.#packets.at(-1);
-    if (last && numbers[0]! <= last[0]!) return;
-    this.#offset = Math.min(this.#offset, timeMs - numbers[0]!);
-    this.#packets.push(numbers);
-  }
+/** Four decimals each, which is shorter than the full numbers that most pages send. */
+const json = buffered({
+  name: 'all bones as JSON',
+  ...bones,
+  write: ({ timeMs, positions: [hips], rotations }) =>
+    encoder.encode(
+      JSON.stringify({
+        time: Math.round(timeMs),
+        hips: [hips!.x, hips!.y, hips!.z].map(rounded),
+        bones: rotations.map(({ x, y, z, w }) => [x, y, z, w].map(rounded)),
+      }),
+    ),
+  read(bytes) {
+    const { time, hips, bones } = JSON.parse(decoder.decode(bytes)) as {
+      time: number;
+      hips: [number, number, number];
+      bones: [number, number, number, number][];
+    };
+    return { timeMs: time, positions: [vec3(...hips)], rotations: bones.map((numbers) => quat(...numbers)) };
+  },
+});
 
-  update(timeMs: number): void {
-    if (this.#packets.length === 0) return;
-    const at = timeMs - this.#offset - bufferMs;
-    while (this.#packets.length > 2 && this.#packets[1]![0]! <= at) this.#packets.shift();
-    const [a, b = a] = this.#packets as [Float32Array, Float32Array?];
-    const t = b === a ? 1 : Math.min(Math.max((at - a[0]!) / (b[0]! - a[0]!), 0), 1);
-    for (let i = 0; i < deviceJoints; i++) {
-      const k = 1 + i * jointNumbers;
-      const joint = this.#joints[i]!;
-      lerp(vec3(a[k]!, a[k + 1]!, a[k + 2]!), vec3(b[k]!, b[k + 1]!, b[k + 2]!), t, joint.position);
-      const turn = (n: Float32Array) => quat(n[k + 3]!, n[k + 4]!, n[k + 5]!, n[k + 6]!);
-      slerp(turn(a), turn(b), t, joint.orientation);
+const float32 = buffered({ name: 'all bones as Float32', ...bones, ...asFloat32(1, boneCount) });
+
+/** Sends position and orientation of each joint, and draws them without a skeleton: limbs shorten between packets. */
+const xrBody = buffered({
+  name: 'XRBody joints as Float32',
+  packetOf(timeMs, body) {
+    const joints = Object.values(forwardKinematics(skeleton, body));
+    const positions = joints.map(({ position }) => position);
+    const rotations = joints.map(({ orientation }) => orientation);
+    return {
+      timeMs,
+      positions: filled(positions, deviceJointCount, vec3(0, 0, 0)),
+      rotations: filled(rotations, deviceJointCount, quat(0, 0, 0, 1)),
+    };
+  },
+  place({ positions, rotations }, joints) {
+    for (const [i, name] of jointNames.entries()) {
+      copyVec3(positions[i]!, joints[name].position);
+      copyQuat(rotations[i]!, joints[name].orientation);
     }
-    this.#drawn = { joints: this.#named, senderMs: a[0]! + t * (b[0]! - a[0]!) };
-  }
-
-  get drawn(): Drawn | null {
-    return this.#drawn;
-  }
-}
+  },
+  ...asFloat32(deviceJointCount, deviceJointCount),
+});
 
 const ours: BodyFormat = {
   name: 'threepoint-rooms',

@@ -1,5 +1,6 @@
 // npm run bench:bodies [-- --json FILE] [--seconds N]: what it costs to show other people's bodies, by the format in
 // which they are sent. One motion at 30 packets a second goes over the same simulated network in all formats.
+
 import { writeFileSync } from 'node:fs';
 import { parseArgs } from 'node:util';
 import { BodySolver } from 'threepoint/api/body-solver';
@@ -7,6 +8,7 @@ import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { randomNumbers } from 'threepoint/core/math/random';
+import { mean, median, quantile } from 'threepoint/core/math/statistics';
 import { distance, lerp, type Vec3 } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { type BodyFormat, formats } from './formats';
@@ -66,9 +68,6 @@ function transmit(format: BodyFormat, durationMs: number): { packets: readonly S
   return { packets: packets.sort((a, b) => a.arrivesAt - b.arrivesAt), bytes };
 }
 
-const quantile = (values: readonly number[], share: number): number =>
-  values.toSorted((a, b) => a - b)[Math.floor(share * values.length)] ?? Number.NaN;
-
 /** Draws the motion, and measures it against the sender's own at the time that is drawn. */
 function draw(format: BodyFormat, packets: readonly Sent[], truth: ReturnType<typeof record>, durationMs: number) {
   const receiver = format.receiver();
@@ -96,9 +95,9 @@ function draw(format: BodyFormat, packets: readonly Sent[], truth: ReturnType<ty
     before = hand;
   }
   return {
-    'error, mean [cm]': errors.reduce((sum, error) => sum + error, 0) / errors.length,
+    'error, mean [cm]': mean(errors),
     'error, p95 [cm]': quantile(errors, 0.95),
-    'age, p50 [ms]': quantile(ages, 0.5),
+    'age, p50 [ms]': median(ages),
     'age, p95 [ms]': quantile(ages, 0.95),
     'frames that stand still [%]': (100 * still) / frames,
   };
@@ -134,10 +133,7 @@ const table = sent.map(({ format, packets, bytes }, i) => ({
   format: format.name,
   'bytes a second': (1000 * bytes) / durationMs,
   ...draw(format, packets, truth, durationMs),
-  [`main thread for ${crowd}, a frame [ms]`]: quantile(
-    rounds.map((times) => times[i]!),
-    0.5,
-  ),
+  [`main thread for ${crowd}, a frame [ms]`]: median(rounds.map((times) => times[i]!)),
 }));
 console.table(
   table.map((row) =>

@@ -1,5 +1,6 @@
 import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
 import { vec3 } from 'threepoint/core/math/vec3';
+import { recordOf } from 'threepoint/core/records';
 import { deviceJoint } from 'threepoint/core/tracking/device-body';
 import type { Recording } from 'threepoint/core/tracking/recording';
 import { drive, type MeasuredMethod, measuredMethods } from './drive';
@@ -18,8 +19,8 @@ export function piecesOf({ frames }: Recording): readonly (readonly RecordedFram
   for (const frame of frames) {
     const { deviceBody, time } = frame;
     if (!deviceBody) continue;
-    const truth = Object.fromEntries(
-      truthJoints.map((joint) => [joint, deviceJoint(deviceBody, joint, vec3(0, 0, 0))]),
+    const truth = recordOf(truthJoints, (joint) =>
+      deviceJoint(deviceBody, joint, vec3(0, 0, 0)),
     ) as RecordedFrame['truth'];
     if (time - last > longestGap) pieces.push([]);
     pieces.at(-1)?.push({ frame, truth });

@@ -4,10 +4,11 @@ import { normalNumbers, randomNumbers } from 'threepoint/core/math/random';
 import type { Side } from 'threepoint/core/math/side';
 import { add, length, lerp, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { trackers as simulated } from 'threepoint/core/mocap/mocap-rules.json';
+import { recordOf } from 'threepoint/core/records';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { rateHz as handTrackingHz, quantiles } from './hand-tracking-losses.json';
 import type { MeasuredFrame } from './measures';
-import { type RecordedFrame, type TruthJoint, truthJoints } from './recordings';
+import { type RecordedFrame, truthJoints } from './recordings';
 
 /** One hand unseen in the frames [start, end). */
 export interface Loss {
@@ -186,7 +187,7 @@ function rowsAtRate(rows: number, fromHz: number, toHz: number): { before: numbe
 }
 
 const lerpTruth = (a: RecordedFrame['truth'], b: RecordedFrame['truth'], share: number): RecordedFrame['truth'] =>
-  Object.fromEntries(truthJoints.map((joint) => [joint, lerp(a[joint], b[joint], share)])) as Record<TruthJoint, Vec3>;
+  recordOf(truthJoints, (joint) => lerp(a[joint], b[joint], share));
 
 /**
  * The recording as a device of another rate would have it: positions linear, rotations along the shorter arc; a hand

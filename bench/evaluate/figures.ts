@@ -1,3 +1,4 @@
+import { mean } from 'threepoint/core/math/statistics';
 import {
   add,
   cross,
@@ -11,6 +12,7 @@ import {
   type Vec3,
   vec3,
 } from 'threepoint/core/math/vec3';
+import { recordOf } from 'threepoint/core/records';
 import { type MeasuredMethod, measuredMethods } from './drive';
 import { type MeasuredFrame, rounded } from './measures';
 import { type TruthJoint, truthJoints } from './recordings';
@@ -111,7 +113,7 @@ export function addFigures(collection: FigureCollection, clip: string, driven: D
     );
   collection.traces.push({
     clip,
-    errors: Object.fromEntries(measuredMethods.map((name) => [name, errors(name)])) as Record<MeasuredMethod, number[]>,
+    errors: recordOf(measuredMethods, errors),
   });
   for (const motion of motions) {
     let least = collection.poses.get(motion)?.unlikeness ?? Number.POSITIVE_INFINITY;
@@ -140,19 +142,15 @@ function bodiesAt(driven: Driven, row: number): PictureOfMotion['bodies'] {
   const { truth } = driven.ik[row] as MeasuredFrame;
   const { right, forward } = shoulderFrame(truth);
   const seen = (joints: Readonly<Record<string, Vec3>>): Points =>
-    Object.fromEntries(
-      truthJoints.map((name) => {
-        const from = subtract(pointOf(joints, name), { ...truth.hips, y: 0 });
-        return [name, [dot(from, right), from.y, -dot(from, forward)].map((value) => rounded(value, 4))];
-      }),
-    ) as unknown as Points;
+    recordOf(truthJoints, (name) => {
+      const from = subtract(pointOf(joints, name), { ...truth.hips, y: 0 });
+      return [dot(from, right), from.y, -dot(from, forward)].map((value) => rounded(value, 4));
+    }) as unknown as Points;
   return {
     truth: seen(truth),
     ...Object.fromEntries(measuredMethods.map((name) => [name, seen((driven[name][row] as MeasuredFrame).joints)])),
   } as PictureOfMotion['bodies'];
 }
-
-const mean = (values: readonly number[]): number => values.reduce((sum, value) => sum + value, 0) / values.length;
 
 export function figuresOf({ traces, poses }: FigureCollection, rateHz: number): Figures {
   // Short clips contain little information about an error over time.

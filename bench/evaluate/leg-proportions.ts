@@ -7,7 +7,8 @@ import type { Calibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { jointNames } from 'threepoint/core/body/joints';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { identity, type Quat } from 'threepoint/core/math/quat';
+import { identity } from 'threepoint/core/math/quat';
+import { recordOf } from 'threepoint/core/records';
 
 const mannequin = new URL('../../public/avatars/mannequin.vrm', import.meta.url);
 
@@ -18,12 +19,12 @@ export async function mannequinLegs(): Promise<(calibration: Calibration) => Leg
   const { vrm } = await parseAvatar(bytes, 'mannequin.vrm');
   vrm.scene.updateMatrixWorld(true);
   const rig = new Rig(vrm);
-  const upright = Object.fromEntries(jointNames.map((name) => [name, identity])) as Record<string, Quat>;
+  const upright = recordOf(jointNames, () => identity);
   return (calibration) => {
     const skeleton = skeletonFromCalibration(calibration);
     const { hips, head } = forwardKinematics(skeleton, {
       hipsPosition: skeleton.restOffsets.hips,
-      localRotations: upright as Record<(typeof jointNames)[number], Quat>,
+      localRotations: upright,
     });
     return legProportionsOf(rig, hips.position.y, head.position.y / (rig.rest('head')?.y ?? 1));
   };

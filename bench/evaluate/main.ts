@@ -2,6 +2,7 @@ import { writeFileSync } from 'node:fs';
 import { parseArgs } from 'node:util';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { doubtOfErrors } from 'threepoint/core/mocap/doubts';
+import { recordOf } from 'threepoint/core/records';
 import { readCheckFile, trackingOf } from './checked-headset';
 import { type DeviceTracking, usualTracking } from './disturbances';
 import { drive, type MeasuredMethod, measuredMethods } from './drive';
@@ -122,9 +123,7 @@ async function measureClips(corpus: Corpus): Promise<Measured> {
 /** The measures as reports, of everyone, of those never trained on and of each person. */
 function resultOf({ index, people, seen, unseen }: Corpus, { byPerson, reaches, exact, frames }: Measured) {
   const over = (who: readonly string[]): Record<MeasuredMethod, Report> =>
-    Object.fromEntries(
-      measuredMethods.map((name) => [name, report(merge(who.flatMap((person) => byPerson.get(person)?.[name] ?? [])))]),
-    ) as Record<MeasuredMethod, Report>;
+    recordOf(measuredMethods, (name) => report(merge(who.flatMap((person) => byPerson.get(person)?.[name] ?? []))));
   return {
     corpus: {
       clips: index.clips.length,

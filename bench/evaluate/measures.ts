@@ -1,6 +1,8 @@
 import { estimatedJoints } from 'threepoint/core/body/joints';
 import type { JointPositions } from 'threepoint/core/estimation/joint-positions';
+import { mean } from 'threepoint/core/math/statistics';
 import { distance, normalise, reject, subtract, type Vec3 } from 'threepoint/core/math/vec3';
+import { recordOf } from 'threepoint/core/records';
 import type { TruthJoint } from './recordings';
 import { swivelAngle } from './swivel-angle';
 
@@ -184,7 +186,6 @@ export function addMeasures(whole: Measures, part: Measures): void {
 }
 
 export const rounded = (value: number, digits: number): number => Number(value.toFixed(digits));
-const mean = (values: Float64Array): number => values.reduce((sum, value) => sum + value, 0) / values.length;
 
 function spread(values: readonly number[]): Spread {
   const sorted = Float64Array.from(values).sort();
@@ -194,7 +195,7 @@ function spread(values: readonly number[]): Spread {
 
 const sum = (values: readonly number[]): number => values.reduce((total, value) => total + value, 0);
 const byJoint = <Figure>(figure: (index: number) => Figure): ByJoint<Figure> =>
-  Object.fromEntries(reportNames.map((name, index) => [name, figure(index)])) as ByJoint<Figure>;
+  recordOf(reportNames, (_, index) => figure(index));
 
 export function report(measures: Measures): Report {
   /** Coordinates of one joint. */
@@ -207,7 +208,7 @@ export function report(measures: Measures): Report {
     maeCm: rounded(sum(measures.absolutes) / all, 3),
     jointMseCm2: byJoint((index) => rounded((measures.squares[index] ?? 0) / coordinates(index), 3)),
     jointMaeCm: byJoint((index) => rounded((measures.absolutes[index] ?? 0) / coordinates(index), 3)),
-    swivelDeg: rounded(mean(Float64Array.from(measures.swivels)), 2),
+    swivelDeg: rounded(mean(measures.swivels), 2),
     jerkRatio: rounded(measures.jerk / measures.truthJerk, 3),
     boneVariationMm: rounded(measures.boneVariation, 4),
     handErrorMm: rounded(measures.handError / measures.hands, 4),

@@ -3,6 +3,7 @@ import { estimatedJoints } from 'threepoint/core/body/joints';
 import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
 import { angleBetween } from 'threepoint/core/math/quat';
 import { distance, type Vec3 } from 'threepoint/core/math/vec3';
+import { recordOf } from 'threepoint/core/records';
 import { createDriver, type MeasuredMethod } from './drive';
 import { thirdDifference } from './measures';
 import type { RecordedFrame } from './recordings';
@@ -40,9 +41,7 @@ interface BinSums {
 export type SpeedTally = Readonly<Record<SpeedOf, Readonly<Record<Bin, BinSums>>>>;
 
 const emptyBins = (): Record<Bin, BinSums> =>
-  Object.fromEntries(
-    bins.map((bin) => [bin, { frames: 0, shipped: 0, frameByFrame: 0, jerk: 0, truthJerk: 0 }]),
-  ) as Record<Bin, BinSums>;
+  recordOf(bins, () => ({ frames: 0, shipped: 0, frameByFrame: 0, jerk: 0, truthJerk: 0 }));
 
 export const emptySpeedTally = (): SpeedTally => ({ hand: emptyBins(), head: emptyBins() });
 

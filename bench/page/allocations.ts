@@ -1,7 +1,7 @@
 import { PerspectiveCamera } from 'three';
 import { createAvatar } from 'threepoint/avatar/avatar';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { createMirror } from 'threepoint/avatar/mirror';
+import { Mirror } from 'threepoint/avatar/mirror';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
@@ -11,10 +11,16 @@ import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { createRenderer } from 'threepoint-page/scene/renderer';
 import { createStudio } from 'threepoint-page/studio/studio';
 import { Court } from './court';
+import { tellOutcome } from './outcome';
 import { createSenders } from './senders';
 import { trackedHandsDevice } from './tracked-hands';
 
-/** What is measured on this page; the real page is measured as it is. */
+/**
+ * What is measured on this page; the real page is measured as it is. An estimator: one estimate of one body, nothing
+ * else. ball8: a court with seven others whose packets come 30 times a second: received, decoded, played back, bent,
+ * drawn. hands: one's own body before the mirror with both hands tracked: the device's own poses were there before.
+ * stillScene: what three.js leaves for drawing an arena that nothing moves in.
+ */
 export type AllocationScene = 'ik' | 'paper' | 'learned' | 'ball8' | 'hands' | 'stillScene';
 
 declare global {
@@ -92,7 +98,7 @@ async function hands(): Promise<FrameOf> {
   const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
   const avatar = createAvatar(await parseAvatar(mannequin, 'mannequin.vrm'));
   avatar.setCalibration(defaultCalibration);
-  const mirror = createMirror({ distance: 1.5, resolution: 256, samples: 0 });
+  const mirror = new Mirror({ distance: 1.5, resolution: 256, samples: 0 });
   studio.scene.add(mirror.object, avatar.object);
   const estimator = createEstimator('ik', defaultCalibration);
   const moves = Array.from({ length: preparedFrames }, (_, i) => actorFrame(i / rateHz, defaultCalibration));
@@ -140,6 +146,4 @@ async function start(): Promise<void> {
     });
 }
 
-start().catch((error: unknown) => {
-  window.benchError = error instanceof Error ? (error.stack ?? error.message) : String(error);
-});
+void tellOutcome(start());

@@ -1,27 +1,15 @@
-import type { PerspectiveCamera, WebGLRenderer } from 'three';
-import type { Avatar } from 'threepoint/avatar/avatar';
-import type { Mirror } from 'threepoint/avatar/mirror';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { type EstimatorName, estimatorNames, type PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
+import { type EstimatorName, estimatorNames } from 'threepoint/core/estimation/pose-estimator';
 import { identity } from 'threepoint/core/math/quat';
 import { zero } from 'threepoint/core/math/vec3';
 import { createArcheryPlay } from 'threepoint-page/archery/archery-play';
 import { createArcheryView } from 'threepoint-page/archery/archery-view';
-import type { Studio } from 'threepoint-page/studio/studio';
 import { type FrameTimes, frameTimes, nextFrame } from './frame-times';
+import type { BenchStage } from './stage';
 
 /** Frame times of a whole round as in the paper's table 5, and its result: all play the same one to its end. */
 export interface RoundTimes extends FrameTimes {
   readonly score: number;
-}
-
-export interface ArcheryStage {
-  readonly renderer: WebGLRenderer;
-  readonly studio: Studio;
-  readonly avatar: Avatar;
-  readonly mirror: Mirror;
-  readonly camera: PerspectiveCamera;
-  readonly estimators: Readonly<Record<EstimatorName, PoseEstimator>>;
 }
 
 /** Frames of one estimator in a row before the next takes its turn. */
@@ -32,7 +20,7 @@ const rateHz = 72;
 const longestRound = 40;
 
 /** The built-in archer plays one round with each estimator, block by block in turns. */
-export async function measureArchery(stage: ArcheryStage): Promise<Record<EstimatorName, RoundTimes>> {
+export async function measureArchery(stage: BenchStage): Promise<Record<EstimatorName, RoundTimes>> {
   const { renderer, studio, avatar, mirror, camera, estimators } = stage;
   const settings = { bowSide: 'left', oneHanded: false, everyHitCounts: false } as const;
   const rounds = estimatorNames.map((name) => {

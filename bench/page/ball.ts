@@ -1,10 +1,12 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { type EstimatorName, estimatorNames } from 'threepoint/core/estimation/pose-estimator';
+import { quantile } from 'threepoint/core/math/statistics';
+import { recordOf } from 'threepoint/core/records';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import type { ArcheryStage } from './archery';
 import { Court } from './court';
 import { type FrameTimes, frameTimes, nextFrame } from './frame-times';
 import { createSenders } from './senders';
+import type { BenchStage } from './stage';
 
 /**
  * Avatars in all, one's own among them, and what each of the others costs on the page's thread: median and p95 [ms per
@@ -24,18 +26,13 @@ const rateHz = 60;
 const packetHz = 30;
 
 /** The court with 1, 3, 8 and 16 avatars and each estimator for one's own: the paper's table 6, and more. */
-export async function measureCourt(
-  stage: ArcheryStage & { readonly mannequin: ArrayBuffer },
-): Promise<Record<EstimatorName, readonly CourtTimes[]>> {
+export async function measureCourt(stage: BenchStage): Promise<Record<EstimatorName, readonly CourtTimes[]>> {
   const { studio, mirror, camera, mannequin } = stage;
   const court = new Court(studio, mannequin, Math.max(...crowds));
   mirror.setVisible(false);
   camera.position.set(1.2, 2.1, 3.4);
   camera.lookAt(0, 0.9, -2.5);
-  const results = Object.fromEntries(estimatorNames.map((name) => [name, [] as CourtTimes[]])) as Record<
-    EstimatorName,
-    CourtTimes[]
-  >;
+  const results = recordOf(estimatorNames, (): CourtTimes[] => []);
   for (const avatars of crowds) {
     const senders = createSenders(avatars - 1);
     for (const name of estimatorNames) {
@@ -49,7 +46,7 @@ export async function measureCourt(
 
 /** One's own body by this estimator, and a body for each of the senders. */
 async function measureCrowd(
-  { renderer, studio, avatar, camera, estimators }: ArcheryStage,
+  { renderer, studio, avatar, camera, estimators }: BenchStage,
   court: Court,
   name: EstimatorName,
   { packetsAt, count }: ReturnType<typeof createSenders>,
@@ -89,8 +86,7 @@ async function measureCrowd(
     drawn.push(performance.now() - started);
     if (count > 0) remote.push((received - receiving) / count);
   }
-  const sorted = remote.sort((a, b) => a - b);
-  const at = (q: number) => Number((sorted[Math.floor(q * sorted.length)] ?? Number.NaN).toFixed(4));
+  const at = (share: number) => Number(quantile(remote, share).toFixed(4));
   return {
     ...frameTimes(thread, drawn, thread.length),
     avatars: count + 1,

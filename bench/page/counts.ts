@@ -15,6 +15,7 @@ import { createStage, type Shot, type Stage } from 'threepoint-page/shell/stage'
 import type { DrawnCounts, World, WorldCounts } from '../counts';
 import { Court } from './court';
 import { nextFrame } from './frame-times';
+import { tellOutcome } from './outcome';
 import { createSenders } from './senders';
 import { TextureMemory } from './texture-memory';
 import { withoutDevice } from './without-device';
@@ -191,18 +192,4 @@ async function countWorlds(): Promise<Record<World, WorldCounts>> {
   };
 }
 
-declare global {
-  interface Window {
-    worldCounts?: Readonly<Record<World, WorldCounts>>;
-    worldsError?: string;
-  }
-}
-
-countWorlds().then(
-  (counts) => {
-    window.worldCounts = counts;
-  },
-  (error: unknown) => {
-    window.worldsError = error instanceof Error ? (error.stack ?? error.message) : String(error);
-  },
-);
+void tellOutcome(countWorlds());

@@ -1,11 +1,14 @@
 import { createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { createRemoteAvatars, type SeenPerson } from 'threepoint/avatar/remote-avatars';
+import { RemoteAvatars, type SeenPerson } from 'threepoint/avatar/remote-avatars';
 import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { composeTransforms, invertTransform, type TrackedPose } from 'threepoint/core/math/pose';
+import { composeTransforms, invertTransform, type TrackedPose, type Transform } from 'threepoint/core/math/pose';
+import { fromAxisAngle } from 'threepoint/core/math/quat';
+import { up, vec3 } from 'threepoint/core/math/vec3';
+import type { Mutable } from 'threepoint/core/records';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { createBallView } from 'threepoint-page/ball/ball-view';
 import type { Quality } from 'threepoint-page/scene/renderer';
@@ -13,7 +16,6 @@ import type { Studio } from 'threepoint-page/studio/studio';
 import { createRemotePlayers } from 'threepoint-rooms/client/remote-players';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import { decodePose } from 'threepoint-rooms/protocol/pose-codec';
-import { arenaFromCirclePlace } from './circle';
 
 /** What arrived of one seat. */
 export interface ArrivedBytes {
@@ -21,17 +23,27 @@ export interface ArrivedBytes {
   readonly bytes: Uint8Array;
 }
 
-type Writable<T> = { -readonly [Key in keyof T]: T[Key] };
+/** Radius of the circle on which many bodies are placed [m]. */
+const radius = 2.5;
+
+/** Returns the pose of a body's floor in the arena: bodies stand on a circle and face its centre. */
+function arenaFromCirclePlace(place: number, places: number): Transform<'arena', 'floor'> {
+  const angle = (2 * Math.PI * place) / places;
+  return {
+    position: vec3(radius * Math.sin(angle), 0, radius * Math.cos(angle)),
+    orientation: fromAxisAngle(up, angle),
+  };
+}
 
 /** A ball court that stands still, one's own floor at the first of so many places, and the others on theirs. */
 export class Court {
   readonly #studio: Studio;
   readonly #view: ReturnType<typeof createBallView>;
-  readonly #others: ReturnType<typeof createRemoteAvatars>;
+  readonly #others: RemoteAvatars;
   readonly #skeleton: Skeleton = skeletonFromCalibration(defaultCalibration);
-  readonly #seen: readonly Writable<SeenPerson>[];
+  readonly #seen: readonly Mutable<SeenPerson>[];
   readonly #people: SeenPerson[] = [];
-  readonly #shown: Writable<Parameters<ReturnType<typeof createBallView>['show']>[0]>;
+  readonly #shown: Mutable<Parameters<ReturnType<typeof createBallView>['show']>[0]>;
   #players = createRemotePlayers();
 
   constructor(studio: Studio, mannequin: ArrayBuffer, places: number, quality: Quality = 'low') {
@@ -39,7 +51,7 @@ export class Court {
     const floorFromArena = invertTransform(arenaFromCirclePlace(0, places));
     this.#view = createBallView({ quality, balls: 20, onCaption: () => undefined });
     studio.setSurroundings(this.#view.placed(floorFromArena));
-    this.#others = createRemoteAvatars({
+    this.#others = new RemoteAvatars({
       load: async () => createAvatarBetweenFrames(await parseAvatar(mannequin, 'mannequin.vrm')),
       plain: () => false,
       mouthOf: () => 0,

@@ -1,9 +1,10 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { mean, median } from 'threepoint/core/math/statistics';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import type { ArcheryStage } from './archery';
 import { Court } from './court';
 import { nextFrame } from './frame-times';
 import { createSenders } from './senders';
+import type { BenchStage } from './stage';
 import { withoutDevice } from './without-device';
 
 /** What fifteen others cost the page's thread beyond the own body, frames of 72 Hz, medians [ms]. */
@@ -25,29 +26,21 @@ const packetHz = 30;
 const blockFrames = 36;
 /** Frames of a block that count come after these. */
 const settleFrames = 6;
-
-const median = (values: readonly number[]): number => {
-  const sorted = [...values].sort((a, b) => a - b);
-  return sorted[Math.floor(sorted.length / 2)] ?? Number.NaN;
-};
-const mean = (values: readonly number[]): number => values.reduce((sum, value) => sum + value, 0) / values.length;
+const rounds = 30;
 
 /**
  * Frames with everyone and with the own body alone, block by block in turns, so that what else the machine does meets
  * both.
  */
-export async function measureSixteen(
-  {
-    renderer,
-    studio,
-    mirror,
-    avatar,
-    camera,
-    estimators,
-    mannequin,
-  }: ArcheryStage & { readonly mannequin: ArrayBuffer },
-  rounds: number,
-): Promise<CrowdTimes> {
+export async function measureSixteen({
+  renderer,
+  studio,
+  mirror,
+  avatar,
+  camera,
+  estimators,
+  mannequin,
+}: BenchStage): Promise<CrowdTimes> {
   const court = new Court(studio, mannequin, others + 1);
   mirror.setVisible(false);
   camera.position.set(1.2, 2.1, 3.4);

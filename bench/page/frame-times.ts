@@ -1,3 +1,5 @@
+import { mean, median, quantile } from 'threepoint/core/math/statistics';
+
 /** Resolves in the next animation frame. */
 export const nextFrame = (): Promise<number> => new Promise((resolve) => requestAnimationFrame(resolve));
 
@@ -19,23 +21,19 @@ export interface FrameTimes {
 }
 
 export function frameTimes(thread: readonly number[], drawn: readonly number[], frames: number): FrameTimes {
-  const sorted = Float64Array.from(thread).sort();
-  const sortedDrawn = Float64Array.from(drawn).sort();
-  const at = (values: Float64Array, q: number) =>
-    values[Math.min(values.length - 1, Math.floor(q * values.length))] ?? Number.NaN;
   const missed = (values: readonly number[], hz: number) =>
     values.filter((ms) => ms > 1000 / hz).length / values.length;
   const round = (value: number) => Number(value.toFixed(4));
   return {
-    min: round(at(sorted, 0)),
-    mean: round(thread.reduce((sum, ms) => sum + ms, 0) / thread.length),
-    p50: round(at(sorted, 0.5)),
-    p95: round(at(sorted, 0.95)),
-    max: round(at(sorted, 1)),
+    min: round(quantile(thread, 0)),
+    mean: round(mean(thread)),
+    p50: round(median(thread)),
+    p95: round(quantile(thread, 0.95)),
+    max: round(quantile(thread, 1)),
     missed72: round(missed(thread, 72)),
     missed90: round(missed(thread, 90)),
-    drawnP50: round(at(sortedDrawn, 0.5)),
-    drawnP95: round(at(sortedDrawn, 0.95)),
+    drawnP50: round(median(drawn)),
+    drawnP95: round(quantile(drawn, 0.95)),
     drawnMissed72: round(missed(drawn, 72)),
     frames,
   };

@@ -1,34 +1,27 @@
-import { PerspectiveCamera } from 'three';
 import { Body } from 'threepoint/api/body';
-import { createAvatar } from 'threepoint/avatar/avatar';
-import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { createMirror } from 'threepoint/avatar/mirror';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createEstimator, type NetworkName, needsRegressor } from 'threepoint/core/estimation/estimators';
-import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
-import { type EstimatorName, estimatorNames, type PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
+import { type EstimatorName, estimatorNames } from 'threepoint/core/estimation/pose-estimator';
 import { nextRandom } from 'threepoint/core/math/random';
+import { quantile } from 'threepoint/core/math/statistics';
+import { recordOf } from 'threepoint/core/records';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import { createInferenceWorker } from 'threepoint/onnx/create-inference-worker';
-import { loadRegressor } from 'threepoint/onnx/load-regressor';
 import { parseContract, tensorsOf } from 'threepoint/onnx/model-contract';
 import { createSession } from 'threepoint/onnx/session';
-import { createRenderer } from 'threepoint-page/scene/renderer';
 import { createFrameLoop } from 'threepoint-page/shell/frame/frame-loop';
-import { createFrameTiming, type FrameTiming, type StageName, stageNames } from 'threepoint-page/shell/frame-timing';
-import { createStudio } from 'threepoint-page/studio/studio';
-import { measureArchery, type RoundTimes } from './archery';
-import { type CourtTimes, measureCourt } from './ball';
+import { createFrameTiming, type FrameTiming, stageNames } from 'threepoint-page/shell/frame-timing';
+import { measureArchery } from './archery';
+import { measureCourt } from './ball';
 import { createCcdBody } from './ccd-body';
-import { type CrowdTimes, measureSixteen } from './crowd';
+import { measureSixteen } from './crowd';
 import { nextFrame } from './frame-times';
+import { tellOutcome } from './outcome';
+import { loadNetwork, openPicture, openStage } from './stage';
 
 /** Blocks of one method alternate in a seeded order, so that other work of the machine meets all of them. */
 const blockFrames = 40;
 const usualRounds = 12;
-const crowdRounds = 30;
 const settleFrames = 10;
 
 /**
@@ -42,46 +35,8 @@ type Condition = (typeof conditions)[number];
 const methods = [...estimatorNames, 'ccdik'] as const;
 export type Method = (typeof methods)[number];
 
-interface Quantiles {
-  readonly p50: number;
-  readonly p95: number;
-  readonly p99: number;
-}
-
-/** The costs under one condition, by method. */
-interface Costs {
-  /** Estimate: what the method costs within the animation frame. */
-  readonly inFrameMs: Readonly<Record<Method, Quantiles>>;
-  /** And what it leaves for later on the page's thread: features, and asking the network's worker. */
-  readonly withLaterMs: Readonly<Record<Method, Quantiles>>;
-  /** Until the picture is drawn. */
-  readonly frameMs: Readonly<Record<Method, Quantiles>>;
-  /** The part of it on the page's own thread. */
-  readonly threadMs: Readonly<Record<Method, Quantiles>>;
-}
-
-export interface PageResult {
-  readonly costs: Readonly<Record<Condition, Costs>>;
-  /** Medians of the blocks, settled, in the order of the rounds: those of a round are pairs. */
-  readonly blocks: Readonly<Record<'inFrameMs' | 'threadMs', Readonly<Record<Method, readonly number[]>>>>;
-  /** Medians, settled. */
-  readonly stagesMs: Readonly<Record<EstimatorName, Readonly<Record<StageName, number>>>>;
-  readonly sessionCreateMs: Readonly<Record<string, number>>;
-  readonly firstInferenceMs: Readonly<Record<string, number>>;
-  /** The number of frames of each method in each condition. */
-  readonly frames: number;
-  /** A whole round of archery with each estimator. */
-  readonly archery: Readonly<Record<string, RoundTimes>>;
-  /** The ball court with 1, 3, 8 and 16 avatars, with each estimator. */
-  readonly ball: Readonly<Record<string, readonly CourtTimes[]>>;
-  /** The own body and fifteen others; null: not measured. */
-  readonly crowd: CrowdTimes | null;
-}
-
-function quantiles(values: readonly number[]): Quantiles {
-  const sorted = Float64Array.from(values).sort();
-  const at = (q: number) =>
-    Number((sorted[Math.min(sorted.length - 1, Math.floor(q * sorted.length))] ?? Number.NaN).toFixed(4));
+function quantiles(values: readonly number[]) {
+  const at = (share: number) => Number(quantile(values, share).toFixed(4));
   return { p50: at(0.5), p95: at(0.95), p99: at(0.99) };
 }
 
@@ -98,37 +53,6 @@ async function openingCost(name: string): Promise<{ readonly create: number; rea
   await session.release();
   return { create: created - started, first: ran - created };
 }
-
-/** What is drawn in every frame, as on the page. */
-async function openPicture() {
-  const canvas = document.querySelector('canvas');
-  if (!canvas) throw new Error('no canvas');
-  const renderer = createRenderer(canvas, 'low');
-  renderer.setSize(480, 270, false);
-  const studio = createStudio(renderer, 'low');
-  // The page's settings for software rendering.
-  const mirror = createMirror({ distance: 1.5, resolution: 256, samples: 0 });
-  const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
-  const avatar = createAvatar(await parseAvatar(mannequin, 'mannequin.vrm'));
-  studio.scene.add(mirror.object, avatar.object);
-  avatar.setCalibration(defaultCalibration);
-  const camera = new PerspectiveCamera(42, 480 / 270, 0.05, 90);
-  camera.position.set(1.9, 1.5, 2.75);
-  camera.lookAt(0, 1, -0.4);
-  return { renderer, studio, mirror, avatar, camera, mannequin };
-}
-
-/** For games, which ask their network themselves. */
-async function openEstimators(): Promise<Record<EstimatorName, PoseEstimator>> {
-  const regressors: Partial<Record<Method, PoseRegressor>> = {};
-  for (const name of estimatorNames.filter(needsRegressor)) regressors[name] = await loadNetwork(name);
-  return Object.fromEntries(
-    estimatorNames.map((name) => [name, createEstimator(name, defaultCalibration, regressors[name] ?? null)]),
-  ) as Record<EstimatorName, PoseEstimator>;
-}
-
-const loadNetwork = (name: NetworkName): Promise<PoseRegressor> =>
-  loadRegressor(`/models/${name}.json`, { createWorker: createInferenceWorker });
 
 /** Every round is dated alike: the same motion for every method. */
 const roundClock = { tick: (timestampMs: number) => timestampMs / 1000, paused: false };
@@ -151,20 +75,16 @@ async function openBodies(timing: FrameTiming): Promise<Record<EstimatorName, Bo
   return bodies as Record<EstimatorName, Body>;
 }
 
-const empty = <Key extends string>(keys: readonly Key[]) =>
-  Object.fromEntries(keys.map((key) => [key, [] as number[]])) as Record<Key, number[]>;
+const empty = <Key extends string>(keys: readonly Key[]) => recordOf(keys, (): number[] => []);
 
 /** Returns the median of every block for each method. */
 const blockMedians = (values: Record<Method, number[]>): Record<Method, number[]> =>
-  Object.fromEntries(
-    methods.map((name) => [
-      name,
-      Array.from(
-        { length: values[name].length / blockFrames },
-        (_, block) => quantiles(values[name].slice(block * blockFrames, (block + 1) * blockFrames)).p50,
-      ),
-    ]),
-  ) as Record<Method, number[]>;
+  recordOf(methods, (name) =>
+    Array.from(
+      { length: values[name].length / blockFrames },
+      (_, block) => quantiles(values[name].slice(block * blockFrames, (block + 1) * blockFrames)).p50,
+    ),
+  );
 
 type Measured = Readonly<Record<'inFrame' | 'withLater' | 'whole' | 'thread', Record<Method, number[]>>>;
 
@@ -174,17 +94,17 @@ class FrameBench {
   readonly #bodies: Record<EstimatorName, Body>;
   readonly #timing: FrameTiming;
   readonly #ccd = createCcdBody(skeletonFromCalibration(defaultCalibration));
-  readonly #measured = Object.fromEntries(
-    conditions.map((condition) => [
-      condition,
-      { inFrame: empty(methods), withLater: empty(methods), whole: empty(methods), thread: empty(methods) },
-    ]),
-  ) as Record<Condition, Measured>;
-  readonly #stages = Object.fromEntries(estimatorNames.map((name) => [name, empty(stageNames)])) as Record<
-    EstimatorName,
-    Record<StageName, number[]>
-  >;
-  readonly #spent = Object.fromEntries(stageNames.map((stage) => [stage, 0])) as Record<StageName, number>;
+  readonly #measured = recordOf(
+    conditions,
+    (): Measured => ({
+      inFrame: empty(methods),
+      withLater: empty(methods),
+      whole: empty(methods),
+      thread: empty(methods),
+    }),
+  );
+  readonly #stages = recordOf(estimatorNames, () => empty(stageNames));
+  readonly #spent = recordOf(stageNames, () => 0);
   readonly #loop: (timestampMs: number) => void;
   readonly #pixel = new Uint8Array(4);
   #method: EstimatorName = 'ik';
@@ -216,33 +136,34 @@ class FrameBench {
     this.#timing.listen(null);
   }
 
-  get costs(): Record<Condition, Costs> {
-    const summary = (values: Record<Method, number[]>) =>
-      Object.fromEntries(methods.map((name) => [name, quantiles(values[name])])) as Record<Method, Quantiles>;
-    const costsOf = ({ inFrame, withLater, whole, thread }: Measured): Costs => ({
-      inFrameMs: summary(inFrame),
-      withLaterMs: summary(withLater),
-      frameMs: summary(whole),
-      threadMs: summary(thread),
+  get costs() {
+    const summary = (values: Record<Method, number[]>) => recordOf(methods, (name) => quantiles(values[name]));
+    return recordOf(conditions, (condition) => {
+      const { inFrame, withLater, whole, thread } = this.#measured[condition];
+      return {
+        /** Estimate: what the method costs within the animation frame. */
+        inFrameMs: summary(inFrame),
+        /** And what it leaves for later on the page's thread: features, and asking the network's worker. */
+        withLaterMs: summary(withLater),
+        /** Until the picture is drawn. */
+        frameMs: summary(whole),
+        /** The part of it on the page's own thread. */
+        threadMs: summary(thread),
+      };
     });
-    return Object.fromEntries(conditions.map((condition) => [condition, costsOf(this.#measured[condition])])) as Record<
-      Condition,
-      Costs
-    >;
   }
 
-  get blocks(): PageResult['blocks'] {
+  /** Medians of the blocks, settled, in the order of the rounds: those of a round are pairs. */
+  get blocks() {
     const { inFrame, thread } = this.#measured.settled;
     return { inFrameMs: blockMedians(inFrame), threadMs: blockMedians(thread) };
   }
 
-  get stagesMs(): Record<EstimatorName, Record<StageName, number>> {
-    const medians = (name: EstimatorName) =>
-      Object.fromEntries(stageNames.map((stage) => [stage, quantiles(this.#stages[name][stage]).p50]));
-    return Object.fromEntries(estimatorNames.map((name) => [name, medians(name)])) as Record<
-      EstimatorName,
-      Record<StageName, number>
-    >;
+  /** Medians, settled. */
+  get stagesMs() {
+    return recordOf(estimatorNames, (name) =>
+      recordOf(stageNames, (stage) => quantiles(this.#stages[name][stage]).p50),
+    );
   }
 
   #createLoop(): (timestampMs: number) => void {
@@ -326,46 +247,32 @@ class FrameBench {
   }
 }
 
-async function measure(): Promise<PageResult> {
+async function measureFrames() {
   const opening = { learned: await openingCost('learned'), paper: await openingCost('paper') };
-  const picture = await openPicture();
   const timing = createFrameTiming(() => performance.now());
-  const asked = new URLSearchParams(location.search);
-  const parts = asked.get('parts')?.split(',') ?? ['frames', 'archery', 'ball'];
-  const rounds = Number(asked.get('rounds') ?? usualRounds);
+  const rounds = Number(new URLSearchParams(location.search).get('rounds') ?? usualRounds);
   const bodies = await openBodies(timing);
-  const bench = new FrameBench(picture, bodies, timing);
-  if (parts.includes('frames')) await bench.run(rounds);
-  for (const body of Object.values(bodies)) await body.dispose();
-  const estimators = await openEstimators();
-  const archery = parts.includes('archery') ? await measureArchery({ ...picture, estimators }) : {};
-  const ball = parts.includes('ball') ? await measureCourt({ ...picture, estimators }) : {};
-  const crowd = parts.includes('crowd') ? await measureSixteen({ ...picture, estimators }, crowdRounds) : null;
+  const bench = new FrameBench(await openPicture(), bodies, timing);
+  await bench.run(rounds);
   return {
     costs: bench.costs,
     blocks: bench.blocks,
     stagesMs: bench.stagesMs,
     sessionCreateMs: { learned: opening.learned.create, paper: opening.paper.create },
     firstInferenceMs: { learned: opening.learned.first, paper: opening.paper.first },
+    /** The number of frames of each method in each condition. */
     frames: rounds * blockFrames,
-    archery,
-    ball,
-    crowd,
   };
 }
 
-declare global {
-  interface Window {
-    benchResult?: PageResult;
-    benchError?: string;
-  }
-}
+const measuredParts = {
+  frames: measureFrames,
+  archery: async () => measureArchery(await openStage()),
+  ball: async () => measureCourt(await openStage()),
+  crowd: async () => measureSixteen(await openStage()),
+};
 
-measure().then(
-  (result) => {
-    window.benchResult = result;
-  },
-  (error: unknown) => {
-    window.benchError = error instanceof Error ? (error.stack ?? error.message) : String(error);
-  },
-);
+export type PagePart = keyof typeof measuredParts;
+export type PageResult<Part extends PagePart> = Awaited<ReturnType<(typeof measuredParts)[Part]>>;
+
+void tellOutcome(measuredParts[new URLSearchParams(location.search).get('part') as PagePart]());

@@ -4,8 +4,10 @@ import { createAfterFrame } from 'threepoint/api/after-frame';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createWithNetwork } from 'threepoint/core/estimation/estimators';
 import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
+import { quantile } from 'threepoint/core/math/statistics';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { NetworkCost, NetworkWay } from '../networks';
+import { tellOutcome } from './outcome';
 
 /** Frames that are measured, after those in which the engine compiles. */
 const measured = 600;
@@ -26,9 +28,6 @@ async function load(way: NetworkWay): Promise<PoseRegressor> {
     way === 'webgpu' ? { provider: 'webgpu' } : { createWorker: createInferenceWorker },
   );
 }
-
-const quantile = (values: readonly number[], share: number): number =>
-  values.toSorted((a, b) => a - b)[Math.floor(share * values.length)] ?? Number.NaN;
 
 async function measure(way: NetworkWay): Promise<NetworkCost> {
   const opened = performance.now();
@@ -82,18 +81,4 @@ async function graphicsDevice(): Promise<string> {
   return [vendor, architecture, description].filter(Boolean).join(' ') || 'unnamed';
 }
 
-declare global {
-  interface Window {
-    networkCost?: NetworkCost;
-    networkError?: string;
-  }
-}
-
-measure(new URLSearchParams(location.search).get('way') as NetworkWay).then(
-  (cost) => {
-    window.networkCost = cost;
-  },
-  (error: unknown) => {
-    window.networkError = String(error);
-  },
-);
+void tellOutcome(measure(new URLSearchParams(location.search).get('way') as NetworkWay));

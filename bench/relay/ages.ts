@@ -7,6 +7,7 @@ import { createIk } from 'threepoint/core/estimation/estimators';
 import { clamp } from 'threepoint/core/math/damper';
 import type { TrackedPose } from 'threepoint/core/math/pose';
 import { normalNumbers, randomNumbers } from 'threepoint/core/math/random';
+import { median, quantile } from 'threepoint/core/math/statistics';
 import { distance, lerp, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
@@ -192,16 +193,13 @@ export function seenOver(way: Way, seconds: number, seed: number, tremor: number
     ages.push(time - shownTime);
     off.push(...distancesBetween(placesAt(frames, shownTime), seen));
   }
-  ages.sort((a, b) => a - b);
-  off.sort((a, b) => a - b);
-  const at = (share: number): number => 1000 * ages[Math.floor((ages.length - 1) * share)]!;
   return {
     way,
-    p50Ms: at(0.5),
-    p95Ms: at(0.95),
+    p50Ms: 1000 * median(ages),
+    p95Ms: 1000 * quantile(ages, 0.95),
     freezes: (60 * players.report(1)!.freezes) / seconds,
     jerkRatio: drawn.sum / own.sum,
-    offP95Mm: 1000 * off[Math.floor((off.length - 1) * 0.95)]!,
+    offP95Mm: 1000 * quantile(off, 0.95),
   };
 }
 

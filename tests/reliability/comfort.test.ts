@@ -1,5 +1,5 @@
 import { PerspectiveCamera } from 'three';
-import { createMirror } from 'threepoint/avatar/mirror';
+import { Mirror } from 'threepoint/avatar/mirror';
 import { identity } from 'threepoint/core/math/quat';
 import { vec3 } from 'threepoint/core/math/vec3';
 import { createVignette } from 'threepoint-page/scene/vignette';
@@ -25,7 +25,7 @@ test('the edges are dark at a turn and clear again in under half a second, round
 
 test('the dark edges are before the eyes alone: a mirror shows no black ball for a head', () => {
   const { object } = createVignette();
-  const glass = createMirror().object.children.find((child) => 'getReflectionCamera' in child) as unknown as {
+  const glass = new Mirror().object.children.find((child) => 'getReflectionCamera' in child) as unknown as {
     getReflectionCamera(eye: PerspectiveCamera): PerspectiveCamera;
   };
   for (const layer of [1, 2]) {

@@ -2,7 +2,9 @@ import type { LegPose, LegPosture, LegProportions } from 'threepoint/avatar/legs
 import type { GaitPoints } from 'threepoint/core/estimation/gait/gait-features';
 import { rotate } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
+import { mean } from 'threepoint/core/math/statistics';
 import { add, copyVec3, distance, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { recordOf } from 'threepoint/core/records';
 import { rounded } from '../measures';
 import type { Contact, TrueLeg, TrueLegs } from './leg-truth';
 
@@ -180,10 +182,7 @@ export function legReport(m: LegMeasures): LegReport {
 
 /** All people alike: the mean over people of each figure. */
 export function meanReport(reports: readonly LegReport[]): LegReport {
-  const mean = (key: keyof LegReport): number =>
-    rounded(reports.reduce((sum, report) => sum + report[key], 0) / reports.length, 3);
-  return Object.fromEntries((Object.keys(reports[0]!) as (keyof LegReport)[]).map((key) => [key, mean(key)])) as Record<
-    keyof LegReport,
-    number
-  >;
+  const meanOf = (key: keyof LegReport) => rounded(mean(reports.map((report) => report[key])), 3);
+  const keys = Object.keys(reports[0]!) as (keyof LegReport)[];
+  return recordOf(keys, meanOf);
 }

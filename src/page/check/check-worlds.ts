@@ -1,7 +1,7 @@
 import { type Camera, Group, type WebGLRenderer } from 'three';
 import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { createMirror, type Mirror } from 'threepoint/avatar/mirror';
+import { Mirror } from 'threepoint/avatar/mirror';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
@@ -54,7 +54,7 @@ export class CheckWorlds {
   private constructor(renderer: WebGLRenderer, quality: Quality, avatars: readonly [Avatar, Avatar, Avatar]) {
     this.#renderer = renderer;
     this.#studio = createStudio(renderer, quality);
-    this.#mirror = createMirror({
+    this.#mirror = new Mirror({
       distance: -mirrorAhead.z,
       ...(quality === 'low' && { resolution: 400, samples: 0 }),
     });

@@ -1,6 +1,6 @@
 import type { Avatar } from 'threepoint/avatar/avatar';
 import { createDebugSkeleton } from 'threepoint/avatar/debug-skeleton';
-import { createMirror } from 'threepoint/avatar/mirror';
+import { Mirror } from 'threepoint/avatar/mirror';
 import { createHeadLoss } from 'threepoint/avatar/rig/head-loss';
 import type { Side } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
@@ -79,7 +79,7 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
   const renderer = createRenderer(canvas, quality);
   const studio = createStudio(renderer, quality);
   const view = new DesktopView(canvas);
-  const mirror = createMirror({
+  const mirror = new Mirror({
     distance: mirrorDistance,
     ...(quality === 'low' && { resolution: 400, samples: 0 }),
   });

@@ -1,5 +1,5 @@
 import type { Object3D } from 'three';
-import { createRemoteAvatars, type RemoteAvatars } from 'threepoint/avatar/remote-avatars';
+import { RemoteAvatars } from 'threepoint/avatar/remote-avatars';
 import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { Vec3 } from 'threepoint/core/math/vec3';
@@ -47,7 +47,7 @@ export class RoomBodies {
     this.#seen = new SeenAvatars(options);
     const load = options.load ?? ((avatar: AvatarRef) => this.#seen.load(avatar));
     const notifyRefused = (avatar: AvatarRef, reason: unknown) => this.#notifyRefused(avatar, reason);
-    this.#drawn = createRemoteAvatars({ load, plain, mouthOf, onRefused: notifyRefused, shadows });
+    this.#drawn = new RemoteAvatars({ load, plain, mouthOf, onRefused: notifyRefused, shadows });
     this.#shared = new SharedAvatar({ exchange, wear, send, notify });
   }
 

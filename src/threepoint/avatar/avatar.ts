@@ -8,15 +8,16 @@ import { forwardKinematics, makeJointPoses } from '../core/body/forward-kinemati
 import { type HandGeometry, scaledHand } from '../core/body/hand-geometry';
 import type { FingerName, HandShape } from '../core/body/hand-shape';
 import { headJointOf } from '../core/body/head-joint';
-import { type JointName, jointNames } from '../core/body/joints';
+import { jointNames } from '../core/body/joints';
 import { type Skeleton, skeletonFromCalibration } from '../core/body/skeleton';
 import type { GaitPoints } from '../core/estimation/gait/gait-features';
-import { identity, type Quat, quat, rotate } from '../core/math/quat';
-import type { Side } from '../core/math/side';
+import { identity, quat, rotate } from '../core/math/quat';
+import { type Side, sides } from '../core/math/side';
 import { addScaled, setVec3, subtract, type Vec3, vec3 } from '../core/math/vec3';
 import { finishWork } from '../core/motion/work';
+import { type Mutable, recordOf } from '../core/records';
 import { Face } from './face';
-import { Fingers } from './hands/fingers';
+import { HandFingers } from './hands/hand-fingers';
 import { betweenFrames, type Steps } from './in-steps';
 import { Legs } from './legs/legs';
 import type { LoadedAvatar } from './load-avatar';
@@ -82,7 +83,7 @@ export interface Avatar {
 const averageBody: Calibration = { eyeHeight: 1.59, armSpan: 1.5 };
 /** A pause of the page moves feet no further than this [s]. */
 const longestStep = 0.25;
-const upright = Object.fromEntries(jointNames.map((name) => [name, identity])) as Record<JointName, Quat>;
+const upright = recordOf(jointNames, () => identity);
 
 /** What of a body takes long to make. */
 interface MadeParts {
@@ -135,7 +136,7 @@ class VrmAvatar implements Avatar {
   private readonly trunk: OwnTrunk;
   private readonly arms: ArmHelperJoints;
   private readonly legs: Legs;
-  private readonly fingers: Fingers;
+  private readonly fingers: Readonly<Record<Side, HandFingers>>;
   private readonly meshes: BodyMeshes;
   private readonly springs: Springs;
   private readonly face: Face;
@@ -144,7 +145,7 @@ class VrmAvatar implements Avatar {
   private lastTime: number | null = null;
   private readonly joints = makeJointPoses();
   /** The points of a pose that the legs follow. */
-  private readonly points: { -readonly [Key in keyof GaitPoints]: GaitPoints[Key] } = {
+  private readonly points: Mutable<GaitPoints> = {
     hips: this.joints.hips,
     head: this.joints.head,
     leftHand: this.joints.leftHand.position,
@@ -162,7 +163,7 @@ class VrmAvatar implements Avatar {
     this.arms = arms;
     this.trunk = new OwnTrunk(this.rig);
     this.legs = new Legs(this.rig);
-    this.fingers = new Fingers(vrm);
+    this.fingers = recordOf(sides, (side) => new HandFingers(vrm, side));
     this.meshes = new BodyMeshes(meshes, this.rig);
     this.springs = new Springs(vrm);
     // The object's number differs from that of every other avatar, and so do the times at which it blinks.
@@ -184,8 +185,8 @@ class VrmAvatar implements Avatar {
     const legs = this.legs.fit(calibration.eyeHeight, tPose.hips.position.y, this.scale);
     this.rig.fit(tPose, legs, this.scale);
     // The file's own size is what its scene was before it was settled.
-    for (const side of ['left', 'right'] as const) {
-      const own = this.fingers.geometry(side);
+    for (const side of sides) {
+      const own = this.fingers[side].geometry;
       this.hands[side] = own && scaledHand(own, this.scale);
     }
     this.springs.scaleTo(this.scale * Math.abs(this.vrm.scene.scale.x));
@@ -200,11 +201,10 @@ class VrmAvatar implements Avatar {
     if (this.meshes.show(shown)) this.rig.forgetJoints();
     if (pose.body) this.applyBody(pose, pose.body, deltaSeconds);
     else this.applyHands(pose);
-    if (pose.fingers) {
-      this.fingers.set('left', pose.fingers.left);
-      this.fingers.set('right', pose.fingers.right);
+    for (const side of sides) {
+      if (pose.fingers) this.setFingers(side, pose.fingers[side]);
+      this.fingers[side].update(deltaSeconds);
     }
-    this.fingers.update(deltaSeconds);
     this.live(pose.head, deltaSeconds);
   }
 
@@ -297,7 +297,7 @@ class VrmAvatar implements Avatar {
   }
 
   setFingers(side: Side, shape: HandShape | null): void {
-    this.fingers.set(side, shape);
+    this.fingers[side].set(shape);
   }
 
   handGeometry(side: Side): HandGeometry | null {
@@ -305,7 +305,7 @@ class VrmAvatar implements Avatar {
   }
 
   fingertips(side: Side): Readonly<Partial<Record<FingerName, Vec3>>> {
-    return this.fingers.tips(side, this.object);
+    return this.fingers[side].tips(this.object);
   }
 
   jointPositions(): Readonly<Partial<Record<AvatarJoint, Vec3>>> {

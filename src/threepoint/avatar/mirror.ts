@@ -32,24 +32,6 @@ export interface MirrorOptions {
   readonly samples?: number;
 }
 
-/**
- * A standing mirror that shows the room and the whole avatar, the own head included; each eye sees its own reflection.
- */
-export interface Mirror {
-  readonly object: Object3D;
-  setVisible(visible: boolean): void;
-  /** Moves its middle to (x, z) [m], floor frame; turned by 0 it faces +Z, positive to +X [rad]. */
-  place(x: number, z: number, turned: number): void;
-  /** Draws at most so many reflections in a second of a session [Hz]; null: one in each frame. */
-  setMostRate(rateHz: number | null): void;
-  /**
-   * Draws the reflection of the scene for this camera, or in a session for the eyes, at this time [s]. Call it before
-   * the scene is drawn.
-   */
-  reflect(renderer: WebGLRenderer, scene: Scene, camera: Camera, time: number): void;
-  dispose(): void;
-}
-
 const frameWidth = 0.035;
 const frameDepth = 0.05;
 const gapBelow = 0.06;
@@ -69,8 +51,11 @@ const shader = {
   ),
 };
 
-class StandingMirror implements Mirror {
-  readonly object = new Group();
+/**
+ * A standing mirror that shows the room and the whole avatar, the own head included; each eye sees its own reflection.
+ */
+export class Mirror {
+  readonly object: Object3D = new Group();
   /** One glass for each eye of a session; on a desktop the first only. */
   private readonly glasses: Reflector[] = [];
   private readonly reflections: Reflector['onBeforeRender'][] = [];
@@ -86,7 +71,7 @@ class StandingMirror implements Mirror {
     new MeshStandardMaterial({ color: 0x2a2f38, roughness: 0.35, metalness: 0.7 }),
   );
 
-  constructor({ distance = 1.8, width = 1.5, height = 2.15, resolution = 1024, samples = 4 }: MirrorOptions) {
+  constructor({ distance = 1.8, width = 1.5, height = 2.15, resolution = 1024, samples = 4 }: MirrorOptions = {}) {
     this.width = width;
     this.height = height;
     this.resolution = resolution;
@@ -101,15 +86,21 @@ class StandingMirror implements Mirror {
     this.object.visible = visible;
   }
 
+  /** Moves its middle to (x, z) [m], floor frame; turned by 0 it faces +Z, positive to +X [rad]. */
   place(x: number, z: number, turned: number): void {
     this.object.position.set(x, this.object.position.y, z);
     this.object.rotation.y = turned;
   }
 
+  /** Draws at most so many reflections in a second of a session [Hz]; null: one in each frame. */
   setMostRate(rateHz: number | null): void {
     this.pace.rateHz = rateHz;
   }
 
+  /**
+   * Draws the reflection of the scene for this camera, or in a session for the eyes, at this time [s]. Call it before
+   * the scene is drawn.
+   */
   reflect(renderer: WebGLRenderer, scene: Scene, camera: Camera, time: number): void {
     const { xr } = renderer;
     if (!this.object.visible) {
@@ -244,5 +235,3 @@ class StandingMirror implements Mirror {
     this.object.add(this.frame);
   }
 }
-
-export const createMirror = (options: MirrorOptions = {}): Mirror => new StandingMirror(options);

@@ -52,18 +52,6 @@ export interface RemoteAvatarsOptions {
   readonly shadows?: boolean;
 }
 
-/** The bodies of other people. Copies of one body share its graphics memory. */
-export interface RemoteAvatars {
-  readonly object: Group;
-  /** Draws these people and nobody else, at a time [s] on the clock of the frames. */
-  show(people: readonly SeenPerson[], time: number): void;
-  /** Returns a person's drawn joints, floor frame of this room [m]; null: nobody with this number is drawn. */
-  jointsOf(id: number): Readonly<Record<string, Vec3>> | null;
-  /** Returns the avatar that a person is drawn as; null: nobody with this number is drawn. */
-  drawnAs(id: number): AvatarRef | null;
-  dispose(): void;
-}
-
 interface Body {
   readonly avatar: Avatar;
   readonly of: AvatarRef;
@@ -120,13 +108,12 @@ function isAmong(people: readonly SeenPerson[], id: number): boolean {
 }
 
 /**
- * Bodies are made when they are first needed and kept for the next person who comes. Files are loaded one at a time,
- * and whose file is on its way, or refused, has the plain body on. What could not be had is asked for again: a person
- * who was away for long names their file before it is in the store again.
+ * The bodies of other people. Copies of one body share its graphics memory. Bodies are made when they are first needed
+ * and kept for the next person who comes. Files are loaded one at a time, and whose file is on its way, or refused, has
+ * the plain body on. What could not be had is asked for again: a person who was away for long names their file before it
+ * is in the store again.
  */
-export const createRemoteAvatars = (options: RemoteAvatarsOptions): RemoteAvatars => new OthersBodies(options);
-
-class OthersBodies implements RemoteAvatars {
+export class RemoteAvatars {
   readonly object = new Group();
   readonly #options: RemoteAvatarsOptions;
   readonly #bodies: Body[] = [];
@@ -144,6 +131,7 @@ class OthersBodies implements RemoteAvatars {
     this.object.name = 'other people';
   }
 
+  /** Draws these people and nobody else, at a time [s] on the clock of the frames. */
   show(people: readonly SeenPerson[], time: number): void {
     this.#now = time;
     const plain = this.#options.plain();
@@ -164,6 +152,7 @@ class OthersBodies implements RemoteAvatars {
     }
   }
 
+  /** Returns a person's drawn joints, floor frame of this room [m]; null: nobody with this number is drawn. */
   jointsOf(id: number): Readonly<Record<string, Vec3>> | null {
     const body = this.#bodyOf(id);
     if (!body) return null;
@@ -171,6 +160,7 @@ class OthersBodies implements RemoteAvatars {
     return Object.fromEntries(joints.map(([joint, at]) => [joint, transformPoint(body.placement, at)]));
   }
 
+  /** Returns the avatar that a person is drawn as; null: nobody with this number is drawn. */
   drawnAs(id: number): AvatarRef | null {
     return this.#bodyOf(id)?.of ?? null;
   }

@@ -2,7 +2,7 @@ import { readFileSync } from 'node:fs';
 import { Mesh, type MeshStandardMaterial, SkinnedMesh } from 'three';
 import { createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { createRemoteAvatars, type RemoteAvatars, type SeenPerson } from 'threepoint/avatar/remote-avatars';
+import { RemoteAvatars, type SeenPerson } from 'threepoint/avatar/remote-avatars';
 import {
   type AvatarHash,
   type AvatarRef,
@@ -46,7 +46,7 @@ const person = (id: number, more: Partial<SeenPerson> = {}): SeenPerson => ({
 
 /** Draws these people until each of them has a body. */
 async function gathered(people: readonly SeenPerson[]): Promise<RemoteAvatars> {
-  const others = createRemoteAvatars({
+  const others = new RemoteAvatars({
     load: (avatar) => (isBuiltInAvatar(avatar) ? load(bodyOf(avatar)) : Promise.reject(avatar)),
     plain: () => false,
     mouthOf: () => 0,
@@ -136,7 +136,7 @@ describe('an avatar that could not be had', () => {
   function wearing(answers: readonly (Error | null)[]) {
     const told: string[] = [];
     let asked = 0;
-    const others = createRemoteAvatars({
+    const others = new RemoteAvatars({
       async load(avatar: AvatarRef) {
         if (avatar === file) {
           const fault = answers[Math.min(asked, answers.length - 1)];

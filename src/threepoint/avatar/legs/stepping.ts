@@ -1,9 +1,9 @@
 import type { ExpectedFoot } from '../../core/estimation/gait/gait';
 import { wrapAngle } from '../../core/math/angle';
 import { clamp, damp, smoothingFactor } from '../../core/math/damper';
-import type { Mutable } from '../../core/math/mutable';
 import type { Side } from '../../core/math/side';
 import { type MutableVec3, setVec3, type Vec3, vec3 } from '../../core/math/vec3';
+import type { Mutable } from '../../core/records';
 
 /** A foot as drawn. All in the floor frame. */
 export interface Foot {

@@ -10,6 +10,7 @@ import {
   Vector3,
 } from 'three';
 import type { SkinTone } from '../../core/body/avatar-ref';
+import { recordOf } from '../../core/records';
 import type { Steps } from '../in-steps';
 import { palettes, skinColors } from '../palettes';
 import type { Rig } from './rig';
@@ -80,10 +81,7 @@ export function* readMeshes(
 function endsOfPart({ geometry }: Mesh, part: SkinPart | 'hips'): Readonly<Record<SkinPart, number>> {
   const first = skinParts.indexOf(part === 'hips' ? 'trunk' : part);
   const count = geometry.index?.count ?? 0;
-  return Object.fromEntries(skinParts.map((each, index) => [each, index < first ? 0 : count])) as Record<
-    SkinPart,
-    number
-  >;
+  return recordOf(skinParts, (_, index) => (index < first ? 0 : count));
 }
 
 /** The largest number of vertices that are used for a head's height: hair has many. */

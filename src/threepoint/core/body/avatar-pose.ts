@@ -1,6 +1,7 @@
 import { copyPose, type Pose, type TrackedPose } from '../math/pose';
 import { copyQuat, type MutableQuat, type Quat, quat } from '../math/quat';
 import { copyVec3, type MutableVec3, type Vec3, vec3 } from '../math/vec3';
+import { recordOf } from '../records';
 import { copyFingers, type Fingers } from './hand-shape';
 import { type JointName, jointNames } from './joints';
 
@@ -20,10 +21,7 @@ export interface MutableUpperBodyPose extends UpperBodyPose {
 
 export const makeUpperBodyPose = (): MutableUpperBodyPose => ({
   hipsPosition: vec3(0, 0, 0),
-  localRotations: Object.fromEntries(jointNames.map((joint) => [joint, quat(0, 0, 0, 1)])) as Record<
-    JointName,
-    MutableQuat
-  >,
+  localRotations: recordOf(jointNames, () => quat(0, 0, 0, 1)),
 });
 
 /** The ankles that trackers pin, floor frame: at rest the toes point along −Z; null: the gait is estimated. */
@@ -66,9 +64,7 @@ export const copyAvatarPose = ({ head, leftHand, rightHand, body, fingers, feet 
   rightHand: copyTracked(rightHand),
   body: body && {
     hipsPosition: copyVec3(body.hipsPosition),
-    localRotations: Object.fromEntries(
-      jointNames.map((joint) => [joint, copyQuat(body.localRotations[joint])]),
-    ) as Record<JointName, Quat>,
+    localRotations: recordOf(jointNames, (joint) => copyQuat(body.localRotations[joint])),
   },
   ...(fingers && { fingers: copyFingers(fingers) }),
   ...(feet && { feet: { left: feet.left && copyPose(feet.left), right: feet.right && copyPose(feet.right) } }),

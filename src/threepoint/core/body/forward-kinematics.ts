@@ -1,6 +1,7 @@
 import { type MutablePose, makePose, type Pose } from '../math/pose';
 import { copyQuat, multiply, rotate } from '../math/quat';
 import { add, copyVec3 } from '../math/vec3';
+import { recordOf } from '../records';
 import type { UpperBodyPose } from './avatar-pose';
 import { type JointName, jointNames, parentOf } from './joints';
 import type { Skeleton } from './skeleton';
@@ -9,11 +10,7 @@ import type { Skeleton } from './skeleton';
 export type JointPoses = Readonly<Record<JointName, Pose<'floor'>>>;
 export type MutableJointPoses = Readonly<Record<JointName, MutablePose<'floor'>>>;
 
-export const makeJointPoses = (): MutableJointPoses =>
-  Object.fromEntries(jointNames.map((joint) => [joint, makePose<'floor'>()])) as Record<
-    JointName,
-    MutablePose<'floor'>
-  >;
+export const makeJointPoses = (): MutableJointPoses => recordOf(jointNames, () => makePose<'floor'>());
 
 /**
  * Returns the position of every joint, floor frame: the skeleton's offsets turned by the pose's rotations, parents

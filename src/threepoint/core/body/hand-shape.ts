@@ -1,5 +1,6 @@
 import { clamp } from '../math/damper';
 import type { Side } from '../math/side';
+import type { Mutable } from '../records';
 
 export const fingerNames = ['thumb', 'index', 'middle', 'ring', 'little'] as const;
 
@@ -37,7 +38,7 @@ export const copyFingers = ({ left, right }: Fingers): Fingers => ({
   right: right && copyHandShape(right),
 });
 
-export type MutableFingerBend = { -readonly [Key in keyof FingerBend]: FingerBend[Key] };
+export type MutableFingerBend = Mutable<FingerBend>;
 
 /** A hand that its owner overwrites. */
 export interface MutableHandShape extends Readonly<Record<FingerName, MutableFingerBend>> {

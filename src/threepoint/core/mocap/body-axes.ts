@@ -1,4 +1,5 @@
 import { angleBetween, conjugate, fromAxes, fromAxisAngle, multiply, type Quat, quat, rotate } from '../math/quat';
+import { median } from '../math/statistics';
 import {
   cross,
   distance,
@@ -14,6 +15,7 @@ import {
   zero,
 } from '../math/vec3';
 import { type FileMotion, makeJointPoses } from '../motion/file-motion';
+import { recordOf } from '../records';
 import { directions } from './read-skeleton-map';
 import type { FileAxis } from './skeleton-map';
 
@@ -93,10 +95,6 @@ export function* sampledFrames(frameCount: number, most = mostSamples): Generato
   for (let frame = 0; frame < frameCount; frame += step) yield frame;
 }
 
-/** The middle value, of an even number the upper one; NaN: there is none. */
-export const median = (values: readonly number[]): number =>
-  [...values].sort((a, b) => a - b)[values.length >> 1] ?? Number.NaN;
-
 /** What a clip shows of its vertical, in floor axes of its rest pose. */
 interface Stance {
   /** The share of frames in which the trunk stands along an axis, feet below the hips. */
@@ -109,8 +107,8 @@ interface Stance {
 
 function stanceOf(file: FileMotion, floor: Quat, joints: StandingJoints): Stance {
   const poses = makeJointPoses(file.names.length);
-  const shares = Object.fromEntries(axisNames.map((axis) => [axis, 0])) as Record<FileAxis, number>;
-  const lows = Object.fromEntries(axisNames.map((axis) => [axis, [] as number[]])) as Record<FileAxis, number[]>;
+  const shares = recordOf(axisNames, () => 0);
+  const lows = recordOf(axisNames, (): number[] => []);
   const bodies = [joints.hips, joints.neck, ...joints.upperArms, ...joints.upperLegs, ...joints.feet].filter(
     (i) => i >= 0,
   );
@@ -132,7 +130,7 @@ function stanceOf(file: FileMotion, floor: Quat, joints: StandingJoints): Stance
     }
   }
   for (const axis of axisNames) shares[axis] /= count;
-  const lowest = Object.fromEntries(axisNames.map((axis) => [axis, median(lows[axis])])) as Record<FileAxis, number>;
+  const lowest = recordOf(axisNames, (axis) => median(lows[axis]));
   return { shares, lowest, upright: upright / count };
 }
 

@@ -1,6 +1,7 @@
 import { sides } from '../math/side';
+import { median } from '../math/statistics';
 import { cross, dot, length, lerp, normalise, subtract, up, type Vec3, vec3, zero } from '../math/vec3';
-import { median, sampledFrames } from './body-axes';
+import { sampledFrames } from './body-axes';
 import { type OurMotion, positionsWidth } from './our-joints';
 import { type TruthJoint, truthJoints } from './skeleton-map';
 

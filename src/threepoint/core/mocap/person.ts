@@ -1,6 +1,7 @@
 import type { Calibration } from '../body/calibration';
 import { conjugate, fromAxisAngle, multiply, type Quat, quat, rotate, setQuat } from '../math/quat';
 import { sides } from '../math/side';
+import { mean, median, quantile } from '../math/statistics';
 import { distance, forward, length, right, subtract, vec3 } from '../math/vec3';
 import { headingOf } from '../tracking/heading';
 import { eyesFromHeadJoint } from './mocap-rules.json';
@@ -29,17 +30,6 @@ const floorTolerance = 0.04;
 
 const columnOf = (joint: TruthJoint): number => 3 * truthJoints.indexOf(joint);
 
-/** The value [linear between neighbours] below which this share of the values lies. */
-function quantile(values: number[], share: number): number {
-  values.sort((a, b) => a - b);
-  const at = share * (values.length - 1);
-  const below = Math.floor(at);
-  const next = values[Math.min(below + 1, values.length - 1)]!;
-  return values[below]! + (next - values[below]!) * (at - below);
-}
-
-const median = (values: number[]): number => quantile(values, 0.5);
-
 /** Heights [m] of a joint over pieces. */
 function* heightsOf({ positions }: OurMotion, pieces: readonly Piece[], joint: TruthJoint): Generator<number> {
   for (const { from, to } of pieces)
@@ -54,7 +44,6 @@ function standingEyeHeight(rest: RestPose): number | null {
   });
   if (!rest.has('leftFoot') || legs.length === 0) return null;
   const hips = sides.flatMap((side) => rest.get(`${side}UpperLeg`)?.y ?? []);
-  const mean = (values: readonly number[]): number => values.reduce((sum, value) => sum + value, 0) / values.length;
   const leg = mean(legs);
   return leg + soleOfLeg * leg + rest.get('head')!.y - mean(hips) + eyesFromHeadJoint[1]!;
 }

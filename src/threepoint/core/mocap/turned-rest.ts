@@ -1,4 +1,5 @@
 import { conjugate, type Quat, quat, rotate } from '../math/quat';
+import { quantile } from '../math/statistics';
 import { parentsFirst } from '../math/tree';
 import { add, dot, subtract, type Vec3, vec3 } from '../math/vec3';
 import { type FileMotion, makeJointPoses } from '../motion/file-motion';
@@ -8,10 +9,6 @@ import type { FileAxis } from './skeleton-map';
 
 /** The hips' height differs from that at rest by less than this share where a body stands. */
 const nearHeight = 0.2;
-
-/** The value below which a share of the values lies. */
-const quantile = (values: readonly number[], share: number): number =>
-  [...values].sort((a, b) => a - b)[Math.floor(share * (values.length - 1))]!;
 
 /**
  * The axis along which the root keeps the height of the hips where that is not the axis along which the body stands, at

@@ -19,18 +19,17 @@ import { isTracked } from '../math/pose';
 import { conjugate, copyQuat, type MutableQuat, multiply, type Quat, quat } from '../math/quat';
 import { type Side, sides } from '../math/side';
 import { vec3 } from '../math/vec3';
+import { recordOf } from '../records';
 import type { Replayable } from '../tracking/recording';
 import type { TrackingFrame } from '../tracking/tracking-frame';
 import type { Motion } from './motion';
 import { motionSkeleton, restBend, turnPoint, turnRotation } from './skeleton';
 
 /** The inverse of each finger bone's frame at rest. */
-const fromRest = Object.fromEntries(
-  fingerNames.map((finger) => {
-    const [first, second, third] = fingerFrames(finger, restBend(finger), makeFingerFrames());
-    return [finger, [conjugate(first), conjugate(second), conjugate(third)] as const];
-  }),
-) as Readonly<Record<(typeof fingerNames)[number], readonly [Quat, Quat, Quat]>>;
+const fromRest = recordOf(fingerNames, (finger) => {
+  const [first, second, third] = fingerFrames(finger, restBend(finger), makeFingerFrames());
+  return [conjugate(first), conjugate(second), conjugate(third)] as const;
+});
 
 const frames = makeFingerFrames();
 const turned = makeFingerFrames();

@@ -13,6 +13,7 @@ import {
 } from '../math/pose';
 import { identity, normaliseQuat, type Quat, quat } from '../math/quat';
 import { add, distance, scale, subtract, type Vec3, vec3 } from '../math/vec3';
+import type { Mutable } from '../records';
 import type { TrackingFrame } from './tracking-frame';
 
 /** The trackers of one frame; null or absent: not seen. */
@@ -33,7 +34,7 @@ export function sampleTrackers(
   trackers: TrackingFrame['trackers'],
 ): TrackerSample | null {
   if (!trackers) return null;
-  const sample: { -readonly [Name in TrackerName]?: Pose<'heading'> | null } = {};
+  const sample: Mutable<TrackerSample> = {};
   for (const name of trackerNames) sample[name] = transformTracked(headingFromFloor, trackers[name] ?? null);
   return sample;
 }

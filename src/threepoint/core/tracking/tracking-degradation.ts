@@ -4,6 +4,7 @@ import { fromAxisAngle, multiply, quat, slerp } from '../math/quat';
 import { seedAfter, uniformOf } from '../math/random';
 import type { Side } from '../math/side';
 import { add, length, lerp, scale, setVec3, vec3 } from '../math/vec3';
+import type { Mutable } from '../records';
 import { deviceBodySize, mixDeviceBodies } from './device-body';
 import type { TrackingFrame } from './tracking-frame';
 
@@ -69,8 +70,7 @@ interface Loss {
   until: number;
 }
 
-type Writable<T> = { -readonly [Key in keyof T]: T[Key] };
-type WrittenFrame = Writable<Required<Omit<TrackingFrame, 'suspended'>>>;
+type WrittenFrame = Mutable<Required<Omit<TrackingFrame, 'suspended'>>>;
 
 const offset = vec3(0, 0, 0);
 const axis = vec3(0, 0, 0);

@@ -35,6 +35,7 @@ import {
   vec3,
   zero,
 } from '../../math/vec3';
+import type { Mutable } from '../../records';
 import type { CompletedFrame, CompletedHand } from '../complete-hands';
 import type { JointPositions } from '../joint-positions';
 import { restSeconds } from '../lost-hand.json';
@@ -112,8 +113,6 @@ const downAndBack: Readonly<Record<Side, Vec3>> = {
   left: normalise(vec3(-0.2, -1, 0.5)),
   right: normalise(vec3(0.2, -1, 0.5)),
 };
-
-type Mutable<T> = { -readonly [Key in keyof T]: T[Key] };
 
 /**
  * An arm that reaches its wrist, floor frame: the circle that its elbow may lie on, where it lies, and where it points

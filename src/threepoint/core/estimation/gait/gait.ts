@@ -1,6 +1,6 @@
-import type { Mutable } from '../../math/mutable';
 import type { Pose } from '../../math/pose';
 import type { Side } from '../../math/side';
+import type { Mutable } from '../../records';
 import type { Tensor } from '../networks/model-weights';
 import { Perceptron } from '../networks/perceptron';
 import { GaitFeatures, type GaitPoints, gaitFeatureCount, yawOfHips } from './gait-features';

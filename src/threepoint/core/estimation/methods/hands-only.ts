@@ -1,22 +1,16 @@
+import type { AvatarPose } from '../../body/avatar-pose';
 import type { Calibration } from '../../body/calibration';
-import { type Fingers, unknownFingers } from '../../body/hand-shape';
-import { makePose, type TrackedPose } from '../../math/pose';
+import { unknownFingers } from '../../body/hand-shape';
+import { makePose } from '../../math/pose';
+import type { Mutable } from '../../records';
 import { HeadsetMountCorrection } from '../online-calibration/headset-mount-correction';
 import type { PoseEstimator } from '../pose-estimator';
-
-/** The result of `update`, overwritten by the next. */
-interface OwnedPose {
-  head: TrackedPose;
-  leftHand: TrackedPose | null;
-  rightHand: TrackedPose | null;
-  readonly body: null;
-  fingers: Fingers;
-}
 
 /** An estimator that returns head and hands as they are tracked, without a body. */
 export function createHandsOnly(calibration: Calibration): PoseEstimator {
   const headset = new HeadsetMountCorrection(calibration);
-  const pose: OwnedPose = {
+  /** The result of `update`, overwritten by the next. */
+  const pose: Mutable<AvatarPose> = {
     head: { ...makePose<'floor'>(), tracking: 'emulated' },
     leftHand: null,
     rightHand: null,

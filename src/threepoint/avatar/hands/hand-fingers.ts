@@ -5,7 +5,7 @@ import { FingerMemory } from '../../core/body/finger-memory';
 import { fingerFrames, type HandGeometry, makeFingerFrames } from '../../core/body/hand-geometry';
 import { copyHandShape, type FingerName, type HandShape, makeHandShape } from '../../core/body/hand-shape';
 import { conjugate, multiply, quat } from '../../core/math/quat';
-import { type Side, sides } from '../../core/math/side';
+import type { Side } from '../../core/math/side';
 import type { Vec3 } from '../../core/math/vec3';
 import { ofSide, type RigFinger, type RigHand, readHand } from './finger-bones';
 
@@ -15,8 +15,8 @@ const turned = makeFingerFrames();
 const against = quat(0, 0, 0, 1);
 const carried = quat(0, 0, 0, 1);
 
-/** One hand's fingers on a rig. */
-class HandFingers {
+/** One hand's fingers on a rig, at ease at first. */
+export class HandFingers {
   readonly #side: Side;
   readonly #rig: RigHand;
   readonly #memory = new FingerMemory();
@@ -33,14 +33,20 @@ class HandFingers {
     this.#rig = readHand(vrm, side);
     // Thirty matrices would be composed in every frame although fingers mostly rest; the constraints of a file write
     // rotations only.
-    if ((vrm.nodeConstraintManager?.constraints.size ?? 0) > 0) return;
-    for (const { bones } of this.#rig.fingers) for (const { node } of bones) node.matrixAutoUpdate = false;
+    const constrained = (vrm.nodeConstraintManager?.constraints.size ?? 0) > 0;
+    for (const { bones } of this.#rig.fingers) for (const { node } of bones) node.matrixAutoUpdate = constrained;
+    this.update(0);
   }
 
+  /** The geometry of the rig's hand in its own metres; null: the rig lacks a finger bone. */
   get geometry(): HandGeometry | null {
     return this.#rig.geometry;
   }
 
+  /**
+   * Returns the drawn fingertips of the rig in the frame of an object that carries it [m], in new objects for tools and
+   * tests.
+   */
   tips(frame: Object3D): Partial<Record<FingerName, Vec3>> {
     const found: Partial<Record<FingerName, Vec3>> = {};
     for (const { name, bones, tip } of this.#rig.fingers) {
@@ -56,11 +62,13 @@ class HandFingers {
     return found;
   }
 
+  /** Sets the tracked shape from now on; null: none. The shape is copied. */
   set(shape: HandShape | null): void {
     this.#isSeen = shape !== null;
     if (shape) copyHandShape(shape, this.#seen);
   }
 
+  /** Bends the bones. deltaSeconds: since the last call. */
   update(deltaSeconds: number): void {
     copyHandShape(this.#memory.follow(this.#isSeen ? this.#seen : null, deltaSeconds), this.#shown);
     if (this.#rig.geometry) closePinch(this.#shown, this.#rig.geometry);
@@ -85,38 +93,5 @@ class HandFingers {
       node.quaternion.copy(against);
       node.updateMatrix();
     }
-  }
-}
-
-/** The fingers of both hands, at ease at first. */
-export class Fingers {
-  readonly #hands: Readonly<Record<Side, HandFingers>>;
-
-  constructor(vrm: VRM) {
-    this.#hands = { left: new HandFingers(vrm, 'left'), right: new HandFingers(vrm, 'right') };
-    this.update(0);
-  }
-
-  /** Sets the tracked shape of a hand from now on; null: none. The shape is copied. */
-  set(side: Side, shape: HandShape | null): void {
-    this.#hands[side].set(shape);
-  }
-
-  /** Bends the bones. deltaSeconds: since the last call. */
-  update(deltaSeconds: number): void {
-    for (const side of sides) this.#hands[side].update(deltaSeconds);
-  }
-
-  /**
-   * Returns the drawn fingertips of the rig in the frame of an object that carries it [m], in new objects for tools and
-   * tests.
-   */
-  tips(side: Side, frame: Object3D): Readonly<Partial<Record<FingerName, Vec3>>> {
-    return this.#hands[side].tips(frame);
-  }
-
-  /** Returns the geometry of the rig's hand in its own metres; null: the rig lacks a finger bone. */
-  geometry(side: Side): HandGeometry | null {
-    return this.#hands[side].geometry;
   }
 }

@@ -1,0 +1,45 @@
+import { fileURLToPath } from 'node:url';
+import type { Page } from '@playwright/test';
+import { serve } from 'threepoint-http/web-server';
+import { createPageHandler } from '../server/page';
+
+/** Folders of built pages: the real one, and the bench's own. */
+export const builtPages = { real: builtIn('dist'), bench: builtIn('.cache/bench') } as const;
+
+/** Folder of a build, as an absolute path. */
+export function builtIn(folder: string): string {
+  return fileURLToPath(new URL(`../${folder}`, import.meta.url));
+}
+
+/** Serves a folder of built pages while it is measured; clocks are fine where it is `isolated`. */
+export async function withServed<T>(
+  folder: string,
+  measure: (address: string, port: number) => Promise<T>,
+  isolated = folder === builtPages.bench,
+): Promise<T> {
+  const page = createPageHandler(folder);
+  const server = await serve(
+    (request, response) => {
+      // Without isolation performance.now() moves in steps of 0.1 ms.
+      if (isolated) {
+        response.setHeader('Cross-Origin-Opener-Policy', 'same-origin');
+        response.setHeader('Cross-Origin-Embedder-Policy', 'require-corp');
+      }
+      page(request, response);
+    },
+    { host: '127.0.0.1', port: 0 },
+  );
+  try {
+    return await measure(`http://localhost:${server.port}`, server.port);
+  } finally {
+    await server.close();
+  }
+}
+
+/** What a page of the bench told of its work, which it does for so long at most [ms]. */
+export async function outcomeOf<Result>(page: Page, longestMs: number): Promise<Result> {
+  await page.waitForFunction(() => window.benchOutcome, null, { timeout: longestMs });
+  const outcome = await page.evaluate(() => window.benchOutcome);
+  if (!outcome || 'error' in outcome) throw new Error(`the bench page failed: ${outcome?.error}`);
+  return outcome.result as Result;
+}

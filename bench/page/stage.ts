@@ -1,0 +1,47 @@
+import { PerspectiveCamera } from 'three';
+import { createAvatar } from 'threepoint/avatar/avatar';
+import { parseAvatar } from 'threepoint/avatar/load-avatar';
+import { Mirror } from 'threepoint/avatar/mirror';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { createEstimator, type NetworkName, needsRegressor } from 'threepoint/core/estimation/estimators';
+import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
+import { type EstimatorName, estimatorNames } from 'threepoint/core/estimation/pose-estimator';
+import { recordOf } from 'threepoint/core/records';
+import { createInferenceWorker } from 'threepoint/onnx/create-inference-worker';
+import { loadRegressor } from 'threepoint/onnx/load-regressor';
+import { createRenderer } from 'threepoint-page/scene/renderer';
+import { createStudio } from 'threepoint-page/studio/studio';
+
+/** What is drawn in every frame, as on the page. */
+export async function openPicture() {
+  const canvas = document.querySelector('canvas');
+  if (!canvas) throw new Error('no canvas');
+  const renderer = createRenderer(canvas, 'low');
+  renderer.setSize(480, 270, false);
+  const studio = createStudio(renderer, 'low');
+  // The page's settings for software rendering.
+  const mirror = new Mirror({ distance: 1.5, resolution: 256, samples: 0 });
+  const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
+  const avatar = createAvatar(await parseAvatar(mannequin, 'mannequin.vrm'));
+  studio.scene.add(mirror.object, avatar.object);
+  avatar.setCalibration(defaultCalibration);
+  const camera = new PerspectiveCamera(42, 480 / 270, 0.05, 90);
+  camera.position.set(1.9, 1.5, 2.75);
+  camera.lookAt(0, 1, -0.4);
+  return { renderer, studio, mirror, avatar, camera, mannequin };
+}
+
+export const loadNetwork = (name: NetworkName): Promise<PoseRegressor> =>
+  loadRegressor(`/models/${name}.json`, { createWorker: createInferenceWorker });
+
+/** For games, which ask their network themselves. */
+export async function openStage() {
+  const regressors: Partial<Record<EstimatorName, PoseRegressor>> = {};
+  for (const name of estimatorNames.filter(needsRegressor)) regressors[name] = await loadNetwork(name);
+  const estimators = recordOf(estimatorNames, (name) =>
+    createEstimator(name, defaultCalibration, regressors[name] ?? null),
+  );
+  return { ...(await openPicture()), estimators };
+}
+
+export type BenchStage = Awaited<ReturnType<typeof openStage>>;
