@@ -9,7 +9,7 @@ import { type MocapSource, readOurMotion } from 'threepoint/core/mocap/prepare-m
 import { readSkeletonMap } from 'threepoint/core/mocap/read-skeleton-map';
 import { finishWork } from 'threepoint/core/motion/work';
 
-/** A file of motion; `asf`: the skeleton of an AMC file; `rateHz`: its frame rate where a table beside it states one. */
+/** A file of motion; `asf`: the skeleton of an AMC file; `rateHz`: its frame rate if a table beside it states one. */
 interface MotionPath {
   readonly path: string;
   readonly asf: string | null;
