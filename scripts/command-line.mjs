@@ -5,8 +5,8 @@ import { main, runProgram, SetupError, typedPath } from './run-command.mjs';
 const options = (names, option) => Object.fromEntries(names.map((name) => [name, option]));
 
 /**
- * Returns the options of an npm script by name, and its other arguments as `rest`. `texts`, `lists` and `flags` name the
- * options that take a value, may be repeated, and take none; `rest`: whether other arguments are allowed.
+ * Returns the options of an npm script by name, and its other arguments as `rest`. `texts`, `lists` and `flags` name
+ * the options that take a value, may be repeated, and take none; `rest`: whether other arguments are allowed.
  *
  * `check` throws what is wrong with them otherwise. Every fault becomes a SetupError with the usage.
  * @returns {Record<string, any>}
