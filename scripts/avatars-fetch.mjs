@@ -2,9 +2,9 @@
 // GitHub, each at a fixed commit, for `npm run avatars:try -- DIR`. Files that are there already are kept. The files
 // belong to their authors: they are not part of this repository.
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
-import { join, resolve } from 'node:path';
-import { parseArgs } from 'node:util';
-import { main, root, SetupError } from './run-command.mjs';
+import { join } from 'node:path';
+import { readOptions } from './command-line.mjs';
+import { main, root, typedPath } from './run-command.mjs';
 
 const usage = 'npm run avatars:fetch -- DIR';
 const limitMs = 120_000;
@@ -26,11 +26,10 @@ async function fetchFile(file) {
 }
 
 await main(async () => {
-  const { positionals } = parseArgs({ allowPositionals: true });
-  const [given] = positionals;
-  if (given === undefined) throw new SetupError(`avatars:fetch: a folder is needed\n${usage}`);
-  // Paths are relative to the directory in which the command was typed.
-  const folder = resolve(process.env.INIT_CWD ?? process.cwd(), given);
+  const { rest } = readOptions('avatars:fetch', usage, { rest: true }, ({ rest }) => {
+    if (rest.length !== 1) throw new Error('a folder is needed');
+  });
+  const folder = typedPath(rest[0]);
   mkdirSync(folder, { recursive: true });
   const files = JSON.parse(readFileSync(join(root, 'tools/avatars/try/public-files.json'), 'utf8'));
   let missing = 0;

@@ -2,25 +2,22 @@
 // twelve postures (tools/avatars/try/postures.ts) and the first-person view. OUT/all.png shows all avatars waving.
 // Prints the reason for each rejected file. OUT defaults to DIR/sheets.
 import { mkdirSync, readdirSync, statSync, writeFileSync } from 'node:fs';
-import { basename, extname, join, resolve } from 'node:path';
-import { parseArgs } from 'node:util';
+import { basename, extname, join } from 'node:path';
 import { ensureChromium } from './chromium.mjs';
+import { readOptions } from './command-line.mjs';
 import { ensureInstalled } from './installation.mjs';
-import { main, root, SetupError } from './run-command.mjs';
+import { main, root, SetupError, typedPath } from './run-command.mjs';
 
 const usage = 'npm run avatars:try -- DIR [--out OUT]';
 
 function options() {
-  const { values, positionals } = parseArgs({ options: { out: { type: 'string' } }, allowPositionals: true });
-  const [given] = positionals;
-  if (given === undefined) throw new SetupError(`avatars:try: a folder with avatars is needed\n${usage}`);
-  // Paths are relative to the directory in which the command was typed.
-  const from = process.env.INIT_CWD ?? process.cwd();
-  const folder = resolve(from, given);
-  if (!statSync(folder, { throwIfNoEntry: false })?.isDirectory()) {
-    throw new SetupError(`avatars:try: ${folder}: no such folder\n${usage}`);
-  }
-  return { folder, out: values.out ? resolve(from, values.out) : join(folder, 'sheets') };
+  const { rest, out } = readOptions('avatars:try', usage, { texts: ['out'], rest: true }, ({ rest }) => {
+    if (rest.length !== 1) throw new Error('a folder with avatars is needed');
+    if (!statSync(typedPath(rest[0]), { throwIfNoEntry: false })?.isDirectory())
+      throw new Error(`${typedPath(rest[0])}: no such folder`);
+  });
+  const folder = typedPath(rest[0]);
+  return { folder, out: out ? typedPath(out) : join(folder, 'sheets') };
 }
 
 /** Starts a server for the page and the folder's files on a free port of this machine. */

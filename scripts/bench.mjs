@@ -5,41 +5,29 @@
 // instead of in software. Each part prints its duration and is written to FILE when it ends; ratios of frames have 95 %
 // confidence intervals. npm run bench -- --allocations [ik paper learned mirror archery ball3 ball8 hands stillScene]:
 // measures only the garbage that frames allocate, and the functions that allocate it.
-import { parseArgs } from 'node:util';
 import { buildWhenStale } from './build.mjs';
 import { ensureChromium } from './chromium.mjs';
+import { passedOn, readOptions } from './command-line.mjs';
 import { ensureInstalled } from './installation.mjs';
-import { main, root, run, runProgram, typedPath } from './run-command.mjs';
+import { main, root, run, runProgram } from './run-command.mjs';
+
+const usage = 'npm run bench [-- --json FILE] [PART …] [--rounds N] [--allocations] [--device] [--avatar FILE]';
 
 const vite = (...options) => run('npx', ['vite', 'build', '--logLevel', 'warn', ...options], { cwd: root });
 /** The build options of benchmarks: function names and source maps are kept. */
 const readable = ['--minify', 'false', '--sourcemap'];
 
 await main(async () => {
-  const { values, positionals } = parseArgs({
-    options: {
-      json: { type: 'string' },
-      allocations: { type: 'boolean' },
-      rounds: { type: 'string' },
-      device: { type: 'boolean' },
-      avatar: { type: 'string' },
-    },
-    allowPositionals: true,
-  });
+  const flags = ['allocations', 'device'];
+  const given = readOptions('bench', usage, { texts: ['json', 'rounds', 'avatar'], flags, rest: true });
   await ensureInstalled();
   await ensureChromium();
-  if (values.allocations) {
+  if (given.allocations) {
     const { code } = await vite('--outDir', '.cache/bench-of-page', '--emptyOutDir', ...readable);
     if (code !== 0) return code;
   } else await buildWhenStale();
-  const page = await vite('--config', 'bench/vite.config.ts', ...(values.allocations ? readable : []));
+  const page = await vite('--config', 'bench/vite.config.ts', ...(given.allocations ? readable : []));
   if (page.code !== 0) return page.code;
-  const measure = [];
-  if (values.json) measure.push('--json', typedPath(values.json));
-  if (values.avatar) measure.push('--avatar', typedPath(values.avatar));
-  if (values.rounds) measure.push('--rounds', values.rounds);
-  if (values.allocations) measure.push('--allocations');
-  if (values.device) measure.push('--device');
-  measure.push(...positionals);
+  const measure = [...passedOn(given, ['rounds', ...flags], ['json', 'avatar']), ...given.rest];
   return runProgram('bench/main.ts', measure);
 });

@@ -3,11 +3,10 @@
 import { cpSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
-import { pathToFileURL } from 'node:url';
 import { parseArgs } from 'node:util';
 import { buildLibrary } from './build-library.mjs';
 import { buildRooms } from './build-rooms.mjs';
-import { main, root, runQuietly, SetupError } from './run-command.mjs';
+import { mainOf, root, runQuietly, SetupError } from './run-command.mjs';
 
 async function done(command, args, cwd) {
   // Playwright sets NODE_ENV to "test", with which Next cannot build.
@@ -100,12 +99,10 @@ async function buildStatic(out) {
   rmSync(folder, { recursive: true });
 }
 
-if (import.meta.url === pathToFileURL(process.argv[1]).href) {
-  await main(async () => {
-    const { out } = parseArgs({ options: { out: { type: 'string' } } }).values;
-    if (out !== undefined) return buildStatic(resolve(root, out));
-    const folder = await pack(Object.keys(packages));
-    for (const name of allNames) console.log(await buildExample(name, folder));
-    return 0;
-  });
-}
+await mainOf(import.meta.url, async () => {
+  const { out } = parseArgs({ options: { out: { type: 'string' } } }).values;
+  if (out !== undefined) return buildStatic(resolve(root, out));
+  const folder = await pack(Object.keys(packages));
+  for (const name of allNames) console.log(await buildExample(name, folder));
+  return 0;
+});

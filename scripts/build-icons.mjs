@@ -1,10 +1,9 @@
 // Draws the icons of the installed page from public/favicon.svg: `npm run build:icons`.
 import { mkdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { pathToFileURL } from 'node:url';
 import { chromium } from '@playwright/test';
 import { ensureChromium } from './chromium.mjs';
-import { main, root } from './run-command.mjs';
+import { mainOf, root } from './run-command.mjs';
 
 /**
  * The icons: side [px], and the share of the side that the drawing takes. Systems crop a maskable icon to a circle of
@@ -35,4 +34,4 @@ async function drawIcons() {
   }
 }
 
-if (import.meta.url === pathToFileURL(process.argv[1]).href) await main(drawIcons);
+await mainOf(import.meta.url, drawIcons);

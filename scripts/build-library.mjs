@@ -3,11 +3,10 @@
 // each entry and fails if a document states another size. `npm pack ./dist-library` makes the tarball.
 import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join, posix, relative } from 'node:path';
-import { pathToFileURL } from 'node:url';
 import { brotliCompressSync } from 'node:zlib';
 import { rolldown } from 'rolldown';
 import { staleSizes } from './library-sizes.mjs';
-import { main, root, run, SetupError } from './run-command.mjs';
+import { mainOf, root, run, SetupError } from './run-command.mjs';
 import { sourceResolution } from './source-condition.mjs';
 
 const out = join(root, 'dist-library');
@@ -347,11 +346,9 @@ function tellSizes(sizes) {
     console.log(`${what.padEnd(32)}${kilobytes(min)}${kilobytes(brotli)}`);
 }
 
-if (import.meta.url === pathToFileURL(process.argv[1]).href) {
-  await main(async () => {
-    await buildLibrary();
-    const sizes = await measureSizes();
-    tellSizes(sizes);
-    await checkDocuments(sizes);
-  });
-}
+await mainOf(import.meta.url, async () => {
+  await buildLibrary();
+  const sizes = await measureSizes();
+  tellSizes(sizes);
+  await checkDocuments(sizes);
+});

@@ -2,10 +2,9 @@
 // the library does not export are bundled. `npm pack ./dist-rooms` makes the tarball.
 import { copyFileSync, mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { pathToFileURL } from 'node:url';
 import { rolldown } from 'rolldown';
 import { documentInPackage, writeDeclarations } from './build-library.mjs';
-import { main, root } from './run-command.mjs';
+import { mainOf, root } from './run-command.mjs';
 import { sourceResolution } from './source-condition.mjs';
 
 const out = join(root, 'dist-rooms');
@@ -79,4 +78,4 @@ export async function buildRooms() {
   writeFileSync(join(out, 'package.json'), `${JSON.stringify(published(), null, 2)}\n`);
 }
 
-if (import.meta.url === pathToFileURL(process.argv[1]).href) await main(buildRooms);
+await mainOf(import.meta.url, buildRooms);

@@ -2,10 +2,9 @@
 // dist-server/main.mjs. Its dependencies are not bundled (npm ci --omit=dev). npm run build builds the page.
 import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
-import { pathToFileURL } from 'node:url';
 import { parseArgs } from 'node:util';
 import { rolldown } from 'rolldown';
-import { main, root, SetupError } from './run-command.mjs';
+import { mainOf, root, SetupError } from './run-command.mjs';
 import { sourceResolution } from './source-condition.mjs';
 
 /** The default output folder, next to server/: the server reads ../package.json, ../dist/ and ../study-data/. */
@@ -75,8 +74,7 @@ export async function buildServer(out) {
   cpSync(join(root, 'src/study/server/export/analysis'), join(out, 'analysis'), { recursive: true });
 }
 
-if (import.meta.url === pathToFileURL(process.argv[1]).href)
-  await main(() => {
-    const { values } = parseArgs({ options: { out: { type: 'string', default: usualOut } } });
-    return buildServer(resolve(root, values.out));
-  });
+await mainOf(import.meta.url, () => {
+  const { values } = parseArgs({ options: { out: { type: 'string', default: usualOut } } });
+  return buildServer(resolve(root, values.out));
+});

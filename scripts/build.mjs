@@ -1,11 +1,10 @@
 import { createHash } from 'node:crypto';
 import { existsSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join, relative, resolve } from 'node:path';
-import { pathToFileURL } from 'node:url';
 import { parseArgs, promisify } from 'node:util';
 import { brotliCompress, constants, gzip } from 'node:zlib';
 import { buildServiceWorker } from './build-service-worker.mjs';
-import { main, root, run, SetupError } from './run-command.mjs';
+import { mainOf, root, run, SetupError } from './run-command.mjs';
 
 /** The paths that the built page depends on. */
 const sources = [
@@ -148,5 +147,4 @@ export async function buildWhenStale() {
   console.log(`Built in ${((performance.now() - start) / 1000).toFixed(1)} s.`);
 }
 
-if (import.meta.url === pathToFileURL(process.argv[1]).href)
-  await main(() => build(buildOptions(process.argv.slice(2))));
+await mainOf(import.meta.url, () => build(buildOptions(process.argv.slice(2))));

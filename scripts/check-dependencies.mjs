@@ -2,9 +2,8 @@
 // of what ships, and that docs/architecture.md gives a reason for each dependency.
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { pathToFileURL } from 'node:url';
 import { readManifests } from './manifests.mjs';
-import { main, root, SetupError } from './run-command.mjs';
+import { mainOf, root, SetupError } from './run-command.mjs';
 
 /** The licences that what ships may have. */
 const permissive = ['0BSD', 'Apache-2.0', 'BSD-2-Clause', 'BSD-3-Clause', 'BSL-1.0', 'ISC', 'MIT', 'Unlicense'];
@@ -112,8 +111,7 @@ export function readProject() {
   };
 }
 
-if (import.meta.url === pathToFileURL(process.argv[1]).href)
-  await main(() => {
-    const faults = dependencyFaults(readProject());
-    if (faults.length > 0) throw new SetupError(`${faults.join('.\n')}.`);
-  });
+await mainOf(import.meta.url, () => {
+  const faults = dependencyFaults(readProject());
+  if (faults.length > 0) throw new SetupError(`${faults.join('.\n')}.`);
+});

@@ -2,8 +2,7 @@
 // that is stored and exported. TOKEN is the experimenter's.
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { pathToFileURL } from 'node:url';
-import { main, root, SetupError } from './run-command.mjs';
+import { mainOf, root, SetupError } from './run-command.mjs';
 
 /** Checks the server at this address; rejects with a SetupError that names the first request which failed. */
 export async function checkServer(origin, token) {
@@ -26,10 +25,9 @@ export async function checkServer(origin, token) {
   if (zip.toString('latin1', 0, 2) !== 'PK') throw new SetupError('The export of the study is no zip file.');
 }
 
-if (import.meta.url === pathToFileURL(process.argv[1]).href)
-  await main(async () => {
-    const [origin, token] = process.argv.slice(2);
-    if (!token) throw new SetupError('node scripts/check-server.mjs ORIGIN TOKEN');
-    await checkServer(origin, token);
-    console.log(`${origin} serves the page, rooms and studies.`);
-  });
+await mainOf(import.meta.url, async () => {
+  const [origin, token] = process.argv.slice(2);
+  if (!token) throw new SetupError('node scripts/check-server.mjs ORIGIN TOKEN');
+  await checkServer(origin, token);
+  console.log(`${origin} serves the page, rooms and studies.`);
+});

@@ -3,37 +3,24 @@
 import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, statSync } from 'node:fs';
 import { join } from 'node:path';
-import { parseArgs } from 'node:util';
+import { passedOn, readOptions } from './command-line.mjs';
 import { ensureInstalled } from './installation.mjs';
-import { pythonEnvironment } from './python-environment.mjs';
-import { main, root, run, runProgram, SetupError, typedPath } from './run-command.mjs';
+import { prepareRecordings } from './python-environment.mjs';
+import { main, root, runProgram, SetupError, typedPath } from './run-command.mjs';
 
 const usage =
   'npm run goldens -- --mocap DIR [--compare | --write] [--quick] [--all] [--only ROWS] [--frames DIR] [--models DIR]\n' +
   'DIR holds the recordings that the goldens were frozen with; docs/accuracy.md says the rest.';
 const halfAnHour = 1800;
 
+const flags = ['write', 'quick', 'all'];
+
 function options() {
-  const [text, flag] = [{ type: 'string' }, { type: 'boolean' }];
-  try {
-    const { values } = parseArgs({
-      options: {
-        mocap: text,
-        compare: flag,
-        write: flag,
-        quick: flag,
-        all: flag,
-        only: text,
-        frames: text,
-        models: text,
-      },
-    });
-    if (!values.mocap) throw new Error('--mocap is needed');
-    if (values.write && values.compare) throw new Error('either --compare or --write');
-    return values;
-  } catch (error) {
-    throw new SetupError(`goldens: ${error.message}\n${usage}`);
-  }
+  const known = { texts: ['mocap', 'only', 'frames', 'models'], flags: ['compare', ...flags] };
+  return readOptions('goldens', usage, known, ({ mocap, write, compare }) => {
+    if (!mocap) throw new Error('--mocap is needed');
+    if (write && compare) throw new Error('either --compare or --write');
+  });
 }
 
 /** Returns a hash of the files of DIR and of the programs that read them. */
@@ -53,38 +40,32 @@ function recordingsKey(mocap) {
   return hash.digest('hex').slice(0, 16);
 }
 
-/**
- * Returns the folder of recordings with ground truth, prepared by Python and cached in .cache; an exit code on failure.
- */
-async function prepareRecordings(mocap) {
-  if (!existsSync(mocap)) throw new SetupError(`goldens: ${mocap}: no such folder\n${usage}`);
-  const folder = join(root, '.cache/goldens', `recordings-${recordingsKey(mocap)}`);
-  if (existsSync(folder)) return { folder };
+/** Prepares recordings with ground truth in this folder, once; resolves to an exit code. */
+async function prepareOnce(mocap, folder) {
+  if (existsSync(folder)) return 0;
   mkdirSync(join(root, '.cache/goldens'), { recursive: true });
-  const python = await pythonEnvironment();
   const unfinished = `${folder}.${process.pid}`;
   try {
-    const prepare = ['-m', 'threepoint_training.recordings', '--mocap', mocap, '--out', unfinished];
-    const env = { PYTHONPATH: `${root}/training`, PYTHONUNBUFFERED: '1' };
-    const { code } = await run(python, prepare, { cwd: root, env, limitSeconds: halfAnHour });
-    if (code !== 0) return { code };
-    renameSync(unfinished, folder);
+    const code = await prepareRecordings({ mocap }, unfinished, { limitSeconds: halfAnHour });
+    if (code === 0) renameSync(unfinished, folder);
+    return code;
   } finally {
     rmSync(unfinished, { recursive: true, force: true });
   }
-  return { folder };
 }
 
 await main(async () => {
   const given = options();
   await ensureInstalled();
-  const { folder, code: failed } = await prepareRecordings(typedPath(given.mocap));
-  if (!folder) return failed;
-  const drive = ['--recordings', folder];
-  drive.push('--models', given.models ? typedPath(given.models) : join(root, 'public/models'));
-  drive.push('--golden', join(root, 'tests/golden/estimates.json'));
-  drive.push('--frames', given.frames ? typedPath(given.frames) : join(root, '.cache/goldens/frames'));
-  for (const flag of ['write', 'quick', 'all']) if (given[flag]) drive.push(`--${flag}`);
-  if (given.only) drive.push('--only', given.only);
-  return runProgram('bench/evaluate/golden/goldens.ts', drive, { limitSeconds: halfAnHour });
+  const mocap = typedPath(given.mocap);
+  if (!existsSync(mocap)) throw new SetupError(`goldens: ${mocap}: no such folder\n${usage}`);
+  const recordings = join(root, '.cache/goldens', `recordings-${recordingsKey(mocap)}`);
+  const code = await prepareOnce(mocap, recordings);
+  if (code !== 0) return code;
+  const drive = {
+    ...{ models: join(root, 'public/models'), frames: join(root, '.cache/goldens/frames'), ...given },
+    ...{ recordings, golden: join(root, 'tests/golden/estimates.json') },
+  };
+  const args = passedOn(drive, [...flags, 'only'], ['recordings', 'models', 'golden', 'frames']);
+  return runProgram('bench/evaluate/golden/goldens.ts', args, { limitSeconds: halfAnHour });
 });

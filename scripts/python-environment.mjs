@@ -1,6 +1,7 @@
 import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { passedOn } from './command-line.mjs';
 import { root, run, runQuietly, SetupError } from './run-command.mjs';
 
 const projectFile = join(root, 'training/pyproject.toml');
@@ -105,4 +106,20 @@ export async function pythonEnvironment({ extras = [] } = {}) {
     rmSync(unfinished, { recursive: true, force: true });
   }
   return pythonIn(directory);
+}
+
+/** Runs a module of the training, in an environment with these extras; resolves as `run` does. */
+export async function runTraining(module, args, { extras = [], ...options } = {}) {
+  const python = await pythonEnvironment({ extras });
+  const env = { PYTHONPATH: join(root, 'training'), PYTHONUNBUFFERED: '1' };
+  return run(python, ['-m', module, ...args], { env, ...options });
+}
+
+/**
+ * Prepares motion capture: recordings with the ground truth, in the folder `out`. `given`: the options mocap, skeleton
+ * and people of an npm script. Resolves to an exit code.
+ */
+export async function prepareRecordings(given, out, options) {
+  const args = passedOn({ ...given, out }, ['people'], ['mocap', 'skeleton', 'out']);
+  return (await runTraining('threepoint_training.recordings', args, options)).code;
 }

@@ -2,10 +2,9 @@
 // --notes VERSION it prints that version's part of CHANGELOG.md, if every package has that version.
 import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { pathToFileURL } from 'node:url';
 import { parseArgs } from 'node:util';
 import { readManifests } from './manifests.mjs';
-import { main, root, SetupError } from './run-command.mjs';
+import { mainOf, root, SetupError } from './run-command.mjs';
 
 const bumps = ['major', 'minor', 'patch'];
 const kinds = ['Added', 'Changed', 'Fixed', 'Removed', 'Security'];
@@ -95,8 +94,7 @@ export function releaseNotes(version, directory = root) {
   return section.slice(version.length).trim();
 }
 
-if (import.meta.url === pathToFileURL(process.argv[1]).href)
-  await main(() => {
-    const { notes } = parseArgs({ options: { notes: { type: 'string' } } }).values;
-    console.log(notes === undefined ? `Every package has version ${release()}.` : releaseNotes(notes));
-  });
+await mainOf(import.meta.url, () => {
+  const { notes } = parseArgs({ options: { notes: { type: 'string' } } }).values;
+  console.log(notes === undefined ? `Every package has version ${release()}.` : releaseNotes(notes));
+});

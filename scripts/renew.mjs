@@ -1,9 +1,8 @@
 // npm run renew -- --mocap DIR [--from STEP] [--only STEP] [--list]: renews the networks, and every table and figure of
 // docs/accuracy.md, in the steps of renew-steps.mjs.
-import { resolve } from 'node:path';
-import { parseArgs } from 'node:util';
+import { readOptions } from './command-line.mjs';
 import { chosenSteps, commandLine, commandLineOf, commandOf } from './renew-steps.mjs';
-import { main, root, run, SetupError } from './run-command.mjs';
+import { main, run, typedPath } from './run-command.mjs';
 
 const usage =
   'npm run renew -- --mocap DIR [--from STEP] [--only STEP]\n' +
@@ -12,14 +11,9 @@ const usage =
 const oneDay = 24 * 3600;
 
 function options() {
-  const text = { type: 'string' };
-  try {
-    const { values } = parseArgs({ options: { mocap: text, from: text, only: text, list: { type: 'boolean' } } });
-    if (!values.mocap && !values.list) throw new Error('--mocap is needed');
-    return values;
-  } catch (error) {
-    throw new SetupError(`renew: ${error.message}\n${usage}`);
-  }
+  return readOptions('renew', usage, { texts: ['mocap', 'from', 'only'], flags: ['list'] }, ({ mocap, list }) => {
+    if (!mocap && !list) throw new Error('--mocap is needed');
+  });
 }
 
 /** Formats seconds as 1:02:03. */
@@ -39,13 +33,12 @@ await main(async () => {
   const { mocap = 'DIR', ...given } = options();
   const chosen = chosenSteps(given);
   if (given.list) return list(chosen, mocap);
-  // The folder is relative to the directory in which the command was typed; the steps run elsewhere.
-  const folder = resolve(process.env.INIT_CWD ?? process.cwd(), mocap);
+  const folder = typedPath(mocap);
   for (const [number, step] of chosen.entries()) {
     const title = `renew ${number + 1} of ${chosen.length}, ${step.name}`;
     console.log(`\n${title}: ${step.renews}; about ${step.takes}\n${commandLineOf(step, folder)}`);
     const start = performance.now();
-    const { code } = await run(process.execPath, commandOf(step, folder), { cwd: root, limitSeconds: oneDay });
+    const { code } = await run(process.execPath, commandOf(step, folder), { limitSeconds: oneDay });
     const took = duration(performance.now() - start);
     if (code !== 0) {
       const again = commandLine('renew', '--mocap', mocap, given.only ? '--only' : '--from', step.name);

@@ -4,10 +4,10 @@
 // npm run report -- --legs --mocap DIR: renews the table of legs alone, with the page's network for the body and the
 // cross-validation networks of npm run train:gait.
 import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
-import { join, resolve } from 'node:path';
-import { parseArgs } from 'node:util';
-import { pythonEnvironment } from './python-environment.mjs';
-import { main, root, run, SetupError } from './run-command.mjs';
+import { join } from 'node:path';
+import { passedOn, readOptions } from './command-line.mjs';
+import { runTraining } from './python-environment.mjs';
+import { main, root, run, SetupError, typedPath } from './run-command.mjs';
 
 const usage =
   'npm run report -- --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]\n' +
@@ -22,31 +22,21 @@ const usage =
 const sixHours = 6 * 3600;
 // Poses are motion data: they stay in the cache, and only figures of them go into docs.
 const measured = join(root, '.cache/report');
-const env = { PYTHONPATH: `${root}/training` };
+const python = { limitSeconds: 600 };
 
 function options() {
-  const text = { type: 'string' };
-  const flag = { type: 'boolean' };
-  try {
-    const { values } = parseArgs({
-      options: { mocap: text, people: text, skeleton: text, models: text, fp32: text, redraw: flag, legs: flag },
-    });
-    if (values.legs && (values.fp32 || values.redraw)) throw new Error('--legs is measured by itself');
-    if (!values.mocap === !values.redraw) throw new Error('either --mocap or --redraw is needed');
-    if (values.redraw && values.people) throw new Error('--people are measured: with --mocap');
-    return values;
-  } catch (error) {
-    throw new SetupError(`report: ${error.message}\n${usage}`);
-  }
+  const known = { texts: ['mocap', 'people', 'skeleton', 'models', 'fp32'], flags: ['redraw', 'legs'] };
+  return readOptions('report', usage, known, ({ mocap, people, fp32, redraw, legs }) => {
+    if (legs && (fp32 || redraw)) throw new Error('--legs is measured by itself');
+    if (!mocap === !redraw) throw new Error('either --mocap or --redraw is needed');
+    if (redraw && people) throw new Error('--people are measured: with --mocap');
+  });
 }
 
-const path = (name) => resolve(process.env.INIT_CWD ?? process.cwd(), name);
-
 /** Runs npm run evaluate on the given motion with these additional options; resolves to its exit code. */
-async function evaluate({ mocap, skeleton }, ...beside) {
-  const command = [join(root, 'scripts/evaluate.mjs'), '--mocap', path(mocap), ...beside];
-  if (skeleton) command.push('--skeleton', path(skeleton));
-  return (await run(process.execPath, command, { cwd: root, limitSeconds: sixHours })).code;
+async function evaluate(given, ...beside) {
+  const command = [join(root, 'scripts/evaluate.mjs'), ...passedOn(given, [], ['mocap', 'skeleton']), ...beside];
+  return (await run(process.execPath, command, { limitSeconds: sixHours })).code;
 }
 
 /** Measures the legs and renews their tables. */
@@ -57,13 +47,9 @@ async function reportLegs(given) {
   const gaits = join(root, '.cache/gait');
   if (!existsSync(gaits))
     throw new SetupError(`report: there are no networks in ${gaits}; npm run train:gait makes them\n${usage}`);
-  const beside = ['--legs', '--json', json, '--gaits', gaits];
-  if (given.models) beside.push('--models', path(given.models));
-  if (given.people) beside.push('--people', given.people);
+  const beside = ['--legs', '--json', json, '--gaits', gaits, ...passedOn(given, ['people'], ['models'])];
   const code = await evaluate(given, ...beside);
-  if (code !== 0) return code;
-  const renew = ['-m', 'threepoint_training.legs_page', '--legs', json];
-  return (await run(await pythonEnvironment(), renew, { cwd: root, env, limitSeconds: 600 })).code;
+  return code || (await runTraining('threepoint_training.legs_page', ['--legs', json], python)).code;
 }
 
 /**
@@ -79,24 +65,22 @@ const laboratories = Object.fromEntries(
 
 /** Returns the people of the tables and of another laboratory; Python maps files to people. */
 async function peopleIn(mocap) {
-  const list = ['-m', 'threepoint_training.report_people', '--mocap', mocap];
-  const python = await pythonEnvironment();
-  const { code, output } = await run(python, list, { cwd: root, env, capture: true, limitSeconds: 600 });
+  const list = ['--mocap', mocap];
+  const { code, output } = await runTraining('threepoint_training.report_people', list, { ...python, capture: true });
   if (code !== 0) throw new SetupError(`report: ${output.trim()}\n${usage}`);
   return JSON.parse(output);
 }
 
 /** Measures the data of all tables and figures except those of legs; resolves to an exit code. */
 async function measure(given, models, { evaluation, figures }) {
-  const there = await peopleIn(path(given.mocap));
+  const there = await peopleIn(typedPath(given.mocap));
   mkdirSync(measured, { recursive: true });
   // Earlier results are deleted, because they may be from other networks or people.
   for (const file of Object.values(laboratories).flat()) rmSync(file, { force: true });
-  const tables = ['--models', models, '--robustness', '--json', evaluation, '--figures', figures];
   const people = given.people?.split(',') ?? there.tables;
+  const tables = ['--models', models, '--robustness', '--json', evaluation, '--figures', figures];
   if (people.length > 0) tables.push('--people', people.join(','));
-  if (given.fp32) tables.push('--fp32', path(given.fp32));
-  const code = await evaluate(given, ...tables);
+  const code = await evaluate(given, ...tables, ...passedOn(given, [], ['fp32']));
   if (code !== 0) return code;
   const { trainedOn } = JSON.parse(readFileSync(join(models, 'learned.json'), 'utf8'));
   const groups = { home: people.filter((name) => !trainedOn.people.includes(name)), elsewhere: there.elsewhere };
@@ -117,7 +101,7 @@ await main(async () => {
   const given = options();
   if (given.legs) return reportLegs(given);
   const [evaluation, figures] = ['evaluation.json', 'figures.json'].map((name) => join(measured, name));
-  const models = given.models ? path(given.models) : join(root, '.cache/cross-validation');
+  const models = given.models ? typedPath(given.models) : join(root, '.cache/cross-validation');
   if (!existsSync(join(models, 'learned.json')))
     throw new SetupError(`report: there are no networks in ${models}; npm run train makes them\n${usage}`);
   if (given.mocap) {
@@ -128,9 +112,7 @@ await main(async () => {
     if (!existsSync(file))
       throw new SetupError(`report: ${file} is missing; measure first, with --mocap DIR\n${usage}`);
   }
-  const python = await pythonEnvironment({ extras: ['report'] });
-  const draw = ['-m', 'threepoint_training.accuracy_page', '--evaluation', evaluation, '--figures', figures];
-  draw.push('--models', models);
+  const draw = ['--evaluation', evaluation, '--figures', figures, '--models', models];
   for (const [group, files] of Object.entries(laboratories)) draw.push(`--${group}`, ...files);
-  return (await run(python, draw, { cwd: root, env, limitSeconds: 600 })).code;
+  return (await runTraining('threepoint_training.accuracy_page', draw, { ...python, extras: ['report'] })).code;
 });

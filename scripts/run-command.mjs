@@ -1,6 +1,6 @@
 import { spawn, spawnSync } from 'node:child_process';
 import { resolve as resolvePath } from 'node:path';
-import { fileURLToPath } from 'node:url';
+import { fileURLToPath, pathToFileURL } from 'node:url';
 
 /** The root of the repository, without a trailing slash. */
 export const root = fileURLToPath(new URL('..', import.meta.url)).replace(/[\\/]$/, '');
@@ -117,3 +117,6 @@ export async function main(body) {
     process.exitCode = 1;
   }
 }
+
+/** Runs the body like `main`, if the script with this `import.meta.url` is the program and no module of another one. */
+export const mainOf = (url, body) => (url === pathToFileURL(process.argv[1] ?? '').href ? main(body) : null);

@@ -13,7 +13,7 @@ import { ballRules } from 'threepoint-games/ball/rules';
 import { createBallView } from 'threepoint-page/ball/ball-view';
 import type { Quality } from 'threepoint-page/scene/renderer';
 import type { Studio } from 'threepoint-page/studio/studio';
-import { createRemotePlayers } from 'threepoint-rooms/client/remote-players';
+import { RemotePlayers } from 'threepoint-rooms/client/remote-players';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import { decodePose } from 'threepoint-rooms/protocol/pose-codec';
 
@@ -44,7 +44,7 @@ export class Court {
   readonly #seen: readonly Mutable<SeenPerson>[];
   readonly #people: SeenPerson[] = [];
   readonly #shown: Mutable<Parameters<ReturnType<typeof createBallView>['show']>[0]>;
-  #players = createRemotePlayers();
+  #players = new RemotePlayers();
 
   constructor(studio: Studio, mannequin: ArrayBuffer, places: number, quality: Quality = 'low') {
     this.#studio = studio;
@@ -91,7 +91,7 @@ export class Court {
 
   /** The others leave. */
   clear(): void {
-    this.#players = createRemotePlayers();
+    this.#players = new RemotePlayers();
   }
 
   /** Packets of the others, as if sent at this time [s]. */

@@ -11,7 +11,7 @@ import { median, quantile } from 'threepoint/core/math/statistics';
 import { distance, lerp, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { createRemotePlayers } from 'threepoint-rooms/client/remote-players';
+import { RemotePlayers } from 'threepoint-rooms/client/remote-players';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import { decodePose, encodePose } from 'threepoint-rooms/protocol/pose-codec';
 import type { PosePacket } from 'threepoint-rooms/protocol/pose-packet';
@@ -175,7 +175,7 @@ export function seenOver(way: Way, seconds: number, seed: number, tremor: number
     way,
     seed,
   );
-  const players = createRemotePlayers();
+  const players = new RemotePlayers();
   const ages: number[] = [];
   const off: number[] = [];
   const [own, drawn] = [new Jerk(), new Jerk()];

@@ -8,9 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from threepoint_training import prepare, quaternion
-from threepoint_training.motion import MocapError
+from threepoint_training.motion_files import MocapError
 from threepoint_training.prepared_corpus import JOINTS, LEG_JOINTS, PreparedCorpus
-from threepoint_training.skeleton_map import read_skeleton_map
 from threepoint_training.synthetic_skeletons import (
     IDENTITY,
     along,
@@ -42,7 +41,6 @@ def test_a_bvh_of_cmuconvert_has_the_joints_of_its_original(tmp_path: Path) -> N
     angles = angles_of(1, 120)
     original = folder(tmp_path, "asf")
     write_asf_amc(original, angles)
-    (original / "index.csv").write_text("Subject,Trial #,framerate\n1,1,120\n")
     for file, name in (("p.asf", "02.asf"), ("p_01.amc", "02_01.amc")):
         (original / file).rename(original / name)
     converted = folder(tmp_path, "bvh")
@@ -150,37 +148,26 @@ def test_a_map_with_the_t_pose_reads_a_folded_skeleton(tmp_path: Path, axis: np.
 @pytest.mark.parametrize(
     ("entry", "sentence"),
     [
-        ({"restFrame": 0}, "map.json: “restFrame” should be the number of a frame, from 1"),
-        ({"restFrame": {"file": "none.bvh"}}, "map.json: restFrame.file: no file"),
-        ({"restFrame": 1, "restPose": {}}, "map.json: either “restFrame” or “restPose”"),
-        ({"restPose": {"Hips": "up"}}, "map.json: restPose.Hips should be a list of angles"),
-        ({"up": "+y", "forward": "-y"}, "map.json: “up” +y and “forward” -y are one axis"),
+        ({"unit": 3}, "map.json: “unit” is not known"),
+        ({"restFrame": {"file": "none.bvh"}}, "map.json: ENOENT: no such file"),
+        ({"restFrame": 61}, "nothing could be read:\nwalk.bvh: restFrame 61, but there are 60 frames"),
     ],
 )
-def test_a_bad_rest_in_a_map_is_refused(tmp_path: Path, entry: dict[str, object], sentence: str) -> None:
+def test_a_faulty_map_is_refused(tmp_path: Path, entry: dict[str, object], sentence: str) -> None:
+    own = folder(tmp_path, "p")
+    (own / "walk.bvh").write_text(game_bvh(along(X), *moving())[0])
     with pytest.raises(MocapError) as error:
-        read_skeleton_map(write_map(tmp_path / "map.json", **entry))
+        prepared(tmp_path, write_map(tmp_path / "map.json", **entry))
     assert str(error.value).startswith(sentence)
 
 
-@pytest.mark.parametrize(
-    ("entry", "sentence"),
-    [
-        ({"restFrame": 61}, "walk.bvh: restFrame 61, but there are 60 frames"),
-        ({"restFrame": 60}, "walk.bvh: the rest pose is no T-pose: the left arm"),
-        ({"restPose": {"Hips": [90, 0]}}, "walk.bvh: restPose gives Hips 2 angles, the file 3 rotation channels"),
-        ({"restPose": {"Pelvis": [90, 0, 0]}}, "walk.bvh: no joint “Pelvis”, which the map's restPose turns"),
-    ],
-)
-def test_a_rest_that_does_not_fit_the_file_is_refused(tmp_path: Path, entry: dict[str, object], sentence: str) -> None:
-    turns, hips = moving()
-    # Arms up at the end.
-    turns[-1]["LeftArm"] = quaternion.multiply(turns[-1]["Spine"], quaternion.from_axis_angle(Z, np.array(1.4)))
-    own = folder(tmp_path, "p")
-    (own / "walk.bvh").write_text(game_bvh(along(X), turns, hips)[0])
-    with pytest.raises(MocapError) as error:
-        prepared(tmp_path, write_map(tmp_path / "map.json", **entry))
-    assert sentence in str(error.value)
+def test_a_table_of_frame_rates_goes_before_those_of_the_database(tmp_path: Path) -> None:
+    write_asf_amc(tmp_path, angles_of(1, 120))
+    for file, name in (("p.asf", "02.asf"), ("p_01.amc", "02_01.amc")):
+        (tmp_path / file).rename(tmp_path / name)
+    assert len(prepared(tmp_path).positions) == 60
+    (tmp_path / "index.csv").write_text("Subject,Trial #,framerate\n2,1,60\n")
+    assert len(prepared(tmp_path).positions) == 120
 
 
 def test_folders_that_are_links_are_followed_and_no_one_is_two_people(tmp_path: Path) -> None:

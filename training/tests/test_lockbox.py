@@ -12,7 +12,7 @@ from threepoint_training import export, lockbox, pipeline, selection, train_lear
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.lockbox import LockboxConfig
 from threepoint_training.model import CorrectionNetwork
-from threepoint_training.motion import MocapError
+from threepoint_training.motion_files import MocapError
 from threepoint_training.synthetic_skeletons import angles_of, write_asf_amc
 from threepoint_training.training_config import TrainConfig
 

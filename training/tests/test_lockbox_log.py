@@ -11,7 +11,7 @@ import pytest
 from test_prepare import STANDING, person_bvh
 from threepoint_training import lockbox_log, prepare, recordings
 from threepoint_training.lockbox_log import LockboxAccess
-from threepoint_training.motion import MocapError
+from threepoint_training.motion_files import MocapError
 from threepoint_training.splits import LOCKBOX
 
 PERSON = LOCKBOX[0]
@@ -69,6 +69,6 @@ def test_recordings_for_evaluate_goldens_and_report_leave_the_lockbox_out(mocap:
 def test_motion_is_read_by_prepare_alone() -> None:
     """Another user of a reader would bypass the log; `golden_mocap` writes skeletons of its own."""
     package = Path(prepare.__file__).parent
-    readers = re.compile(r"import .*\b(parse_amc|read_foreign)\b")
+    readers = re.compile(r"import .*\b(read_motion)\b")
     users = {file.stem for file in package.glob("*.py") if readers.search(file.read_text())}
     assert users == {"prepare"}

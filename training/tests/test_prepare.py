@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from threepoint_training import prepare, quaternion, recordings
 from threepoint_training.generated_motion import generate_corpus
-from threepoint_training.motion import MocapError
+from threepoint_training.motion_files import MocapError
 from threepoint_training.prepared_corpus import JOINTS, PreparedCorpus
-from threepoint_training.skeleton_map import read_skeleton_map
 
 
 def person_bvh(frames: list[tuple[float, float, float, float]], frame_time: float = 1 / 60) -> str:
@@ -154,26 +153,10 @@ def test_a_broken_file_is_reported_and_the_rest_is_read(tmp_path: Path) -> None:
     assert "p2_walk.bvh: line" in corpus.problems[0]
 
 
-def test_amc_without_a_known_rate_says_what_to_give(tmp_path: Path) -> None:
-    with pytest.raises(MocapError, match="nothing could be read"):
-        (tmp_path / "take.amc").write_text("1\nroot 0\n")
+def test_amc_without_a_skeleton_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "take.amc").write_text("1\nroot 0\n")
+    with pytest.raises(MocapError, match="nothing could be read:\ntake.amc: no .asf skeleton beside it"):
         prepare.main(prepare.PrepareConfig(tmp_path))
-
-
-@pytest.mark.parametrize(
-    ("content", "sentence"),
-    [
-        ("{", "map.json, line 1: no valid JSON"),
-        ('{"joints": {}}', "map.json: joints.hips is missing"),
-        ('{"joints": {}, "unit": 3}', "map.json: “unit” is not known"),
-    ],
-)
-def test_a_bad_skeleton_map_is_refused_with_a_sentence(tmp_path: Path, content: str, sentence: str) -> None:
-    path = tmp_path / "map.json"
-    path.write_text(content)
-    with pytest.raises(MocapError) as error:
-        read_skeleton_map(path)
-    assert str(error.value).startswith(sentence)
 
 
 def test_a_map_reads_a_skeleton_with_names_of_its_own(tmp_path: Path) -> None:

@@ -179,7 +179,7 @@ def test_kinematics_are_refitted_on_all_trainable_people(config, tmp_path, monke
 
 def test_errors_from_other_motion_are_refused(config, run, tmp_path):
     from threepoint_training import pipeline
-    from threepoint_training.motion import MocapError
+    from threepoint_training.motion_files import MocapError
 
     with pytest.raises(MocapError, match="other motion"):
         pipeline.main(replace(config, seed=SEED + 1, stages=("all-subjects",), out=tmp_path))

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from . import pipeline
-from .motion import MocapError
+from .motion_files import MocapError
 from .splits import FOLDS
 from .training_config import Task, TrainConfig, quick
 

@@ -11,7 +11,7 @@ import torch
 
 from . import fit_networks, fitted_kinematics, train_learned, train_paper
 from .fit_networks import Destination, TrainingRun
-from .motion import MocapError
+from .motion_files import MocapError
 from .splits import FOLDS, evaluation_only, training_people
 
 

@@ -13,7 +13,7 @@ import onnx
 
 from . import selection, splits, train_learned
 from .lockbox_log import append, stamp
-from .motion import MocapError
+from .motion_files import MocapError
 from .prepared_corpus import PreparedCorpus
 from .quantise import run
 

@@ -8,8 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from .motion import MocapError
-from .motion_files import Source
+from .motion_files import MocapError, Source
 from .splits import in_lockbox
 
 LOG = Path(__file__).parents[1] / "lockbox-log.json"

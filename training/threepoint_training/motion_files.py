@@ -1,4 +1,4 @@
-"""The motion files of a folder: which person each is of, and the frame rate of those that do not state it."""
+"""The motion files of a folder: which person each is of, and the frame rates that a table beside them states."""
 
 import csv
 import os
@@ -7,15 +7,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from .foreign_motion import SUFFIXES
-from .mocap_rules import RULES
-from .motion import MocapError
-from .skeleton_map import SkeletonMap
+_SUFFIXES = (".amc", ".bvh", ".vrma")
 
-# AMC files carry no frame rate. The database was recorded at 120 Hz, but for these subjects, recorded at 60 Hz
-# (the frame rates of mocap.cs.cmu.edu's trial pages).
-_CMU_60_HZ_SUBJECTS = frozenset(map(str, RULES["cmu"]["subjectsAt60Hz"]))
-_CMU_NAME = re.compile(r"^0*(\d+)_\d+$")
+
+class MocapError(ValueError):
+    """A sentence that says what is wrong and in which file and line."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +53,7 @@ def motion_files(mocap: Path, people: tuple[str, ...] | None) -> list[Source]:
         folder / name
         for folder, names in _folders(mocap)
         for name in names
-        if Path(name).suffix.lower() in (".amc", *SUFFIXES)
+        if Path(name).suffix.lower() in _SUFFIXES
     )
     if not files:
         raise MocapError(f"{mocap}: no .amc, .bvh or .vrma files in this folder or below it")
@@ -96,17 +92,3 @@ def index_rates(folder: Path) -> dict[str, float]:
                     except (KeyError, TypeError, ValueError):
                         continue  # A row of another table or an empty line: the clip is then looked up elsewhere.
     return rates
-
-
-def frame_rate(path: Path, skeleton: SkeletonMap, rates: dict[str, float]) -> float:
-    """The rate [Hz] of a file that does not say it; one that is not known raises MocapError."""
-    if skeleton.frame_rate:
-        return skeleton.frame_rate
-    match = re.fullmatch(r"0*(\d+)_0*(\d+)", path.stem)
-    if match and f"{match[1]}_{match[2]}" in rates:
-        return rates[f"{match[1]}_{match[2]}"]
-    if match and _CMU_NAME.match(path.stem):
-        return 60.0 if match[1] in _CMU_60_HZ_SUBJECTS else float(RULES["cmu"]["rateHz"])
-    raise MocapError(
-        f"{path.name}: frame rate unknown; give “frameRate” in a skeleton map, or an index.csv beside the files"
-    )

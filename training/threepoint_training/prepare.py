@@ -3,6 +3,7 @@ T-pose.
 """
 
 import hashlib
+import json
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,15 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import quaternion
-from .foreign_motion import SUFFIXES, read_foreign
 from .lockbox_log import LockboxAccess, permitted
-from .mocap_asf_amc import AsfSkeleton, parse_amc, parse_asf
 from .mocap_rules import RULES
-from .motion import MocapError, Motion
-from .motion_files import Source, frame_rate, index_rates, motion_files
+from .motion_files import MocapError, index_rates, motion_files
 from .prepared_corpus import JOINTS, LEG_JOINTS, Person, PreparedCorpus
-from .rest_pose import check_rest, face_forward, rest_from_frame
-from .skeleton_map import SkeletonMap, find_skeleton_map, read_skeleton_map
+from .read_motion import Clip, read_motion
 
 RATE_HZ: int = RULES["rateHz"]
 
@@ -29,14 +26,6 @@ SHORTEST_SEGMENT_SECONDS: float = RULES["shortestPieceSeconds"]
 
 # The headset's origin (between the eyes) relative to the head joint, in the head's frame: up and forward [m].
 EYES_FROM_HEAD_JOINT = np.array(RULES["eyesFromHeadJoint"])
-
-# The wrist's −Z points to the knuckles, +Y out of the back of the hand; in T-pose the knuckles point sideways, palms
-# down.
-_HAND_REST = {
-    "leftHand": quaternion.from_axis_angle(np.array([0.0, 1.0, 0.0]), np.array(np.pi / 2)),
-    "rightHand": quaternion.from_axis_angle(np.array([0.0, 1.0, 0.0]), np.array(-np.pi / 2)),
-}
-_LATERAL = {"leftHand": np.array([-1.0, 0.0, 0.0]), "rightHand": np.array([1.0, 0.0, 0.0])}
 
 
 @dataclass(frozen=True)
@@ -52,82 +41,7 @@ class PrepareConfig:
     lockbox: LockboxAccess | None = None
 
 
-@dataclass(frozen=True)
-class _Clip:
-    """One clip in our joints and axes, still at its own rate; legs [frames, 8, 3] (LEG_JOINTS, NaN: not in the map);
-    rest is the rest pose.
-    """
-
-    positions: NDArray[np.float64]
-    rotations: NDArray[np.float64]
-    legs: NDArray[np.float64]
-    rest: dict[str, NDArray[np.float64]]
-    rate: float
-
-
-def _scale(motion: Motion, skeleton: SkeletonMap, file_name: str) -> float:
-    """Metres per unit: the map's, else the one that makes the rest skeleton a person."""
-    if skeleton.scale:
-        return skeleton.scale
-    rest = {
-        ours: motion.rest_positions[motion.index(theirs)]
-        for ours, theirs in skeleton.joints.items()
-        if theirs in motion.names
-    }
-    arm = sum(
-        np.linalg.norm(rest[a] - rest[b]) for a, b in (("leftUpperArm", "leftLowerArm"), ("leftLowerArm", "leftHand"))
-    )
-    # Shoulder to wrist of 5th-percentile women to 95th-percentile men is 0.46–0.62 m; children and odd definitions
-    # widen it.
-    shortest, longest = RULES["armLength"]
-    for scale in RULES["units"]:
-        if shortest < arm * scale < longest:
-            return scale
-    raise MocapError(
-        f"{file_name}: an arm of {arm:.3g} units fits no known unit; give “scale” (metres per unit) in a skeleton map"
-    )
-
-
-def _to_our_joints(motion: Motion, skeleton: SkeletonMap, rate: float, file_name: str) -> _Clip:
-    for theirs in skeleton.joints.values():
-        if theirs not in motion.names:
-            raise MocapError(f"{file_name}: no joint “{theirs}”, which the map “{skeleton.name}” names")
-    if skeleton.rest_frame is not None:
-        motion = face_forward(motion, skeleton.joints, skeleton.floor_from_file())
-    scale = _scale(motion, skeleton, file_name)
-    turn = quaternion.from_matrix(skeleton.floor_from_file())
-
-    def place(points: NDArray[np.float64]) -> NDArray[np.float64]:
-        return quaternion.rotate(np.broadcast_to(turn, (*points.shape[:-1], 4)), points) * scale
-
-    rest = {ours: place(motion.rest_positions[motion.index(theirs)]) for ours, theirs in skeleton.joints.items()}
-    check_rest(rest, skeleton.joints, file_name)
-    columns = [motion.index(skeleton.joints.get(joint, skeleton.joints["hips"])) for joint in JOINTS]
-    positions = place(motion.positions[:, columns])
-    if "spine" not in skeleton.joints:
-        spine = JOINTS.index("spine")
-        positions[:, spine] = (positions[:, JOINTS.index("hips")] + positions[:, JOINTS.index("chest")]) / 2
-    rotations = []
-    for joint in ("head", "leftHand", "rightHand"):
-        source = motion.index(skeleton.rotations.get(joint, skeleton.joints[joint]))
-        # Rotations relative to the rest pose, in our axes: conjugated by the turn.
-        q = motion.rotations[:, source]
-        q = quaternion.multiply(
-            np.broadcast_to(turn, q.shape), quaternion.multiply(q, np.broadcast_to(quaternion.conjugate(turn), q.shape))
-        )
-        if joint in _HAND_REST:
-            elbow = rest[joint.replace("Hand", "LowerArm")]
-            align = quaternion.rotation_between(_LATERAL[joint], rest[joint] - elbow)
-            q = quaternion.multiply(q, np.broadcast_to(quaternion.multiply(align, _HAND_REST[joint]), q.shape))
-        rotations.append(quaternion.continuous(q))
-    legs = np.full((len(positions), len(LEG_JOINTS), 3), np.nan)
-    for column, joint in enumerate(LEG_JOINTS):
-        if joint in skeleton.joints:
-            legs[:, column] = place(motion.positions[:, motion.index(skeleton.joints[joint])])
-    return _Clip(positions, np.stack(rotations, axis=1), legs, rest, rate)
-
-
-def _segments(clip: _Clip, name: str, report: Callable[[str], None]) -> Iterable[tuple[str, _Clip]]:
+def _segments(clip: Clip, name: str, report: Callable[[str], None]) -> Iterable[tuple[str, Clip]]:
     """The clip cut where it teleports; pieces too short to be motion are left out. Both are reported."""
     speed = np.linalg.norm(np.diff(clip.positions, axis=0), axis=-1).max(axis=1) * clip.rate
     cuts = np.flatnonzero(speed > TELEPORT_SPEED) + 1
@@ -138,8 +52,8 @@ def _segments(clip: _Clip, name: str, report: Callable[[str], None]) -> Iterable
 
 
 def _pieces(
-    clip: _Clip, name: str, bounds: Sequence[tuple[int, int]], report: Callable[[str], None]
-) -> Iterable[tuple[str, _Clip]]:
+    clip: Clip, name: str, bounds: Sequence[tuple[int, int]], report: Callable[[str], None]
+) -> Iterable[tuple[str, Clip]]:
     """The pieces of a clip between these frames, numbered where there are several; those too short are left out."""
     shortest = max(4, round(SHORTEST_SEGMENT_SECONDS * clip.rate))
     pieces = [(start, end) for start, end in bounds if end - start >= shortest]
@@ -153,13 +67,13 @@ def _pieces(
         yield (name if len(pieces) == 1 else f"{name}#{number + 1}"), piece
 
 
-def _with_head_turned(clip: _Clip, neutral: NDArray[np.float64]) -> _Clip:
+def _with_head_turned(clip: Clip, neutral: NDArray[np.float64]) -> Clip:
     """The clip with head rotations that are the identity where the person looks ahead; neutral: from `_neutral_head`."""
     head = quaternion.multiply(clip.rotations[:, 0], np.broadcast_to(neutral, clip.rotations[:, 0].shape))
     return replace(clip, rotations=np.concatenate([head[:, None], clip.rotations[:, 1:]], axis=1))
 
 
-def _with_head_on_neck(clip: _Clip, name: str, report: Callable[[str], None]) -> Iterable[tuple[str, _Clip]]:
+def _with_head_on_neck(clip: Clip, name: str, report: Callable[[str], None]) -> Iterable[tuple[str, Clip]]:
     """The clip without frames whose head is recorded upside down, and without pieces too short; both are reported.
 
     There the head's up axis is more than 90° from the direction from the neck to the head, which no neck can do.
@@ -174,7 +88,7 @@ def _with_head_on_neck(clip: _Clip, name: str, report: Callable[[str], None]) ->
     return _pieces(clip, name, list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)), report)
 
 
-def _resample(clip: _Clip) -> _Clip:
+def _resample(clip: Clip) -> Clip:
     """The clip at 60 Hz: every nth frame where that is exact, else interpolated."""
     step = clip.rate / RATE_HZ
     if abs(step - round(step)) < 1e-3 and step >= 1:
@@ -198,7 +112,7 @@ def _resample(clip: _Clip) -> _Clip:
     return replace(clip, positions=between(clip.positions), rotations=rotations, legs=between(clip.legs), rate=RATE_HZ)
 
 
-def _standing_eye_height(clip: _Clip) -> float | None:
+def _standing_eye_height(clip: Clip) -> float | None:
     """Eye height with straight legs and the trunk as at rest, from segment lengths; None without legs in the map."""
     rest = clip.rest
     if not all(joint in rest for joint in ("leftUpperLeg", "leftLowerLeg", "leftFoot")):
@@ -216,7 +130,7 @@ def _standing_eye_height(clip: _Clip) -> float | None:
     return leg + sole + float(rest["head"][1] - hip) + EYES_FROM_HEAD_JOINT[1]
 
 
-def _person(person: str, clips: list[tuple[str, _Clip]]) -> Person:
+def _person(person: str, clips: list[tuple[str, Clip]]) -> Person:
     first = clips[0][1]
     rest = first.rest
 
@@ -234,7 +148,7 @@ def _person(person: str, clips: list[tuple[str, _Clip]]) -> Person:
     return Person(person, eye_height, span)
 
 
-def _neutral_head(clips: list[tuple[str, _Clip]]) -> NDArray[np.float64]:
+def _neutral_head(clips: list[tuple[str, Clip]]) -> NDArray[np.float64]:
     """The head's rotation when this person looks ahead: the median pitch and roll over frames with an upright trunk."""
     pitches, rolls = [], []
     for _, clip in clips:
@@ -256,7 +170,7 @@ def _neutral_head(clips: list[tuple[str, _Clip]]) -> NDArray[np.float64]:
     )
 
 
-def _floor_height(clips: list[tuple[str, _Clip]]) -> float:
+def _floor_height(clips: list[tuple[str, Clip]]) -> float:
     """How far the lowest foot joint's usual height differs from a joint 2.5 cm above the floor; 0 where there are no
     feet.
     """
@@ -279,70 +193,23 @@ def corpus_hash(paths: Iterable[Path]) -> str:
     return digest.hexdigest()
 
 
-def _motion(source: Source, skeletons: dict[Path, AsfSkeleton]) -> Motion:
-    """What an AMC file has; `skeletons` keeps those read before."""
-    if source.asf is None:
-        raise MocapError(f"{source.path.name}: no .asf skeleton beside it")
-    if source.asf not in skeletons:
-        skeletons[source.asf] = parse_asf(source.asf)
-    return parse_amc(source.path, skeletons[source.asf])
-
-
-class _Reader:
-    """Reads the files of one corpus with one map; what was put right is counted in `notes`, by the sentence that says
-    it.
+def _map_files(skeleton_map: Path | None) -> list[Path]:
+    """A skeleton map and the file that its `restFrame` is of, as far as there are any; the reader refuses a faulty map.
     """
+    if skeleton_map is None:
+        return []
+    try:
+        rest = skeleton_map.parent / json.loads(skeleton_map.read_text())["restFrame"]["file"]
+    except (ValueError, KeyError, TypeError):
+        return [skeleton_map]
+    return [skeleton_map, *([rest] if rest.is_file() else [])]
 
-    def __init__(self, config: PrepareConfig, sources: Sequence[Source]) -> None:
-        self.given = read_skeleton_map(config.skeleton_map) if config.skeleton_map else None
-        foreign = [source.path for source in sources if source.path.suffix.lower() in SUFFIXES]
-        self.foreign = read_foreign(foreign, config.skeleton_map)
-        self.rates = index_rates(config.mocap)
-        self.skeletons: dict[Path, AsfSkeleton] = {}
-        self.rests: dict[Path, Motion] = {}
-        self.notes: dict[str, list[str]] = {}
 
-    def read(self, source: Source) -> _Clip:
-        """One file in our joints; what cannot be read raises MocapError or OSError."""
-        name = source.path.name
-        if source.path in self.foreign:
-            return self._foreign(source)
-        if self.given and self.given.rest_pose is not None:
-            raise MocapError(f"{name}: restPose is for BVH files; here restFrame can be given")
-        motion = _motion(source, self.skeletons)
-        skeleton = self.given or find_skeleton_map(motion.names, name)
-        if motion.frame_rate is None:
-            motion = replace(motion, frame_rate=frame_rate(source.path, skeleton, self.rates))
-        if skeleton.rest_frame is not None:
-            motion = self._counted_from(motion, skeleton, skeleton.rest_frame, source)
-        clip = _to_our_joints(motion, skeleton, motion.frame_rate or RATE_HZ, name)
-        for note in motion.notes:
-            self.notes.setdefault(note, []).append(name)
-        return clip
-
-    def _foreign(self, source: Source) -> _Clip:
-        found = self.foreign[source.path]
-        if isinstance(found, MocapError):
-            raise found
-        for note in found.notes:
-            self.notes.setdefault(note, []).append(source.path.name)
-        rotations = np.stack([quaternion.continuous(found.rotations[:, i]) for i in range(3)], axis=1)
-        return _Clip(found.positions, rotations, found.legs, found.rest, found.rate)
-
-    def _counted_from(self, motion: Motion, skeleton: SkeletonMap, frame: int, source: Source) -> Motion:
-        file = skeleton.rest_file
-        if file is None:
-            return rest_from_frame(motion, frame, motion, source.path.name)
-        if file not in self.rests:
-            self.rests[file] = _motion(replace(source, path=file), self.skeletons)
-        return rest_from_frame(motion, frame, self.rests[file], f"{source.path.name}, {file.name}")
-
-    def messages(self) -> list[str]:
-        """Returns a message for each correction, with the files that it was applied to."""
-        return [
-            f"{files[0]}{f' and {len(files) - 1} more' if len(files) > 1 else ''}: {note}"
-            for note, files in self.notes.items()
-        ]
+def _corrections(corrected: dict[str, list[str]]) -> list[str]:
+    """A message for each correction, with the files that it was applied to."""
+    return [
+        f"{files[0]}{f' and {len(files) - 1} more' if len(files) > 1 else ''}: {note}" for note, files in corrected.items()
+    ]
 
 
 def main(config: PrepareConfig, progress: Callable[[str], None] = lambda _: None) -> PreparedCorpus:
@@ -350,25 +217,23 @@ def main(config: PrepareConfig, progress: Callable[[str], None] = lambda _: None
     """
     sources, left_out = permitted(motion_files(config.mocap, config.people), config.people, config.lockbox)
     hashed = [path for source in sources for path in (source.path, source.asf) if path is not None]
-    given = read_skeleton_map(config.skeleton_map) if config.skeleton_map else None
-    rest_file = given.rest_file if given else None
-    digest = corpus_hash([*hashed, *(path for path in (config.skeleton_map, rest_file) if path)])
+    digest = corpus_hash([*hashed, *_map_files(config.skeleton_map)])
     cached = config.cache / f"{digest[:16]}-v{PreparedCorpus.VERSION}.npz" if config.cache else None
     if cached and cached.is_file():
         return PreparedCorpus.load(cached)
 
-    reader = _Reader(config, sources)
     problems: list[str] = [*left_out]
-    by_person: dict[str, list[tuple[str, _Clip]]] = {}
-    for source in sources:
+    # The names of the files that each correction was applied to.
+    corrected: dict[str, list[str]] = {}
+    by_person: dict[str, list[tuple[str, Clip]]] = {}
+    for source, clip in read_motion(sources, config.skeleton_map, index_rates(config.mocap)):
         progress(source.path.name)
-        try:
-            clip = reader.read(source)
-            by_person.setdefault(source.person, []).extend(_segments(clip, source.path.stem, problems.append))
-        except MocapError as error:
-            problems.append(str(error))
-        except OSError as error:
-            problems.append(f"{source.path.name}: cannot be read: {error.strerror}")
+        if isinstance(clip, str):
+            problems.append(clip)
+            continue
+        for note in clip.notes:
+            corrected.setdefault(note, []).append(source.path.name)
+        by_person.setdefault(source.person, []).extend(_segments(clip, source.path.stem, problems.append))
 
     positions, rotations, legs, names, people_of_clips, starts = [], [], [], [], [], [0]
     people: dict[str, Person] = {}
@@ -398,7 +263,7 @@ def main(config: PrepareConfig, progress: Callable[[str], None] = lambda _: None
         people=people,
         rate_hz=RATE_HZ,
         corpus_hash=digest,
-        problems=(*reader.messages(), *problems),
+        problems=(*_corrections(corrected), *problems),
         legs=np.concatenate(legs),
     )
     if cached:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from . import hand_tilt, prepare
 from .lockbox_log import LockboxAccess
 from .mocap_rules import RULES
-from .motion import MocapError
+from .motion_files import MocapError
 from .normal_numbers import NormalNumbers
 from .prepared_corpus import JOINTS, LEG_JOINTS, ROTATIONS, PreparedCorpus
 from .simulate_trackers import FOREARM_ERROR, TrackerConfig, draw_wearer, measured_tilts, simulate

@@ -5,8 +5,7 @@ import json
 import sys
 from pathlib import Path
 
-from .motion import MocapError
-from .motion_files import motion_files
+from .motion_files import MocapError, motion_files
 from .splits import LOCKBOX, VARIED, evaluation_only, trainable
 
 

@@ -107,17 +107,12 @@ def write_asf_amc(folder: Path, angles: dict[str, Array]) -> None:
     (folder / "p_01.amc").write_text(":FULLY-SPECIFIED\n:DEGREES\n" + "".join(rows))
 
 
-def write_cmuconvert_bvh(path: Path, angles: dict[str, Array], lost: bool = True) -> None:
-    """Writes the motion in cmuconvert's format; `lost`: without the bone lengths that it loses."""
+def write_cmuconvert_bvh(path: Path, angles: dict[str, Array]) -> None:
+    """Writes the motion in cmuconvert's format, without the bone lengths that it loses."""
     ways = {name: way for name, _, way in BONES}
-    joints = []
-    for name, bone, parent, way in _CMUCONVERT:
-        offset = np.zeros(3) if way is None else ways[way]
-        if not lost and name in ("Neck", "LeftShoulder", "RightShoulder"):
-            offset = ways["thorax"]
-        if not lost and name.endswith(("FingerBase", "Thumb")):
-            offset = ways[f"{name[0].lower()}wrist"]
-        joints.append((name, parent, offset))
+    joints = [
+        (name, parent, np.zeros(3) if way is None else ways[way]) for name, _, parent, way in _CMUCONVERT
+    ]
     rows = []
     bone_of = {name: bone for name, bone, _, _ in _CMUCONVERT}
     for frame in range(len(next(iter(angles.values())))):

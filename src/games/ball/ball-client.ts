@@ -1,10 +1,6 @@
 import type { ClientPolicy } from 'threepoint-rooms/client/client-policy';
 import type { Connection, ConnectionUpdate, RoomView } from 'threepoint-rooms/client/connection';
-import {
-  createLoopbackHost,
-  type LoopbackHost,
-  type LoopbackOptions,
-} from 'threepoint-rooms/client/loopback-connection';
+import { LoopbackHost, type LoopbackOptions } from 'threepoint-rooms/client/loopback-connection';
 import { ballKind, ballRoomMessageFrom } from './ball-messages';
 import { type BallGame, BallPolicy } from './ball-policy';
 import { unpackBall } from './ball-snapshot';
@@ -36,4 +32,4 @@ export interface BallLoopbackOptions extends LoopbackOptions<BallGame> {
 
 /** Creates a Room of the ball game in this page. */
 export const createBallLoopbackHost = ({ seed = 0, ball, ...options }: BallLoopbackOptions = {}): BallLoopbackHost =>
-  createLoopbackHost(new BallPolicy({ ...ball, seed }), ballClientPolicy, options);
+  new LoopbackHost(new BallPolicy({ ...ball, seed }), ballClientPolicy, options);

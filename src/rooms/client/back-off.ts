@@ -1,32 +1,31 @@
-/** An exponential back-off with jitter. */
-export interface BackOff {
-  /** Failures since the last success. */
-  readonly attempts: number;
-  /** Counts a failure and returns the seconds until the next attempt. */
-  next(): number;
-  succeeded(): void;
-}
-
 const first = 0.5;
 const longest = 3;
 
 /**
- * Creates a back-off that doubles with every failure, up to 3 s, with a jitter of ±50 %: pages that lose a server at
- * the same moment do not all return at the same moment. `chance` returns numbers in [0, 1).
+ * A back-off that doubles with every failure, up to 3 s, with a jitter of ±50 %: pages that lose a server at the same
+ * moment do not all return at the same moment. `chance` returns numbers in [0, 1).
  */
-export function createBackOff(chance: () => number = Math.random): BackOff {
-  let attempts = 0;
-  return {
-    get attempts() {
-      return attempts;
-    },
-    next() {
-      const seconds = Math.min(longest, first * 2 ** attempts);
-      attempts += 1;
-      return seconds * (0.5 + chance());
-    },
-    succeeded() {
-      attempts = 0;
-    },
-  };
+export class BackOff {
+  readonly #chance: () => number;
+  #attempts = 0;
+
+  constructor(chance: () => number = Math.random) {
+    this.#chance = chance;
+  }
+
+  /** Failures since the last success. */
+  get attempts(): number {
+    return this.#attempts;
+  }
+
+  /** Counts a failure and returns the seconds until the next attempt. */
+  next(): number {
+    const seconds = Math.min(longest, first * 2 ** this.#attempts);
+    this.#attempts += 1;
+    return seconds * (0.5 + this.#chance());
+  }
+
+  succeeded(): void {
+    this.#attempts = 0;
+  }
 }

@@ -1,4 +1,4 @@
-import type { ClientMessage, DisconnectReason, RoomMessage } from '../protocol/messages';
+import type { ClientMessage, DisconnectReason } from '../protocol/messages';
 import { encodeFrame } from '../protocol/pose-frame';
 import type { HostedGame, MatchAction, MatchPolicy } from '../room/match-policy';
 import { Room, type RoomOptions } from '../room/room';
@@ -7,34 +7,16 @@ import type { ClientPolicy } from './client-policy';
 import type { Connection, ConnectionStatus, ConnectionUpdate, Visitor } from './connection';
 import { RoomSession } from './room-session';
 
-/** A Room in this page, for a single player with bots, and for tests. */
-export interface LoopbackHost<Game extends HostedGame> {
-  readonly room: Room<Game>;
-  /** Joins the room. `now`: the page's clock [s]. */
-  connect(visitor: Visitor, now: number): Connection<Game>;
-}
-
 export interface LoopbackOptions<Game extends HostedGame> extends Partial<RoomOptions> {
   refused?(refusal: RoomRefusal): void;
   stepped?(actions: readonly MatchAction<Game>[]): void;
 }
 
 /**
- * Creates a host of the same Room class as the server's; it may be paused. It ticks with the first `update` of a frame.
+ * A host of the same Room class as the server's in this page, for a single player with bots, and for tests; it may be
+ * paused. It ticks with the first `update` of a frame.
  */
-export function createLoopbackHost<Game extends HostedGame>(
-  match: MatchPolicy<Game>,
-  client: ClientPolicy<Game>,
-  options: LoopbackOptions<Game> = {},
-): LoopbackHost<Game> {
-  const shared = new LoopbackRoom(match, client, options);
-  return {
-    room: shared.room,
-    connect: (visitor, now) => shared.connect(visitor, now),
-  };
-}
-
-class LoopbackRoom<Game extends HostedGame> {
+export class LoopbackHost<Game extends HostedGame> {
   readonly room: Room<Game>;
   readonly policy: ClientPolicy<Game>;
   readonly #connections = new Map<ClientId, LoopbackConnection<Game>>();
@@ -45,20 +27,20 @@ class LoopbackRoom<Game extends HostedGame> {
   constructor(
     match: MatchPolicy<Game>,
     client: ClientPolicy<Game>,
-    { refused, stepped, ...options }: LoopbackOptions<Game>,
+    { refused, stepped, ...options }: LoopbackOptions<Game> = {},
   ) {
     this.policy = client;
     this.room = new Room<Game>(
       match,
       { id: 'here', epoch: 'here', pausable: true, ...options },
       {
-        send: (to, message) => this.#connections.get(to)?.receive(message, this.#now),
+        send: (to, message) => this.#connections.get(to)?.onMessage(message, this.#now),
         broadcast: (message) => {
-          for (const connection of this.#connections.values()) connection.receive(message, this.#now);
+          for (const connection of this.#connections.values()) connection.onMessage(message, this.#now);
         },
         sendPoses: (poses) => {
           const frame = encodeFrame(poses);
-          for (const connection of this.#connections.values()) connection.receiveFrame(frame, this.#now);
+          for (const connection of this.#connections.values()) connection.onFrame(frame, this.#now);
         },
         disconnect: (client, reason) => {
           this.#connections.get(client)?.end(reason);
@@ -74,6 +56,7 @@ class LoopbackRoom<Game extends HostedGame> {
     return this.#now;
   }
 
+  /** Joins the room. `time`: the page's clock [s]. */
   connect(visitor: Visitor, time: number): Connection<Game> {
     this.#now = Math.max(this.#now, time);
     this.#count += 1;
@@ -95,11 +78,11 @@ class LoopbackRoom<Game extends HostedGame> {
 }
 
 class LoopbackConnection<Game extends HostedGame> extends RoomSession<Game> {
-  readonly #shared: LoopbackRoom<Game>;
+  readonly #shared: LoopbackHost<Game>;
   readonly #client: ClientId;
   #status: ConnectionStatus = { phase: 'joined', attempt: 0, retryIn: null, reason: null };
 
-  constructor(shared: LoopbackRoom<Game>, client: ClientId, visitor: Visitor) {
+  constructor(shared: LoopbackHost<Game>, client: ClientId, visitor: Visitor) {
     super(shared.policy, visitor, true);
     this.#shared = shared;
     this.#client = client;
@@ -111,14 +94,6 @@ class LoopbackConnection<Game extends HostedGame> extends RoomSession<Game> {
 
   join(): void {
     this.#shared.room.join(this.#client, this.#client, this.joinRequest(), this.#shared.now);
-  }
-
-  receive(message: RoomMessage<Game>, now: number): void {
-    this.onMessage(message, now);
-  }
-
-  receiveFrame(frame: Uint8Array, now: number): void {
-    this.onFrame(frame, now);
   }
 
   end(reason: DisconnectReason): void {

@@ -13,25 +13,6 @@ export interface RemotePlayer {
   readonly opacity: number;
 }
 
-/** Plays the packets of the other players with a jitter buffer for each. */
-export interface RemotePlayers {
-  receive(arrived: ArrivedPose): void;
-  /**
-   * Returns the players to draw at this time of the page's clock [s], without those silent for 3 s. The same list in
-   * every frame.
-   */
-  follow(time: number): readonly RemotePlayer[];
-  /**
-   * Starts all playbacks over with their next packet: the page was hidden, and its clock does not show how long the
-   * others were silent.
-   */
-  resume(): void;
-  /** Discards the packets of a seat that another person has taken. */
-  forget(seat: number): void;
-  /** Returns the measurements of a seat's playback; null: no packet has arrived from it. */
-  report(seat: number): PlaybackReport | null;
-}
-
 interface Seated {
   readonly playback: Playback;
   /** The entry in the list that `follow` returns. */
@@ -44,36 +25,51 @@ function seated(seat: number): Seated {
   return { playback, remote: { seat, pose, fingers, opacity: 1 } };
 }
 
-export function createRemotePlayers(): RemotePlayers {
-  const players = new Map<number, Seated>();
-  const drawn: RemotePlayer[] = [];
-  let followedAt = 0;
+/** Plays the packets of the other players with a jitter buffer for each. */
+export class RemotePlayers {
+  readonly #players = new Map<number, Seated>();
+  readonly #drawn: RemotePlayer[] = [];
+  #followedAt = 0;
 
-  function draw({ playback, remote }: Seated): void {
-    const opacity = playback.follow(followedAt);
-    if (opacity === null) return;
-    remote.opacity = opacity;
-    drawn.push(remote);
+  receive({ seat, packet, arrivedAt }: ArrivedPose): void {
+    const player = this.#players.get(seat) ?? seated(seat);
+    this.#players.set(seat, player);
+    player.playback.receive(packet, arrivedAt);
   }
 
-  return {
-    receive({ seat, packet, arrivedAt }) {
-      const player = players.get(seat) ?? seated(seat);
-      players.set(seat, player);
-      player.playback.receive(packet, arrivedAt);
-    },
-    follow(time) {
-      drawn.length = 0;
-      followedAt = time;
-      players.forEach(draw);
-      return drawn;
-    },
-    resume() {
-      for (const { playback } of players.values()) playback.resume();
-    },
-    forget(seat) {
-      players.delete(seat);
-    },
-    report: (seat) => players.get(seat)?.playback.report() ?? null,
+  /**
+   * Returns the players to draw at this time of the page's clock [s], without those silent for 3 s. The same list in
+   * every frame.
+   */
+  follow(time: number): readonly RemotePlayer[] {
+    this.#drawn.length = 0;
+    this.#followedAt = time;
+    this.#players.forEach(this.#draw);
+    return this.#drawn;
+  }
+
+  /**
+   * Starts all playbacks over with their next packet: the page was hidden, and its clock does not show how long the
+   * others were silent.
+   */
+  resume(): void {
+    for (const { playback } of this.#players.values()) playback.resume();
+  }
+
+  /** Discards the packets of a seat that another person has taken. */
+  forget(seat: number): void {
+    this.#players.delete(seat);
+  }
+
+  /** Returns the measurements of a seat's playback; null: no packet has arrived from it. */
+  report(seat: number): PlaybackReport | null {
+    return this.#players.get(seat)?.playback.report() ?? null;
+  }
+
+  readonly #draw = ({ playback, remote }: Seated): void => {
+    const opacity = playback.follow(this.#followedAt);
+    if (opacity === null) return;
+    remote.opacity = opacity;
+    this.#drawn.push(remote);
   };
 }

@@ -14,7 +14,7 @@ import { zero } from 'threepoint/core/math/vec3';
 import type { SeatInfo } from '../protocol/messages';
 import type { HostedGame } from '../room/match-policy';
 import type { Connection, ConnectionStatus, ConnectionUpdate, RoomView } from './connection';
-import { createRemotePlayers, type RemotePlayer } from './remote-players';
+import { type RemotePlayer, RemotePlayers } from './remote-players';
 
 /** Another person of the room as drawn in this frame. The same object in every frame: copy what you keep. */
 export interface RemotePerson {
@@ -53,7 +53,7 @@ const arenaIsFloor: Transform<'floor', 'arena'> = { position: zero, orientation:
 export class RoomClient<Game extends HostedGame> {
   readonly #connect: (time: number) => Connection<Game>;
   #connection: Connection<Game> | null;
-  readonly #players = createRemotePlayers();
+  readonly #players = new RemotePlayers();
   readonly #buffers: PersonBuffer[] = [];
   readonly #people: RemotePerson[] = [];
   /** The seats at the last update. */

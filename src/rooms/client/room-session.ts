@@ -9,7 +9,7 @@ import { decodeFrame } from '../protocol/pose-frame';
 import type { SignalBody, Voice } from '../protocol/voice-messages';
 import type { HostedGame } from '../room/match-policy';
 import type { ClientPolicy } from './client-policy';
-import { createClockSync } from './clock-sync';
+import { ClockSync } from './clock-sync';
 import type {
   ArrivedPose,
   Connection,
@@ -43,7 +43,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   readonly #visitor: Visitor;
   /** Whether the Room uses this page's clock. */
   readonly #knowsClock: boolean;
-  readonly #clock = createClockSync();
+  readonly #clock = new ClockSync();
   readonly #replica: RoomReplica<Game>;
   #calibration: Calibration;
   #avatar: AvatarRef;
@@ -180,7 +180,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   }
 
   /** Handles a message of the Room that arrived at this time of the page's clock [s]. */
-  protected onMessage(message: RoomMessage<Game>, at: number): void {
+  onMessage(message: RoomMessage<Game>, at: number): void {
     this.#now = Math.max(this.#now, at);
     this.#view = null;
     switch (message.type) {
@@ -209,7 +209,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   }
 
   /** Handles a frame of poses that arrived at this time of the page's clock [s]. */
-  protected onFrame(frame: Uint8Array, arrivedAt: number): void {
+  onFrame(frame: Uint8Array, arrivedAt: number): void {
     // Bots need no poses: they play from the state of the match.
     if (this.#visitor.bot) return;
     for (const { seat, bytes } of decodeFrame(frame) ?? []) {

@@ -2,7 +2,7 @@ import { io, type Socket } from 'socket.io-client';
 import { type ClientMessage, protocolVersion } from '../protocol/messages';
 import { frameEvent, messageEvent, pageParser, poseEvent } from '../protocol/socket-parsers';
 import type { HostedGame } from '../room/match-policy';
-import { type BackOff, createBackOff } from './back-off';
+import { BackOff } from './back-off';
 import type { ClientPolicy } from './client-policy';
 import type { Connection, ConnectionStatus, ConnectionUpdate, LocalClock, Visitor } from './connection';
 import type { RoomPass } from './room-pass';
@@ -64,7 +64,7 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
     this.#clock = clock;
     this.#leftOut = clock.leftOut;
     this.#onStatus = onStatus;
-    this.#backOff = createBackOff(chance);
+    this.#backOff = new BackOff(chance);
     const { origin, pathname } = new URL(url);
     this.#socket = io(origin, {
       path: `${pathname.replace(/\/$/, '')}/relay`,

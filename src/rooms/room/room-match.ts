@@ -1,5 +1,4 @@
 import { transformPoint, transformTracked } from 'threepoint/core/math/pose';
-import type { SeatAction } from 'threepoint/core/tracking/seat-action';
 import type { PointsPacket } from '../protocol/pose-packet';
 import { MatchClock } from './match-clock';
 import type { HostedGame, MatchPolicy } from './match-policy';
@@ -8,83 +7,37 @@ import type { Seats } from './seats';
 
 /** The match of one room: passes actions and poses to the rules, and reports to all clients what happened. */
 export class RoomMatch<Game extends HostedGame> {
+  readonly clock: MatchClock<Game>;
   readonly #policy: MatchPolicy<Game>;
   readonly #seats: Seats;
   readonly #host: RoomHost<Game>;
-  readonly #clock: MatchClock<Game>;
 
   constructor(policy: MatchPolicy<Game>, seats: Seats, host: RoomHost<Game>) {
     this.#policy = policy;
     this.#seats = seats;
     this.#host = host;
-    this.#clock = new MatchClock(policy, {
+    this.clock = new MatchClock(policy, {
       onEvents: (events) => this.#sendEvents(events),
-      onPauseChange: () => host.broadcast({ type: 'paused', at: this.pausedAt, matchStart: this.matchStart }),
-      onStartShift: () => host.broadcast({ type: 'match-start', matchStart: this.matchStart }),
-      onRestart: () => host.broadcast({ type: 'match', match: this.snapshot(), matchStart: this.matchStart }),
+      onPauseChange: () =>
+        host.broadcast({ type: 'paused', at: this.clock.pausedAt, matchStart: this.clock.matchStart }),
+      onStartShift: () => host.broadcast({ type: 'match-start', matchStart: this.clock.matchStart }),
+      onRestart: () => host.broadcast({ type: 'match', match: this.snapshot(), matchStart: this.clock.matchStart }),
       onStep: (actions) => host.stepped?.(actions),
     });
   }
 
-  /** The state of the match, as the rules have it. */
-  get state(): Game['state'] {
-    return this.#clock.state;
-  }
-
-  /** Room time [s] at which the match clock is 0. */
-  get matchStart(): number {
-    return this.#clock.matchStart;
-  }
-
-  /** The second of the match at which its clock is paused; null: it runs. */
-  get pausedAt(): number | null {
-    return this.#clock.pausedAt;
-  }
-
-  get isPaused(): boolean {
-    return this.#clock.isPaused;
-  }
-
-  /** Whether time alone changes nothing: no match runs, and no action waits. */
-  get isIdle(): boolean {
-    return this.#clock.isIdle;
-  }
-
-  get isRunning(): boolean {
-    return this.#clock.isRunning;
-  }
-
-  /** Whether roles move on by one seat with every match. */
-  get rotate(): boolean {
-    return this.#clock.rotate;
-  }
-
-  set rotate(rotate: boolean) {
-    this.#clock.rotate = rotate;
-  }
-
   snapshot(): Game['snapshot'] {
-    return this.#policy.snapshot(this.state);
-  }
-
-  /** Starts the clock of the first match at the first time [s] that the room receives; later calls change nothing. */
-  begin(time: number): void {
-    this.#clock.begin(time);
+    return this.#policy.snapshot(this.clock.state);
   }
 
   /** Steps the match up to this time [s]. */
   step(time: number): void {
-    this.#clock.step(time, this.#seats.pauseRequested);
-  }
-
-  /** Queues a change of a seat for the next step. */
-  add(action: SeatAction): void {
-    this.#clock.add(action);
+    this.clock.step(time, this.#seats.pauseRequested);
   }
 
   /** Queues whether a player is ready; ignored during a pause, because no step takes what is queued. */
   setReady(player: number, ready: boolean): void {
-    if (!this.isPaused) this.#clock.add({ type: 'ready', player, ready });
+    if (!this.clock.isPaused) this.clock.add({ type: 'ready', player, ready });
   }
 
   /**
@@ -95,8 +48,8 @@ export class RoomMatch<Game extends HostedGame> {
     const action = this.#policy.readAction(value);
     if (!action) return 'bad';
     if (player === null) return 'no-seat';
-    if (this.isPaused) this.#sendEvents([this.#policy.refusalInPause(player, action)]);
-    else this.#clock.add({ ...action, player });
+    if (this.clock.isPaused) this.#sendEvents([this.#policy.refusalInPause(player, action)]);
+    else this.clock.add({ ...action, player });
     return 'taken';
   }
 
@@ -105,12 +58,12 @@ export class RoomMatch<Game extends HostedGame> {
    * pose [s].
    */
   addPose(player: number, { pose: { head, leftHand, rightHand } }: PointsPacket, packetTime: number): void {
-    if (this.isPaused) return;
-    const arenaFromFloor = this.#policy.arenaFromFloor(player, this.state);
-    this.#clock.add({
+    if (this.clock.isPaused) return;
+    const arenaFromFloor = this.#policy.arenaFromFloor(player, this.clock.state);
+    this.clock.add({
       type: 'pose',
       player,
-      at: packetTime - this.matchStart,
+      at: packetTime - this.clock.matchStart,
       head: transformPoint(arenaFromFloor, head.position),
       left: transformTracked(arenaFromFloor, leftHand),
       right: transformTracked(arenaFromFloor, rightHand),

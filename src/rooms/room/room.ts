@@ -59,7 +59,7 @@ export class Room<Game extends HostedGame> {
     this.#host = host;
     this.#seats = new Seats(policy.seats, {
       changed: (seat) => this.#seatUpdates.changed(seat, this.#time),
-      act: (action) => this.#match.add(action),
+      act: (action) => this.#match.clock.add(action),
     });
     this.#seatUpdates = new SeatUpdates(policy.seats, (seat) => this.#broadcastSeat(seat));
     const { assigned = false, voices = false } = options;
@@ -83,12 +83,12 @@ export class Room<Game extends HostedGame> {
 
   /** The state of the match, as the rules have it. */
   get match(): Game['state'] {
-    return this.#match.state;
+    return this.#match.clock.state;
   }
 
   /** Whether a player has paused the match clock. */
   get paused(): boolean {
-    return this.#match.isPaused;
+    return this.#match.clock.isPaused;
   }
 
   /** Returns the avatar of a person with a seat, held seats included; null for anyone else. */
@@ -103,7 +103,7 @@ export class Room<Game extends HostedGame> {
    */
   join(client: ClientId, identity: string, request: JoinRequest, time: number): void {
     this.#time = time;
-    this.#match.begin(time);
+    this.#match.clock.begin(time);
     if (this.#members.of(client)) {
       this.#refuse(client, 'message', 'joined-already');
       return;
@@ -161,17 +161,17 @@ export class Room<Game extends HostedGame> {
    * Whether ticks change nothing until the next message: no match runs, no player is awaited, and no update is queued.
    */
   get isIdle(): boolean {
-    return this.#match.isIdle && this.#seats.areIdle && this.#seatUpdates.isComplete;
+    return this.#match.clock.isIdle && this.#seats.areIdle && this.#seatUpdates.isComplete;
   }
 
   /** Seconds from one tick to the next, where no message arrives between them. */
   get tickPeriod(): number {
-    return this.#match.isRunning ? this.#policy.tickSeconds : idleTickSeconds;
+    return this.#match.clock.isRunning ? this.#policy.tickSeconds : idleTickSeconds;
   }
 
   /** Steps the match up to this time [s], and reports what happened. */
   tick(time: number): void {
-    this.#match.begin(time);
+    this.#match.clock.begin(time);
     this.#time = time;
     this.#seats.watch(time);
     this.#seatUpdates.tick(time);
@@ -228,7 +228,7 @@ export class Room<Game extends HostedGame> {
         this.#match.setReady(index, message.ready);
         return;
       case 'rotate':
-        this.#match.rotate = message.rotate;
+        this.#match.clock.rotate = message.rotate;
         this.#broadcastAbout();
         return;
       case 'pause':
@@ -267,16 +267,16 @@ export class Room<Game extends HostedGame> {
       seat: this.#seats.indexOf(client),
       seats: Array.from({ length: this.#seats.count }, (_, seat) => packSeatInfo(this.#seats.infoOf(seat))),
       spectators: this.#members.spectators,
-      rotate: this.#match.rotate,
-      matchStart: this.#match.matchStart,
+      rotate: this.#match.clock.rotate,
+      matchStart: this.#match.clock.matchStart,
       match: this.#match.snapshot(),
-      paused: this.#match.pausedAt,
+      paused: this.#match.clock.pausedAt,
       time,
     });
   }
 
   #broadcastAbout(): void {
-    this.#host.broadcast({ type: 'about', spectators: this.#members.spectators, rotate: this.#match.rotate });
+    this.#host.broadcast({ type: 'about', spectators: this.#members.spectators, rotate: this.#match.clock.rotate });
   }
 
   #broadcastSeat(seat: number): void {

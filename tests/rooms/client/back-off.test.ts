@@ -1,20 +1,20 @@
-import { createBackOff } from 'threepoint-rooms/client/back-off';
+import { BackOff } from 'threepoint-rooms/client/back-off';
 import { bannerText, connectionText } from 'threepoint-rooms/client/banner';
 import { describe, expect, test } from 'vitest';
 
 describe('trying again', () => {
   test('waits longer after every failure, at most 4.5 s, and starts over after a success', () => {
-    const backOff = createBackOff(() => 0.5);
+    const backOff = new BackOff(() => 0.5);
     expect([1, 2, 3, 4, 5, 6].map(() => backOff.next())).toEqual([0.5, 1, 2, 3, 3, 3]);
     expect(backOff.attempts).toBe(6);
     backOff.succeeded();
     expect(backOff.next()).toBe(0.5);
-    const late = createBackOff(() => 1 - 1e-9);
+    const late = new BackOff(() => 1 - 1e-9);
     for (let i = 0; i < 10; i++) expect(late.next()).toBeLessThan(4.5);
   });
 
   test('five hundred who failed together come back spread out', () => {
-    const waits = Array.from({ length: 500 }, () => createBackOff().next()).sort((a, b) => a - b);
+    const waits = Array.from({ length: 500 }, () => new BackOff().next()).sort((a, b) => a - b);
     expect(waits[0]).toBeGreaterThanOrEqual(0.25);
     // No tenth of the half second they are spread over has more than a quarter of them.
     for (let start = 0.25; start < 0.75; start += 0.05) {

@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { createClockSync } from 'threepoint-rooms/client/clock-sync';
+import { ClockSync } from 'threepoint-rooms/client/clock-sync';
 import { describe, expect, test } from 'vitest';
 import { printFigures } from '../../print-figures';
 
@@ -8,7 +8,7 @@ import { printFigures } from '../../print-figures';
  * ms for good.
  */
 function follow(
-  sync: ReturnType<typeof createClockSync>,
+  sync: ClockSync,
   start: number,
   seconds: number,
   skew: number,
@@ -39,7 +39,7 @@ const lan = () => {
 
 describe('clock sync', () => {
   test.each([0, 600, -600])('on a LAN, clocks %d s apart: within 10 ms in 3 s', (skew) => {
-    const { error, settled } = follow(createClockSync(), 5, 10, skew, lan(), lan());
+    const { error, settled } = follow(new ClockSync(), 5, 10, skew, lan(), lan());
     printFigures(`clock skew ${skew} s`, { 'error [ms]': error * 1000, 'within 10 ms after [s]': settled });
     expect(settled).toBeLessThan(3);
     expect(error).toBeLessThan(0.01);
@@ -47,7 +47,7 @@ describe('clock sync', () => {
 
   test('a machine that slept for 60 s, its clock standing still or not: within 10 ms in 3 s', () => {
     for (const stood of [0, 60]) {
-      const sync = createClockSync();
+      const sync = new ClockSync();
       follow(sync, 5, 10, 3, lan(), lan());
       const { settled } = follow(sync, 75 - stood, 10, 3 + stood, lan(), lan());
       printFigures(`suspend of 60 s, clock ${stood ? 'stood still' : 'went on'}`, {
@@ -61,7 +61,7 @@ describe('clock sync', () => {
     const seconds = fc.double({ min: 0, max: 0.4, noNaN: true });
     fc.assert(
       fc.property(fc.array(fc.tuple(seconds, seconds), { minLength: 1, maxLength: 30 }), (trips) => {
-        const sync = createClockSync();
+        const sync = new ClockSync();
         const skew = 1234.5;
         trips.forEach(([there, back], i) => {
           const sent = i;
@@ -75,7 +75,7 @@ describe('clock sync', () => {
   });
 
   test('asks five times in the first second and then every two', () => {
-    const sync = createClockSync();
+    const sync = new ClockSync();
     let asks = 0;
     for (let now = 0; now < 9; now += 1 / 90) if (sync.due(now)) asks += 1;
     expect(asks).toBeGreaterThanOrEqual(8);
@@ -83,7 +83,7 @@ describe('clock sync', () => {
   });
 
   test('a pause that our clock left out is told of and costs nothing; an answer from before it counts no more', () => {
-    const sync = createClockSync();
+    const sync = new ClockSync();
     const { error } = follow(sync, 5, 10, 3, lan(), lan());
     expect(error).toBeLessThan(0.01);
     // Asked at 14.99, answered by theirs at 17.991; ours stood at 15 for 20 s.
@@ -97,7 +97,7 @@ describe('clock sync', () => {
   });
 
   test('a clock that was set ahead looks like a pause until the first answer', () => {
-    const sync = createClockSync();
+    const sync = new ClockSync();
     follow(sync, 5, 10, 3, lan(), lan());
     sync.paused(20, 15);
     sync.receive(15, 18.002, 15.004);
@@ -105,7 +105,7 @@ describe('clock sync', () => {
   });
 
   test('tells how long answers take: the median of the last five, and the wait for one that does not come', () => {
-    const sync = createClockSync();
+    const sync = new ClockSync();
     expect(sync.delayAt(5)).toBeNull();
     let now = 5;
     for (const trip of [0.02, 0.03, 0.4, 0.025, 0.021]) {

@@ -6,7 +6,7 @@ import { randomNumbers } from 'threepoint/core/math/random';
 import { distance, up, vec3 } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { firstDelay, longestExtrapolation, type PlaybackReport } from 'threepoint-rooms/client/playback';
-import { createRemotePlayers } from 'threepoint-rooms/client/remote-players';
+import { RemotePlayers } from 'threepoint-rooms/client/remote-players';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import type { PosePacket } from 'threepoint-rooms/protocol/pose-packet';
 import { describe, expect, test } from 'vitest';
@@ -42,14 +42,10 @@ function walker(time: number, more: Partial<PosePacket> = {}, lostLeft = false):
 function playback(
   end: number,
   transit: (index: number) => number,
-  each: (
-    time: number,
-    drawn: ReturnType<ReturnType<typeof createRemotePlayers>['follow']>,
-    report: PlaybackReport,
-  ) => void,
+  each: (time: number, drawn: ReturnType<RemotePlayers['follow']>, report: PlaybackReport) => void,
   make: (time: number, index: number) => PosePacket | null = (time) => walker(time),
 ) {
-  const players = createRemotePlayers();
+  const players = new RemotePlayers();
   const packets: { readonly at: number; readonly packet: PosePacket }[] = [];
   let last = 0;
   for (let i = 0; i / 30 < end; i++) {
@@ -197,7 +193,7 @@ describe('playback of others', () => {
   });
 
   test('a person who was hidden is back with their first packet, where they are now', () => {
-    const players = createRemotePlayers();
+    const players = new RemotePlayers();
     players.receive({ seat: 1, packet: walker(0), arrivedAt: 0 });
     players.follow(0.1);
     expect(players.follow(5)).toEqual([]);
@@ -211,7 +207,7 @@ describe('playback of others', () => {
   test.each([1, 6, 10, 14, 60])(
     'a person silent for %i s while this page was hidden is back with their first packet',
     (seconds) => {
-      const players = createRemotePlayers();
+      const players = new RemotePlayers();
       players.receive({ seat: 1, packet: walker(0), arrivedAt: 0 });
       players.follow(0.1);
       // The page's clock skips the pause but for half a second.
@@ -296,7 +292,7 @@ describe('playback of others', () => {
   });
 
   test('sixteen others cost little', () => {
-    const players = createRemotePlayers();
+    const players = new RemotePlayers();
     const ik = createIk(defaultCalibration);
     const frames = 300;
     let spent = 0;

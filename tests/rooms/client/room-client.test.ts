@@ -1,7 +1,7 @@
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { identity } from 'threepoint/core/math/quat';
 import { vec3 } from 'threepoint/core/math/vec3';
-import { createLoopbackHost } from 'threepoint-rooms/client/loopback-connection';
+import { LoopbackHost } from 'threepoint-rooms/client/loopback-connection';
 import { RoomClient } from 'threepoint-rooms/client/room-client';
 import { expect, test } from 'vitest';
 import { countingClientPolicy, countingPolicy } from '../room/counting-game';
@@ -9,7 +9,7 @@ import { visitor } from './people';
 
 /** A room of two seats in this page, in frames at 30 Hz. */
 function roomOfTwo() {
-  const host = createLoopbackHost(countingPolicy(2), countingClientPolicy);
+  const host = new LoopbackHost(countingPolicy(2), countingClientPolicy);
   let time = 10;
   const join = (name: string) => new RoomClient((now) => host.connect(visitor(name), now));
   type Person = ReturnType<typeof join>;

@@ -1,5 +1,5 @@
 import type { Connection } from 'threepoint-rooms/client/connection';
-import { createLoopbackHost } from 'threepoint-rooms/client/loopback-connection';
+import { LoopbackHost } from 'threepoint-rooms/client/loopback-connection';
 import { createRoomPass } from 'threepoint-rooms/client/room-pass';
 import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
 import { expect, onTestFinished, test } from 'vitest';
@@ -15,7 +15,7 @@ interface Counter {
 }
 
 test('a client follows a game that its session does not know: events, refusals, predictions, places', () => {
-  const host = createLoopbackHost(countingPolicy(2), countingClientPolicy);
+  const host = new LoopbackHost(countingPolicy(2), countingClientPolicy);
   let time = 10;
   const [ann, ben] = ['Ann', 'Ben'].map((name) => host.connect(visitor(name), time)) as [
     ReturnType<typeof host.connect>,

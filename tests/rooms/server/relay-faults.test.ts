@@ -4,7 +4,7 @@ import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { nextRandom } from 'threepoint/core/math/random';
 import { ballClientPolicy } from 'threepoint-games/ball/ball-client';
 import { ballKind } from 'threepoint-games/ball/ball-messages';
-import { createRemotePlayers } from 'threepoint-rooms/client/remote-players';
+import { RemotePlayers } from 'threepoint-rooms/client/remote-players';
 import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
 import { protocolVersion } from 'threepoint-rooms/protocol/messages';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
@@ -87,7 +87,7 @@ test('100 ms ± 30 ms with 2 % of losses: a thrower behind it plays on', async (
   const way = await createSlowWay(server.port, () => 100 + 60 * (drawn() - 0.5) + (drawn() < 0.02 ? 300 : 0));
   ending(way, ({ close }) => close());
   const people = await threePlay([way.url, server.url, server.url]);
-  const watching = people.map(() => createRemotePlayers());
+  const watching = people.map(() => new RemotePlayers());
   // What this machine itself holds up says nothing about the way: a frame that comes late, and a second after it, are
   // counted apart.
   const stalls: number[] = [];

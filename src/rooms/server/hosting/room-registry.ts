@@ -29,31 +29,6 @@ export interface RegisteredRoom extends PoseSender {
   tickAt: number;
 }
 
-/** The rooms of this process. */
-export interface RoomRegistry {
-  readonly listings: readonly RoomListing[];
-  readonly census: HostCensus;
-  get(name: string): RegisteredRoom | undefined;
-  /**
-   * Returns the room of this name, and ticks it until it is idle again; called when a client sends a message or
-   * disconnects.
-   */
-  wake(name: string): RegisteredRoom | undefined;
-  /** Schedules the sending of a room's poses, and ticks it until it is idle again. */
-  sendPoses(hosted: RegisteredRoom): void;
-  /**
-   * Returns the room of a pass, and creates it if needed; null: the server has too many rooms, or does not have the
-   * game.
-   */
-  getOrCreate(pass: RoomPass): RegisteredRoom | null;
-  /** Closes rooms that have been empty for `emptyRoomSeconds`; called periodically. `now`: seconds. */
-  sweep(now: number): void;
-  /** Closes a room and disconnects its clients; returns false if there is none. */
-  end(name: string): boolean;
-  /** Removes all rooms and stops ticking. */
-  clear(): void;
-}
-
 export interface RoomRegistryOptions {
   readonly configuration: RelayConfiguration;
   readonly kinds: RoomKinds;
@@ -155,71 +130,100 @@ class ActiveRooms {
   }
 }
 
-export function createRoomRegistry(options: RoomRegistryOptions): RoomRegistry {
-  const { configuration, log, now } = options;
-  const rooms = new Map<string, RegisteredRoom>();
-  const active = new ActiveRooms(options);
-  const create = roomFactory(options);
-  const schedule = new PoseSchedule(now);
+/** The rooms of this process. */
+export class RoomRegistry {
+  readonly #options: RoomRegistryOptions;
+  readonly #rooms = new Map<string, RegisteredRoom>();
+  readonly #active: ActiveRooms;
+  readonly #create: (pass: RoomPass) => RegisteredRoom | null;
+  readonly #schedule: PoseSchedule;
 
-  function remove(name: string, hosted: RegisteredRoom): void {
-    rooms.delete(name);
-    active.delete(hosted);
+  constructor(options: RoomRegistryOptions) {
+    this.#options = options;
+    this.#active = new ActiveRooms(options);
+    this.#create = roomFactory(options);
+    this.#schedule = new PoseSchedule(options.now);
   }
-  return {
-    get listings() {
-      return [...rooms].flatMap(([room, { room: hosted, listed }]): readonly RoomListing[] => {
-        if (!listed) return [];
-        const { empty: _empty, ...census } = hosted.census;
-        return [{ room, kind: hosted.kind, phase: hosted.match.phase, ...census }];
-      });
-    },
-    get census() {
-      const all = [...rooms.values()].map(({ room }) => room.census);
-      const sum = (key: 'players' | 'bots' | 'spectators') => all.reduce((total, census) => total + census[key], 0);
-      return { rooms: rooms.size, players: sum('players'), bots: sum('bots'), spectators: sum('spectators') };
-    },
-    get: (name) => rooms.get(name),
-    wake(name) {
-      const hosted = rooms.get(name);
-      return hosted && active.wake(hosted);
-    },
-    sendPoses(hosted) {
-      schedule.add(hosted);
-      active.add(hosted);
-    },
-    getOrCreate(pass) {
-      const existing = rooms.get(pass.room);
-      if (existing) return active.wake(existing);
-      if (rooms.size >= configuration.mostRooms) return null;
-      const hosted = create(pass);
-      if (!hosted) return null;
-      rooms.set(pass.room, hosted);
-      return active.wake(hosted);
-    },
-    sweep(now) {
-      for (const [id, hosted] of rooms) {
-        if (!hosted.room.census.empty) {
-          hosted.emptySince = null;
-          continue;
-        }
-        hosted.emptySince ??= now;
-        if (now - hosted.emptySince < emptyRoomSeconds) continue;
-        remove(id, hosted);
-        log.info({ room: id }, 'room closed');
+
+  get listings(): readonly RoomListing[] {
+    return [...this.#rooms].flatMap(([room, { room: hosted, listed }]): readonly RoomListing[] => {
+      if (!listed) return [];
+      const { empty: _empty, ...census } = hosted.census;
+      return [{ room, kind: hosted.kind, phase: hosted.match.phase, ...census }];
+    });
+  }
+
+  get census(): HostCensus {
+    const all = [...this.#rooms.values()].map(({ room }) => room.census);
+    const sum = (key: 'players' | 'bots' | 'spectators') => all.reduce((total, census) => total + census[key], 0);
+    return { rooms: all.length, players: sum('players'), bots: sum('bots'), spectators: sum('spectators') };
+  }
+
+  get(name: string): RegisteredRoom | undefined {
+    return this.#rooms.get(name);
+  }
+
+  /**
+   * Returns the room of this name, and ticks it until it is idle again; called when a client sends a message or
+   * disconnects.
+   */
+  wake(name: string): RegisteredRoom | undefined {
+    const hosted = this.#rooms.get(name);
+    return hosted && this.#active.wake(hosted);
+  }
+
+  /** Schedules the sending of a room's poses, and ticks it until it is idle again. */
+  sendPoses(hosted: RegisteredRoom): void {
+    this.#schedule.add(hosted);
+    this.#active.add(hosted);
+  }
+
+  /**
+   * Returns the room of a pass, and creates it if needed; null: the server has too many rooms, or does not have the
+   * game.
+   */
+  getOrCreate(pass: RoomPass): RegisteredRoom | null {
+    const existing = this.wake(pass.room);
+    if (existing) return existing;
+    if (this.#rooms.size >= this.#options.configuration.mostRooms) return null;
+    const hosted = this.#create(pass);
+    if (!hosted) return null;
+    this.#rooms.set(pass.room, hosted);
+    return this.#active.wake(hosted);
+  }
+
+  /** Closes rooms that have been empty for `emptyRoomSeconds`; called periodically. `now`: seconds. */
+  sweep(now: number): void {
+    for (const [id, hosted] of this.#rooms) {
+      if (!hosted.room.census.empty) {
+        hosted.emptySince = null;
+        continue;
       }
-    },
-    end(name) {
-      const hosted = rooms.get(name);
-      if (!hosted) return false;
-      remove(name, hosted);
-      for (const client of hosted.clients.values()) disconnect(client, 'closed');
-      return true;
-    },
-    clear() {
-      active.stop();
-      schedule.stop();
-      rooms.clear();
-    },
-  };
+      hosted.emptySince ??= now;
+      if (now - hosted.emptySince < emptyRoomSeconds) continue;
+      this.#remove(id, hosted);
+      this.#options.log.info({ room: id }, 'room closed');
+    }
+  }
+
+  /** Closes a room and disconnects its clients; returns false if there is none. */
+  end(name: string): boolean {
+    const hosted = this.#rooms.get(name);
+    if (!hosted) return false;
+    this.#remove(name, hosted);
+    for (const client of hosted.clients.values()) disconnect(client, 'closed');
+    return true;
+  }
+
+  /** Removes all rooms and stops ticking. */
+  clear(): void {
+    this.#active.stop();
+    this.#schedule.stop();
+    this.#rooms.clear();
+  }
+
+  #remove(name: string, hosted: RegisteredRoom): void {
+    this.#rooms.delete(name);
+    this.#active.delete(hosted);
+  }
 }

@@ -11,7 +11,7 @@ import type { RelayTransport } from '../sockets/relay-transport';
 import { type Client, createClient, disconnect } from './client';
 import { MessageHandler } from './message-handler';
 import type { RoomKinds } from './room-kinds';
-import { createRoomRegistry, type RoomListing } from './room-registry';
+import { type RoomListing, RoomRegistry } from './room-registry';
 
 export interface SocketHostOptions {
   readonly configuration: RelayConfiguration;
@@ -79,7 +79,7 @@ function createGate({ kinds, tokens, metrics, log }: SocketHostOptions): Paramet
 export function createSocketHost({ io, listen, close }: RelayTransport, options: SocketHostOptions): SocketHost {
   const { configuration, kinds, log, metrics, now } = options;
   const clients = new Set<Client>();
-  const rooms = createRoomRegistry({
+  const rooms = new RoomRegistry({
     configuration,
     kinds,
     log,
@@ -129,7 +129,7 @@ export function createSocketHost({ io, listen, close }: RelayTransport, options:
       return rooms.census;
     },
     room: (name) => rooms.get(name)?.room ?? null,
-    end: rooms.end,
+    end: (name) => rooms.end(name),
     async close() {
       clearInterval(sweeping);
       for (const client of clients) disconnect(client, 'stopping');

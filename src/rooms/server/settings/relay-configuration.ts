@@ -1,5 +1,6 @@
 import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { weaknessOf } from 'threepoint-http/secret-bits';
+import { type Environment, partsOf, wrong } from './environment';
 import { type VoiceConfiguration, voiceConfigurationFrom, voiceEnvironment } from './voice-configuration';
 
 /** The settings of the relay, from the environment. */
@@ -43,8 +44,6 @@ export interface RelayConfiguration {
 const logLevels = ['trace', 'debug', 'info', 'warn', 'error', 'silent'] as const;
 const shortestSecret = 32;
 
-type Environment = Readonly<Record<string, string | undefined>>;
-
 export const relayEnvironment = `Environment of the relay:
   THREEPOINT_SECRET             signs room tokens; 128 bits or more (openssl rand -base64 32), the same in all processes
   THREEPOINT_ORIGINS            origins of pages that may connect, separated by commas; default: the server's own
@@ -72,53 +71,32 @@ function numberFrom(environment: Environment, name: string, fallback: number, mi
   const text = environment[name];
   if (text === undefined || text === '') return fallback;
   const value = Number(text);
-  if (!(value >= min && value <= max)) {
-    throw new ConfigurationError(
-      `The environment variable ${name} must be a number from ${min} to ${max}, not "${text}".`,
-    );
-  }
+  if (!(value >= min && value <= max)) throw wrong(name, `be a number from ${min} to ${max}`, text);
   return value;
 }
 
 function originsFrom(environment: Environment, name: string, scheme: RegExp): readonly string[] {
-  return (environment[name] ?? '')
-    .split(',')
-    .map((part) => part.trim())
-    .filter(Boolean)
-    .map((part) => {
-      const url = URL.canParse(part) ? new URL(part) : null;
-      if (!url || !scheme.test(url.protocol) || (part !== url.origin && part !== `${url.origin}/`)) {
-        throw new ConfigurationError(
-          `The environment variable ${name} must list origins such as https://example.org, not "${part}".`,
-        );
-      }
-      return url.origin;
-    });
+  return partsOf(environment[name]).map((part) => {
+    const url = URL.canParse(part) ? new URL(part) : null;
+    if (!url || !scheme.test(url.protocol) || (part !== url.origin && part !== `${url.origin}/`))
+      throw wrong(name, 'list origins such as https://example.org', part);
+    return url.origin;
+  });
 }
 
 function hostsFrom(text: string | undefined): readonly string[] {
-  const names = (text ?? '')
-    .split(',')
-    .map((part) => part.trim())
-    .filter(Boolean);
-  for (const name of names) {
-    if (!/^[a-z0-9]([a-z0-9.-]*[a-z0-9])?$/i.test(name)) {
-      throw new ConfigurationError(
-        `The environment variable THREEPOINT_HOSTS must list names such as study.example.org, without ports, not "${name}".`,
-      );
-    }
-  }
+  const names = partsOf(text);
+  const strange = names.find((name) => !/^[a-z0-9]([a-z0-9.-]*[a-z0-9])?$/i.test(name));
+  if (strange !== undefined)
+    throw wrong('THREEPOINT_HOSTS', 'list names such as study.example.org, without ports', strange);
   return names;
 }
 
 function folderFrom(text: string | undefined): string | null {
   if (!text) return null;
   const url = URL.canParse(text) ? new URL(text) : null;
-  if (url?.protocol !== 'https:' || !url.pathname.endsWith('/') || url.search || url.hash || url.username) {
-    throw new ConfigurationError(
-      `The environment variable THREEPOINT_AVATARS_FROM must be a folder such as https://example.org/avatars/, not "${text}".`,
-    );
-  }
+  if (url?.protocol !== 'https:' || !url.pathname.endsWith('/') || url.search || url.hash || url.username)
+    throw wrong('THREEPOINT_AVATARS_FROM', 'be a folder such as https://example.org/avatars/', text);
   return url.href;
 }
 
@@ -144,17 +122,11 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
   }
   refuseWeak('THREEPOINT_ADMIN_TOKEN', adminToken);
   const redisUrl = environment.THREEPOINT_REDIS_URL || null;
-  if (redisUrl !== null && !/^rediss?:\/\/\S+$/.test(redisUrl)) {
-    throw new ConfigurationError(
-      `The environment variable THREEPOINT_REDIS_URL must be like redis://localhost:6379, not "${redisUrl}".`,
-    );
-  }
-  const logLevel = logLevels.find((level) => level === (environment.THREEPOINT_LOG_LEVEL || 'warn'));
-  if (!logLevel) {
-    throw new ConfigurationError(
-      `The environment variable THREEPOINT_LOG_LEVEL must be one of ${logLevels.join(', ')}, not "${environment.THREEPOINT_LOG_LEVEL}".`,
-    );
-  }
+  if (redisUrl !== null && !/^rediss?:\/\/\S+$/.test(redisUrl))
+    throw wrong('THREEPOINT_REDIS_URL', 'be like redis://localhost:6379', redisUrl);
+  const level = environment.THREEPOINT_LOG_LEVEL || 'warn';
+  const logLevel = logLevels.find((known) => known === level);
+  if (!logLevel) throw wrong('THREEPOINT_LOG_LEVEL', `be one of ${logLevels.join(', ')}`, level);
   if (redisUrl !== null && secret === null) {
     throw new ConfigurationError(
       'Several processes need the same THREEPOINT_SECRET. Set it together with THREEPOINT_REDIS_URL.',

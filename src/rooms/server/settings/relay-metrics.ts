@@ -1,17 +1,5 @@
 import { Counter, collectDefaultMetrics, Gauge, Histogram, Registry } from 'prom-client';
 
-/** Counters of the hot path: plain numbers, which the metrics read on request. */
-export interface RelayCounts {
-  posesIn: number;
-  posesIgnored: number;
-  framesOut: number;
-  /** Frames of poses that were dropped, because a client's connection was busy. */
-  framesDropped: number;
-  messagesIn: number;
-  bytesIn: number;
-  bytesOut: number;
-}
-
 /** The metrics of a relay, as /metrics reports them. */
 export interface RelayMetrics {
   readonly registry: Registry;
@@ -45,6 +33,7 @@ export interface RelayCensus extends HostCensus {
   readonly avatarBytes: number;
 }
 
+/** The counters of the hot path: the name of each metric, and its help. */
 const countHelp = {
   posesIn: ['poses_in', 'Pose packets received.'],
   posesIgnored: ['poses_ignored', 'Pose packets that were old, implausibly fast, or beyond the limit.'],
@@ -53,7 +42,10 @@ const countHelp = {
   messagesIn: ['messages_in', 'Control messages received.'],
   bytesIn: ['pose_bytes_in', 'Bytes of pose packets received.'],
   bytesOut: ['frame_bytes_out', 'Bytes of frames of poses sent.'],
-} as const satisfies Record<keyof RelayCounts, readonly [name: string, help: string]>;
+} as const;
+
+/** The counters of `countHelp`: plain numbers, which the metrics read on request. */
+export type RelayCounts = Record<keyof typeof countHelp, number>;
 
 const gaugeHelp = {
   rooms: 'Rooms in this process.',
@@ -92,21 +84,11 @@ function addGauge(registry: Registry, name: string, help: string, value: () => n
   });
 }
 
-const zeroCounts = (): RelayCounts => ({
-  posesIn: 0,
-  posesIgnored: 0,
-  framesOut: 0,
-  framesDropped: 0,
-  messagesIn: 0,
-  bytesIn: 0,
-  bytesOut: 0,
-});
-
 export function createRelayMetrics(census: () => RelayCensus): RelayMetrics {
   const registry = new Registry();
   collectDefaultMetrics({ register: registry, prefix: 'threepoint_' });
   const registers = [registry];
-  const counts = zeroCounts();
+  const counts = Object.fromEntries(keysOf(countHelp).map((key) => [key, 0])) as RelayCounts;
   for (const key of keysOf(countHelp)) {
     const [name, help] = countHelp[key];
     addCounter(registry, name, help, () => counts[key]);

@@ -1,4 +1,5 @@
 import { ConfigurationError } from 'threepoint-http/configuration-error';
+import { type Environment, partsOf, wrong } from './environment';
 
 /** The servers by which pages connect their voices. */
 export interface VoiceConfiguration {
@@ -8,24 +9,15 @@ export interface VoiceConfiguration {
   readonly turn: { readonly urls: readonly string[]; readonly secret: string } | null;
 }
 
-type Environment = Readonly<Record<string, string | undefined>>;
-
 export const voiceEnvironment = `  THREEPOINT_VOICES             off: players cannot talk to each other, and no page may use the microphone; default on
   THREEPOINT_STUN               STUN servers as stun:HOST:PORT, separated by commas; default none
   THREEPOINT_TURN               TURN servers as turn:HOST:PORT, separated by commas; default none
   THREEPOINT_TURN_SECRET        secret of the TURN servers (coturn: static-auth-secret), 32 characters or more`;
 
 function urlsFrom(environment: Environment, name: string, form: RegExp, like: string): readonly string[] {
-  const urls = (environment[name] ?? '')
-    .split(',')
-    .map((part) => part.trim())
-    .filter(Boolean);
-  for (const url of urls) {
-    if (!form.test(url))
-      throw new ConfigurationError(
-        `The environment variable ${name} must list addresses such as ${like}, not "${url}".`,
-      );
-  }
+  const urls = partsOf(environment[name]);
+  const strange = urls.find((url) => !form.test(url));
+  if (strange !== undefined) throw wrong(name, `list addresses such as ${like}`, strange);
   return urls;
 }
 
@@ -35,9 +27,7 @@ function urlsFrom(environment: Environment, name: string, form: RegExp, like: st
  */
 export function voiceConfigurationFrom(environment: Environment): VoiceConfiguration | null {
   const wanted = environment.THREEPOINT_VOICES || 'on';
-  if (wanted !== 'on' && wanted !== 'off') {
-    throw new ConfigurationError(`The environment variable THREEPOINT_VOICES must be on or off, not "${wanted}".`);
-  }
+  if (wanted !== 'on' && wanted !== 'off') throw wrong('THREEPOINT_VOICES', 'be on or off', wanted);
   const stun = urlsFrom(environment, 'THREEPOINT_STUN', /^stuns?:[\w.[\]:-]+$/, 'stun:stun.example.org:3478');
   const urls = urlsFrom(
     environment,

@@ -86,7 +86,7 @@ export function createRelayTransport(
   configuration: RelayConfiguration,
   { log, metrics, now }: { readonly log: Logger; readonly metrics: RelayMetrics; readonly now: () => number },
 ): RelayTransport {
-  const admission = createUpgradeAdmission(configuration, { log, metrics });
+  const admit = createUpgradeAdmission(configuration, { log, metrics });
   const engine = new Engine({
     transports: ['websocket'],
     allowUpgrades: false,
@@ -133,7 +133,7 @@ export function createRelayTransport(
       const target = targetOf(request.url);
       if (!target || target.path.replace(/\/$/, '') !== relayPath) return false;
       try {
-        socket.once('close', admission.admit(request, target.query));
+        socket.once('close', admit(request, target.query));
       } catch (error) {
         if (!(error instanceof HttpError)) throw error;
         sendRawAnswer(socket, refusal(error));

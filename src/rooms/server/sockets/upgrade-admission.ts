@@ -7,15 +7,6 @@ import { createSitePolicy } from 'threepoint-http/site-policy';
 import type { RelayConfiguration } from '../settings/relay-configuration';
 import type { RelayMetrics } from '../settings/relay-metrics';
 
-/** Decides which requests may open a WebSocket. */
-export interface UpgradeAdmission {
-  /**
-   * Takes a slot of the client's address and returns the function that releases it. Throws an HttpError that states why
-   * the request is refused.
-   */
-  admit(request: IncomingMessage, query: URLSearchParams): () => void;
-}
-
 /** Returns why a request is not one for a WebSocket of the relay's protocol; null: it is one. */
 function protocolErrorOf({ method, headers }: IncomingMessage, query: URLSearchParams): HttpError | null {
   if (
@@ -36,32 +27,31 @@ function protocolErrorOf({ method, headers }: IncomingMessage, query: URLSearchP
   return null;
 }
 
-/** Creates the admission of a relay: it checks protocol, host and origin, and limits the WebSockets of each address. */
+/**
+ * Returns what admits a request to the WebSockets of a relay: it checks protocol, host and origin, takes a slot of the
+ * client's address and returns the function that releases it. It throws an HttpError that states why a request is
+ * refused.
+ */
 export function createUpgradeAdmission(
   configuration: RelayConfiguration,
   { log, metrics }: { readonly log: Logger; readonly metrics: RelayMetrics },
-): UpgradeAdmission {
+): (request: IncomingMessage, query: URLSearchParams) => () => void {
   const addresses = createSlotCounter(configuration.connectionsPerAddress);
   const site = createSitePolicy(configuration);
-  return {
-    admit(request, query) {
-      const error = protocolErrorOf(request, query);
-      if (error) throw error;
-      const refusal = site.refusalOfHost(request) ?? site.refusalOfOrigin(request);
-      if (refusal) {
-        metrics.kicked('origin');
-        log.warn({ origin: request.headers.origin, host: request.headers.host }, 'origin refused');
-        throw new HttpError(refusal.status, refusal.message);
-      }
-      const { network } = clientAddressOf(request, configuration.trustProxy);
-      if (!addresses.acquire(network)) {
-        metrics.kicked('connections');
-        throw new HttpError(
-          429,
-          `this address has the most connections allowed, ${configuration.connectionsPerAddress}`,
-        );
-      }
-      return () => addresses.release(network);
-    },
+  return (request, query) => {
+    const error = protocolErrorOf(request, query);
+    if (error) throw error;
+    const refusal = site.refusalOfHost(request) ?? site.refusalOfOrigin(request);
+    if (refusal) {
+      metrics.kicked('origin');
+      log.warn({ origin: request.headers.origin, host: request.headers.host }, 'origin refused');
+      throw new HttpError(refusal.status, refusal.message);
+    }
+    const { network } = clientAddressOf(request, configuration.trustProxy);
+    if (!addresses.acquire(network)) {
+      metrics.kicked('connections');
+      throw new HttpError(429, `this address has the most connections allowed, ${configuration.connectionsPerAddress}`);
+    }
+    return () => addresses.release(network);
   };
 }

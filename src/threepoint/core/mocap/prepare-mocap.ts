@@ -30,8 +30,10 @@ export type MocapSource = {
   readonly name: string;
   /** The map of a skeleton that is unknown here. */
   readonly map?: Beside;
-  /** The BVH file that the map's `restFrame` is of, where it is another. */
+  /** The BVH or AMC file that the map's `restFrame` is of, where it is another. */
   readonly rest?: Beside;
+  /** Frames per second, of a file that does not say its own. */
+  readonly rateHz?: number;
 } & (
   | { readonly format: 'bvh'; readonly text: string }
   | {
@@ -88,6 +90,9 @@ function* readBvhFile(text: string) {
   return { motion, joints, file: bvhFileMotion(motion, joints, [...motion.notes, ...notes]) };
 }
 
+const readAmcFile = (text: string, skeleton: Beside): Generator<number, FileMotion> =>
+  readAmc(text, readBeside(skeleton, readAsf), skeleton.name);
+
 /** Reads a file and finds its skeleton: by the map that was given, by the format, or by what it looks like. */
 function* readFile(source: MocapSource, map: SkeletonMap | undefined): Generator<number, MatchedMotion> {
   const bvh = source.format === 'bvh' ? yield* readBvhFile(source.text) : null;
@@ -97,14 +102,17 @@ function* readFile(source: MocapSource, map: SkeletonMap | undefined): Generator
     throw new Error(
       '“restFrame” of another file is for npm run evaluate; here it is the number of a frame of the file',
     );
-  const rest = source.rest && readBeside(source.rest, (text) => finishWork(readBvhFile(text)).file);
+  const rest =
+    source.rest &&
+    readBeside(source.rest, (text) =>
+      source.format === 'amc' ? finishWork(readAmcFile(text, source.skeleton)) : finishWork(readBvhFile(text)).file,
+    );
   return withMap(fromMappedRest(file, map, bvh, map.restFile === undefined ? undefined : rest), map);
 }
 
 function* readOther(source: MocapSource): Generator<number, FileMotion> {
   if (source.format === 'gltf') return readGltf(source.description, source.binary);
-  if (source.format === 'amc')
-    return yield* readAmc(source.text, readBeside(source.skeleton, readAsf), source.skeleton.name);
+  if (source.format === 'amc') return yield* readAmcFile(source.text, source.skeleton);
   throw new Error('no file of motion');
 }
 
@@ -129,7 +137,7 @@ function rateOf(name: string): number {
   const found = /^0*(\d+)_0*\d+$/.exec(stemOf(name));
   if (!found)
     throw new Error(
-      'an AMC file does not say its frame rate; it is known of files named as the CMU database names them, as 01_02.amc',
+      'an AMC file does not say its frame rate; it is known of files named as the CMU database names them, as 01_02.amc. For others give “frameRate” in a skeleton map',
     );
   return cmu.subjectsAt60Hz.includes(Number(found[1])) ? 60 : cmu.rateHz;
 }
@@ -150,7 +158,7 @@ export function* readOurMotion(
   try {
     const map = source.map && readBeside(source.map, readSkeletonMap);
     const { file, skeleton, notes } = yield* scaleProgress(readFile(source, map), 0, 0.75);
-    const rate = file.rateHz ?? map?.frameRate ?? rateOf(source.name);
+    const rate = file.rateHz ?? map?.frameRate ?? source.rateHz ?? rateOf(source.name);
     if (!(rate >= lowestRateHz && rate <= highestRateHz))
       throw new Error(
         `it has ${Number(rate.toPrecision(3))} frames a second; motion of ${lowestRateHz} to ${highestRateHz} is read`,

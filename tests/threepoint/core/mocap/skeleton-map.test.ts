@@ -1,4 +1,5 @@
 import { isSkeletonMap } from 'threepoint/core/mocap/is-skeleton-map';
+import { acclaim } from 'threepoint/core/mocap/mocap-rules.json';
 import { prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
 import { finishWork } from 'threepoint/core/motion/work';
 import { describe, expect, test } from 'vitest';
@@ -16,6 +17,20 @@ describe('a map of a skeleton', () => {
     expect(isSkeletonMap('{"format": "threepoint-recording", "joints": {}}')).toBe(false);
     expect(isSkeletonMap('{"photos": []}')).toBe(false);
     expect(isSkeletonMap('{"joints"')).toBe(false);
+  });
+
+  test('takes the rest of an AMC from another AMC of the same skeleton', () => {
+    const source = sourceOf(goldenMocap.find(({ motion }) => motion.endsWith('.amc'))!);
+    if (source.format !== 'amc') throw new Error('expected an AMC');
+    const atRest = source.text.replace(
+      /^([a-z]+) .*$/gm,
+      (line, bone) => bone + ' 0'.repeat(line.split(' ').length - 1),
+    );
+    const text = JSON.stringify({ ...acclaim, restFrame: { file: 'rest.amc' } });
+    const rest = { name: 'rest.amc', text: atRest };
+    const [own] = finishWork(prepareMocap(source)).clips;
+    const [mapped] = finishWork(prepareMocap({ ...source, map: { name: 'map.json', text }, rest })).clips;
+    for (const [i, value] of mapped!.truth.entries()) expect(value).toBeCloseTo(own!.truth[i]!, 5);
   });
 
   test.each<[string, () => unknown, RegExp]>([
