@@ -11,10 +11,13 @@ import {
   createPageClock,
   defaultCalibration,
   forwardKinematics,
+  type GuidedCalibration,
   loadLearned,
   type PoseRegressor,
   parseRecording,
   skeletonFromCalibration,
+  startGuidedCalibration,
+  stepGuidedCalibration,
   type TrackingFrame,
 } from 'threepoint';
 import { exportMotion, toXRBody, type XRBodyJoints } from 'threepoint/motion';
@@ -23,6 +26,7 @@ import 'threepoint/onnx-worker';
 import { type EmulatedBody, installBodyTracking } from 'threepoint/polyfill';
 import { RemoteAvatar, SelfAvatar } from 'threepoint/react';
 import { type Avatar, avatarMotion, BodyTracker, type BodyTrackerEvents, loadAvatar } from 'threepoint/three';
+import { type BodyTrackers, pinning, trackerAtJoint } from 'threepoint/trackers';
 
 /** With three.js, its session and an avatar. */
 export async function inTheHeadset(renderer: WebGLRenderer, scene: Scene): Promise<BodyTracker> {
@@ -97,6 +101,14 @@ export async function forOthers(text: string, signal: AbortSignal): Promise<Blob
 export function asWebXR({ body }: AvatarPose, calibration: Calibration): number | undefined {
   const joints: XRBodyJoints | null = body && toXRBody(body, calibration);
   return joints?.get('left-arm-lower')?.position.y;
+}
+
+/** With trackers on belt and shoe, whose mounts a guided calibration has measured; the shoe's sends an ankle. */
+export function withTrackers(renderer: WebGLRenderer, avatar: Avatar, read: () => BodyTrackers, frame: TrackingFrame) {
+  const state: GuidedCalibration = stepGuidedCalibration(startGuidedCalibration, frame, pinning);
+  const measured = state.kind === 'done' ? state.calibration : defaultCalibration;
+  const calibration = { ...measured, trackerOffsets: { ...measured.trackerOffsets, leftFoot: trackerAtJoint } };
+  return new BodyTracker(renderer, { avatar, calibration, pinning, trackers: read });
 }
 
 /** For pages that expect the device's own body. */

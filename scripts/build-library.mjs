@@ -10,7 +10,7 @@ import { mainOf, root, run, SetupError } from './run-command.mjs';
 import { sourceResolution } from './source-condition.mjs';
 
 const out = join(root, 'dist-library');
-const entries = ['index', 'motion', 'three', 'react', 'onnx', 'onnx-worker', 'polyfill'];
+const entries = ['index', 'motion', 'three', 'react', 'onnx', 'onnx-worker', 'polyfill', 'trackers'];
 /** The manifest of the workspace; the published one omits what only this repository can resolve. */
 const own = JSON.parse(readFileSync(join(root, 'src/threepoint/package.json'), 'utf8'));
 const external = (id) => Object.keys(own.peerDependencies).some((name) => id === name || id.startsWith(`${name}/`));

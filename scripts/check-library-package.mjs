@@ -11,13 +11,14 @@ const packages = [folder, join(root, 'dist-rooms')];
 
 /** The largest minified bundle [kB] of a page that imports one name, without peers and what loads on demand. */
 const largestBundles = [
-  ['copyAvatarPose', 'index.js', 2.3],
-  ['calibrationComplaint', 'index.js', 3.8],
+  ['copyAvatarPose', 'index.js', 2.2],
+  ['calibrationComplaint', 'index.js', 3.1],
   ['forwardKinematics', 'index.js', 2.2],
   ['parseRecording', 'index.js', 6.5],
   ['toXRBody', 'motion.js', 27],
-  ['BodyTracker', 'three.js', 121],
+  ['BodyTracker', 'three.js', 116],
   ['loadAvatar', 'three.js', 132],
+  ['pinning', 'trackers.js', 18],
 ];
 
 const filesOf = (folder) => readdirSync(folder, { recursive: true }).map((file) => join(folder, file));

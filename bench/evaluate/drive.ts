@@ -38,8 +38,9 @@ export function createDriver(
   regressor: PoseRegressor | null,
   frameByFrame = false,
 ): Driver {
+  const options = { frameByFrame };
   const estimator =
-    name === 'ik' ? createIk(calibration, frameByFrame) : createWithNetwork(name, calibration, regressor, frameByFrame);
+    name === 'ik' ? createIk(calibration, options) : createWithNetwork(name, calibration, regressor, options);
   const skeleton = skeletonFromCalibration(calibration);
   return {
     async draw(frame) {

@@ -1,6 +1,6 @@
 import type { WebGLRenderer } from 'three';
 import { bodyFeature, DeviceBodyReader } from 'threepoint/xr/device-body-reader';
-import { giveFramesToEvents } from 'threepoint/xr/frameless-events';
+import { drawSession } from 'threepoint/xr/draw-session';
 import { isSessionOffered, requestSession, usualFeatures } from 'threepoint/xr/session';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import type { HeadsetReport } from './headset-report';
@@ -24,18 +24,12 @@ export interface CheckSessionEvents {
 /** Enters a session that the renderer draws. Rejects with a sentence. Needs a click. */
 export async function enterSession(renderer: WebGLRenderer, events: CheckSessionEvents): Promise<CheckSession> {
   const xr = await requestSession('immersive-vr', askedFeatures);
-  try {
-    giveFramesToEvents(xr);
-    await renderer.xr.setSession(xr);
-  } catch (error) {
-    // A session that is not drawn would keep the headset waiting.
-    await xr.end();
-    throw error;
-  }
-  const bodyReader = new DeviceBodyReader();
-  const tracking = new TrackedSession({ session: xr, drawing: renderer.xr, bodyReader, ...events });
-  tracking.start();
-  return { xr, tracking, bodyReader };
+  return drawSession(xr, renderer.xr, () => {
+    const bodyReader = new DeviceBodyReader();
+    const tracking = new TrackedSession({ session: xr, drawing: renderer.xr, bodyReader, ...events });
+    tracking.start();
+    return { xr, tracking, bodyReader };
+  });
 }
 
 /** Collects what a session offers; profiles appear with their devices, so they are collected in every frame. */

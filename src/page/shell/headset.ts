@@ -1,8 +1,8 @@
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { DeviceBodyReader } from 'threepoint/xr/device-body-reader';
 import type { DeviceCommands } from 'threepoint/xr/device-commands';
+import { drawSession, endSession } from 'threepoint/xr/draw-session';
 import { FrameRateControl, type Savings, unjudgedSavings } from 'threepoint/xr/frame-rate';
-import { giveFramesToEvents } from 'threepoint/xr/frameless-events';
 import { buzz, type Pulse } from 'threepoint/xr/haptics';
 import { Pointing } from 'threepoint/xr/pointing';
 import {
@@ -69,11 +69,6 @@ interface Session {
   readonly room: PlayRoom | null;
   readonly tracking: TrackedSession;
   readonly rates: FrameRateControl;
-}
-
-async function end(xr: XRSession): Promise<void> {
-  // reason: only a session that has ended already, or is about to, refuses to end
-  await xr.end().catch(() => undefined);
 }
 
 /** The headset that is worn, real or emulated, and the session in it. */
@@ -237,7 +232,7 @@ export class Headset {
   }
 
   exit(): void {
-    if (this.#session) void end(this.#session.xr);
+    if (this.#session) void endSession(this.#session.xr);
   }
 
   recentre(): void {
@@ -271,30 +266,14 @@ export class Headset {
   }
 
   async #begin(passthrough: boolean): Promise<void> {
-    const { deviceBody } = this.#options.settings;
+    const { renderer, quality, settings } = this.#options;
+    const { deviceBody } = settings;
     const xr = await (passthrough ? requestPassthroughSession(deviceBody) : requestVrSession(deviceBody));
-    const over = new Promise<never>((_, reject) => {
-      xr.addEventListener('end', () => reject(new Error('the session ended before it had begun')));
+    const room = await drawSession(xr, renderer.xr, () => {
+      if (this.#emulator) easeEmulatedPicture(renderer, quality);
+      return roomOf(xr);
     });
-    try {
-      const room = await Promise.race([this.#drawIn(xr), over]);
-      this.#follow(xr, room, passthrough);
-    } catch (error) {
-      // Else the headset waits for pictures that never come, and no other session can begin.
-      await end(xr);
-      throw error;
-    }
-  }
-
-  /** Lets the renderer draw the session; returns the room that its boundary leaves. */
-  async #drawIn(xr: XRSession): Promise<PlayRoom | null> {
-    const { renderer, quality } = this.#options;
-    giveFramesToEvents(xr);
-    await renderer.xr.setSession(xr);
-    if (!renderer.xr.getReferenceSpace())
-      throw new Error('the headset provides no floor-level reference space (local-floor)');
-    if (this.#emulator) easeEmulatedPicture(renderer, quality);
-    return roomOf(xr);
+    this.#follow(xr, room, passthrough);
   }
 
   /** Tracks the session until it ends. */

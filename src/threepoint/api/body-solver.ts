@@ -2,6 +2,7 @@ import type { AvatarPose } from '../core/body/avatar-pose';
 import { type Calibration, defaultCalibration, demandPerson, sameCalibration } from '../core/body/calibration';
 import { createEstimator, type NetworkName } from '../core/estimation/estimators';
 import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
+import type { Pinning } from '../core/estimation/pinning';
 import type { EstimatorName, InferenceRequest } from '../core/estimation/pose-estimator';
 import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
@@ -69,6 +70,8 @@ export interface BodySolverOptions {
   readonly autoGrow?: boolean;
   /** Loads a network by name; rejects with a sentence. `onnxNetworks` of threepoint/onnx loads both. */
   readonly networks: (name: NetworkName) => Promise<PoseRegressor>;
+  /** Draws the trackers of frames: `pinning` of threepoint/trackers. Without it frames must have none. */
+  readonly pinning?: Pinning;
   /** The clock of `tick`, for pages that share one. Default: a clock of the body. */
   readonly clock?: Pick<PageClock, 'tick' | 'paused'>;
   /** Measures the work that follows a frame. */
@@ -82,6 +85,7 @@ export const bodyOptions = optionNames<BodySolverOptions>({
   calibration: true,
   autoGrow: true,
   networks: true,
+  pinning: true,
   clock: true,
   profiler: true,
   events: true,
@@ -99,12 +103,6 @@ const eventNames = optionNames<BodyEvents>({
   sessionend: true,
 });
 
-/** Returns a copy that the page cannot change. Throws a RangeError where the measures are not human. */
-function copyChecked(calibration: Calibration): Calibration {
-  demandPerson(calibration);
-  return { ...calibration };
-}
-
 /**
  * Solves the body of one wearer from three tracked points. It selects the estimator, falls back to inverse kinematics,
  * estimates the wearer's height and reports lost points. Each frame is one call of `tick` and one of `update`. It
@@ -121,6 +119,7 @@ export class BodySolver {
   #events: BodyEvents;
   readonly #clock: Pick<PageClock, 'tick' | 'paused'>;
   readonly #profiler: InferenceProfiler | null;
+  readonly #pinning: Pinning | undefined;
   readonly #validator = new TrackingValidator({
     onChange: (point, tracked) => (tracked ? this.#events.trackingfound?.(point) : this.#events.trackinglost?.(point)),
   });
@@ -151,17 +150,18 @@ export class BodySolver {
   constructor(options: BodySolverOptions) {
     demandOptions('Body', options, bodyOptions);
     demandOptions('the events of Body', options.events ?? {}, eventNames);
-    const { estimator = 'learned', calibration = 'auto', networks, profiler = null } = options;
+    const { estimator = 'learned', calibration = 'auto', networks, profiler = null, pinning } = options;
     this.#events = options.events ?? {};
     this.#clock = options.clock ?? createPageClock(() => performance.now());
     this.#profiler = profiler;
+    this.#pinning = pinning;
     this.#given = calibration !== 'auto';
-    this.#wearer = calibration === 'auto' ? defaultCalibration : copyChecked(calibration);
+    this.#wearer = calibration === 'auto' ? defaultCalibration : this.#copyChecked(calibration);
     this.#calibration = this.#wearer;
     this.#choice = new EstimatorChoice({
       estimator,
       calibration: this.#calibration,
-      create: createEstimator,
+      create: (name, body, regressor) => createEstimator(name, body, regressor, { pinning }),
       load: profiler ? async (name) => profiled(await networks(name), profiler) : networks,
       onChange: () => this.#events.changed?.(),
       onFault: (name, reason) => this.#events.fallback?.(name, reason),
@@ -280,7 +280,8 @@ export class BodySolver {
    * counts as lost; an invalid time counts as that of the frame before. `standIn`: the measures of someone else who
    * moves the body in this frame, such as an actor or a recording; they are in force then, and nothing is estimated
    * about the wearer. Never waits and never returns NaN. After `dispose` it returns null and warns once. Throws a
-   * RangeError where a stand-in's measures are not human, or what a callback throws.
+   * RangeError where a stand-in's measures are not human, a TypeError where the frame has trackers and the body no
+   * `pinning`, or what a callback throws.
    */
   update(tracked: TrackingFrame | null, standIn: Calibration | null = null): AvatarPose | null {
     if (this.#disposed) {
@@ -328,7 +329,14 @@ export class BodySolver {
   /** Returns a copy of the measures of a page, or the measures themselves where the body returned them before. */
   #own(calibration: Calibration): Calibration {
     const known = calibration === this.#calibration || calibration === this.#wearer;
-    return known ? calibration : copyChecked(calibration);
+    return known ? calibration : this.#copyChecked(calibration);
+  }
+
+  /** Returns a copy that the page cannot change. Throws a RangeError where the measures are not human. */
+  #copyChecked(calibration: Calibration): Calibration {
+    demandPerson(calibration);
+    this.#pinning?.demandOffsets(calibration);
+    return { ...calibration };
   }
 
   /**

@@ -2,6 +2,7 @@ import { type Calibration, demandPerson } from '../core/body/calibration';
 import * as bodies from '../core/body/skeleton';
 import * as estimators from '../core/estimation/estimators';
 import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
+import type { Pinning } from '../core/estimation/pinning';
 import type { EstimatorName, PoseEstimator } from '../core/estimation/pose-estimator';
 
 // The functions of core that a page calls with measures of its own: measures in centimetres would give a giant.
@@ -21,7 +22,7 @@ export function skeletonFromCalibration(calibration: Calibration): bodies.Skelet
 /**
  * Creates an estimator by its name. `paper` and `learned` throw without their regressor; `device` falls back on IK
  * without that of `learned`. Throws a RangeError where no estimator has this name, or where the measures [m] are not
- * human.
+ * human. `pinning` of threepoint/trackers draws the trackers of frames.
  *
  * @example
  * const estimator = createEstimator('learned', calibration, await loadLearned());
@@ -30,7 +31,9 @@ export function createEstimator(
   name: EstimatorName,
   calibration: Calibration,
   regressor: PoseRegressor | null = null,
+  { pinning }: { readonly pinning?: Pinning } = {},
 ): PoseEstimator {
   demandPerson(calibration);
-  return estimators.createEstimator(name, calibration, regressor);
+  pinning?.demandOffsets(calibration);
+  return estimators.createEstimator(name, calibration, regressor, { pinning });
 }

@@ -16,7 +16,6 @@ export type { JointName } from '../core/body/joints';
 export { jointNames } from '../core/body/joints';
 export type { Skeleton } from '../core/body/skeleton';
 export type { TrackerName, TrackerOffset, TrackerOffsets } from '../core/body/tracker-offsets';
-export { trackerAtJoint } from '../core/body/tracker-offsets';
 export type { NetworkName } from '../core/estimation/estimators';
 export type { ModelContract, PoseRegressor } from '../core/estimation/networks/pose-regressor';
 export type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from '../core/estimation/pose-estimator';

@@ -9,7 +9,7 @@ import type { Calibration } from '../core/body/calibration';
 import { reasonOf } from '../core/errors/reasons';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
 import type { BoneMap } from '../core/humanoid/bones';
-import type { BodyTrackers, TrackingFrame } from '../core/tracking/tracking-frame';
+import { type BodyTrackers, demandPinning, type TrackingFrame } from '../core/tracking/tracking-frame';
 import { DeviceBodyReader } from '../xr/device-body-reader';
 import { TrackedSession } from '../xr/tracked-session';
 import { Body, type BodyOptions, warnOfFallback } from './body';
@@ -124,7 +124,7 @@ export interface BodyTrackerOptions extends Omit<BodyOptions, 'events'> {
   readonly deviceBody?: boolean;
   /**
    * Returns the trackers beyond head and hands, floor frame [m], in each frame of a session; null: none is seen. For
-   * those that another program sends. `trackerOffsets` of the calibration place them.
+   * those that another program sends. `trackerOffsets` of the calibration place them, and `pinning` draws them.
    */
   readonly trackers?: () => BodyTrackers | null;
   /** The address of another contract (.json) of the learned network, with its weights beside it. */
@@ -213,7 +213,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
 
   /**
    * Throws a RangeError where the calibration is not human or the estimator is unknown, a TypeError where `avatar` is
-   * none or an option is unknown, an Error where another tracker has the avatar.
+   * none, an option is unknown or `trackers` lack `pinning`, an Error where another tracker has the avatar.
    */
   constructor(renderer: WebGLRenderer, options: BodyTrackerOptions) {
     super();
@@ -221,6 +221,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     const { avatar, modelUrl, deviceBody = false, trackers, ...bodyOptions } = options;
     demandRenderer(renderer);
     demandAvatar(avatar);
+    demandPinning(trackers, bodyOptions.pinning);
     this.avatar = avatar;
     this.#deviceBody = deviceBody;
     this.#trackers = trackers;

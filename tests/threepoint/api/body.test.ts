@@ -255,7 +255,7 @@ describe('a body', () => {
   test('refuses an option that it does not know, and names those that it does', () => {
     // reason: what a page without types may pass
     expect(() => new Body({ calibraton: calibration } as BodyOptions)).toThrow(
-      '“calibraton” is not an option of Body. Use estimator, calibration, autoGrow, networks, clock, profiler, events.',
+      '“calibraton” is not an option of Body. Use estimator, calibration, autoGrow, networks, pinning, clock, profiler, events.',
     );
     const events = { fallbak: () => undefined } as BodyOptions['events'];
     expect(() => new Body({ events: events! })).toThrow(

@@ -1,9 +1,9 @@
 import { Group, type Mesh, type WebGLRenderer } from 'three';
 import { BodyTracker, type BodyTrackerOptions, loadAvatar } from 'threepoint/api/three';
+import { pinning, trackerAtJoint } from 'threepoint/api/trackers';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { trackerAtJoint } from 'threepoint/core/body/tracker-offsets';
 import { identity } from 'threepoint/core/math/quat';
 import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { toXRBody } from 'threepoint/core/motion/xr-body';
@@ -62,7 +62,7 @@ describe('a body in a session of three.js', () => {
   test('stands on the trackers that the page supplies, and on its gait again without them', async () => {
     let trackers: BodyTrackers | null = null;
     const calibration = { ...defaultCalibration, trackerOffsets: { hips: trackerAtJoint, leftFoot: trackerAtJoint } };
-    const { headset, tracker, run } = await begin({ calibration, trackers: () => trackers });
+    const { headset, tracker, run } = await begin({ calibration, pinning, trackers: () => trackers });
     headset.putOn();
     run(40);
     const { hips, leftFoot } = tracker.avatar.jointPositions();
@@ -80,6 +80,17 @@ describe('a body in a session of three.js', () => {
     run(40);
     expect(distance(tracker.pose!.body!.hipsPosition, free.hips.position)).toBeGreaterThan(0.02);
     expect(tracker.pose!.feet).toBeUndefined();
+  });
+
+  test('refuses trackers without the part that draws them, and offsets that no tracker is worn with', async () => {
+    const trackers = () => null;
+    await expect(begin({ trackers })).rejects.toThrow(/pinning.*threepoint\/trackers/);
+    const trackerOffsets = { hips: { ...trackerAtJoint, position: { x: 0, y: 0.5, z: 0 } } };
+    const calibration = { ...defaultCalibration, trackerOffsets };
+    await expect(begin({ trackers, pinning, calibration })).rejects.toThrow(/tracker “hips” is not a pose/);
+    const { tracker } = await begin({ trackers, pinning });
+    expect(() => tracker.calibrate(calibration)).toThrow(/tracker “hips” is not a pose/);
+    expect(tracker.calibration.trackerOffsets).toBeUndefined();
   });
 
   test('has no pose after its session, so that a page that sends it leaves no frozen body with others', async () => {

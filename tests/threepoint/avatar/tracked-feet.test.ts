@@ -4,6 +4,7 @@ import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { trackerAtJoint } from 'threepoint/core/body/tracker-offsets';
 import { createIk } from 'threepoint/core/estimation/estimators';
+import { pinning } from 'threepoint/core/estimation/pinning';
 import { type Pose, transformPose } from 'threepoint/core/math/pose';
 import { fromAxisAngle, multiply } from 'threepoint/core/math/quat';
 import { distance, right, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
@@ -79,7 +80,7 @@ describe('a tracked foot', () => {
 
   test('moves the avatar’s own foot', async () => {
     const avatar = createAvatar(await parseAvatar(mannequin(), 'mannequin.vrm', {}));
-    const estimator = createIk({ ...defaultCalibration, trackerOffsets: { rightFoot: trackerAtJoint } });
+    const estimator = createIk({ ...defaultCalibration, trackerOffsets: { rightFoot: trackerAtJoint } }, { pinning });
     avatar.setCalibration(defaultCalibration);
     const ahead = { position: vec3(0.12, 0.25, -0.2), orientation: fromAxisAngle(up, -0.3) };
     for (let frame = 0; frame < 5; frame++) {

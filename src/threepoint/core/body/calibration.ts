@@ -1,6 +1,6 @@
 import { sides } from '../math/side';
-import { type HandTilts, isBelievableTilt as isPlausibleTilt, sameTilts, steepestHandTilt } from './hand-tilt';
-import { farthestTracker, isPlausibleOffset, sameOffsets, type TrackerOffsets, trackerNames } from './tracker-offsets';
+import { type HandTilts, isBelievableTilt as isPlausibleTilt, steepestHandTilt } from './hand-tilt';
+import type { TrackerOffsets } from './tracker-offsets';
 
 /** The measures of a body, entered by the user or measured while they stand still for two seconds. */
 export interface Calibration {
@@ -78,13 +78,22 @@ export const sameMeasures = (a: Calibration, b: Calibration): boolean =>
   a.eyeHeight === b.eyeHeight && a.armSpan === b.armSpan && a.forearm === b.forearm;
 
 /** Returns whether two calibrations are equal, including the tilts of headset and hands and the trackers' offsets. */
-export const sameCalibration = (a: Calibration, b: Calibration): boolean =>
-  sameMeasures(a, b) &&
-  a.gazePitch === b.gazePitch &&
-  sameTilts(a.handTilts, b.handTilts) &&
-  sameOffsets(a.trackerOffsets, b.trackerOffsets);
+export const sameCalibration = (a: Calibration, b: Calibration): boolean => hasParts(a, b) && hasParts(b, a);
 
-/** Returns a sentence about the implausible measure of a calibration; null: it is plausible. */
+type Parts = Readonly<Record<string, unknown>> | undefined;
+
+/** Returns whether a value has each part of the other; an absent value has none. Makes no garbage. */
+function hasParts(value: unknown, other: unknown): boolean {
+  if (value === other) return true;
+  if (typeof (other ?? value) !== 'object') return false;
+  for (const part in other as Parts) if (!hasParts((value as Parts)?.[part], (other as Parts)?.[part])) return false;
+  return true;
+}
+
+/**
+ * Returns a sentence about the implausible measure of a calibration; null: it is plausible. `pinning` checks the
+ * trackers' offsets.
+ */
 export const calibrationComplaint = (calibration: Calibration): string | null =>
   bodyComplaint(calibration) ?? wornComplaint(calibration);
 
@@ -140,8 +149,8 @@ function bodyComplaint({ eyeHeight, armSpan, forearm = armSpan * ORDINARY_FOREAR
   return `A forearm of ${metres(forearm)} does not match an arm span of ${metres(armSpan)} from wrist to wrist.${unitHint(forearm)}`;
 }
 
-/** Returns why the tilts of headset or hands, or a tracker's offset, are implausible; null: they are plausible. */
-function wornComplaint({ gazePitch = 0, handTilts, trackerOffsets }: Calibration): string | null {
+/** Returns why the tilts of headset or hands are implausible; null: they are plausible. */
+function wornComplaint({ gazePitch = 0, handTilts }: Calibration): string | null {
   const radians = (value: number) => `${value.toFixed(2)} rad`;
   if (!(Math.abs(gazePitch) <= steepestGazePitch)) {
     return `A headset’s tilt of ${radians(gazePitch)} exceeds ${radians(steepestGazePitch)}.`;
@@ -150,12 +159,6 @@ function wornComplaint({ gazePitch = 0, handTilts, trackerOffsets }: Calibration
     const tilt = handTilts?.[side];
     if (tilt && !isPlausibleTilt(tilt)) {
       return `A ${side} hand’s tilt of ${radians(Math.hypot(tilt.pitch, tilt.yaw))} exceeds ${radians(steepestHandTilt)}.`;
-    }
-  }
-  for (const name of trackerNames) {
-    const offset = trackerOffsets?.[name];
-    if (offset && !isPlausibleOffset(offset)) {
-      return `The offset of the tracker “${name}” is not a pose within ${metres(farthestTracker)} of it.`;
     }
   }
   return null;

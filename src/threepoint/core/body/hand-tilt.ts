@@ -17,13 +17,6 @@ export interface HandTilt {
 /** The tilts of the hands that were measured. */
 export type HandTilts = { readonly [Hand in Side]?: HandTilt | undefined };
 
-const sameTilt = (a: HandTilt | undefined, b: HandTilt | undefined): boolean =>
-  a?.pitch === b?.pitch && a?.yaw === b?.yaw;
-
-/** Whether both say the same of both hands. */
-export const sameTilts = (a: HandTilts | undefined, b: HandTilts | undefined): boolean =>
-  sameTilt(a?.left, b?.left) && sameTilt(a?.right, b?.right);
-
 /** Returns the default tilt, used until the user is calibrated. */
 export function usualHandTilt(side: Side): HandTilt {
   const [pitch, yaw] = proportions.handTilt as [number, number];

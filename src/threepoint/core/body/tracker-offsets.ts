@@ -25,13 +25,3 @@ export const isPlausibleOffset = (offset: TrackerOffset): boolean =>
 /** A page without types may leave parts of an offset out. */
 const hasParts = ({ position, orientation }: Partial<TrackerOffset>): boolean =>
   position !== undefined && orientation !== undefined;
-
-const sameOffset = (a: TrackerOffset | undefined, b: TrackerOffset | undefined): boolean =>
-  a === b ||
-  (a !== undefined &&
-    b !== undefined &&
-    (['x', 'y', 'z'] as const).every((axis) => a.position[axis] === b.position[axis]) &&
-    (['x', 'y', 'z', 'w'] as const).every((part) => a.orientation[part] === b.orientation[part]));
-
-export const sameOffsets = (a: TrackerOffsets | undefined, b: TrackerOffsets | undefined): boolean =>
-  a === b || trackerNames.every((name) => sameOffset(a?.[name], b?.[name]));

@@ -6,7 +6,7 @@ import { createHandsOnly } from './methods/hands-only';
 import { createPaper } from './methods/paper';
 import { createResidual } from './methods/residual';
 import type { PoseRegressor } from './networks/pose-regressor';
-import { Pipeline } from './pipeline';
+import { Pipeline, type PipelineOptions } from './pipeline';
 import { type EstimatorName, estimatorNames, type PoseEstimator } from './pose-estimator';
 
 /** The methods that cannot work without their network. */
@@ -31,8 +31,8 @@ const ikAlone: JointSource = {
   },
 };
 
-export const createIk = (calibration: Calibration, frameByFrame = false): Pipeline =>
-  new Pipeline('ik', calibration, ikAlone, frameByFrame);
+export const createIk = (calibration: Calibration, options?: PipelineOptions): Pipeline =>
+  new Pipeline('ik', calibration, ikAlone, options);
 
 /**
  * Creates an estimator with a network as a pipeline, for benches of single stages; throws where the regressor belongs
@@ -42,15 +42,11 @@ export function createWithNetwork(
   name: NetworkName,
   calibration: Calibration,
   regressor: PoseRegressor | null,
-  frameByFrame = false,
+  options?: PipelineOptions,
 ): Pipeline {
   if (regressor?.contract.name !== name) throw new Error(`estimator “${name}” needs the regressor of the same name`);
-  return new Pipeline(
-    name,
-    calibration,
-    name === 'paper' ? createPaper(regressor) : createResidual(calibration, regressor),
-    frameByFrame,
-  );
+  const source = name === 'paper' ? createPaper(regressor) : createResidual(calibration, regressor);
+  return new Pipeline(name, calibration, source, options);
 }
 
 /** Creates an estimator of a person; see `createEstimator` of the public API. */
@@ -58,13 +54,14 @@ export function createEstimator(
   name: EstimatorName,
   calibration: Calibration,
   regressor: PoseRegressor | null = null,
+  options?: PipelineOptions,
 ): PoseEstimator {
-  if (needsRegressor(name)) return createWithNetwork(name, calibration, regressor);
+  if (needsRegressor(name)) return createWithNetwork(name, calibration, regressor, options);
   if (name === 'device') {
     const otherwise = regressor ? createResidual(calibration, regressor) : ikAlone;
-    return new Pipeline(name, calibration, createDeviceSource(otherwise));
+    return new Pipeline(name, calibration, createDeviceSource(otherwise), options);
   }
-  if (name === 'ik') return createIk(calibration);
+  if (name === 'ik') return createIk(calibration, options);
   if (name === 'hands-only') return createHandsOnly(calibration);
   throw new RangeError(`“${String(name)}” is not an estimator. Use one of ${estimatorNames.join(', ')}.`);
 }

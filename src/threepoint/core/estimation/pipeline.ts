@@ -7,7 +7,7 @@ import { rotate } from '../math/quat';
 import { vec3 } from '../math/vec3';
 import type { DeviceBody } from '../tracking/device-body';
 import { floorFromHeading } from '../tracking/heading';
-import type { TrackingFrame } from '../tracking/tracking-frame';
+import { demandPinning, type TrackingFrame } from '../tracking/tracking-frame';
 import { armBones, fitArms, makeFitArmsState, resetFitArms } from './arms/fit-arms';
 import { completeHands, makeCompleteHandsState, resetCompleteHands } from './complete-hands';
 import { composeBody } from './compose-body';
@@ -18,10 +18,9 @@ import { limitJoints, makeLimitJointsState, resetLimitJoints } from './limit-joi
 import { HeadsetMountCorrection } from './online-calibration/headset-mount-correction';
 import { makeHandTiltsState, noticeHandTilts, resetHandTilts } from './online-calibration/notice-hand-tilts';
 import { makeHeadsetRiseState, noticeHeadsetRise, resetHeadsetRise } from './online-calibration/notice-headset-rise';
-import { makePinTrunkState, pinTrunk, resetPinTrunk } from './pin-trunk';
+import type { Pinning, Pins } from './pinning';
 import type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from './pose-estimator';
 import { makeSteadyTrackersState, resetSteadyTrackers, steadyTrackers } from './steady-trackers';
-import { makeTrackedJointsState, placeTrackedJoints, type TrackedJoints } from './tracked-joints';
 import { fitTorso, makeFitTorsoState, resetFitTorso, torsoBones } from './trunk/fit-torso';
 
 /** The longest gap between frames [s] that counts as motion; after a longer one filters and memories are reset. */
@@ -35,7 +34,6 @@ function measure(calibration: Calibration) {
     torso: torsoBones(skeleton),
     arm: armBones(skeleton),
     spanMeasured: isSpanMeasured(calibration),
-    trackerOffsets: calibration.trackerOffsets,
   };
 }
 
@@ -61,8 +59,6 @@ function makeEstimatorState({ handTilts }: Calibration) {
     joints: makeJoints(),
     limited: makeLimitJointsState(),
     torso: makeFitTorsoState(),
-    tracked: makeTrackedJointsState(),
-    pins: makePinTrunkState(),
     arms: makeFitArmsState(),
   };
 }
@@ -82,6 +78,13 @@ interface OwnedPose {
   feet: TrackedFeet | undefined;
 }
 
+export interface PipelineOptions {
+  /** Whether filters and speed limits are left out, for benches that measure their cost. */
+  readonly frameByFrame?: boolean;
+  /** Draws the trackers of frames; absent: frames must have none. */
+  readonly pinning?: Pinning | undefined;
+}
+
 /**
  * An estimator with a body: complete hands → solve IK → correct (the source) → filter joints → fit torso, pin trunk,
  * fit arms. A method is its source; every other stage is the same for all.
@@ -97,16 +100,15 @@ export class Pipeline implements PoseEstimator {
   readonly #estimate: { readonly pose: OwnedPose; request: InferenceRequest | null };
   readonly #request: InferenceRequest;
   readonly #headset: HeadsetMountCorrection;
-  readonly #feet: { -readonly [Side in keyof TrackedFeet]: TrackedFeet[Side] } = { left: null, right: null };
   #body: ReturnType<typeof measure>;
   #lastTime = Number.NaN;
-
   readonly #frameByFrame: boolean;
+  readonly #pins: Pins | undefined;
 
-  /** frameByFrame: without filters and speed limits, for benches that measure their cost. */
-  constructor(name: EstimatorName, calibration: Calibration, source: JointSource, frameByFrame = false) {
+  constructor(name: EstimatorName, calibration: Calibration, source: JointSource, options: PipelineOptions = {}) {
     this.name = name;
-    this.#frameByFrame = frameByFrame;
+    this.#frameByFrame = options.frameByFrame ?? false;
+    this.#pins = options.pinning?.create(calibration);
     this.source = source;
     this.state = makeEstimatorState(calibration);
     this.#headset = new HeadsetMountCorrection(calibration);
@@ -127,6 +129,7 @@ export class Pipeline implements PoseEstimator {
 
   calibrate(calibration: Calibration): void {
     this.#headset.calibrate(calibration);
+    this.#pins?.calibrate(calibration);
     this.#body = measure(calibration);
     resetHandTilts(this.state.tilts, calibration.handTilts);
     resetHeadsetRise(this.state.headset);
@@ -134,13 +137,13 @@ export class Pipeline implements PoseEstimator {
   }
 
   reset(): void {
-    const { hands, trackers, limited, torso, pins, arms } = this.state;
+    const { hands, trackers, limited, torso, arms } = this.state;
     resetCompleteHands(hands);
     resetSteadyTrackers(trackers);
     this.source.reset();
     resetLimitJoints(limited);
     resetFitTorso(torso);
-    resetPinTrunk(pins);
+    this.#pins?.reset();
     resetFitArms(arms);
     this.#lastTime = Number.NaN;
   }
@@ -150,6 +153,7 @@ export class Pipeline implements PoseEstimator {
   }
 
   update(frame: TrackingFrame): Estimate {
+    demandPinning(frame.trackers, this.#pins);
     const { state } = this;
     const body = this.#body;
     const deltaSeconds = this.#elapsed(frame.time);
@@ -166,8 +170,7 @@ export class Pipeline implements PoseEstimator {
     this.source.joints(solved, step, state.joints);
     const joints = limitJoints(state.limited, state.joints, completed, step);
     const torso = fitTorso(state.torso, joints, completed, body.torso, step);
-    const tracked = placeTrackedJoints(state.tracked, frame.trackers, body.trackerOffsets);
-    pinTrunk(state.pins, torso, tracked, completed, body.torso, step);
+    const feet = this.#pins?.apply(torso, frame.trackers, completed, body.torso, step);
     const armsInput = { frame: completed, joints, torso, bones: body.arm, poles: this.#poles };
     const arms = fitArms(state.arms, armsInput, step);
 
@@ -177,7 +180,7 @@ export class Pipeline implements PoseEstimator {
     pose.leftHand = frame.leftHand;
     pose.rightHand = frame.rightHand;
     pose.fingers = frame.fingers ?? unknownFingers;
-    pose.feet = this.#trackedFeet(tracked);
+    pose.feet = feet;
     composeBody(torso, arms, head.orientation, pose.body);
     return this.#estimate;
   }
@@ -192,13 +195,6 @@ export class Pipeline implements PoseEstimator {
     if (!continues) this.reset();
     this.#lastTime = time;
     return continues ? elapsed : 0;
-  }
-
-  /** Returns the ankles that trackers pin; undefined: none is. */
-  #trackedFeet({ leftFoot, rightFoot }: TrackedJoints): TrackedFeet | undefined {
-    this.#feet.left = leftFoot;
-    this.#feet.right = rightFoot;
-    return leftFoot || rightFoot ? this.#feet : undefined;
   }
 
   /** Stage 2 in the heading frame. */

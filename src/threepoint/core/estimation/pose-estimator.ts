@@ -37,8 +37,8 @@ export interface PoseEstimator {
   /** Resets the state after a recentre, a teleport or a loss of tracking. */
   reset(): void;
   /**
-   * Estimates the body of one frame of finite poses. Synchronous; never throws, never returns NaN and never waits for a
-   * network.
+   * Estimates the body of one frame of finite poses. Synchronous; never returns NaN and never waits for a network.
+   * Throws only a TypeError, where the frame has trackers and the estimator was created without `pinning`.
    */
   update(frame: TrackingFrame): Estimate;
   /** Returns why inverse kinematics replaced the network in the newest frame; null: there is no fault. */

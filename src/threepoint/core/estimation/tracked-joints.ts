@@ -1,8 +1,9 @@
 import { type TrackerName, type TrackerOffsets, trackerNames } from '../body/tracker-offsets';
 import { isTracked, type MutablePose, makePose, transformPose } from '../math/pose';
 import type { BodyTrackers } from '../tracking/tracking-frame';
+import { validPose } from '../tracking/tracking-validator';
 
-/** The joints by their trackers, floor frame; null: not seen, or without an offset. */
+/** The joints by their trackers, floor frame; null: not seen, invalid, or without an offset. */
 export type TrackedJoints = Record<TrackerName, MutablePose<'floor'> | null>;
 
 /** The joints of the newest frame, and the buffers that they are written to. */
@@ -23,8 +24,8 @@ export function placeTrackedJoints(
   offsets: TrackerOffsets | undefined,
 ): TrackedJoints {
   for (const name of trackerNames) {
-    const tracker = trackers?.[name];
     const offset = offsets?.[name];
+    const tracker = validPose(trackers?.[name]);
     joints[name] =
       offset && isTracked(tracker) ? transformPose<'floor', 'tracker'>(tracker, offset, buffers[name]) : null;
   }

@@ -8,8 +8,8 @@ import { type Side, sides } from '../math/side';
 import { add, addScaled, distance, forward, length, normalise, scale, subtract, type Vec3, vec3 } from '../math/vec3';
 import { type CalibrationFault, calibrationFaults } from './calibration-faults';
 import { headingFromFloor } from './heading';
-import { measureTrackers, sampleTrackers, type TrackerSample } from './measure-trackers';
-import type { TrackingFrame } from './tracking-frame';
+import type { TrackerMeasuring, TrackerSample } from './measure-trackers';
+import { demandPinning, type TrackingFrame } from './tracking-frame';
 
 /**
  * The person stands straight, looks ahead and stretches both arms for this long: forward, sideways, or down and out by
@@ -70,26 +70,32 @@ export const startGuidedCalibration: GuidedCalibration = { kind: 'measuring', pa
 
 /**
  * Returns the next state after a frame; `done` and `failed` stay as they are. Time that runs backwards restarts the
- * measuring.
+ * measuring. `pinning` also measures how trackers are worn: pass it with every frame. Throws a TypeError where a frame
+ * has trackers without it.
  */
-export function stepGuidedCalibration(state: GuidedCalibration, frame: TrackingFrame): GuidedCalibration {
+export function stepGuidedCalibration(
+  state: GuidedCalibration,
+  frame: TrackingFrame,
+  pinning?: TrackerMeasuring,
+): GuidedCalibration {
+  demandPinning(frame.trackers, pinning);
   if (state.kind !== 'measuring') return state;
   const startTime = state.startTime === null || frame.time < state.startTime ? frame.time : state.startTime;
-  const samples = withSample(sampleOf(frame), startTime === frame.time ? null : state.samples);
+  const samples = withSample(sampleOf(frame, pinning), startTime === frame.time ? null : state.samples);
   const seconds = frame.time - startTime;
   const enough = samples.count >= FEWEST_SAMPLES || seconds >= longestMeasuringSeconds;
-  if (seconds >= measuringSeconds && enough) return measure(samplesOf(samples));
+  if (seconds >= measuringSeconds && enough) return measure(samplesOf(samples), pinning);
   return { kind: 'measuring', part: Math.min(1, seconds / measuringSeconds), startTime, samples };
 }
 
-function sampleOf({ head, leftHand, rightHand, trackers }: TrackingFrame): Sample {
+function sampleOf({ head, leftHand, rightHand, trackers }: TrackingFrame, pinning?: TrackerMeasuring): Sample {
   const fromFloor = headingFromFloor(head);
   return {
     head: head.position,
     gaze: rotate(head.orientation, forward).y,
     left: transformTracked(fromFloor, leftHand),
     right: transformTracked(fromFloor, rightHand),
-    trackers: sampleTrackers(fromFloor, trackers),
+    trackers: pinning?.sample(fromFloor, trackers) ?? null,
   };
 }
 
@@ -198,7 +204,7 @@ function measureBody(wrists: readonly MeasuredWrist[], headHeight: number): Meas
   return longest - shortest > UNEVEN_ARMS ? 'uneven' : { eyeHeight, arm: mean(arms) };
 }
 
-function measure(samples: readonly Sample[]): GuidedCalibration {
+function measure(samples: readonly Sample[], pinning?: TrackerMeasuring): GuidedCalibration {
   if (samples.length < FEWEST_SAMPLES) return failed('lost');
   const head = measureHead(samples);
   if (typeof head === 'string') return failed(head);
@@ -215,7 +221,7 @@ function measure(samples: readonly Sample[]): GuidedCalibration {
     ...tiltsOf(wrists, head.height, eyeHeight),
   };
   const trackers = samples.map((sample) => sample.trackers);
-  const calibration = { ...measured, ...measureTrackers(trackers, measured, head.height) };
+  const calibration = { ...measured, ...pinning?.measure(trackers, measured, head.height) };
   const complaint = calibrationComplaint(calibration);
   return complaint === null
     ? { kind: 'done', calibration }

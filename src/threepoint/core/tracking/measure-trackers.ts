@@ -28,8 +28,16 @@ const steadyRotation = 0.99;
 /** A head lower than this [eye heights] is that of a person who sits, whose feet are not below the hips. */
 const standingHead = 0.9;
 
+/** Measures how trackers are worn, in a guided calibration. */
+export interface TrackerMeasuring {
+  /** Returns the trackers that a frame shows, heading frame; null: there are none. */
+  readonly sample: typeof sampleTrackers;
+  /** Returns the joints in the frames of their trackers. */
+  readonly measure: typeof measureTrackers;
+}
+
 /** Returns the trackers that a frame shows, heading frame; null: there are none. */
-export function sampleTrackers(
+function sampleTrackers(
   headingFromFloor: Parameters<typeof transformTracked<'heading'>>[0],
   trackers: TrackingFrame['trackers'],
 ): TrackerSample | null {
@@ -44,7 +52,7 @@ export function sampleTrackers(
  * `headHeight` [m]. Hips and chest joint are those of the body's rest pose under the head. An ankle is below the hips,
  * as far aside as its tracker, with the toes straight ahead. A tracker that moved or was lost is left out.
  */
-export function measureTrackers(
+function measureTrackers(
   samples: readonly (TrackerSample | null)[],
   calibration: Calibration,
   headHeight: number,
@@ -61,6 +69,8 @@ export function measureTrackers(
   }
   return Object.keys(offsets).length > 0 ? { trackerOffsets: offsets } : {};
 }
+
+export const trackerMeasuring: TrackerMeasuring = { sample: sampleTrackers, measure: measureTrackers };
 
 /** Returns where the joints of a person who stands straight are, heading frame; null: it is unknown. */
 function restJointsOf(calibration: Calibration, headHeight: number): (name: TrackerName, tracker: Vec3) => Vec3 | null {

@@ -21,11 +21,20 @@ export interface TrackingFrame {
   readonly fingers?: Fingers | undefined;
   /** The device's own body; absent: not reported in this frame. The next frame overwrites the array. */
   readonly deviceBody?: DeviceBody | undefined;
-  /** Trackers beyond head and hands, each placed by its `trackerOffsets` of the calibration; absent: there are none. */
+  /**
+   * Trackers beyond head and hands, each placed by its `trackerOffsets` of the calibration; absent: there are none.
+   * Only bodies and calibrations with `pinning` read them.
+   */
   readonly trackers?: BodyTrackers | undefined;
   /**
    * Set while the device shows a menu in front of the page: hands are not for the page, and players keep what they
    * hold.
    */
   readonly suspended?: true;
+}
+
+/** Throws a TypeError where there are trackers and no part that draws or measures them. */
+export function demandPinning(trackers: unknown, pinning: object | undefined): void {
+  if (!trackers || pinning) return;
+  throw new TypeError("Trackers need `pinning`. Import it from 'threepoint/trackers' and pass it with the options.");
 }

@@ -1,9 +1,8 @@
 import { type Fingers, type HandShape, isFiniteHand } from '../body/hand-shape';
-import { trackerNames } from '../body/tracker-offsets';
 import { isFinitePose, isTracked, type TrackedPose } from '../math/pose';
 import { normaliseQuat, type Quat } from '../math/quat';
 import { isFiniteDeviceBody } from './device-body';
-import type { BodyTrackers, TrackingFrame } from './tracking-frame';
+import type { TrackingFrame } from './tracking-frame';
 
 /** A point that a headset tracks. */
 export type TrackedPoint = 'head' | 'left' | 'right';
@@ -18,7 +17,7 @@ const isUnit = ({ x, y, z, w }: Quat): boolean => Math.abs(x * x + y * y + z * z
  * Returns the pose with a rotation of length 1 and a tracking state; null: it is absent or not finite. A pose without a
  * state is tracked: pages without types leave it out.
  */
-function validPose(pose: TrackedPose | null | undefined): TrackedPose | null {
+export function validPose(pose: TrackedPose | null | undefined): TrackedPose | null {
   if (!pose || !isFinitePose(pose)) return null;
   const { position, orientation, tracking } = pose;
   const unit = isUnit(orientation);
@@ -36,16 +35,6 @@ function validFingers(fingers: Fingers): Fingers {
   return left === fingers.left && right === fingers.right ? fingers : { left, right };
 }
 
-/** Returns the trackers themselves, or a copy in which every pose is valid or null. */
-function validTrackers(trackers: BodyTrackers): BodyTrackers {
-  for (const name of trackerNames) {
-    const pose = trackers[name];
-    if (!pose || validPose(pose) === pose) continue;
-    return Object.fromEntries(trackerNames.map((tracker) => [tracker, validPose(trackers[tracker])]));
-  }
-  return trackers;
-}
-
 export interface TrackingValidatorOptions {
   /**
    * Whether a point that the source has never reported as tracked counts as tracked. Emulators and controllers without
@@ -57,8 +46,8 @@ export interface TrackingValidatorOptions {
 }
 
 /**
- * Decides what is tracked in the frames of one source: the only place that checks poses, their tracking state and their
- * times.
+ * Decides what is tracked in the frames of one source: the only place that checks head, hands, their tracking state and
+ * their times. `pinning` checks trackers.
  */
 export class TrackingValidator {
   readonly #options: TrackingValidatorOptions;
@@ -73,9 +62,9 @@ export class TrackingValidator {
   }
 
   /**
-   * Returns the frame itself, or a copy in which an invalid hand or tracker is null, every point has a tracking state,
-   * rotations have length 1, fingers that are not finite are unknown, an invalid device body is absent, and an invalid
-   * time is that of the frame before. Returns null while the head is not seen or no time is known. A head counts as
+   * Returns the frame itself, or a copy in which an invalid hand is null, every point has a tracking state, rotations
+   * have length 1, fingers that are not finite are unknown, an invalid device body is absent, and an invalid time is
+   * that of the frame before. Returns null while the head is not seen or no time is known. A head counts as
    * tracked in each frame that has one, because the body follows a guessed head too.
    */
   validate(frame: TrackingFrame | null | undefined): TrackingFrame | null {
@@ -101,10 +90,9 @@ export class TrackingValidator {
     const rightHand = this.#checkPoint('right', frame.rightHand);
     const validBody = frame.deviceBody === undefined || isFiniteDeviceBody(frame.deviceBody);
     const fingers = frame.fingers && validFingers(frame.fingers);
-    const trackers = frame.trackers && validTrackers(frame.trackers);
     const same = head === frame.head && leftHand === frame.leftHand && rightHand === frame.rightHand;
-    if (validTime && validBody && same && fingers === frame.fingers && trackers === frame.trackers) return frame;
-    const valid = { ...frame, time: this.#time, head, leftHand, rightHand, fingers, trackers };
+    if (validTime && validBody && same && fingers === frame.fingers) return frame;
+    const valid = { ...frame, time: this.#time, head, leftHand, rightHand, fingers };
     return validBody ? valid : { ...valid, deviceBody: undefined };
   }
 

@@ -6,6 +6,7 @@ import { jointNames } from 'threepoint/core/body/joints';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { createEstimator, needsRegressor } from 'threepoint/core/estimation/estimators';
 import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
+import type { PipelineOptions } from 'threepoint/core/estimation/pipeline';
 import { estimatorNames, type PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
 import { distance } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
@@ -71,7 +72,8 @@ export function openSubject({ name, plain }: (typeof subjects)[number]) {
   afterAll(() => regressor?.dispose());
 
   return {
-    create: (calibration: Calibration): PoseEstimator => createEstimator(name, calibration, regressor),
+    create: (calibration: Calibration, options?: PipelineOptions): PoseEstimator =>
+      createEstimator(name, calibration, regressor, options),
     /** Inference costs: fewer cases where every frame runs a network, and none to shrink the one that fails. */
     runs: (most: number) => ({
       seed,

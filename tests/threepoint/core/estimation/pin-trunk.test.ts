@@ -4,10 +4,22 @@ import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { headJointOf } from 'threepoint/core/body/head-joint';
 import { type JointName, jointNames, parentOf } from 'threepoint/core/body/joints';
 import { chestSpaceBody, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { type TrackerOffsets, trackerAtJoint } from 'threepoint/core/body/tracker-offsets';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { type Pose, transformPoint } from 'threepoint/core/math/pose';
+import { pinning } from 'threepoint/core/estimation/pinning';
+import { type Pose, type TrackedPose, transformPoint } from 'threepoint/core/math/pose';
 import { multiply, rotate } from 'threepoint/core/math/quat';
-import { add, addScaled, distance, length, normalise, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import {
+  add,
+  addScaled,
+  distance,
+  length,
+  normalise,
+  subtract,
+  type Vec3,
+  vec3,
+  zero,
+} from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { describe, expect, test } from 'vitest';
 import { cases } from '../../../nightly';
@@ -17,7 +29,7 @@ import { bodies, jointsOf, openSubject, person, rate, times } from './contract-s
 import { type Joints, poseOf, show } from './drawn';
 import { movingPerson } from './moving-person';
 import { at, calibration } from './posed-body';
-import { type TrueJoints, trackersOn, withOffsets } from './tracked-body';
+import { createPinned, type TrueJoints, trackersOn, withOffsets } from './tracked-body';
 
 type Place = { readonly x: number; readonly y: number; readonly z: number };
 const aside = fc.record({ x: evenly(-1, 1), y: evenly(-1, 1), z: evenly(-1, 1) });
@@ -64,7 +76,7 @@ describe.each(bodies)('$label with trackers', (subject) => {
   test.each([['hips'], ['chest']] as const)('draws a moving person’s %s within 1 mm of the tracker', async (name) => {
     await fc.assert(
       fc.asyncProperty(person, aside, turn, async ({ at: frameAt, calibration: body, start }, to, about) => {
-        const [plain, pinned] = [create(body), create(withOffsets(body))];
+        const [plain, pinned] = [create(body), create(withOffsets(body), { pinning })];
         for (const time of times(start, 4)) {
           const frame = frameAt(time);
           const headJoint = headJointIn(frame, body);
@@ -98,7 +110,7 @@ describe('a pinned trunk', () => {
         const free = draw(createEstimator('ik', calibration), frame);
         const headJoint = headJointIn(frame, calibration);
         const goal = elsewhere(free.hips, vec3(0, 0, 0), about, headJoint, reaches(calibration).hips - 0.06);
-        const joints = draw(createEstimator('ik', withOffsets(calibration)), {
+        const joints = draw(createPinned(calibration), {
           ...frame,
           trackers: trackersOn({ hips: goal }),
         });
@@ -115,7 +127,7 @@ describe('a pinned trunk', () => {
         const frame = movingPerson(motion, calibration, place)(0);
         const free = draw(createEstimator('ik', calibration), frame);
         const chest = { ...free.chest, position: add(at(free, 'chest'), vec3(0, apart, 0)) };
-        const joints = draw(createEstimator('ik', withOffsets(calibration)), {
+        const joints = draw(createPinned(calibration), {
           ...frame,
           trackers: trackersOn({ hips: free.hips, chest }),
         });
@@ -134,7 +146,7 @@ describe('a pinned trunk', () => {
         const free = draw(createEstimator('ik', calibration), frame);
         const headJoint = headJointIn(frame, calibration);
         const goal = elsewhere(free.hips, to, vec3(0, 0, 0), headJoint, reaches(calibration).hips);
-        const joints = draw(createEstimator('ik', withOffsets(calibration)), {
+        const joints = draw(createPinned(calibration), {
           ...frame,
           trackers: trackersOn({ hips: goal }),
         });
@@ -145,15 +157,19 @@ describe('a pinned trunk', () => {
     );
   });
 
-  test('ignores a tracker without an offset, one that is only guessed, and one beside another person', () => {
+  test('ignores a tracker without an offset, one that is only guessed or no number, and one beside another person', () => {
     const frame = movingPerson(4, calibration, { x: 1, z: 2, yaw: 0.4 })(3);
     const free = poseOf(createEstimator('ik', calibration), frame);
     const hips = jointsOf(free, calibration).hips;
     const { hips: seen } = trackersOn({ hips });
     const drawn = (body: Calibration, trackers: TrackingFrame['trackers']) =>
-      poseOf(createEstimator('ik', body), { ...frame, trackers }).body;
+      poseOf(createEstimator('ik', body, null, { pinning }), { ...frame, trackers }).body;
     expect(drawn(calibration, { hips: seen })).toEqual(free.body);
     expect(drawn(withOffsets(calibration), { hips: { ...seen!, tracking: 'emulated' } })).toEqual(free.body);
+    for (const y of [Number.NaN, Number.POSITIVE_INFINITY, 1e300]) {
+      const invalid = { ...seen!, position: { ...seen!.position, y } };
+      expect(drawn(withOffsets(calibration), { hips: invalid })).toEqual(free.body);
+    }
     const far = trackersOn({ hips: { ...hips, position: add(hips.position, vec3(0.9, 0, 0)) } });
     expect(drawn(withOffsets(calibration), far)).toEqual(free.body);
     expect(drawn(withOffsets(calibration), { hips: null })).toEqual(free.body);
@@ -170,7 +186,7 @@ describe('a pinned trunk', () => {
         fc.constantFrom<JointName[]>(['hips'], ['chest'], ['hips', 'chest']),
         (motion, place, to, about, start, names) => {
           const person = movingPerson(motion, calibration, place);
-          const [plain, pinned] = [createEstimator('ik', calibration), createEstimator('ik', withOffsets(calibration))];
+          const [plain, pinned] = [createEstimator('ik', calibration), createPinned(calibration)];
           // Two trackers that are turned alike, each about its own joint, contradict each other.
           const turned = names.length > 1 ? vec3(0, 0, 0) : about;
           let before: { readonly free: Joints; readonly drawn: Joints } | null = null;
@@ -205,7 +221,7 @@ describe('a pinned trunk', () => {
 
   test('is the estimate again when its trackers have been lost for 0.3 s', () => {
     const person = movingPerson(11, calibration, { x: 0, z: 0, yaw: 0 });
-    const [plain, pinned] = [createEstimator('ik', calibration), createEstimator('ik', withOffsets(calibration))];
+    const [plain, pinned] = [createEstimator('ik', calibration), createPinned(calibration)];
     for (let i = 0; i < 60; i++) {
       const frame = person(i * rate);
       const free = poseOf(plain, frame);
@@ -216,10 +232,43 @@ describe('a pinned trunk', () => {
     }
   });
 
+  test('is refused with a sentence where a page has not asked for it', () => {
+    const frame = movingPerson(3, calibration, { x: 0, z: 0, yaw: 0 })(1);
+    const estimator = createEstimator('ik', withOffsets(calibration));
+    expect(() => estimator.update({ ...frame, trackers: { hips: null } })).toThrow(/pinning.*threepoint\/trackers/);
+    expect(estimator.update(frame).pose.body).not.toBeNull();
+  });
+
+  test('takes a tracker without a tracking state, and a rotation of another length, as a hand', () => {
+    const frame = movingPerson(4, calibration, { x: 1, z: 2, yaw: 0.4 })(3);
+    const { hips } = jointsOf(poseOf(createEstimator('ik', calibration), frame), calibration);
+    const goal = { ...hips, position: add(hips.position, vec3(0.02, 0.01, 0)) };
+    const { position, orientation } = trackersOn({ hips: goal }).hips!;
+    const { x, y, z, w } = orientation;
+    // reason: a page without types leaves the state out
+    const plain = { position, orientation: { x: 2 * x, y: 2 * y, z: 2 * z, w: 2 * w } } as TrackedPose;
+    const joints = jointsOf(poseOf(createPinned(calibration), { ...frame, trackers: { hips: plain } }), calibration);
+    expect(distance(at(joints, 'hips'), goal.position)).toBeLessThan(1e-3);
+  });
+
+  test.each([
+    ['without a rotation', { hips: { position: zero } }, /tracker “hips” is not a pose/],
+    [
+      'longer than a tracker is worn',
+      { chest: { ...trackerAtJoint, position: vec3(0, 0.5, 0) } },
+      /“chest” .* 0\.40 m/,
+    ],
+  ])('refuses an offset %s', (_, offsets, sentence) => {
+    // reason: a page without types may leave parts of an offset out
+    const body = { ...calibration, trackerOffsets: offsets as TrackerOffsets };
+    expect(() => pinning.demandOffsets(body)).toThrow(sentence);
+    expect(() => pinning.demandOffsets(withOffsets(calibration))).not.toThrow();
+  });
+
   test('reports the ankles of tracked feet, and none without', () => {
     const frame = movingPerson(2, calibration, { x: 0, z: 0, yaw: 0 })(1);
     const left = { position: vec3(-0.1, 0.09, 0), orientation: fromEulerYxz(vec3(0, 0.2, 0)) };
-    const estimator = createEstimator('ik', withOffsets(calibration));
+    const estimator = createPinned(calibration);
     const { feet } = poseOf(estimator, { ...frame, trackers: trackersOn({ leftFoot: left }) });
     expect(distance(feet!.left!.position, left.position)).toBeLessThan(1e-9);
     expect(feet!.left!.orientation).toBeSameRotationAs(left.orientation);

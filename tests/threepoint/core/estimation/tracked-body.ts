@@ -1,5 +1,8 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { type TrackerOffset, type TrackerOffsets, trackerNames } from 'threepoint/core/body/tracker-offsets';
+import { createIk } from 'threepoint/core/estimation/estimators';
+import { pinning } from 'threepoint/core/estimation/pinning';
+import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
 import {
   invertTransform,
   type MutablePose,
@@ -26,6 +29,10 @@ export const wornOffsets = {
 } as const satisfies TrackerOffsets;
 
 export const withOffsets = (calibration: Calibration): Calibration => ({ ...calibration, trackerOffsets: wornOffsets });
+
+/** Creates IK for a person who wears trackers with `wornOffsets`. */
+export const createPinned = (calibration: Calibration): PoseEstimator =>
+  createIk(withOffsets(calibration), { pinning });
 
 export type TrueJoints = { readonly [Name in keyof typeof wornOffsets]?: Pose<'floor'> };
 

@@ -6,6 +6,7 @@ import { legShares } from 'threepoint/core/body/leg-shares';
 import { armLength, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { trackerNames } from 'threepoint/core/body/tracker-offsets';
 import { createIk } from 'threepoint/core/estimation/estimators';
+import { pinning } from 'threepoint/core/estimation/pinning';
 import { type Frame, type Pose, type TrackedPose, transformPose } from 'threepoint/core/math/pose';
 import { fromAxisAngle, identity, multiply, type Quat, rotate } from 'threepoint/core/math/quat';
 import { add, distance, right, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
@@ -64,7 +65,7 @@ function stretched(
 function guide(at: (seconds: number) => Omit<TrackingFrame, 'time'>, rateHz = 72): GuidedCalibration {
   let state: GuidedCalibration = startGuidedCalibration;
   for (let i = 0; i <= 2.1 * rateHz; i++)
-    state = stepGuidedCalibration(state, { ...at(i / rateHz), time: 50 + i / rateHz });
+    state = stepGuidedCalibration(state, { ...at(i / rateHz), time: 50 + i / rateHz }, pinning);
   return state;
 }
 
@@ -319,9 +320,14 @@ describe('the guided calibration', () => {
     test('lead an estimator to the joints of the person who calibrated', () => {
       const state = guide(() => ({ ...moved, trackers: placed }));
       if (state.kind !== 'done') throw new Error(JSON.stringify(state));
-      const estimator = createIk(state.calibration);
+      const estimator = createIk(state.calibration, { pinning });
       const { body } = estimator.update({ ...moved, time: 0, trackers: placed }).pose;
       expect(distance(body!.hipsPosition, place(joints.hips).position)).toBeLessThan(1e-3);
+    });
+
+    test('are refused with a sentence where a page has not asked for them', () => {
+      const frame = { ...moved, time: 0, trackers: placed };
+      expect(() => stepGuidedCalibration(startGuidedCalibration, frame)).toThrow(/pinning.*threepoint\/trackers/);
     });
 
     test('of a tracker that moves, is lost or belongs elsewhere stay unknown', () => {

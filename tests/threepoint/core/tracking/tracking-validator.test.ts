@@ -57,17 +57,6 @@ test('a corrected copy keeps what is not corrected', () => {
   });
 });
 
-test('an invalid tracker is refused like a hand, and the others stay', () => {
-  const { validator } = validatorOf(false);
-  const worn: TrackingFrame = { ...frame, trackers: { hips: point(0), leftFoot: null } };
-  expect(validator.validate(worn)).toBe(worn);
-  for (const x of [Number.NaN, Number.POSITIVE_INFINITY, 1e300]) {
-    const chest = { ...point(0), position: { x, y: 1, z: 0 } };
-    const valid = validator.validate({ ...worn, trackers: { ...worn.trackers, chest } });
-    expect(valid?.trackers).toEqual({ hips: point(0), chest: null, leftFoot: null, rightFoot: null });
-  }
-});
-
 test('frames of a recording without a head are left out', () => {
   // reason: a page without types
   const headless = { ...frame, head: null } as unknown as TrackingFrame;

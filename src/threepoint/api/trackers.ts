@@ -1,0 +1,7 @@
+// "threepoint/trackers": the part of a body that draws trackers of hips, chest and feet, for pages that have them.
+export type { TrackerName, TrackerOffset, TrackerOffsets } from '../core/body/tracker-offsets';
+export { trackerAtJoint } from '../core/body/tracker-offsets';
+export type { Pinning, Pins } from '../core/estimation/pinning';
+export { pinning } from '../core/estimation/pinning';
+export type { TrackerMeasuring, TrackerSample } from '../core/tracking/measure-trackers';
+export type { BodyTrackers } from '../core/tracking/tracking-frame';

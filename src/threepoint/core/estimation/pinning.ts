@@ -1,0 +1,68 @@
+import type { TrackedFeet } from '../body/avatar-pose';
+import type { Calibration } from '../body/calibration';
+import { farthestTracker, isPlausibleOffset, trackerNames } from '../body/tracker-offsets';
+import { type TrackerMeasuring, trackerMeasuring } from '../tracking/measure-trackers';
+import type { BodyTrackers } from '../tracking/tracking-frame';
+import type { CompletedFrame } from './complete-hands';
+import { makePinTrunkState, pinTrunk, resetPinTrunk } from './pin-trunk';
+import { makeTrackedJointsState, placeTrackedJoints } from './tracked-joints';
+import type { TorsoBones, TorsoPose } from './trunk/fit-torso';
+
+/** The joints of one estimator that trackers pin. */
+export class Pins {
+  readonly #joints = makeTrackedJointsState();
+  readonly #trunk = makePinTrunkState();
+  readonly #feet: { -readonly [Side in keyof TrackedFeet]: TrackedFeet[Side] } = { left: null, right: null };
+  #offsets: Calibration['trackerOffsets'];
+
+  constructor(calibration: Calibration) {
+    this.#offsets = calibration.trackerOffsets;
+  }
+
+  /** Sets how the trackers are worn from the next frame on. */
+  calibrate(calibration: Calibration): void {
+    this.#offsets = calibration.trackerOffsets;
+  }
+
+  /** Forgets the past: the next frame is the first. */
+  reset(): void {
+    resetPinTrunk(this.#trunk);
+  }
+
+  /** Moves the trunk onto its tracked joints. Returns the ankles that trackers pin; undefined: none is. */
+  apply(
+    torso: TorsoPose,
+    trackers: BodyTrackers | undefined,
+    frame: CompletedFrame,
+    bones: TorsoBones,
+    deltaSeconds: number,
+  ): TrackedFeet | undefined {
+    const joints = placeTrackedJoints(this.#joints, trackers, this.#offsets);
+    pinTrunk(this.#trunk, torso, joints, frame, bones, deltaSeconds);
+    this.#feet.left = joints.leftFoot;
+    this.#feet.right = joints.rightFoot;
+    return joints.leftFoot || joints.rightFoot ? this.#feet : undefined;
+  }
+}
+
+/** The part of a body that draws trackers beyond head and hands. A page without such trackers does without it. */
+export interface Pinning extends TrackerMeasuring {
+  /** Creates the pins of one estimator. */
+  create(calibration: Calibration): Pins;
+  /** Throws a RangeError where the offset of a tracker is no pose, or longer than a tracker is from its joint. */
+  demandOffsets(calibration: Calibration): void;
+}
+
+export const pinning: Pinning = {
+  ...trackerMeasuring,
+  create: (calibration) => new Pins(calibration),
+  demandOffsets({ trackerOffsets }) {
+    for (const name of trackerNames) {
+      const offset = trackerOffsets?.[name];
+      if (!offset || isPlausibleOffset(offset)) continue;
+      throw new RangeError(
+        `The offset of the tracker “${name}” is not a pose within ${farthestTracker.toFixed(2)} m of it.`,
+      );
+    }
+  },
+};

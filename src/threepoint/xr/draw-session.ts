@@ -1,0 +1,42 @@
+import { giveFramesToEvents } from './frameless-events';
+import type { DrawingSpace } from './tracked-session';
+
+/** The part of a renderer that draws a session: `renderer.xr` of three.js. */
+export interface SessionDrawing extends DrawingSpace {
+  setSession(session: XRSession): Promise<void>;
+}
+
+/** Ends a session; has no effect on one that has ended. */
+export async function endSession(session: XRSession): Promise<void> {
+  // reason: only a session that has ended already, or is about to, refuses to end
+  await session.end().catch(() => undefined);
+}
+
+/**
+ * Lets a renderer draw a session that was just requested. `prepare` runs once it is drawn; its result is returned.
+ * Rejects with a sentence, and ends the session, where that fails, where the device provides no floor, or where the
+ * session ends meanwhile.
+ */
+export async function drawSession<Prepared>(
+  session: XRSession,
+  drawing: SessionDrawing,
+  prepare: () => Prepared | Promise<Prepared>,
+): Promise<Prepared> {
+  const over = new Promise<never>((_, reject) => {
+    session.addEventListener('end', () => reject(new Error('the session ended before it had begun')), { once: true });
+  });
+  const draw = async (): Promise<Prepared> => {
+    giveFramesToEvents(session);
+    await drawing.setSession(session);
+    if (!drawing.getReferenceSpace())
+      throw new Error('the headset provides no floor-level reference space (local-floor)');
+    return prepare();
+  };
+  try {
+    return await Promise.race([draw(), over]);
+  } catch (error) {
+    // A session that is not drawn would keep the headset waiting, and no other could start.
+    await endSession(session);
+    throw error;
+  }
+}
